@@ -4,6 +4,9 @@ use polars::error::PolarsError;
 use polars::prelude::{Column, DataFrame};
 use polars_io::parquet::write::ParquetWriter;
 
+/// Most rows in a row group of a Parquet file.
+const ROW_GROUP: usize = 1 << 18;
+
 /// The values of a column; `None` is a missing value.
 #[derive(Debug, Clone, PartialEq)]
 enum Values {
@@ -106,9 +109,14 @@ impl Table {
     /// Those of the library.
     pub(super) fn parquet(&self) -> Result<Vec<u8>, PolarsError> {
         let columns = self.columns.iter().map(|(n, v)| v.column(n)).collect();
-        let mut frame = DataFrame::new(self.rows(), columns)?;
+        let frame = DataFrame::new(self.rows(), columns)?;
         let mut bytes = Vec::new();
-        ParquetWriter::new(&mut bytes).finish(&mut frame)?;
+        let mut writer = ParquetWriter::new(&mut bytes).batched(frame.schema())?;
+        for first in (0..frame.height()).step_by(ROW_GROUP) {
+            let offset = i64::try_from(first).unwrap_or(i64::MAX);
+            writer.write_batch(&frame.slice(offset, ROW_GROUP))?;
+        }
+        writer.finish()?;
         Ok(bytes)
     }
 }

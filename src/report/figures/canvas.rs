@@ -164,9 +164,8 @@ impl Canvas {
         }
     }
 
-    /// A filled polygon with an outline.
-    pub(crate) fn outlined(&mut self, points: &[Point], colour: Colour, stroke: Stroke) {
-        self.fill(points, colour);
+    /// The outline of a polygon.
+    pub(crate) fn outline(&mut self, points: &[Point], stroke: Stroke) {
         let mut closed = points.to_vec();
         closed.extend(points.iter().take(2));
         self.line(&closed, stroke);

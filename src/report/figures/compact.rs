@@ -67,6 +67,11 @@ enum Look<'a> {
         fill: &'a str,
         radius: i32,
     },
+    Ring {
+        stroke: &'a str,
+        width: &'a str,
+        radius: i32,
+    },
     Line {
         stroke: &'a str,
         width: &'a str,
@@ -82,7 +87,7 @@ impl Display for Look<'_> {
                 "fill=\"none\" stroke=\"{fill}\" stroke-width=\"{}\" stroke-linecap=\"round\"",
                 2 * radius
             ),
-            Self::Line { stroke, width } => {
+            Self::Ring { stroke, width, .. } | Self::Line { stroke, width } => {
                 write!(
                     f,
                     "fill=\"none\" stroke=\"{stroke}\" stroke-width=\"{width}\""
@@ -101,7 +106,7 @@ struct Mark<'a> {
 impl<'a> Mark<'a> {
     fn of(line: &'a str) -> Option<Self> {
         polygon(line)
-            .or_else(|| dot(line))
+            .or_else(|| circle(line))
             .or_else(|| polyline(line))
     }
 
@@ -110,6 +115,13 @@ impl<'a> Mark<'a> {
         let Some(((x, y), rest)) = self.points.split_first() else {
             return;
         };
+        if let Look::Ring { radius: r, .. } = self.look {
+            // a string cannot fail to be written
+            let _ = write!(path, "M{} {y}", x - r);
+            let across = 2 * r;
+            let _ = write!(path, "a{r} {r} 0 0 1 {across} 0a{r} {r} 0 0 1 -{across} 0z");
+            return;
+        }
         // a string cannot fail to be written
         let _ = write!(path, "M{x} {y}");
         let mut before = (*x, *y);
@@ -124,7 +136,7 @@ impl<'a> Mark<'a> {
         match self.look {
             Look::Area { .. } => path.push('z'),
             Look::Dot { .. } => path.push_str("h0"),
-            Look::Line { .. } => {}
+            Look::Ring { .. } | Look::Line { .. } => {}
         }
     }
 }
@@ -161,18 +173,27 @@ fn twice_the_area(points: &[(i32, i32)]) -> i64 {
         .sum()
 }
 
-/// A filled disc.
-fn dot(line: &str) -> Option<Mark<'_>> {
+/// A filled disc, or a circle.
+fn circle(line: &str) -> Option<Mark<'_>> {
     let rest = line.strip_prefix("<circle cx=\"")?;
     let (x, rest) = rest.split_once("\" cy=\"")?;
     let (y, rest) = rest.split_once("\" r=\"")?;
     let (radius, rest) = rest.split_once("\" fill=\"")?;
-    let fill = rest.strip_suffix("\" stroke=\"none\" stroke-width=\"1\"/>\n")?;
-    Some(Mark {
-        look: Look::Dot {
-            fill,
-            radius: radius.parse().ok()?,
+    let (fill, rest) = rest.split_once("\" stroke=\"")?;
+    let (stroke, rest) = rest.split_once("\" stroke-width=\"")?;
+    let width = rest.strip_suffix("\"/>\n")?;
+    let radius = radius.parse().ok()?;
+    let look = match (fill, stroke) {
+        ("none", _) => Look::Ring {
+            stroke,
+            width,
+            radius,
         },
+        (_, "none") => Look::Dot { fill, radius },
+        _ => return None,
+    };
+    Some(Mark {
+        look,
         points: vec![(x.parse().ok()?, y.parse().ok()?)],
     })
 }

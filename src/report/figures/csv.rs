@@ -1,5 +1,7 @@
 //! A figure's data as CSV, so that a reader can draw it again.
 
+use crate::signal::whole;
+
 /// Rows of text and numbers under a header; short rows are filled with empty fields.
 pub(crate) struct Csv {
     text: String,
@@ -28,13 +30,13 @@ impl Csv {
     /// Text fields.
     pub(crate) fn texts(&mut self, fields: &[&str]) -> &mut Self {
         for field in fields {
-            let needs_quotes = field.contains([',', '"', '\n']);
-            let text = if needs_quotes {
-                format!("\"{}\"", field.replace('"', "\"\""))
+            self.begin_field();
+            if field.contains([',', '"', '\n']) {
+                let quoted = field.replace('"', "\"\"");
+                self.text.extend(["\"", quoted.as_str(), "\""]);
             } else {
-                (*field).to_owned()
-            };
-            self.field(&text);
+                self.text.push_str(field);
+            }
         }
         self
     }
@@ -42,25 +44,24 @@ impl Csv {
     /// Number fields; missing ones stay empty.
     pub(crate) fn numbers(&mut self, fields: &[Option<f64>]) -> &mut Self {
         for field in fields {
-            let text = field
-                .filter(|v| v.is_finite())
-                .map_or(String::new(), nine_digits);
-            self.field(&text);
+            self.begin_field();
+            if let Some(value) = field.filter(|v| v.is_finite()) {
+                Decimal::of(value).write(&mut self.text);
+            }
         }
         self
     }
 
-    fn field(&mut self, text: &str) {
+    fn begin_field(&mut self) {
         if self.filled > 0 {
             self.text.push(',');
         }
-        self.text.push_str(text);
         self.filled += 1;
     }
 
     fn end_row(&mut self) {
         while self.filled < self.columns {
-            self.field("");
+            self.begin_field();
         }
         self.text.push('\n');
         self.filled = 0;
@@ -73,38 +74,122 @@ impl Csv {
     }
 }
 
-/// A number with at most nine significant digits, which is more than any figure shows.
-fn nine_digits(value: f64) -> String {
-    let text = format!("{value:.8e}");
-    let parts = text.split_once('e').and_then(|(mantissa, exponent)| {
-        let (first, others) = mantissa.split_once('.')?;
-        let (sign, first) = first.split_at(first.len() - 1);
-        Some((sign, first, others, exponent.parse::<i32>().ok()?))
-    });
-    let Some((sign, first, others, exponent)) = parts else {
-        return text;
-    };
-    let others = others.trim_end_matches('0');
-    let point = if others.is_empty() { "" } else { "." };
-    let length = i32::try_from(others.len()).unwrap_or(i32::MAX);
-    match usize::try_from(exponent.abs()) {
-        Ok(places) if (-5..0).contains(&exponent) => {
-            format!("{sign}0.{first:0>places$}{others}")
+/// Digits of a number: more than any figure shows.
+const DIGITS: usize = 9;
+
+/// Powers of ten that a double holds exactly.
+const POWERS_OF_TEN: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+];
+
+/// A number rounded to nine significant digits.
+struct Decimal {
+    negative: bool,
+    /// The digits; the first is not 0 unless all are.
+    digits: [u8; DIGITS],
+    /// Power of ten of the first digit.
+    exponent: i32,
+}
+
+impl Decimal {
+    fn of(value: f64) -> Self {
+        Self::quick(value).unwrap_or_else(|| Self::exact(value))
+    }
+
+    /// By one multiplication; `None` where its rounding could change the last digit.
+    fn quick(value: f64) -> Option<Self> {
+        let size = value.abs();
+        if !(1e-13..1e22).contains(&size) {
+            return None;
         }
-        Ok(places) if (0..15).contains(&exponent) && exponent >= length => {
-            format!("{sign}{first}{others:0<places$}")
+        let exponent = whole::integer(size.log10().floor());
+        let places = i32::try_from(DIGITS).ok()? - 1 - exponent;
+        let power = POWERS_OF_TEN.get(usize::try_from(places.abs()).ok()?)?;
+        let scaled = if places < 0 {
+            size / power
+        } else {
+            size * power
+        };
+        let rounded = scaled.round();
+        let sure = (scaled - rounded).abs() < 0.499 && (1e8..1e9).contains(&rounded);
+        let mut left = if sure {
+            whole::count(rounded)
+        } else {
+            return None;
+        };
+        let mut digits = [b'0'; DIGITS];
+        for digit in digits.iter_mut().rev() {
+            *digit += u8::try_from(left % 10).ok()?;
+            left /= 10;
         }
-        Ok(places) if (0..15).contains(&exponent) => {
-            let (whole, part) = others.split_at(places);
-            format!("{sign}{first}{whole}.{part}")
+        Some(Self {
+            negative: value.is_sign_negative(),
+            digits,
+            exponent,
+        })
+    }
+
+    fn exact(value: f64) -> Self {
+        let text = format!("{:.1$e}", value.abs(), DIGITS - 1);
+        let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        let mut digits = [b'0'; DIGITS];
+        for (digit, c) in digits
+            .iter_mut()
+            .zip(mantissa.bytes().filter(|c| *c != b'.'))
+        {
+            *digit = c;
         }
-        _ => format!("{sign}{first}{point}{others}e{exponent}"),
+        Self {
+            negative: value.is_sign_negative(),
+            digits,
+            exponent: exponent.parse().unwrap_or(0),
+        }
+    }
+
+    /// Appends the shortest text of the number; one below 1e-5 or from 1e15 on with its exponent.
+    fn write(&self, text: &mut String) {
+        if self.negative {
+            text.push('-');
+        }
+        let used = self.digits.iter().rposition(|d| *d != b'0').unwrap_or(0) + 1;
+        let digits = self.digits[..used].iter().map(|d| char::from(*d));
+        let places = usize::try_from(self.exponent.unsigned_abs()).unwrap_or(usize::MAX);
+        let zeros = |count: usize| std::iter::repeat_n('0', count);
+        match self.exponent {
+            -5..0 => {
+                text.push_str("0.");
+                text.extend(zeros(places - 1).chain(digits));
+            }
+            0..15 => {
+                text.extend(digits.clone().take(places + 1));
+                text.extend(zeros((places + 1).saturating_sub(used)));
+                if used > places + 1 {
+                    text.push('.');
+                    text.extend(digits.skip(places + 1));
+                }
+            }
+            exponent => {
+                text.extend(digits.clone().take(1));
+                if used > 1 {
+                    text.push('.');
+                    text.extend(digits.skip(1));
+                }
+                text.push_str(&format!("e{exponent}"));
+            }
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn nine_digits(value: f64) -> String {
+        let mut text = String::new();
+        Decimal::of(value).write(&mut text);
+        text
+    }
 
     #[test]
     fn numbers_have_nine_digits_at_most() {

@@ -149,39 +149,70 @@ pub(crate) fn met<'a>(motions: impl IntoIterator<Item = &'a Motion>) -> Vec<&'a 
 }
 
 /// Draws a mark of a radius in points, with a thin light rim that parts it from its neighbours.
-pub(crate) fn draw(canvas: &mut Canvas, (x, y): Point, radius: f64, mark: MotionLook) {
-    let r = radius;
+pub(crate) fn draw(canvas: &mut Canvas, at: Point, radius: f64, mark: MotionLook) {
+    fill(canvas, at, radius, mark);
+    outline(canvas, at, radius, mark);
+}
+
+/// Draws marks of one look; where they overlap, the outlines of all are seen.
+pub(crate) fn draw_all(canvas: &mut Canvas, all: &[Point], radius: f64, mark: MotionLook) {
+    for at in all {
+        fill(canvas, *at, radius, mark);
+    }
+    for at in all {
+        outline(canvas, *at, radius, mark);
+    }
+}
+
+fn fill(canvas: &mut Canvas, at: Point, r: f64, mark: MotionLook) {
     let c = mark.colour;
-    let outline = Stroke::solid(c, 0.32 * r);
+    match mark.shape {
+        Shape::Circle => canvas.disc(at, r, look::PAPER),
+        Shape::Disc | Shape::Target => canvas.disc(at, r, c),
+        Shape::Dot => canvas.disc(at, 0.55 * r, c),
+        Shape::Box | Shape::Delta | Shape::Lozenge => {
+            canvas.fill(&corners(at, r, mark.shape), look::PAPER);
+        }
+        Shape::Square | Shape::Triangle | Shape::Wedge | Shape::Diamond | Shape::Star => {
+            canvas.fill(&corners(at, r, mark.shape), c);
+        }
+        Shape::Plus | Shape::Cross | Shape::Bar => {}
+    }
+}
+
+fn outline(canvas: &mut Canvas, at: Point, r: f64, mark: MotionLook) {
+    let (x, y) = at;
+    let c = mark.colour;
+    let thick = Stroke::solid(c, 0.32 * r);
     let rim = Stroke::solid(look::PAPER, 0.25);
     match mark.shape {
-        Shape::Circle => {
-            canvas.disc((x, y), r, look::PAPER);
-            canvas.ring((x, y), 0.85 * r, outline);
+        Shape::Circle => canvas.ring(at, 0.85 * r, thick),
+        Shape::Target => canvas.disc(at, 0.42 * r, look::PAPER),
+        Shape::Disc | Shape::Dot => {}
+        Shape::Box | Shape::Delta | Shape::Lozenge => {
+            canvas.outline(&corners(at, r, mark.shape), thick);
         }
-        Shape::Disc => canvas.disc((x, y), r, c),
-        Shape::Target => {
-            canvas.disc((x, y), r, c);
-            canvas.disc((x, y), 0.42 * r, look::PAPER);
+        Shape::Square | Shape::Triangle | Shape::Wedge | Shape::Diamond | Shape::Star => {
+            canvas.outline(&corners(at, r, mark.shape), rim);
         }
-        Shape::Dot => canvas.disc((x, y), 0.55 * r, c),
-        Shape::Square => canvas.outlined(&regular(x, y, 1.15 * r, 4, 45.0), c, rim),
-        Shape::Box => canvas.outlined(&regular(x, y, 1.1 * r, 4, 45.0), look::PAPER, outline),
-        Shape::Triangle => canvas.outlined(&regular(x, y + 0.15 * r, 1.3 * r, 3, 90.0), c, rim),
-        Shape::Delta => {
-            canvas.outlined(
-                &regular(x, y + 0.15 * r, 1.2 * r, 3, 90.0),
-                look::PAPER,
-                outline,
-            );
-        }
-        Shape::Wedge => canvas.outlined(&regular(x, y - 0.15 * r, 1.3 * r, 3, -90.0), c, rim),
-        Shape::Diamond => canvas.outlined(&regular(x, y, 1.3 * r, 4, 0.0), c, rim),
-        Shape::Lozenge => canvas.outlined(&regular(x, y, 1.2 * r, 4, 0.0), look::PAPER, outline),
-        Shape::Star => canvas.outlined(&star(x, y, 1.4 * r), c, rim),
-        Shape::Plus => crossed(canvas, (x, y), 1.1 * r, 0.0, c),
-        Shape::Cross => crossed(canvas, (x, y), 1.1 * r, 45.0, c),
+        Shape::Plus => crossed(canvas, at, 1.1 * r, 0.0, c),
+        Shape::Cross => crossed(canvas, at, 1.1 * r, 45.0, c),
         Shape::Bar => canvas.segment((x - r, y), (x + r, y), Stroke::solid(c, 0.6 * r)),
+    }
+}
+
+/// The corners of a polygonal mark; of another there are none.
+fn corners((x, y): Point, r: f64, shape: Shape) -> Vec<Point> {
+    match shape {
+        Shape::Square => regular(x, y, 1.15 * r, 4, 45.0),
+        Shape::Box => regular(x, y, 1.1 * r, 4, 45.0),
+        Shape::Triangle => regular(x, y + 0.15 * r, 1.3 * r, 3, 90.0),
+        Shape::Delta => regular(x, y + 0.15 * r, 1.2 * r, 3, 90.0),
+        Shape::Wedge => regular(x, y - 0.15 * r, 1.3 * r, 3, -90.0),
+        Shape::Diamond => regular(x, y, 1.3 * r, 4, 0.0),
+        Shape::Lozenge => regular(x, y, 1.2 * r, 4, 0.0),
+        Shape::Star => star(x, y, 1.4 * r),
+        _ => Vec::new(),
     }
 }
 

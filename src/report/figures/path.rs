@@ -150,16 +150,16 @@ pub(crate) fn thin(points: &[Point]) -> Vec<Point> {
 
 fn farthest(points: &[Point], from: usize, to: usize) -> Option<usize> {
     let (far, most) = (from + 1..to)
-        .map(|i| (i, distance_to_segment(points[i], points[from], points[to])))
+        .map(|i| (i, square_to_segment(points[i], points[from], points[to])))
         .fold(
             (0, 0.0),
             |best, next| if next.1 > best.1 { next } else { best },
         );
-    (most > THINNING_TOLERANCE).then_some(far)
+    (most > THINNING_TOLERANCE * THINNING_TOLERANCE).then_some(far)
 }
 
-/// Distance of a point from the segment between two others.
-fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
+/// Square of the distance of a point from the segment between two others.
+fn square_to_segment(p: Point, a: Point, b: Point) -> f64 {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let square = dx * dx + dy * dy;
     let t = if square > 0.0 {
@@ -168,7 +168,8 @@ fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
         0.0
     };
     let t = t.clamp(0.0, 1.0);
-    (p.0 - a.0 - t * dx).hypot(p.1 - a.1 - t * dy)
+    let (across, down) = (p.0 - a.0 - t * dx, p.1 - a.1 - t * dy);
+    across * across + down * down
 }
 
 /// A line cut into dashes.
@@ -228,7 +229,7 @@ mod tests {
             for &p in &line {
                 let nearest = kept
                     .windows(2)
-                    .map(|s| distance_to_segment(p, s[0], s[1]))
+                    .map(|s| square_to_segment(p, s[0], s[1]).sqrt())
                     .fold(f64::INFINITY, f64::min);
                 prop_assert!(nearest <= THINNING_TOLERANCE + 1e-9);
             }

@@ -109,19 +109,23 @@ impl Series<'_> {
         spots: &mut Vec<Spot>,
     ) {
         let radius = dots::radius(self.curve.points.len()) + 0.2;
-        let mut taken = Dots::default();
+        let colour = |point: &ResonancePoint| if point.used { look::BLUE } else { look::QUIET };
         canvas.layer(1);
         for point in &self.curve.points {
             let [y, error] = value(point);
-            let colour = if point.used { look::BLUE } else { look::QUIET };
             let low = if self.panel.y.log {
                 (y - error).max(self.panel.y.low)
             } else {
                 y - error
             };
-            let bar = Stroke::solid(colour, 0.4);
+            let bar = Stroke::solid(colour(point), 0.4);
             self.panel
                 .error_bar(canvas, point.frequency_hz, (low, y + error), bar);
+        }
+        let mut taken = Dots::default();
+        for point in &self.curve.points {
+            let [y, _] = value(point);
+            let colour = colour(point);
             let dot = DotLook {
                 radius,
                 colour,

@@ -4,7 +4,10 @@ mod data;
 mod keys;
 mod labels;
 
+use std::collections::{BTreeMap, HashSet};
+
 use crate::compare::{BoundaryCurve, BracketRow, RecordRow, RegionMap};
+use crate::motion::Motion;
 use crate::record::Sweep;
 use crate::report::content::ReportContent;
 use crate::report::figures::boundaries;
@@ -21,6 +24,7 @@ use crate::report::figures::plane::{Plane, View, same};
 use crate::report::figures::regions::Regions;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
+use crate::signal::whole;
 
 /// Which of the two maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -294,8 +298,10 @@ impl<'a> Map<'a> {
 
     fn records(&mut self, locale: Locale<'_>) {
         let radius = self.radius;
-        let mut drawn: Vec<(Point, String)> = Vec::new();
-        self.canvas.layer(4);
+        // marks of one motion that would cover each other are drawn once
+        let side = 0.5 * radius;
+        let mut taken = HashSet::new();
+        let mut drawn: BTreeMap<_, (&Motion, Vec<Point>)> = BTreeMap::new();
         for record in &self.content.compared.records {
             let Some(at) = self.place(record) else {
                 continue;
@@ -306,16 +312,18 @@ impl<'a> Map<'a> {
                 y: at.1,
                 text,
             });
-            let label = record.motion.label();
-            let hidden = drawn.iter().any(|(p, l)| {
-                (p.0 - at.0).abs() < 0.35 * radius
-                    && (p.1 - at.1).abs() < 0.35 * radius
-                    && *l == label
-            });
-            if !hidden {
-                marks::draw(&mut self.canvas, at, radius, marks::of(&record.motion));
-                drawn.push((at, label));
+            let order = (marks::order(&record.motion), record.motion.label());
+            let cell = [at.0, at.1].map(|v| whole::integer((v / side).floor()));
+            let (_, places) = drawn
+                .entry(order.clone())
+                .or_insert((&record.motion, Vec::new()));
+            if taken.insert((order, cell)) {
+                places.push(at);
             }
+        }
+        self.canvas.layer(4);
+        for (motion, places) in drawn.values() {
+            marks::draw_all(&mut self.canvas, places, radius, marks::of(motion));
         }
     }
 
