@@ -3,7 +3,7 @@
 
 use crate::event::drive::DriveTone;
 use crate::event::kinematics::Series;
-use crate::signal::interpolation::interpolate;
+use crate::signal::interpolation::later;
 use crate::signal::whole;
 use crate::signal::{drift, robust};
 
@@ -100,9 +100,8 @@ fn period_line(velocity: &Series, drive: Option<&DriveTone>, rate_hz: f64) -> Op
 }
 
 fn strobed_slope(values: &[f64], period: f64) -> f64 {
-    let differences: Vec<f64> = (0..values.len())
-        .map_while(|i| interpolate(values, i as f64 + period).map(|v| v - values[i]))
-        .collect();
+    let later = later(values, period);
+    let differences: Vec<f64> = later.iter().zip(values).map(|(a, b)| a - b).collect();
     robust::median(&differences).unwrap_or(0.0) / period
 }
 

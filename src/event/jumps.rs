@@ -2,6 +2,7 @@
 //! disagree.
 
 use crate::event::kinematics::Series;
+use crate::signal::columns;
 use crate::signal::local_fit::LocalFit;
 use crate::signal::robust;
 use crate::signal::whole;
@@ -67,12 +68,13 @@ impl<'a> JumpSearch<'a> {
         let values = &velocity.values;
         let count = values.len();
         let mut scan = vec![0.0; count];
-        for left in window.saturating_sub(1)..count.saturating_sub(gap + window - 1) {
-            let mut height = 0.0;
-            for (j, w) in weights.iter().enumerate() {
-                height += w * (values[left + gap + j] - values[left - j]);
-            }
-            scan[left] = height;
+        let first = window.saturating_sub(1);
+        let last = count.saturating_sub(gap + window - 1).max(first);
+        for (j, weight) in weights.iter().enumerate() {
+            let heights = scan.get_mut(first..last).unwrap_or_default();
+            let after = values.get(first + gap + j..).unwrap_or_default();
+            let before = values.get(first - j..).unwrap_or_default();
+            columns::add_difference(heights, *weight, [after, before]);
         }
         let theory = velocity.noise * factor * 2f64.sqrt();
         let observed = quiet_deviation(&scan);

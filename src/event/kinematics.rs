@@ -113,32 +113,25 @@ impl Kinematics {
     /// Build the kinematics of a record from the motion channels that it has.
     pub fn of(record: &Record, rig: RigKind) -> Self {
         let rate_hz = record.sample_rate_hz;
-        let x = body(
+        let of_x = Measured::of(
             record,
             [Role::VelocityX, Role::DisplacementX, Role::AccelerationX],
         );
-        let y = match rig {
-            RigKind::Double => body(
+        let of_y = match rig {
+            RigKind::Double => Measured::of(
                 record,
                 [Role::VelocityY, Role::DisplacementY, Role::AccelerationY],
             ),
-            RigKind::Single => Body::default(),
+            RigKind::Single => Measured::default(),
         };
+        let kinds: [fn(&Measured) -> &Option<Series>; 3] =
+            [|m| &m.velocity, |m| &m.displacement, |m| &m.acceleration];
+        let mut waveforms = kinds
+            .into_iter()
+            .map(|kind| combined(kind(&of_x), kind(&of_y), rig).0);
+        let waveform = waveforms.find_map(|waveform| waveform);
+        let (x, y) = (of_x.body(rate_hz), of_y.body(rate_hz));
         let (relative, relative_from) = relative_motion(&x, &y, rig);
-        let waveform = [
-            [Role::VelocityX, Role::VelocityY],
-            [Role::DisplacementX, Role::DisplacementY],
-            [Role::AccelerationX, Role::AccelerationY],
-        ]
-        .into_iter()
-        .find_map(|[of_x, of_y]| {
-            let of_y = if rig == RigKind::Double {
-                series(record, of_y)
-            } else {
-                None
-            };
-            combined(&series(record, of_x), &of_y, rig).0
-        });
         Self {
             rate_hz,
             x,
@@ -176,18 +169,33 @@ fn relative_motion(x: &Body, y: &Body, rig: RigKind) -> (Body, Option<RelativeSo
     )
 }
 
-fn body(record: &Record, [velocity, displacement, acceleration]: [Role; 3]) -> Body {
-    let displacement = series(record, displacement);
-    let velocity = series(record, velocity)
-        .or_else(|| {
-            displacement
-                .as_ref()
-                .map(|s| differentiated(s, record.sample_rate_hz))
-        })
-        .or_else(|| series(record, acceleration).map(|s| integrated(&s, record.sample_rate_hz)));
-    Body {
-        velocity,
-        displacement,
+/// The motion channels of one body.
+#[derive(Default)]
+struct Measured {
+    velocity: Option<Series>,
+    displacement: Option<Series>,
+    /// Left out where one of the others is there.
+    acceleration: Option<Series>,
+}
+
+impl Measured {
+    fn of(record: &Record, [velocity, displacement, acceleration]: [Role; 3]) -> Self {
+        let (velocity, displacement) = (series(record, velocity), series(record, displacement));
+        let alone = velocity.is_none() && displacement.is_none();
+        Self {
+            velocity,
+            displacement,
+            acceleration: alone.then(|| series(record, acceleration)).flatten(),
+        }
+    }
+
+    fn body(self, rate_hz: f64) -> Body {
+        let differentiate = || Some(differentiated(self.displacement.as_ref()?, rate_hz));
+        let integrate = || Some(integrated(self.acceleration.as_ref()?, rate_hz));
+        Body {
+            velocity: self.velocity.or_else(differentiate).or_else(integrate),
+            displacement: self.displacement,
+        }
     }
 }
 

@@ -3,8 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::event::Impact;
+use crate::signal::columns::{dot, products, subtract, sum};
 use crate::signal::interpolation::{later, noise_gain};
 use crate::signal::robust;
+use crate::signal::turns::Turns;
 use crate::signal::whole;
 
 /// How well a waveform closes after n drive periods.
@@ -31,39 +33,42 @@ pub(super) fn waveform(
     most: u32,
     hum: &[f64],
 ) -> Vec<WaveformClosure> {
-    let blocked = blocked_samples(values.len(), impacts, guard);
-    let free: Vec<f64> = values
-        .iter()
-        .zip(&blocked)
-        .filter(|(_, b)| !**b)
-        .map(|(v, _)| *v)
-        .collect();
-    let mean = robust::mean(&free);
-    let scale = robust::rms(&free.iter().map(|v| v - mean).collect::<Vec<_>>());
+    let open = open_samples(values.len(), impacts, guard);
+    let mut centred = values.to_vec();
+    weighted_mean_removed(&mut centred, &open);
+    let scale = (dot(&centred, &centred) / sum(&open)).sqrt();
     let hum = Hum::new(values.len(), hum);
     (1..=most)
         .filter_map(|n| {
             let lag = f64::from(n) * period;
             let partners = later(values, lag);
-            let nearest = whole::index(lag.round());
-            let is_open = |i: usize| blocked.get(i).is_some_and(|blocked| !blocked);
-            let open: Vec<usize> = (0..partners.len())
-                .filter(|i| is_open(*i) && is_open(i + nearest))
-                .collect();
-            let differences: Vec<f64> = open.iter().map(|i| partners[*i] - values[*i]).collect();
-            let differences = hum.removed(&open, differences);
-            let centre = robust::mean(&differences);
-            let square: f64 = differences.iter().map(|d| (d - centre).powi(2)).sum();
-            let samples = differences.len();
+            let beside = open.get(whole::index(lag.round())..).unwrap_or_default();
+            let weights = products(&open, &beside[..partners.len().min(beside.len())]);
+            let samples = sum(&weights);
+            if samples < 16.0 || !(scale > 0.0) {
+                return None;
+            }
+            let pairs = partners.iter().zip(values).take(weights.len());
+            let mut differences: Vec<f64> = pairs.map(|(later, now)| later - now).collect();
+            hum.remove(&mut differences, &weights);
+            weighted_mean_removed(&mut differences, &weights);
+            let square = dot(&differences, &differences);
             // Interpolation smooths the noise of one of the two: make lags comparable.
             let square = square * 2.0 / (1.0 + noise_gain(lag.fract()));
-            (samples >= 16 && scale > 0.0).then(|| WaveformClosure {
+            Some(WaveformClosure {
                 periods_n: n,
-                ratio: (0.5 * square / samples as f64).sqrt() / scale,
-                samples,
+                ratio: (0.5 * square / samples).sqrt() / scale,
+                samples: whole::index(samples),
             })
         })
         .collect()
+}
+
+/// Values less their mean where the weight is 1, zero where it is 0.
+fn weighted_mean_removed(values: &mut [f64], weights: &[f64]) {
+    let mean = dot(values, weights) / sum(weights);
+    let all = values.iter_mut().zip(weights);
+    all.for_each(|(value, weight)| *value = (*value - mean) * weight);
 }
 
 /// A constant and tones at all samples.
@@ -75,43 +80,45 @@ struct Hum {
 impl Hum {
     /// Tones in cycles per sample.
     fn new(samples: usize, tones: &[f64]) -> Self {
-        let angles = |tone: f64| (0..samples).map(move |i| std::f64::consts::TAU * tone * i as f64);
         let mut columns = vec![vec![1.0; samples]];
         for tone in tones {
-            columns.push(angles(*tone).map(f64::cos).collect());
-            columns.push(angles(*tone).map(f64::sin).collect());
+            let turns = Turns::new(*tone, 0.0, samples);
+            columns.extend([turns.cos, turns.sin]);
         }
         Self { columns }
     }
 
-    /// Values at some samples without their least-squares fit of the constant and the tones; unchanged
-    /// where the tones cannot be told apart.
-    fn removed(&self, samples: &[usize], mut values: Vec<f64>) -> Vec<f64> {
+    /// Remove from values their least-squares fit of the constant and the tones where the weight is 1;
+    /// nothing where the tones cannot be told apart.
+    fn remove(&self, values: &mut [f64], weights: &[f64]) {
         let unknowns = self.columns.len();
-        if unknowns == 1 || samples.len() < 4 * unknowns {
-            return values;
+        if unknowns == 1 || sum(weights) < 4.0 * unknowns as f64 {
+            return;
         }
-        let at = |i: usize, k: usize| self.columns[k][samples[i]];
-        let columns = DMatrix::from_fn(samples.len(), unknowns, at);
-        let measured = DVector::from_column_slice(&values);
-        if let Some(factor) = columns.tr_mul(&columns).cholesky() {
-            let fitted = &columns * factor.solve(&columns.tr_mul(&measured));
-            values.iter_mut().zip(&fitted).for_each(|(v, f)| *v -= f);
+        let count = values.len();
+        let columns: Vec<&[f64]> = self.columns.iter().map(|c| &c[..count]).collect();
+        let weighted: Vec<Vec<f64>> = columns.iter().map(|c| products(c, weights)).collect();
+        let normal = |i: usize, k: usize| dot(&weighted[i], columns[k]);
+        let normal = DMatrix::from_fn(unknowns, unknowns, normal);
+        let right = DVector::from_fn(unknowns, |i, _| dot(&weighted[i], values));
+        if let Some(factor) = normal.cholesky() {
+            let shares = factor.solve(&right);
+            let all = shares.iter().zip(columns);
+            all.for_each(|(share, column)| subtract(values, *share, column));
         }
-        values
     }
 }
 
-fn blocked_samples(count: usize, impacts: &[f64], guard: f64) -> Vec<bool> {
-    let mut blocked = vec![false; count];
+/// 1 for each sample that keeps clear of impacts, 0 beside one.
+fn open_samples(count: usize, impacts: &[f64], guard: f64) -> Vec<f64> {
+    let mut open = vec![1.0; count];
     for time in impacts {
         let first = whole::index((time - guard).ceil().max(0.0));
         let last = whole::index((time + guard).floor().max(-1.0) + 1.0);
-        for slot in blocked.iter_mut().take(last.min(count)).skip(first) {
-            *slot = true;
-        }
+        let last = last.min(count);
+        open[first.min(last)..last].fill(0.0);
     }
-    blocked
+    open
 }
 
 /// How many impacts fall into n drive periods, and how steadily so.
@@ -285,10 +292,10 @@ mod tests {
     }
 
     #[test]
-    fn samples_beside_impacts_are_blocked() {
-        // 4.5 ± 1 blocks samples 4 and 5, the first and the last impact reach over the edges.
-        let blocked = blocked_samples(10, &[4.5, 0.2, 9.6], 1.0);
-        let list: Vec<usize> = (0..10).filter(|i| blocked[*i]).collect();
+    fn samples_beside_impacts_are_not_open() {
+        // 4.5 ± 1 closes samples 4 and 5, the first and the last impact reach over the edges.
+        let open = open_samples(10, &[4.5, 0.2, 9.6], 1.0);
+        let list: Vec<usize> = (0..10).filter(|i| open[*i] == 0.0).collect();
         assert_eq!(list, [0, 1, 4, 5, 9]);
     }
 }

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::event::{Detection, DriveTone, Series};
 use crate::record::{Channel, Record, Role};
-use crate::signal::interpolation::interpolate;
+use crate::signal::columns::subtract;
+use crate::signal::interpolation::later;
 use crate::signal::whole;
 
 /// Bins in one drive period.
@@ -82,27 +83,38 @@ pub(super) fn fold(
     });
     let phase = |time_s: f64| {
         let total = std::f64::consts::TAU * drive.frequency_hz * time_s + drive.phase_rad;
-        (total - start).rem_euclid(span)
+        within(total - start, span)
     };
     let guard_s = (detection.jump_samples as f64 + 1.0) / rate_hz;
     let impact_phase_rad = mean_impact_phase(detection, phase, span);
-    let mut axis = Axis {
-        phases: (0..sample_count(detection))
-            .map(|i| phase(i as f64 / rate_hz))
-            .collect(),
-        blocked: blocked(detection, guard_s),
-        span,
-        bins: BINS_PER_PERIOD * periods_n as usize,
-    };
+    let phases: Vec<f64> = (0..sample_count(detection))
+        .map(|i| phase(i as f64 / rate_hz))
+        .collect();
+    let mut blocked = blocked(detection, guard_s);
     if let Some(impact) = impact_phase_rad {
         // Also at the record's edges, where no impact can be detected.
-        axis.block_phase(impact, guard_s * std::f64::consts::TAU * drive.frequency_hz);
+        let guard = guard_s * std::f64::consts::TAU * drive.frequency_hz;
+        for (phase, blocked) in phases.iter().zip(&mut blocked) {
+            let apart = (phase - impact).abs();
+            *blocked |= apart.min(span - apart) < guard;
+        }
     }
+    let axis = Axis::new(
+        phases,
+        blocked,
+        (span, BINS_PER_PERIOD * periods_n as usize),
+    );
     Folded {
         periods_n,
         impact_phase_rad,
         channels: channels(record, detection, &axis),
     }
+}
+
+/// A phase on 0 … span.
+fn within(phase: f64, span: f64) -> f64 {
+    let phase = phase - (phase / span).floor() * span;
+    if phase < span { phase.max(0.0) } else { 0.0 }
 }
 
 fn sample_count(detection: &Detection) -> usize {
@@ -147,27 +159,38 @@ struct Axis {
     blocked: Vec<bool>,
     span: f64,
     bins: usize,
+    /// The bin of each sample that is not blocked.
+    bin: Vec<Option<u32>>,
 }
 
 impl Axis {
-    /// Amplitude of a shape in time that is added to a periodic motion: the least-squares fit of the
-    /// shape's change over a period to the differences of values a period apart. `shape`: its value
-    /// at a sample.
-    fn amplitude(&self, values: &[f64], shape: impl Fn(f64) -> f64) -> f64 {
-        let step = if self.phases.len() < 2 {
-            return 0.0;
-        } else {
-            (self.phases[1] - self.phases[0]).rem_euclid(self.span)
+    fn new(phases: Vec<f64>, blocked: Vec<bool>, (span, bins): (f64, usize)) -> Self {
+        let last = bins as f64 - 1.0;
+        let bin = |(phase, blocked): (&f64, &bool)| {
+            (!blocked).then(|| whole::count((phase / span * bins as f64).min(last)))
         };
-        let lag = self.span / step;
+        Self {
+            bin: phases.iter().zip(&blocked).map(bin).collect(),
+            phases,
+            blocked,
+            span,
+            bins,
+        }
+    }
+
+    /// Amplitude of a shape in time that is added to a periodic motion: the least-squares fit of the
+    /// shape's change over a period to the differences of values a period apart.
+    fn amplitude(&self, values: &[f64], (shape, added): (&Shape, &[f64])) -> f64 {
+        let [first, second, ..] = self.phases[..] else {
+            return 0.0;
+        };
+        let lag = self.span / (second - first).rem_euclid(self.span);
+        let gain = shape.gain(lag);
         let (mut product, mut square) = (0.0, 0.0);
-        for i in 0..values.len() {
-            let partner = i as f64 + lag;
-            let Some(later) = interpolate(values, partner) else {
-                break;
-            };
-            if !self.blocked[i] && !self.blocked[whole::index(partner.round())] {
-                let gained = shape(partner) - shape(i as f64);
+        for (i, later) in later(values, lag).into_iter().enumerate() {
+            let partner = whole::index((i as f64 + lag).round());
+            if !self.blocked[i] && !self.blocked[partner] {
+                let gained = gain.of(added[i]);
                 product += (later - values[i]) * gained;
                 square += gained * gained;
             }
@@ -176,19 +199,48 @@ impl Axis {
     }
 
     /// Subtract a shape in time from values whose motion is periodic.
-    fn remove(&self, values: &mut [f64], shape: impl Fn(f64) -> f64) {
-        let amplitude = self.amplitude(values, &shape);
-        for (i, value) in values.iter_mut().enumerate() {
-            *value -= amplitude * shape(i as f64);
+    fn remove(&self, values: &mut [f64], shape: &Shape) {
+        let added = shape.values(values.len());
+        let amplitude = self.amplitude(values, (shape, &added));
+        subtract(values, amplitude, &added);
+    }
+}
+
+/// A shape in time that is added to a periodic motion.
+enum Shape {
+    /// i at sample i.
+    Ramp,
+    /// e^{−rate·i} at sample i.
+    Decay(f64),
+}
+
+/// What a shape gains over a lag: a share of its value, and a constant.
+struct Gain {
+    share: f64,
+    constant: f64,
+}
+
+impl Gain {
+    fn of(&self, value: f64) -> f64 {
+        self.share * value + self.constant
+    }
+}
+
+impl Shape {
+    fn values(&self, count: usize) -> Vec<f64> {
+        let places = (0..count).map(|i| i as f64);
+        match self {
+            Self::Ramp => places.collect(),
+            Self::Decay(rate) => places.map(|i| (-rate * i).exp()).collect(),
         }
     }
 
-    /// Leave out all samples within a guard of a phase.
-    fn block_phase(&mut self, phase_rad: f64, guard_rad: f64) {
-        for (phase, blocked) in self.phases.iter().zip(&mut self.blocked) {
-            let apart = (phase - phase_rad).rem_euclid(self.span);
-            *blocked |= apart.min(self.span - apart) < guard_rad;
-        }
+    fn gain(&self, lag: f64) -> Gain {
+        let (share, constant) = match self {
+            Self::Ramp => (0.0, lag),
+            Self::Decay(rate) => ((-rate * lag).exp_m1(), 0.0),
+        };
+        Gain { share, constant }
     }
 }
 
@@ -223,7 +275,8 @@ fn channels(record: &Record, detection: &Detection, axis: &Axis) -> Vec<FoldedCh
 /// in turns a sample.
 fn settled(channel: &Channel, corner: f64, axis: &Axis) -> Vec<f64> {
     let mut values = channel.values.clone();
-    axis.remove(&mut values, |i| (-std::f64::consts::TAU * corner * i).exp());
+    let rate = std::f64::consts::TAU * corner;
+    axis.remove(&mut values, &Shape::Decay(rate));
     values
 }
 
@@ -231,24 +284,19 @@ fn settled(channel: &Channel, corner: f64, axis: &Axis) -> Vec<f64> {
 fn level(series: &Series, axis: &Axis) -> Vec<f64> {
     let mut values = series.values.clone();
     if series.high_pass_hz.is_some() {
-        axis.remove(&mut values, |i| i);
+        axis.remove(&mut values, &Shape::Ramp);
     }
     values
 }
 
 fn points(values: &[f64], axis: &Axis) -> Vec<FoldedPoint> {
     let mut sums = vec![[0.0; 4]; axis.bins];
-    for (i, value) in values.iter().enumerate() {
-        if axis.blocked[i] {
-            continue;
+    for ((value, phase), bin) in values.iter().zip(&axis.phases).zip(&axis.bin) {
+        if let Some(bin) = bin {
+            let sum = &mut sums[*bin as usize];
+            let more = [1.0, *phase, phase * phase, *value];
+            *sum = std::array::from_fn(|k| sum[k] + more[k]);
         }
-        let phase = axis.phases[i];
-        let bin = whole::index(phase / axis.span * axis.bins as f64).min(axis.bins - 1);
-        let sum = &mut sums[bin];
-        sum[0] += 1.0;
-        sum[1] += phase;
-        sum[2] += phase * phase;
-        sum[3] += value;
     }
     sums.iter()
         .filter(|s| s[0] > 0.0)

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::event::DriveTone;
 use crate::record::{Record, Role};
-use crate::signal::tone::Phasor;
+use crate::signal::columns::{dot, subtract};
+use crate::signal::turns::Turns;
 
 /// Complex amplitude of one channel: it moves as Re[(real + i·imaginary) e^{iθ}] while the drive
 /// is cos θ.
@@ -61,7 +62,7 @@ pub(super) fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
             let count = c.values.len();
             basis = basis
                 .take()
-                .filter(|b| b.rows.len() == count)
+                .filter(|b| b.columns[0].len() == count)
                 .or_else(|| Basis::new(count, record.sample_rate_hz, drive));
             let raw = basis.as_ref()?.fit(&c.values)?;
             let measured = Response {
@@ -79,22 +80,19 @@ pub(super) fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
 
 /// 1, t, cos θ, sin θ at the samples of a record, and the inverse of their normal equations.
 struct Basis {
-    rows: Vec<Vector4<f64>>,
+    columns: [Vec<f64>; 4],
     inverse: Matrix4<f64>,
 }
 
 impl Basis {
     fn new(count: usize, rate_hz: f64, drive: &DriveTone) -> Option<Self> {
-        let tone = Phasor::new(drive.frequency_hz / rate_hz, drive.phase_rad);
-        let row = |(i, (cos, sin)): (usize, (f64, f64))| {
-            Vector4::new(1.0, 2.0 * i as f64 / count as f64 - 1.0, cos, sin)
-        };
-        let rows: Vec<Vector4<f64>> = tone.take(count).enumerate().map(row).collect();
-        let mut normal = Matrix4::zeros();
-        rows.iter().for_each(|row| normal += row * row.transpose());
+        let turns = Turns::new(drive.frequency_hz / rate_hz, drive.phase_rad, count);
+        let times = (0..count).map(|i| 2.0 * i as f64 / count as f64 - 1.0);
+        let columns = [vec![1.0; count], times.collect(), turns.cos, turns.sin];
+        let normal = Matrix4::from_fn(|i, k| dot(&columns[i], &columns[k]));
         Some(Self {
             inverse: normal.try_inverse()?,
-            rows,
+            columns,
         })
     }
 
@@ -105,11 +103,13 @@ impl Basis {
         if count < 8 || values.iter().any(|v| !v.is_finite()) {
             return None;
         }
-        let mut right = Vector4::zeros();
-        let rows = || values.iter().zip(&self.rows);
-        rows().for_each(|(value, row)| right += row * *value);
+        let right = Vector4::from_fn(|i, _| dot(&self.columns[i], values));
         let solution = self.inverse * right;
-        let squares: f64 = rows().map(|(v, row)| (v - solution.dot(row)).powi(2)).sum();
+        let mut residuals = values.to_vec();
+        for (share, column) in solution.iter().zip(&self.columns) {
+            subtract(&mut residuals, *share, column);
+        }
+        let squares = dot(&residuals, &residuals);
         let deviation = (squares / (count - 4) as f64).sqrt();
         let inverse = &self.inverse;
         let error = deviation * (0.5 * (inverse[(2, 2)] + inverse[(3, 3)])).sqrt();

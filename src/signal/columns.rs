@@ -45,3 +45,17 @@ pub(crate) fn subtract(from: &mut [f64], share: f64, column: &[f64]) {
         *x -= share * y;
     }
 }
+
+/// Add a multiple of the difference of two columns.
+#[multiversion(targets("x86_64+avx2"))]
+pub(crate) fn add_difference(to: &mut [f64], share: f64, [more, less]: [&[f64]; 2]) {
+    for ((sum, a), b) in to.iter_mut().zip(more).zip(less) {
+        *sum += share * (a - b);
+    }
+}
+
+/// Product of two columns, element by element.
+#[multiversion(targets("x86_64+avx2"))]
+pub(crate) fn products(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(x, y)| x * y).collect()
+}

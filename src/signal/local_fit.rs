@@ -10,10 +10,8 @@ use nalgebra::DMatrix;
 #[derive(Debug, Clone, PartialEq)]
 pub struct LocalFit {
     coefficients: Vec<f64>,
-    /// Of the coefficients, for noise of unit deviation.
-    covariance: Arc<DMatrix<f64>>,
+    basis: Arc<Basis>,
     origin: f64,
-    scale: f64,
     /// Number of samples.
     pub samples: usize,
     /// Sum of squared residuals.
@@ -39,33 +37,29 @@ impl LocalFit {
         let last = last.min(samples.len());
         let count = last.checked_sub(first).filter(|n| *n > 0)?;
         let degree = degree.min(count.saturating_sub(2));
-        let origin = 0.5 * (first + last - 1) as f64;
-        let scale = (0.5 * count as f64).max(1.0);
+        let basis = basis(count, degree)?;
         let values = &samples[first..last];
-        let place = |row: usize| ((first + row) as f64 - origin) / scale;
         let mut right = vec![0.0; degree + 1];
-        for (row, value) in values.iter().enumerate() {
+        for (place, value) in basis.places.iter().zip(values) {
             let mut power = 1.0;
             for sum in &mut right {
                 *sum += power * value;
-                power *= place(row);
+                power *= place;
             }
         }
-        let covariance = covariance(count, degree)?;
         let coefficients: Vec<f64> = (0..=degree)
-            .map(|k| product(&covariance, k, &right))
+            .map(|k| product(&basis.covariance, k, &right))
             .collect();
-        let residual = |(row, value): (usize, &f64)| {
+        let residual = |(place, value): (&f64, &f64)| {
             let powers = coefficients.iter().rev();
-            value - powers.fold(0.0, |sum, c| sum * place(row) + c)
+            value - powers.fold(0.0, |sum, c| sum * place + c)
         };
-        let squares = values.iter().enumerate().map(residual).map(|r| r * r);
-        let residual_squares = squares.sum();
+        let residuals = basis.places.iter().zip(values).map(residual);
+        let residual_squares = residuals.map(|r| r * r).sum();
         Some(Self {
             coefficients,
-            covariance,
-            origin,
-            scale,
+            basis,
+            origin: 0.5 * (first + last - 1) as f64,
             samples: count,
             residual_squares,
         })
@@ -78,7 +72,7 @@ impl LocalFit {
 
     /// Value at a time in steps.
     pub fn value(&self, time: f64) -> f64 {
-        let u = (time - self.origin) / self.scale;
+        let u = (time - self.origin) / self.basis.scale;
         self.coefficients
             .iter()
             .rev()
@@ -87,34 +81,34 @@ impl LocalFit {
 
     /// Slope per step at a time in steps.
     pub fn slope(&self, time: f64) -> f64 {
-        let u = (time - self.origin) / self.scale;
+        let u = (time - self.origin) / self.basis.scale;
         let last = self.coefficients.len();
         (1..last)
             .rev()
             .fold(0.0, |sum, k| sum * u + k as f64 * self.coefficients[k])
-            / self.scale
+            / self.basis.scale
     }
 
     /// Standard error of the value at a time, per unit of noise deviation.
     pub fn error_factor(&self, time: f64) -> f64 {
-        let u = (time - self.origin) / self.scale;
+        let u = (time - self.origin) / self.basis.scale;
         let power = |k: usize| u.powi(i32::try_from(k).unwrap_or(i32::MAX));
         self.spread((0..self.coefficients.len()).map(power).collect())
     }
 
     /// Standard error of the slope per step at a time, per unit of noise deviation.
     pub fn slope_error_factor(&self, time: f64) -> f64 {
-        let u = (time - self.origin) / self.scale;
+        let u = (time - self.origin) / self.basis.scale;
         let slope = |k: usize| match k {
             0 => 0.0,
             _ => k as f64 * u.powi(i32::try_from(k).unwrap_or(i32::MAX) - 1),
         };
-        self.spread((0..self.coefficients.len()).map(slope).collect()) / self.scale
+        self.spread((0..self.coefficients.len()).map(slope).collect()) / self.basis.scale
     }
 
     /// Standard error of a sum of multiples of the coefficients.
     fn spread(&self, row: Vec<f64>) -> f64 {
-        let spread = |(k, x): (usize, &f64)| x * product(&self.covariance, k, &row);
+        let spread = |(k, x): (usize, &f64)| x * product(&self.basis.covariance, k, &row);
         let square: f64 = row.iter().enumerate().map(spread).sum();
         square.max(0.0).sqrt()
     }
@@ -126,34 +120,55 @@ fn product(matrix: &DMatrix<f64>, row: usize, vector: &[f64]) -> f64 {
     column.iter().zip(vector).map(|(a, b)| a * b).sum()
 }
 
-/// Covariances by number of samples and degree; `None` where the samples do not determine the polynomial.
-type Covariances = HashMap<(usize, usize), Option<Arc<DMatrix<f64>>>>;
-
-thread_local! {
-    /// Those that a thread has found.
-    static COVARIANCES: RefCell<Covariances> = RefCell::default();
+/// What fits of one number of samples and one degree have in common.
+#[derive(Debug, PartialEq)]
+struct Basis {
+    /// Of the coefficients, for noise of unit deviation.
+    covariance: DMatrix<f64>,
+    /// The samples' times about their middle, over the scale.
+    places: Vec<f64>,
+    /// Half the number of samples, at least 1.
+    scale: f64,
 }
 
-/// Covariance of the coefficients of a polynomial fitted to so many samples, for noise of unit deviation.
-fn covariance(count: usize, degree: usize) -> Option<Arc<DMatrix<f64>>> {
-    let find = || {
+impl Basis {
+    /// `None` where the samples do not determine the polynomial.
+    fn new(count: usize, degree: usize) -> Option<Self> {
         let (middle, scale) = (0.5 * (count - 1) as f64, (0.5 * count as f64).max(1.0));
+        let place = |row: usize| (row as f64 - middle) / scale;
+        let places: Vec<f64> = (0..count).map(place).collect();
         let mut moments = vec![0.0; 2 * degree + 1];
-        for row in 0..count {
+        for place in &places {
             let mut power = 1.0;
             for moment in &mut moments {
                 *moment += power;
-                power *= (row as f64 - middle) / scale;
+                power *= place;
             }
         }
         let normal = DMatrix::from_fn(degree + 1, degree + 1, |i, k| moments[i + k]);
-        normal.try_inverse().map(Arc::new)
-    };
-    let known = |known: &RefCell<Covariances>| {
+        Some(Self {
+            covariance: normal.try_inverse()?,
+            places,
+            scale,
+        })
+    }
+}
+
+/// Bases by number of samples and degree.
+type Bases = HashMap<(usize, usize), Option<Arc<Basis>>>;
+
+thread_local! {
+    /// Those that a thread has found.
+    static BASES: RefCell<Bases> = RefCell::default();
+}
+
+fn basis(count: usize, degree: usize) -> Option<Arc<Basis>> {
+    let find = || Basis::new(count, degree).map(Arc::new);
+    let known = |known: &RefCell<Bases>| {
         let mut known = known.borrow_mut();
         known.entry((count, degree)).or_insert_with(find).clone()
     };
-    COVARIANCES.with(known)
+    BASES.with(known)
 }
 
 /// Time between `low` and `high` (in steps) at which two fits cross, nearest to the middle.

@@ -11,4 +11,5 @@ pub mod onsets;
 pub mod robust;
 mod spectrum;
 pub mod tone;
+pub(crate) mod turns;
 pub mod whole;

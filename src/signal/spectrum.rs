@@ -6,7 +6,7 @@ use rustfft::algorithm::Radix4;
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftDirection, Length};
 
-use super::tone::Phasor;
+use super::turns::Turns;
 
 thread_local! {
     /// The transform that was made last: records of a campaign are equally long.
@@ -29,17 +29,34 @@ fn transform(bins: &mut [Complex64]) {
 fn power_spectrum(samples: &[f64]) -> (f64, Vec<f64>) {
     let count = samples.len();
     let padded = (2 * count.max(2)).next_power_of_two();
-    let mut bins = vec![Complex64::new(0.0, 0.0); padded];
     let mean = super::robust::mean(samples);
     let once = 1.0 / count.max(1) as f64;
-    let turn = Phasor::new(once, std::f64::consts::PI * once);
-    for ((slot, sample), (cosine, _)) in bins.iter_mut().zip(samples).zip(turn) {
-        slot.re = (sample - mean) * (0.5 - 0.5 * cosine);
+    let turn = Turns::new(once, std::f64::consts::PI * once, count);
+    let windowed = samples.iter().zip(&turn.cos);
+    let windowed: Vec<f64> = windowed
+        .map(|(sample, cosine)| (sample - mean) * (0.5 - 0.5 * cosine))
+        .collect();
+    // Even samples are the real parts, odd ones the imaginary parts of half as many.
+    let mut bins = vec![Complex64::new(0.0, 0.0); padded / 2];
+    for (bin, pair) in bins.iter_mut().zip(windowed.chunks(2)) {
+        *bin = Complex64::new(pair[0], pair.get(1).copied().unwrap_or(0.0));
     }
     transform(&mut bins);
-    bins.truncate(padded / 2 + 1);
-    let squares = bins.iter().map(Complex64::norm_sqr).collect();
-    (1.0 / padded as f64, squares)
+    (1.0 / padded as f64, squares_of_pairs(&bins))
+}
+
+/// Squares of a real signal's transform from that of its pairs z = even + i odd: with Z* the conjugate from
+/// the other end, X = (Z + Z*)/2 − i/2 e^{−2πik/N} (Z − Z*).
+fn squares_of_pairs(bins: &[Complex64]) -> Vec<f64> {
+    let half = bins.len();
+    let turn = Turns::new(0.5 / half as f64, 0.0, half + 1);
+    let square = |k: usize| {
+        let (z, mirrored) = (bins[k % half], bins[(half - k) % half].conj());
+        let (even, odd) = (z + mirrored, z - mirrored);
+        let turned = Complex64::new(-turn.sin[k], -turn.cos[k]) * odd;
+        0.25 * (even + turned).norm_sqr()
+    };
+    (0..=half).map(square).collect()
 }
 
 /// Frequency of the greatest spectral peak, in units of the sample rate, refined by a parabola
@@ -69,6 +86,27 @@ pub(super) fn peak_frequency(samples: &[f64]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn valid_the_spectrum_is_that_of_the_discrete_transform() {
+        let samples: Vec<f64> = (0..21)
+            .map(|i| f64::from(i * i % 7) - 0.1 * f64::from(i))
+            .collect();
+        let (step, found) = power_spectrum(&samples);
+        assert_eq!((step, found.len()), (1.0 / 64.0, 33));
+        let mean = samples.iter().sum::<f64>() / 21.0;
+        for (k, square) in found.iter().enumerate() {
+            let term = |(i, x): (usize, &f64)| {
+                let window = (std::f64::consts::PI * (i as f64 + 0.5) / 21.0)
+                    .sin()
+                    .powi(2);
+                let angle = -std::f64::consts::TAU * (k * i) as f64 / 64.0;
+                Complex64::from_polar((x - mean) * window, angle)
+            };
+            let want: Complex64 = samples.iter().enumerate().map(term).sum();
+            assert!((square - want.norm_sqr()).abs() < 1e-10, "{k}");
+        }
+    }
 
     #[test]
     fn valid_peak_of_a_sine_is_found_between_bins() {

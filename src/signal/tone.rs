@@ -3,7 +3,10 @@
 
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 
+use super::columns::{dot, subtract, sum};
+use super::robust;
 use super::spectrum::peak_frequency;
+use super::turns::Turns;
 
 /// A tone fitted to samples: `offset + amplitude · cos(2π f t + phase)`, t from the first sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,27 +23,6 @@ pub struct Tone {
     pub offset: f64,
     /// Root mean square of the residual, the samples' unit.
     pub residual_rms: f64,
-}
-
-/// Fit a tone of known frequency; `None` with fewer than four samples.
-fn fit_known_frequency(samples: &[f64], rate_hz: f64, frequency_hz: f64) -> Option<Tone> {
-    let mut normal = Matrix3::zeros();
-    let mut right = Vector3::zeros();
-    for (sample, (c, s)) in samples.iter().zip(Phasor::new(frequency_hz / rate_hz, 0.0)) {
-        let row = Vector3::new(1.0, c, s);
-        normal += row * row.transpose();
-        right += row * *sample;
-    }
-    if samples.len() < 4 {
-        return None;
-    }
-    let solution = normal.cholesky()?.solve(&right);
-    Some(tone_from(
-        samples,
-        rate_hz,
-        frequency_hz,
-        [solution[0], solution[1], solution[2]],
-    ))
 }
 
 /// Fit a tone with its frequency, starting at the greatest spectral peak.
@@ -60,100 +42,102 @@ fn fit_known_frequency(samples: &[f64], rate_hz: f64, frequency_hz: f64) -> Opti
 pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Tone> {
     let mut frequency_hz = peak_frequency(samples)? * rate_hz;
     for _ in 0..12 {
-        let tone = fit_known_frequency(samples, rate_hz, frequency_hz)?;
-        let (step_hz, error_hz) = frequency_step(samples, rate_hz, &tone)?;
+        let harmonic = Harmonic::new(samples, rate_hz, frequency_hz)?;
+        let (step_hz, error_hz) = harmonic.frequency_step(rate_hz)?;
         frequency_hz += step_hz;
         if !(frequency_hz > 0.0 && frequency_hz < 0.5 * rate_hz) {
             return None;
         }
         if step_hz.abs() <= 1e-3 * error_hz + 1e-12 * frequency_hz {
-            let tone = fit_known_frequency(samples, rate_hz, frequency_hz)?;
-            return Some(Tone {
-                frequency_error_hz: error_hz,
-                ..tone
-            });
+            let harmonic = Harmonic::new(samples, rate_hz, frequency_hz)?;
+            return Some(harmonic.tone(frequency_hz, error_hz));
         }
     }
     None
 }
 
-/// One Gauss–Newton step of the frequency, with its standard error.
-fn frequency_step(samples: &[f64], rate_hz: f64, tone: &Tone) -> Option<(f64, f64)> {
-    let a = tone.amplitude * tone.phase_rad.cos();
-    let b = -tone.amplitude * tone.phase_rad.sin();
-    let mut normal = Matrix4::zeros();
-    let mut right = Vector4::zeros();
-    let middle = 0.5 * samples.len() as f64;
-    let phasor = Phasor::new(tone.frequency_hz / rate_hz, 0.0);
-    for (i, (sample, (c, s))) in samples.iter().zip(phasor).enumerate() {
-        let time = (i as f64 - middle) / rate_hz;
-        let slope = std::f64::consts::TAU * time * (b * c - a * s);
-        let row = Vector4::new(1.0, c, s, slope);
-        normal += row * row.transpose();
-        right += row * (sample - tone.offset - a * c - b * s);
-    }
-    let inverse = normal.try_inverse()?;
-    let step = (inverse * right)[3];
-    let freedom = samples.len().saturating_sub(4).max(1) as f64;
-    let variance = tone.residual_rms.powi(2) * samples.len() as f64 / freedom;
-    Some((step, (inverse[(3, 3)] * variance).sqrt()))
+/// Offset, cosine and sine of one frequency fitted to samples.
+struct Harmonic {
+    turns: Turns,
+    normal: Matrix3<f64>,
+    /// Offset, and factors of the cosine and the sine.
+    solution: Vector3<f64>,
+    residuals: Vec<f64>,
+    /// Root mean square of the residuals.
+    residual_rms: f64,
 }
 
-fn tone_from(samples: &[f64], rate_hz: f64, frequency_hz: f64, [o, a, b]: [f64; 3]) -> Tone {
-    let squares: f64 = samples
-        .iter()
-        .zip(Phasor::new(frequency_hz / rate_hz, 0.0))
-        .map(|(sample, (c, s))| (sample - o - a * c - b * s).powi(2))
-        .sum();
-    Tone {
-        frequency_hz,
-        frequency_error_hz: 0.0,
-        amplitude: a.hypot(b),
-        phase_rad: (-b).atan2(a),
-        offset: o,
-        residual_rms: (squares / samples.len().max(1) as f64).sqrt(),
-    }
-}
-
-/// (cos, sin) of 2π·ratio·i + phase for i = 0, 1, …, by rotation, re-anchored every 64 steps.
-pub(crate) struct Phasor {
-    ratio: f64,
-    phase_rad: f64,
-    index: u64,
-    current: (f64, f64),
-    step: (f64, f64),
-}
-
-impl Phasor {
-    /// Of a frequency over the sampling rate, and the phase at i = 0, rad.
-    pub(crate) fn new(ratio: f64, phase_rad: f64) -> Self {
-        let (sin, cos) = (std::f64::consts::TAU * ratio).sin_cos();
-        let (sin_0, cos_0) = phase_rad.sin_cos();
-        Self {
-            ratio,
-            phase_rad,
-            index: 0,
-            current: (cos_0, sin_0),
-            step: (cos, sin),
+impl Harmonic {
+    /// `None` with fewer than four samples.
+    fn new(samples: &[f64], rate_hz: f64, frequency_hz: f64) -> Option<Self> {
+        if samples.len() < 4 {
+            return None;
         }
+        let turns = Turns::new(frequency_hz / rate_hz, 0.0, samples.len());
+        let (c, s) = (&turns.cos, &turns.sin);
+        let (sum_c, sum_s, cs) = (sum(c), sum(s), dot(c, s));
+        let normal = Matrix3::new(
+            samples.len() as f64,
+            sum_c,
+            sum_s,
+            sum_c,
+            dot(c, c),
+            cs,
+            sum_s,
+            cs,
+            dot(s, s),
+        );
+        let right = Vector3::new(sum(samples), dot(samples, c), dot(samples, s));
+        let solution = normal.cholesky()?.solve(&right);
+        let mut residuals: Vec<f64> = samples.iter().map(|y| y - solution[0]).collect();
+        subtract(&mut residuals, solution[1], c);
+        subtract(&mut residuals, solution[2], s);
+        let residual_rms = robust::rms(&residuals);
+        Some(Self {
+            turns,
+            normal,
+            solution,
+            residuals,
+            residual_rms,
+        })
     }
-}
 
-impl Iterator for Phasor {
-    type Item = (f64, f64);
-
-    fn next(&mut self) -> Option<(f64, f64)> {
-        let out = self.current;
-        self.index += 1;
-        self.current = if self.index.is_multiple_of(64) {
-            let turns = (self.ratio * self.index as f64).fract();
-            let (sin, cos) = (std::f64::consts::TAU * turns + self.phase_rad).sin_cos();
-            (cos, sin)
-        } else {
-            let (c, s) = self.step;
-            (out.0 * c - out.1 * s, out.0 * s + out.1 * c)
+    /// One Gauss–Newton step of the frequency, with its standard error.
+    fn frequency_step(&self, rate_hz: f64) -> Option<(f64, f64)> {
+        let (c, s, rest) = (&self.turns.cos, &self.turns.sin, &self.residuals);
+        let (a, b) = (self.solution[1], self.solution[2]);
+        let middle = 0.5 * rest.len() as f64;
+        let slope = |(i, (c, s)): (usize, (&f64, &f64))| {
+            let time = (i as f64 - middle) / rate_hz;
+            std::f64::consts::TAU * time * (b * c - a * s)
         };
-        Some(out)
+        let slopes: Vec<f64> = c.iter().zip(s).enumerate().map(slope).collect();
+        let beside = Vector3::new(sum(&slopes), dot(&slopes, c), dot(&slopes, s));
+        let mut normal = Matrix4::zeros();
+        normal.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.normal);
+        normal.fixed_view_mut::<3, 1>(0, 3).copy_from(&beside);
+        normal
+            .fixed_view_mut::<1, 3>(3, 0)
+            .copy_from(&beside.transpose());
+        normal[(3, 3)] = dot(&slopes, &slopes);
+        let right = Vector4::new(sum(rest), dot(rest, c), dot(rest, s), dot(rest, &slopes));
+        let inverse = normal.try_inverse()?;
+        let step = (inverse * right)[3];
+        let freedom = rest.len().saturating_sub(4).max(1) as f64;
+        let variance = self.residual_rms.powi(2) * rest.len() as f64 / freedom;
+        Some((step, (inverse[(3, 3)] * variance).sqrt()))
+    }
+
+    fn tone(&self, frequency_hz: f64, frequency_error_hz: f64) -> Tone {
+        let [offset, a, b] = self.solution.into();
+        Tone {
+            frequency_hz,
+            frequency_error_hz,
+            amplitude: a.hypot(b),
+            phase_rad: (-b).atan2(a),
+            offset,
+            residual_rms: self.residual_rms,
+        }
     }
 }
 
