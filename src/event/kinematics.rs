@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::event::impact::MassSpeeds;
 use crate::record::{Record, Role};
 use crate::signal::whole;
-use crate::signal::{drift, robust};
+use crate::signal::{columns, drift, robust};
 
 /// Kind of rig.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -201,8 +201,7 @@ impl Measured {
 
 fn series(record: &Record, role: Role) -> Option<Series> {
     let channel = record.channel(role)?;
-    let finite = channel.values.iter().all(|v| v.is_finite());
-    if !finite || channel.values.is_empty() {
+    if channel.values.is_empty() || !columns::all_finite(&channel.values) {
         return None;
     }
     let noise = noise_with_converter(&channel.values);
@@ -234,12 +233,9 @@ fn remove_mean(values: &mut [f64]) {
 
 /// Noise deviation, not below the converter's step over √12.
 fn noise_with_converter(values: &[f64]) -> f64 {
-    let scale = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    let step = values
-        .windows(2)
-        .map(|w| (w[1] - w[0]).abs())
-        .filter(|d| *d > 1e-9 * scale)
-        .fold(f64::INFINITY, f64::min);
+    let (low, high) = columns::extremes(values);
+    let scale = high.max(-low);
+    let step = columns::least_step(values, 1e-9 * scale);
     let converter = if step.is_finite() {
         step / 12f64.sqrt()
     } else {

@@ -228,10 +228,9 @@ impl Gain {
 
 impl Shape {
     fn values(&self, count: usize) -> Vec<f64> {
-        let places = (0..count).map(|i| i as f64);
         match self {
-            Self::Ramp => places.collect(),
-            Self::Decay(rate) => places.map(|i| (-rate * i).exp()).collect(),
+            Self::Ramp => (0..count).map(|i| i as f64).collect(),
+            Self::Decay(rate) => decay(*rate, count),
         }
     }
 
@@ -242,6 +241,17 @@ impl Shape {
         };
         Gain { share, constant }
     }
+}
+
+/// e^{−rate·i} for i = 0, 1, …, block by block.
+fn decay(rate: f64, count: usize) -> Vec<f64> {
+    const BLOCK: usize = 64;
+    let at = |step: usize| (-rate * step as f64).exp();
+    let within: [f64; BLOCK] = std::array::from_fn(at);
+    let blocks = (0..count).step_by(BLOCK).map(at);
+    let mut values: Vec<f64> = blocks.flat_map(|first| within.map(|w| first * w)).collect();
+    values.truncate(count);
+    values
 }
 
 fn channels(record: &Record, detection: &Detection, axis: &Axis) -> Vec<FoldedChannel> {

@@ -2,6 +2,7 @@
 //! and held channels.
 
 use super::{Channel, Flag, FlagCode, Record, Role};
+use crate::signal::columns;
 
 /// Part of a channel's samples at the rail above which the record is left out.
 const CLIPPED_PART: f64 = 0.005;
@@ -147,6 +148,9 @@ fn no_samples(record: &Record) -> Flag {
 }
 
 fn not_numbers(channel: &Channel) -> Option<Flag> {
+    if columns::all_finite(&channel.values) {
+        return None;
+    }
     let count = channel.values.iter().filter(|v| !v.is_finite()).count();
     let first = channel.values.iter().position(|v| !v.is_finite())?;
     Some(Flag::new(
@@ -170,33 +174,13 @@ struct Span {
 
 impl Span {
     fn of(values: &[f64]) -> Self {
-        let low = least(values.len(), |i| values[i]);
-        let high = -least(values.len(), |i| -values[i]);
-        let still = 1e-12 * (high - low);
-        let step = |i: usize| {
-            let step = (values[i + 1] - values[i]).abs();
-            if step > still { step } else { f64::INFINITY }
-        };
+        let (low, high) = columns::extremes(values);
         Self {
             low,
             high,
-            step: least(values.len().saturating_sub(1), step),
+            step: columns::least_step(values, 1e-12 * (high - low)),
         }
     }
-}
-
-/// The least of so many values, numbers only, by eight that do not wait for each other; infinite if there
-/// is none.
-fn least(count: usize, at: impl Fn(usize) -> f64) -> f64 {
-    let less = |value: f64, least: f64| if value < least { value } else { least };
-    let mut eight = [f64::INFINITY; 8];
-    let whole = count - count % 8;
-    for start in (0..whole).step_by(8) {
-        eight = std::array::from_fn(|k| less(at(start + k), eight[k]));
-    }
-    let rest = (whole..count).map(at);
-    rest.chain(eight)
-        .fold(f64::INFINITY, |least, value| less(value, least))
 }
 
 /// A channel that shows nothing but one value or two neighbouring steps of the converter. A

@@ -39,15 +39,25 @@ pub fn mistaken(ratio: f64) -> Option<&'static str> {
 
 /// Check for swapped masses, opposite signs and contradicting scales.
 pub fn inspect(record: &Record) -> Vec<Flag> {
-    let x = compare(record, Role::DisplacementX, Role::VelocityX);
-    let y = compare(record, Role::DisplacementY, Role::VelocityY);
-    if let Some(flag) = swapped(record, x, y) {
+    let changes = |quantity| Windows::changes(record, quantity);
+    let integrals = |rate| Windows::integrals(record, rate);
+    let displacements = [Role::DisplacementX, Role::DisplacementY].map(changes);
+    let velocities = [Role::VelocityX, Role::VelocityY].map(integrals);
+    let compare = |mass: usize, other: usize| {
+        Match::of(displacements[mass].as_ref()?, velocities[other].as_ref()?)
+    };
+    let (x, y) = (compare(0, 0), compare(1, 1));
+    let crossed = || Some([compare(0, 1)?.correlation, compare(1, 0)?.correlation]);
+    if let Some(flag) = swapped(record, crossed, [x, y]) {
         return vec![flag];
     }
     if let Some(flag) = opposite_masses(record) {
         return vec![flag];
     }
-    let rates = |velocity, acceleration| compare(record, velocity, acceleration);
+    let rates = |velocity, acceleration| {
+        let integral = integrals(acceleration)?;
+        Match::of(&changes(velocity)?, &integral)
+    };
     let pairs = [
         (x, Role::DisplacementX, Role::VelocityX),
         (y, Role::DisplacementY, Role::VelocityY),
@@ -77,33 +87,60 @@ struct Match {
     gain: f64,
 }
 
-fn compare(record: &Record, quantity: Role, rate: Role) -> Option<Match> {
-    let (d, v) = (record.values(quantity)?, record.values(rate)?);
-    let width = (d.len() / 100).clamp(2, 64);
-    if d.len() < 8 * width || record.sample_rate_hz <= 0.0 {
-        return None;
+/// A quantity's changes, or a rate's integrals, over all windows of one width, and their squares' sum.
+struct Windows {
+    values: Vec<f64>,
+    squares: f64,
+}
+
+impl Windows {
+    /// Changes over windows, less their mean.
+    fn changes(record: &Record, quantity: Role) -> Option<Self> {
+        let (values, width) = long(record, quantity)?;
+        let pairs = values[width..].iter().zip(values);
+        let mut moved: Vec<f64> = pairs.map(|(b, a)| b - a).collect();
+        let drift = robust::mean(&moved);
+        moved.iter_mut().for_each(|m| *m -= drift);
+        Some(Self::new(moved))
     }
-    let rest = robust::mean(v);
-    let mut moved: Vec<f64> = d[width..].iter().zip(d).map(|(b, a)| b - a).collect();
-    let drift = robust::mean(&moved);
-    moved.iter_mut().for_each(|m| *m -= drift);
-    let mut integral = Vec::with_capacity(moved.len());
-    let mut sum: f64 = v[..width].iter().map(|v| v - rest).sum();
-    for i in 0..moved.len() {
-        integral.push(sum / record.sample_rate_hz);
-        sum += v[i + width] - v[i];
+
+    /// Integrals over windows, the rate's mean left out.
+    fn integrals(record: &Record, rate: Role) -> Option<Self> {
+        let (values, width) = long(record, rate)?;
+        let rest = robust::mean(values);
+        let step_s = record.sample_rate_hz.recip();
+        let mut sum: f64 = values[..width].iter().map(|v| v - rest).sum();
+        let pairs = values[width..].iter().zip(values);
+        let integral = pairs.map(|(b, a)| {
+            let before = sum;
+            sum += b - a;
+            before * step_s
+        });
+        Some(Self::new(integral.collect()))
     }
-    let [mm, ii, mi] = [
-        (&moved, &moved),
-        (&integral, &integral),
-        (&moved, &integral),
-    ]
-    .map(|(a, b)| dot(a, b));
-    let size = (mm * ii).sqrt();
-    (size > 0.0 && size.is_finite()).then(|| Match {
-        correlation: mi / size,
-        gain: mi / ii,
-    })
+
+    fn new(values: Vec<f64>) -> Self {
+        let squares = dot(&values, &values);
+        Self { values, squares }
+    }
+}
+
+/// A channel's values and a window's width; `None` if it is short of windows.
+fn long(record: &Record, role: Role) -> Option<(&[f64], usize)> {
+    let values = record.values(role)?;
+    let width = (values.len() / 100).clamp(2, 64);
+    (values.len() >= 8 * width && record.sample_rate_hz > 0.0).then_some((values, width))
+}
+
+impl Match {
+    fn of(quantity: &Windows, rate: &Windows) -> Option<Self> {
+        let product = dot(&quantity.values, &rate.values);
+        let size = (quantity.squares * rate.squares).sqrt();
+        (size > 0.0 && size.is_finite()).then(|| Self {
+            correlation: product / size,
+            gain: product / rate.squares,
+        })
+    }
 }
 
 fn flag(
@@ -118,10 +155,13 @@ fn flag(
 }
 
 /// Each displacement follows the velocity of the other mass better than that of its own.
-fn swapped(record: &Record, x: Option<Match>, y: Option<Match>) -> Option<Flag> {
-    let crossed_x = compare(record, Role::DisplacementX, Role::VelocityY)?.correlation;
-    let crossed_y = compare(record, Role::DisplacementY, Role::VelocityX)?.correlation;
+fn swapped(
+    record: &Record,
+    crossed: impl Fn() -> Option<[f64; 2]>,
+    [x, y]: [Option<Match>; 2],
+) -> Option<Flag> {
     let (own_x, own_y) = (x?.correlation, y?.correlation);
+    let [crossed_x, crossed_y] = crossed()?;
     let crossed = crossed_x > SAME && crossed_y > SAME;
     let own = own_x > SAME - 0.1 || own_y > SAME - 0.1;
     let better = crossed_x - own_x > 0.05 && crossed_y - own_y > 0.05;

@@ -59,3 +59,89 @@ pub(crate) fn add_difference(to: &mut [f64], share: f64, [more, less]: [&[f64]; 
 pub(crate) fn products(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(x, y)| x * y).collect()
 }
+
+/// Whether all are numbers, none infinite.
+#[multiversion(targets("x86_64+avx2"))]
+pub(crate) fn all_finite(values: &[f64]) -> bool {
+    let (wide, rest) = values.as_chunks::<8>();
+    let finite = |x: &[f64; 8]| x.iter().fold(true, |all, v| all & v.is_finite());
+    wide.iter().all(finite) && rest.iter().all(|v| v.is_finite())
+}
+
+/// The least and the greatest number; (∞, −∞) if there is none.
+#[multiversion(targets("x86_64+avx2"))]
+pub(crate) fn extremes(values: &[f64]) -> (f64, f64) {
+    let (wide, rest) = values.as_chunks::<16>();
+    let (mut low, mut high) = ([f64::INFINITY; 16], [f64::NEG_INFINITY; 16]);
+    for x in wide {
+        low = std::array::from_fn(|i| lesser(x[i], low[i]));
+        high = std::array::from_fn(|i| -lesser(-x[i], -high[i]));
+    }
+    let low = low.iter().chain(rest).copied();
+    let high = high.iter().chain(rest).copied();
+    (
+        low.fold(f64::INFINITY, |least, v| lesser(v, least)),
+        high.fold(f64::NEG_INFINITY, |most, v| -lesser(-v, -most)),
+    )
+}
+
+/// The least step between neighbours that is greater than `still`; ∞ if there is none.
+#[multiversion(targets("x86_64+avx2"))]
+pub(crate) fn least_step(values: &[f64], still: f64) -> f64 {
+    let next = values.get(1..).unwrap_or_default();
+    let ((wide, rest), (others, _)) = (next.as_chunks::<16>(), values.as_chunks::<16>());
+    let step = |a: f64, b: f64| {
+        let step = (a - b).abs();
+        if step > still { step } else { f64::INFINITY }
+    };
+    let mut least = [f64::INFINITY; 16];
+    for (x, y) in wide.iter().zip(others) {
+        least = std::array::from_fn(|i| lesser(step(x[i], y[i]), least[i]));
+    }
+    let rest = rest
+        .iter()
+        .zip(&values[16 * wide.len()..])
+        .map(|(x, y)| step(*x, *y));
+    rest.chain(least)
+        .fold(f64::INFINITY, |least, v| lesser(v, least))
+}
+
+/// `value` if it is less than `least`: what is no number never is.
+#[inline(always)]
+fn lesser(value: f64, least: f64) -> f64 {
+    if value < least { value } else { least }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extremes_and_steps_are_found_wherever_they_lie() {
+        for count in [2, 7, 16, 17, 33, 48] {
+            for place in 0..count {
+                let mut values: Vec<f64> = (0..count).map(|i| (i % 2) as f64).collect();
+                values[place] = -3.5;
+                let (low, high) = extremes(&values);
+                assert_eq!(
+                    (low, high),
+                    (-3.5, if count > 2 || place == 0 { 1.0 } else { 0.0 })
+                );
+                assert!(all_finite(&values));
+                values[place] = f64::NAN;
+                assert!(!all_finite(&values));
+                assert!(extremes(&values).0 >= 0.0);
+            }
+            for place in 1..count {
+                let mut values: Vec<f64> = (0..count).map(|i| 2.0 * i as f64).collect();
+                values[place..].iter_mut().for_each(|v| *v -= 1.25);
+                assert_eq!(least_step(&values, 0.0), 0.75);
+                assert_eq!(
+                    least_step(&values, 0.75),
+                    if count > 2 { 2.0 } else { f64::INFINITY }
+                );
+            }
+        }
+        assert_eq!(least_step(&[], 0.0), f64::INFINITY);
+    }
+}

@@ -9,7 +9,9 @@ use nalgebra::DMatrix;
 /// A polynomial in (t − origin)/scale fitted by least squares.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LocalFit {
-    coefficients: Vec<f64>,
+    /// By power; those above the degree are zero.
+    coefficients: Row,
+    degree: usize,
     basis: Arc<Basis>,
     origin: f64,
     /// Number of samples.
@@ -21,8 +23,8 @@ pub struct LocalFit {
 impl LocalFit {
     /// Fit a polynomial of at most `degree` to samples `first..last` (index = time in steps).
     ///
-    /// The degree is lowered if the samples are too few for it (at least one more sample than
-    /// coefficients, except for a constant). `None` for an empty range.
+    /// The degree is at most 3; it is lowered if the samples are too few for it (at least one more sample
+    /// than coefficients, except for a constant). `None` for an empty range.
     ///
     /// ```
     /// use impactid::signal::local_fit::LocalFit;
@@ -36,28 +38,20 @@ impl LocalFit {
     pub fn new(samples: &[f64], first: usize, last: usize, degree: usize) -> Option<Self> {
         let last = last.min(samples.len());
         let count = last.checked_sub(first).filter(|n| *n > 0)?;
-        let degree = degree.min(count.saturating_sub(2));
+        let degree = degree.min(count.saturating_sub(2)).min(MOST);
         let basis = basis(count, degree)?;
         let values = &samples[first..last];
-        let mut right = vec![0.0; degree + 1];
-        for (place, value) in basis.places.iter().zip(values) {
-            let mut power = 1.0;
-            for sum in &mut right {
-                *sum += power * value;
-                power *= place;
-            }
+        let mut right = Row::default();
+        for (powers, value) in basis.powers.iter().zip(values) {
+            right = std::array::from_fn(|k| right[k] + powers[k] * value);
         }
-        let coefficients: Vec<f64> = (0..=degree)
-            .map(|k| product(&basis.covariance, k, &right))
-            .collect();
-        let residual = |(place, value): (&f64, &f64)| {
-            let powers = coefficients.iter().rev();
-            value - powers.fold(0.0, |sum, c| sum * place + c)
-        };
-        let residuals = basis.places.iter().zip(values).map(residual);
+        let coefficients = basis.covariance.map(|row| product(&row, &right));
+        let residual = |(powers, value): (&Row, &f64)| value - product(&coefficients, powers);
+        let residuals = basis.powers.iter().zip(values).map(residual);
         let residual_squares = residuals.map(|r| r * r).sum();
         Some(Self {
             coefficients,
+            degree,
             basis,
             origin: 0.5 * (first + last - 1) as f64,
             samples: count,
@@ -67,66 +61,66 @@ impl LocalFit {
 
     /// Degree of the polynomial.
     pub fn degree(&self) -> usize {
-        self.coefficients.len() - 1
+        self.degree
+    }
+
+    fn place(&self, time: f64) -> f64 {
+        (time - self.origin) / self.basis.scale
     }
 
     /// Value at a time in steps.
     pub fn value(&self, time: f64) -> f64 {
-        let u = (time - self.origin) / self.basis.scale;
-        self.coefficients
-            .iter()
-            .rev()
-            .fold(0.0, |sum, c| sum * u + c)
+        product(&self.coefficients, &powers(self.place(time)))
     }
 
     /// Slope per step at a time in steps.
     pub fn slope(&self, time: f64) -> f64 {
-        let u = (time - self.origin) / self.basis.scale;
-        let last = self.coefficients.len();
-        (1..last)
-            .rev()
-            .fold(0.0, |sum, k| sum * u + k as f64 * self.coefficients[k])
-            / self.basis.scale
+        product(&self.coefficients, &slopes(self.place(time))) / self.basis.scale
     }
 
     /// Standard error of the value at a time, per unit of noise deviation.
     pub fn error_factor(&self, time: f64) -> f64 {
-        let u = (time - self.origin) / self.basis.scale;
-        let power = |k: usize| u.powi(i32::try_from(k).unwrap_or(i32::MAX));
-        self.spread((0..self.coefficients.len()).map(power).collect())
+        self.spread(&powers(self.place(time)))
     }
 
     /// Standard error of the slope per step at a time, per unit of noise deviation.
     pub fn slope_error_factor(&self, time: f64) -> f64 {
-        let u = (time - self.origin) / self.basis.scale;
-        let slope = |k: usize| match k {
-            0 => 0.0,
-            _ => k as f64 * u.powi(i32::try_from(k).unwrap_or(i32::MAX) - 1),
-        };
-        self.spread((0..self.coefficients.len()).map(slope).collect()) / self.basis.scale
+        self.spread(&slopes(self.place(time))) / self.basis.scale
     }
 
     /// Standard error of a sum of multiples of the coefficients.
-    fn spread(&self, row: Vec<f64>) -> f64 {
-        let spread = |(k, x): (usize, &f64)| x * product(&self.basis.covariance, k, &row);
-        let square: f64 = row.iter().enumerate().map(spread).sum();
-        square.max(0.0).sqrt()
+    fn spread(&self, row: &Row) -> f64 {
+        let along = self.basis.covariance.map(|of| product(&of, row));
+        product(&along, row).max(0.0).sqrt()
     }
 }
 
-/// A row of a symmetric matrix times a vector.
-fn product(matrix: &DMatrix<f64>, row: usize, vector: &[f64]) -> f64 {
-    let column = matrix.column(row);
-    column.iter().zip(vector).map(|(a, b)| a * b).sum()
+/// Highest degree of a polynomial.
+const MOST: usize = 3;
+
+/// A number for each power.
+type Row = [f64; MOST + 1];
+
+fn powers(u: f64) -> Row {
+    [1.0, u, u * u, u * u * u]
+}
+
+/// Slopes of the powers.
+fn slopes(u: f64) -> Row {
+    [0.0, 1.0, 2.0 * u, 3.0 * u * u]
+}
+
+fn product(a: &Row, b: &Row) -> f64 {
+    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
 }
 
 /// What fits of one number of samples and one degree have in common.
 #[derive(Debug, PartialEq)]
 struct Basis {
-    /// Of the coefficients, for noise of unit deviation.
-    covariance: DMatrix<f64>,
-    /// The samples' times about their middle, over the scale.
-    places: Vec<f64>,
+    /// Of the coefficients, for noise of unit deviation; zero above the degree.
+    covariance: [Row; MOST + 1],
+    /// Powers of the samples' times about their middle, over the scale.
+    powers: Vec<Row>,
     /// Half the number of samples, at least 1.
     scale: f64,
 }
@@ -135,20 +129,15 @@ impl Basis {
     /// `None` where the samples do not determine the polynomial.
     fn new(count: usize, degree: usize) -> Option<Self> {
         let (middle, scale) = (0.5 * (count - 1) as f64, (0.5 * count as f64).max(1.0));
-        let place = |row: usize| (row as f64 - middle) / scale;
-        let places: Vec<f64> = (0..count).map(place).collect();
-        let mut moments = vec![0.0; 2 * degree + 1];
-        for place in &places {
-            let mut power = 1.0;
-            for moment in &mut moments {
-                *moment += power;
-                power *= place;
-            }
-        }
-        let normal = DMatrix::from_fn(degree + 1, degree + 1, |i, k| moments[i + k]);
+        let powers: Vec<Row> = (0..count)
+            .map(|row| powers((row as f64 - middle) / scale))
+            .collect();
+        let moment = |i: usize, k: usize| powers.iter().map(|p| p[i] * p[k]).sum();
+        let inverse = DMatrix::from_fn(degree + 1, degree + 1, moment).try_inverse()?;
+        let of = |i: usize, k: usize| inverse.get((i, k)).copied().unwrap_or(0.0);
         Some(Self {
-            covariance: normal.try_inverse()?,
-            places,
+            covariance: std::array::from_fn(|i| std::array::from_fn(|k| of(i, k))),
+            powers,
             scale,
         })
     }

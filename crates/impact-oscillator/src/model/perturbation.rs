@@ -8,7 +8,8 @@
 //! P and P' pass the impact unchanged. What the impact itself changes follows from P and P' there:
 //! they enter the conditions of the orbit beside the gap ([`Change`](super::sensitivity::Change)).
 //! One complex recurrence with p taken as linear between nodes; the error is of second order in
-//! the nodes' distance.
+//! the nodes' distance. Several forces are taken at once: their recurrences do not wait for each
+//! other.
 
 use nalgebra::ComplexField;
 
@@ -62,8 +63,12 @@ impl Grid {
     }
 }
 
-/// The periodic solution of z' = λz + p at the nodes, p linear between them.
-fn periodic<T: ComplexField<RealField = f64> + Copy>(lambda: T, grid: Grid, p: &[f64]) -> Vec<T> {
+/// The periodic solutions of z' = λz + p at the nodes, each p linear between them.
+fn periodic<T: ComplexField<RealField = f64> + Copy, const N: usize>(
+    lambda: T,
+    grid: Grid,
+    p: &[[f64; N]],
+) -> Vec<[T; N]> {
     let h = grid.step;
     let decay = lambda.scale(h).exp();
     let whole = (decay - T::one()) / lambda;
@@ -71,50 +76,60 @@ fn periodic<T: ComplexField<RealField = f64> + Copy>(lambda: T, grid: Grid, p: &
     let earlier = whole - later;
     // From rest, and what a start elsewhere adds, so that the end is the start again.
     let mut out = Vec::with_capacity(p.len());
-    let mut z = T::zero();
+    let mut z = [T::zero(); N];
     out.push(z);
     for pair in p.windows(2) {
-        let gained = earlier.scale(pair[0]) + later.scale(pair[1]);
-        z = decay * z + gained;
+        let gained = |k: usize| earlier.scale(pair[0][k]) + later.scale(pair[1][k]);
+        z = std::array::from_fn(|k| decay * z[k] + gained(k));
         out.push(z);
     }
     let returned = lambda.scale(h * grid.intervals as f64).exp();
-    let mut start = z / (T::one() - returned);
+    let mut start = z.map(|z| z / (T::one() - returned));
     for z in &mut out {
-        *z += start;
-        start *= decay;
+        *z = std::array::from_fn(|k| z[k] + start[k]);
+        start = start.map(|start| start * decay);
     }
     out
 }
 
-/// A function of time over one period: values and slopes at the nodes, cubic between them.
+/// Functions of time over one period: values and slopes at the nodes, cubic between them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sampled {
+pub struct Sampled<const N: usize> {
     grid: Grid,
-    values: Vec<f64>,
-    slopes: Vec<f64>,
+    values: Vec<[f64; N]>,
+    slopes: Vec<[f64; N]>,
 }
 
-impl Sampled {
-    /// Value at a time in 0 … T since the impact.
-    pub fn at(&self, time: f64) -> f64 {
+impl<const N: usize> Sampled<N> {
+    /// Values at a time in 0 … T since the impact.
+    pub fn at(&self, time: f64) -> [f64; N] {
         let place = (time / self.grid.step).clamp(0.0, self.grid.intervals as f64);
         let k = (count(place) as usize).min(self.grid.intervals - 1);
         let (s, h) = (place - k as f64, self.grid.step);
-        let (a, b) = (self.values[k], self.values[k + 1]);
-        let (da, db) = (h * self.slopes[k], h * self.slopes[k + 1]);
-        let (c, d) = (3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db);
-        a + s * (da + s * (c + s * d))
+        let ([a, b], [da, db]) = (
+            [&self.values[k], &self.values[k + 1]],
+            [&self.slopes[k], &self.slopes[k + 1]],
+        );
+        std::array::from_fn(|i| {
+            let (a, b) = (a[i], b[i]);
+            let (da, db) = (h * da[i], h * db[i]);
+            let (c, d) = (3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db);
+            a + s * (da + s * (c + s * d))
+        })
     }
 
     /// Behind a first-order high-pass y' + cy = x' of a corner c.
     #[must_use]
     pub fn high_passed(&self, corner: f64) -> Self {
         // y = x − w with w' = −cw + cx.
-        let fed: Vec<f64> = self.values.iter().map(|x| corner * x).collect();
-        let lost = periodic(-corner, self.grid, &fed);
-        let values: Vec<f64> = self.values.iter().zip(&lost).map(|(x, w)| x - w).collect();
-        let slopes = self.slopes.iter().zip(&values).map(|(d, y)| d - corner * y);
+        let fed = self.values.iter().map(|x| x.map(|x| corner * x));
+        let lost = periodic(-corner, self.grid, &fed.collect::<Vec<_>>());
+        let values = self.values.iter().zip(&lost);
+        let values: Vec<[f64; N]> = values
+            .map(|(x, w)| std::array::from_fn(|i| x[i] - w[i]))
+            .collect();
+        let slopes = self.slopes.iter().zip(&values);
+        let slopes = slopes.map(|(d, y)| std::array::from_fn(|i| d[i] - corner * y[i]));
         Self {
             grid: self.grid,
             slopes: slopes.collect(),
@@ -123,50 +138,53 @@ impl Sampled {
     }
 }
 
-/// Periodic response of one mass to an extra acceleration.
+/// Periodic responses of one mass to N extra accelerations, each alone.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PeriodicResponse {
+pub struct PeriodicResponses<const N: usize> {
     grid: Grid,
-    position: Vec<f64>,
-    velocity: Vec<f64>,
-    acceleration: Vec<f64>,
+    positions: Vec<[f64; N]>,
+    velocities: Vec<[f64; N]>,
+    accelerations: Vec<[f64; N]>,
 }
 
-impl PeriodicResponse {
+impl<const N: usize> PeriodicResponses<N> {
     /// Of a mass to accelerations at the nodes of a grid.
-    pub fn new(oscillator: &Oscillator, grid: Grid, acceleration: &[f64]) -> Self {
+    pub fn new(oscillator: &Oscillator, grid: Grid, accelerations: &[[f64; N]]) -> Self {
         let lambda = exponent(oscillator);
-        let z = periodic(lambda, grid, acceleration);
-        let part = |factor: C64| z.iter().map(move |z| (factor * z).im / lambda.im);
-        let acceleration = part(lambda * lambda).zip(acceleration).map(|(a, p)| a + p);
+        let z = periodic(lambda, grid, accelerations);
+        let of = |factor: C64, z: &[C64; N]| z.map(|z| (factor * z).im / lambda.im);
+        let part = |factor: C64| z.iter().map(move |z| of(factor, z));
+        let own = part(lambda * lambda).zip(accelerations);
+        let own = own.map(|(a, p)| std::array::from_fn(|i| a[i] + p[i]));
         Self {
             grid,
-            position: part(C64::new(1.0, 0.0)).collect(),
-            velocity: part(lambda).collect(),
-            acceleration: acceleration.collect(),
+            positions: part(C64::new(1.0, 0.0)).collect(),
+            velocities: part(lambda).collect(),
+            accelerations: own.collect(),
         }
     }
 
-    /// Displacement and velocity at the impact.
-    pub fn at_impact(&self) -> [f64; 2] {
-        [self.position[0], self.velocity[0]]
+    /// Displacements and velocities at the impact.
+    pub fn at_impact(&self) -> [[f64; 2]; N] {
+        let (positions, velocities) = (&self.positions[0], &self.velocities[0]);
+        std::array::from_fn(|i| [positions[i], velocities[i]])
     }
 
-    /// The displacement over one period.
-    pub fn displacement(&self) -> Sampled {
+    /// The displacements over one period.
+    pub fn displacements(&self) -> Sampled<N> {
         Sampled {
             grid: self.grid,
-            values: self.position.clone(),
-            slopes: self.velocity.clone(),
+            values: self.positions.clone(),
+            slopes: self.velocities.clone(),
         }
     }
 
-    /// The velocity over one period.
-    pub fn velocity(&self) -> Sampled {
+    /// The velocities over one period.
+    pub fn velocities(&self) -> Sampled<N> {
         Sampled {
             grid: self.grid,
-            values: self.velocity.clone(),
-            slopes: self.acceleration.clone(),
+            values: self.velocities.clone(),
+            slopes: self.accelerations.clone(),
         }
     }
 }
@@ -183,20 +201,27 @@ mod tests {
         let mass = Oscillator::nominal(0.05);
         let (eta, k) = (1.3, 2.0);
         let grid = Grid::new(std::f64::consts::TAU / eta, 256);
-        let p: Vec<f64> = grid.times().map(|t| (k * eta * t).cos()).collect();
-        let response = PeriodicResponse::new(&mass, grid, &p);
+        // beside the cosine, a second force of twice its size with the opposite sign
+        let p = grid.times().map(|t| (k * eta * t).cos());
+        let p: Vec<[f64; 2]> = p.map(|p| [p, -2.0 * p]).collect();
+        let responses = PeriodicResponses::new(&mass, grid, &p);
         let w = k * eta;
         let least = (w * grid.step).powi(2) / 10.0;
         let f = C64::new(1.0 - w * w, 2.0 * 0.05 * w).inv();
         for t in [0.0, 0.37, 2.9, 4.8] {
             let turn = C64::from_polar(1.0, w * t);
-            let (x, v) = (response.displacement(), response.velocity());
-            assert!((x.at(t) - (f * turn).re).abs() < least * f.norm());
-            assert!((v.at(t) - (f * turn * C64::new(0.0, w)).re).abs() < least * w * f.norm());
+            let (x, v) = (responses.displacements(), responses.velocities());
             let c = 0.04;
             let kept = C64::new(0.0, w) / C64::new(c, w);
-            let want = (f * turn * kept).re;
-            assert!((x.high_passed(c).at(t) - want).abs() < least * f.norm());
+            for (i, size) in [1.0, -2.0].into_iter().enumerate() {
+                let f = size * f;
+                let near = |found: f64, want: C64, scale: f64| {
+                    (found - want.re).abs() < least * scale * f.norm()
+                };
+                assert!(near(x.at(t)[i], f * turn, 1.0));
+                assert!(near(v.at(t)[i], f * turn * C64::new(0.0, w), w));
+                assert!(near(x.high_passed(c).at(t)[i], f * turn * kept, 1.0));
+            }
         }
     }
 
@@ -264,10 +289,11 @@ mod tests {
         ];
         for extra in extras {
             let times = grid.times().zip(&states);
-            let p: Vec<f64> = times
-                .map(|(t, s)| extra(orbit.phase + eta * t, *s))
+            let p: Vec<[f64; 1]> = times
+                .map(|(t, s)| [extra(orbit.phase + eta * t, *s)])
                 .collect();
-            let [displacement, velocity] = PeriodicResponse::new(&machine.x, grid, &p).at_impact();
+            let responses = PeriodicResponses::new(&machine.x, grid, &p);
+            let [[displacement, velocity]] = responses.at_impact();
             let change = Change {
                 displacement,
                 velocity,

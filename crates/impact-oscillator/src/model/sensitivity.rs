@@ -37,7 +37,7 @@ pub struct Change {
     /// Of the gap at X = Y = 0.
     pub gap: f64,
     /// Of X + Y at the impact, by a small extra acceleration of the masses
-    /// ([`PeriodicResponse`](super::perturbation::PeriodicResponse)).
+    /// ([`PeriodicResponses`](super::perturbation::PeriodicResponses)).
     pub displacement: f64,
     /// Of X' + Y' just before the impact, likewise.
     pub velocity: f64,

@@ -5,11 +5,17 @@ use crate::identify::evidence::waveform::Terms;
 use crate::identify::fit::effect::Effect;
 use impact_oscillator::model::params::Oscillator;
 use impact_oscillator::model::path::C64;
-use impact_oscillator::model::perturbation::{Grid, PeriodicResponse};
+use impact_oscillator::model::perturbation::{Grid, PeriodicResponses};
 use impact_oscillator::model::sensitivity::Change;
 
 /// Nodes of a drive period on which extra accelerations are taken.
 const NODES: usize = 128;
+
+/// Effects that are followed together.
+const TOGETHER: usize = 4;
+
+/// The responses of a mass to effects that are followed together.
+type Responses = PeriodicResponses<TOGETHER>;
 
 /// The orbit at the nodes of a period.
 struct Course {
@@ -30,8 +36,12 @@ impl RecordMotion<'_> {
         reach_m: f64,
     ) -> Vec<(Effect, Vec<f64>)> {
         let course = self.course();
-        let change = |e: Effect| (e, self.perturbation(at, &course, (e, reach_m)));
-        effects.map(change).collect()
+        let effects: Vec<Effect> = effects.collect();
+        let changes = effects.chunks(TOGETHER).flat_map(|together| {
+            let changes = self.perturbed(at, &course, (together, reach_m));
+            together.iter().copied().zip(changes)
+        });
+        changes.collect()
     }
 
     fn course(&self) -> Course {
@@ -56,55 +66,68 @@ impl RecordMotion<'_> {
         }
     }
 
-    fn perturbation(
+    /// Changes of the values by each of at most [`TOGETHER`] effects.
+    fn perturbed(
         &self,
         (values, points): (&[Terms], &MotionPoints<'_>),
         course: &Course,
-        effect: (Effect, f64),
-    ) -> Vec<f64> {
+        (effects, reach_m): (&[Effect], f64),
+    ) -> Vec<Vec<f64>> {
         let responses = course.masses.each_ref().map(|mass| {
             let (oscillator, states) = mass.as_ref()?;
-            let p = self.accelerations(oscillator, states, &course.turns, effect);
-            Some(PeriodicResponse::new(oscillator, course.grid, &p))
+            let mut p = vec![[0.0; TOGETHER]; states.len()];
+            for (k, effect) in effects.iter().enumerate() {
+                let own = self.accelerations(oscillator, states, &course.turns, (*effect, reach_m));
+                p.iter_mut().zip(own).for_each(|(p, own)| p[k] = own);
+            }
+            Some(Responses::new(oscillator, course.grid, &p))
         });
-        let at_impact = responses.iter().flatten().map(PeriodicResponse::at_impact);
-        let [displacement, velocity] =
-            at_impact.fold([0.0; 2], |sum, at| [sum[0] + at[0], sum[1] + at[1]]);
-        let change = Change {
-            displacement,
-            velocity,
-            ..Change::default()
-        };
-        let mut values = points.values(&self.along(values, &self.direction(&change, None)));
-        let extra = self.channels.iter().zip(points.times());
-        let extra = extra.flat_map(|(channel, times)| {
-            let response = responses[usize::from(channel.role.is_of_y())].as_ref();
-            self.extra(channel, response, times)
-        });
-        values.iter_mut().zip(extra).for_each(|(v, e)| *v += e);
-        values
+        let at_impact: Vec<_> = responses
+            .iter()
+            .flatten()
+            .map(Responses::at_impact)
+            .collect();
+        let mut changes: Vec<Vec<f64>> = (0..effects.len())
+            .map(|k| {
+                let sum = |i: usize| at_impact.iter().map(|at| at[k][i]).sum();
+                let change = Change {
+                    displacement: sum(0),
+                    velocity: sum(1),
+                    ..Change::default()
+                };
+                points.values(&self.along(values, &self.direction(&change, None)))
+            })
+            .collect();
+        let mut place = 0;
+        for (channel, times) in self.channels.iter().zip(points.times()) {
+            if let Some(responses) = &responses[usize::from(channel.role.is_of_y())] {
+                self.add_own((channel, times), responses, (&mut changes, place));
+            }
+            place += times.len();
+        }
+        changes
     }
 
-    /// What the response of a channel's mass adds at its points, SI.
-    fn extra(
+    /// Add to changes, from a place on, what the responses of a channel's mass are at its points, SI.
+    fn add_own(
         &self,
-        channel: &ChannelMotion,
-        response: Option<&PeriodicResponse>,
-        times: &[f64],
-    ) -> Vec<f64> {
-        let Some(response) = response else {
-            return vec![0.0; times.len()];
-        };
+        (channel, times): (&ChannelMotion, &[f64]),
+        responses: &Responses,
+        (changes, place): (&mut [Vec<f64>], usize),
+    ) {
         let mut seen = match measured(channel.role) {
-            Measured::Displacement => response.displacement(),
-            Measured::Velocity => response.velocity(),
+            Measured::Displacement => responses.displacements(),
+            Measured::Velocity => responses.velocities(),
         };
         if let Some(filter) = &channel.filter {
             seen = seen.high_passed(filter.high_pass.corner());
         }
         let unit = self.unit(channel.role);
-        let at = |t: &f64| unit * seen.at((t - channel.delay).rem_euclid(self.period()));
-        times.iter().map(at).collect()
+        for (i, time) in times.iter().enumerate() {
+            let own = seen.at((time - channel.delay).rem_euclid(self.period()));
+            let all = changes.iter_mut().zip(own);
+            all.for_each(|(change, own)| change[place + i] += unit * own);
+        }
     }
 
     /// The extra acceleration of one mass at the nodes, per unit of an effect's strength.
