@@ -10,6 +10,7 @@ use super::context::ResolveContext;
 use super::diagnostic::{Code, Diagnostic, FaultCollector, Severity};
 use super::names::natural_key;
 use super::run_table::{self, Row};
+use super::sources::Sources;
 use super::written::OneOrMany;
 use crate::record::calibrate::{self, ChannelKey, ChannelSetup};
 use crate::record::{Flag, FlagCode};
@@ -46,6 +47,8 @@ pub(super) struct Shared<'a> {
     pub(super) time: Option<&'a ChannelKey>,
     /// The files to list; `None`: all.
     pub(super) taken: Option<Taken<'a>>,
+    /// Keeps the file that was opened last.
+    pub(super) sources: &'a Sources,
 }
 
 impl Shared<'_> {
@@ -106,7 +109,9 @@ fn list_file(path: &Path, shared: Shared<'_>, open: Opener<'_>) -> Vec<Discovere
             }
             let used = records_of(sets, shared);
             let listed = |i: usize| listed(path, i, &sets[i], None, shared);
-            used.into_iter().map(listed).collect()
+            let all = used.into_iter().map(listed).collect();
+            shared.sources.keep(source);
+            all
         }
         Err(error) => vec![failed(path, None, calibrate::read_flag(&error))],
     }
@@ -236,22 +241,32 @@ fn list_rows_of(
         }
     };
     let sets = source.datasets();
+    let mut places: HashMap<&str, Vec<usize>> = HashMap::new();
+    for (index, set) in sets.iter().enumerate() {
+        places.entry(bare(&set.name)).or_default().push(index);
+    }
+    let every: Vec<usize> = (0..sets.len()).collect();
     let mut all = Vec::new();
     for row in rows {
-        let wanted = |set: &DatasetInfo| row.dataset.as_ref().is_none_or(|d| names(set, d));
-        let before = all.len();
-        for (index, set) in sets.iter().enumerate().filter(|(_, set)| wanted(set)) {
-            all.push(listed(path, index, set, Some((*row).clone()), shared));
-        }
-        if all.len() == before {
-            all.push(failed(path, Some((*row).clone()), no_dataset(row, sets)));
+        let wanted = match &row.dataset {
+            Some(name) => places.get(bare(name)),
+            None => Some(&every).filter(|every| !every.is_empty()),
+        };
+        match wanted {
+            Some(wanted) => all.extend(wanted.iter().map(|index| {
+                let row = Some((*row).clone());
+                listed(path, *index, &sets[*index], row, shared)
+            })),
+            None => all.push(failed(path, Some((*row).clone()), no_dataset(row, sets))),
         }
     }
+    shared.sources.keep(source);
     all
 }
 
-fn names(set: &DatasetInfo, name: &str) -> bool {
-    set.name == name || set.name.trim_start_matches('/') == name.trim_start_matches('/')
+/// A dataset's name without the slash that HDF5 begins it with.
+fn bare(name: &str) -> &str {
+    name.trim_start_matches('/')
 }
 
 fn no_dataset(row: &Row, sets: &[DatasetInfo]) -> Flag {

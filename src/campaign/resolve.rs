@@ -12,6 +12,7 @@ use super::read::{self, Text};
 use super::records;
 use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign};
 use super::rig;
+use super::sources::Sources;
 use super::written::{
     self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign, value,
 };
@@ -81,11 +82,13 @@ fn resolve(
     };
     let time = value(&written.records.time).map(|t| t.0);
     let folder = path.parent().unwrap_or(Path::new(""));
+    let sources = Sources::default();
     let shared = Shared {
         folder,
         channels: &channels,
         time: time.as_ref(),
         taken,
+        sources: &sources,
     };
     let mut records = match written.published {
         Some(_) => Vec::new(),
@@ -117,6 +120,7 @@ fn resolve(
         time,
         records,
         published: written.published.clone(),
+        sources,
     }
 }
 

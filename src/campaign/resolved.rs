@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::sources::Sources;
 use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
 use crate::difference::Common;
 use crate::event::DetectSettings;
@@ -54,6 +55,9 @@ pub struct ResolvedCampaign {
     /// Published speeds to be identified from, instead of records.
     #[serde(default)]
     pub published: Option<super::written::Published>,
+    /// Opens the files of the records.
+    #[serde(skip)]
+    pub sources: Sources,
 }
 
 /// Nominal values of the rig (`None`: not stated) and their standard uncertainties.

@@ -14,7 +14,7 @@ use crate::identify::fit::parameters::Parameters;
 use crate::identify::{Estimate, Identification};
 use crate::motion::Observation;
 use crate::pipeline::identify::{IdentificationFile, evidence};
-use crate::pipeline::observe::{SourceCache, read_one};
+use crate::pipeline::observe::read_one;
 use crate::pipeline::theory::plan::Law;
 use crate::pipeline::watch::Live;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, inputs, layout, store};
@@ -86,6 +86,7 @@ impl Campaign {
         observed: Observed,
         identification: Identification,
     ) -> Self {
+        resolved.sources.close();
         let mut blocks = Blocks::new(&evidence(&resolved, &observed));
         if let Some(joint) = &identification.joint_fit {
             blocks.weigh(&joint.fit.parameters);
@@ -117,8 +118,9 @@ impl Campaign {
     fn record(&self, index: usize) -> Option<Record> {
         let entry = self.resolved.records.get(index)?;
         // Opened for this record only: the laboratory may write to its file.
-        let sources = SourceCache::default();
-        Some(read_one(&self.resolved, entry, &sources))
+        let record = read_one(&self.resolved, entry);
+        self.resolved.sources.close();
+        Some(record)
     }
 
     /// The fitted parameters with R, f0, β and `x_st` of the sliders.

@@ -1,8 +1,6 @@
 //! Reading and observing all records, file by file, in parallel; samples are dropped at once.
 
-use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex};
 
 use rayon::prelude::*;
 
@@ -13,9 +11,8 @@ use crate::pipeline::Progress;
 use crate::pipeline::checkpoint::Checkpoint;
 use crate::record::calibrate::{calibrate, unreadable};
 use crate::record::{Flag, FlagCode, Record};
-use labfiles::open;
+use labfiles::Source;
 use labfiles::output::OutputError;
-use labfiles::{ReadError, Source};
 
 /// Most records of a campaign whose folded waveforms are kept. Of more records those of every
 /// second, third … are kept, so that memory does not grow with them: thousands of waveforms
@@ -29,14 +26,9 @@ const READ_AHEAD: usize = 256;
 pub fn observe_all(campaign: &ResolvedCampaign, progress: Progress<'_>) -> Vec<Observation> {
     let total = campaign.records.len() as u64;
     let done = AtomicU64::new(0);
-    observe_some(
-        campaign,
-        &campaign.records,
-        &SourceCache::default(),
-        &|| {
-            progress("observe", done.fetch_add(1, Ordering::Relaxed) + 1, total);
-        },
-    )
+    observe_some(campaign, &campaign.records, &|| {
+        progress("observe", done.fetch_add(1, Ordering::Relaxed) + 1, total);
+    })
 }
 
 /// Observe every record in chunks of `chunk` records; chunks in the checkpoint are loaded, the others
@@ -52,7 +44,6 @@ pub fn observe_in_chunks(
 ) -> Result<Vec<Observation>, OutputError> {
     let total = campaign.records.len() as u64;
     let done = AtomicU64::new(0);
-    let cache = SourceCache::default();
     let mut all = Vec::with_capacity(campaign.records.len());
     for (number, entries) in campaign.records.chunks(chunk.max(1)).enumerate() {
         if let Some(kept) = checkpoint.load(number, entries.len()) {
@@ -60,7 +51,7 @@ pub fn observe_in_chunks(
             all.extend(kept);
             continue;
         }
-        let observed = observe_some(campaign, entries, &cache, &|| {
+        let observed = observe_some(campaign, entries, &|| {
             progress("observe", done.fetch_add(1, Ordering::Relaxed) + 1, total);
         });
         checkpoint.save(number, &observed)?;
@@ -69,46 +60,13 @@ pub fn observe_in_chunks(
     Ok(all)
 }
 
-/// The file that was opened last, so that the next records need not open it again.
-#[derive(Default)]
-pub struct SourceCache(Mutex<Option<Arc<dyn Source>>>);
-
-impl SourceCache {
-    /// With the file of a campaign's first record, which usually holds all of them; one that cannot be
-    /// opened is named where a record is read.
-    pub fn of(campaign: &ResolvedCampaign) -> Self {
-        let cache = Self::default();
-        if let Some(first) = campaign.records.first() {
-            let _ = cache.open(&first.file);
-        }
-        cache
-    }
-
-    /// The file, opened unless it was the last one.
-    ///
-    /// # Errors
-    /// If the file cannot be read.
-    pub fn open(&self, path: &Path) -> Result<Arc<dyn Source>, ReadError> {
-        let held = self.0.lock().ok().and_then(|held| held.clone());
-        if let Some(source) = held.filter(|s| s.path() == path) {
-            return Ok(source);
-        }
-        let source: Arc<dyn Source> = Arc::from(open(path)?);
-        if let Ok(mut held) = self.0.lock() {
-            *held = Some(Arc::clone(&source));
-        }
-        Ok(source)
-    }
-}
-
 /// Observe some records, file by file; `each` is called after each.
 fn observe_some(
     campaign: &ResolvedCampaign,
     entries: &[RecordEntry],
-    cache: &SourceCache,
     each: &(dyn Fn() + Sync),
 ) -> Vec<Observation> {
-    each_cached(campaign, entries, cache, |entry, record| {
+    each_of(campaign, entries, |entry, record| {
         let mut observation = observe_record(campaign, &record);
         if !keeps_waveform(campaign, entry) {
             observation.folded = None;
@@ -136,18 +94,9 @@ pub(super) fn each_of<T: Send>(
     entries: &[RecordEntry],
     act: impl Fn(&RecordEntry, Record) -> T + Sync,
 ) -> Vec<T> {
-    each_cached(campaign, entries, &SourceCache::default(), act)
-}
-
-fn each_cached<T: Send>(
-    campaign: &ResolvedCampaign,
-    entries: &[RecordEntry],
-    cache: &SourceCache,
-    act: impl Fn(&RecordEntry, Record) -> T + Sync,
-) -> Vec<T> {
     let parts: Vec<Vec<T>> = by_file(entries)
         .into_par_iter()
-        .map(|entries| records_of(campaign, entries, cache, &act))
+        .map(|entries| records_of(campaign, entries, &act))
         .collect();
     parts.into_iter().flatten().collect()
 }
@@ -160,10 +109,9 @@ pub fn each_record<E>(
     campaign: &ResolvedCampaign,
     mut act: impl FnMut(&RecordEntry, Record) -> Result<(), E>,
 ) -> Result<(), E> {
-    let cache = SourceCache::default();
     for group in by_file(&campaign.records) {
         for entries in group.chunks(READ_AHEAD) {
-            let records = records_of(campaign, entries, &cache, |_, record| record);
+            let records = records_of(campaign, entries, |_, record| record);
             for (entry, record) in entries.iter().zip(records) {
                 act(entry, record)?;
             }
@@ -175,13 +123,12 @@ pub fn each_record<E>(
 fn records_of<T: Send>(
     campaign: &ResolvedCampaign,
     entries: &[RecordEntry],
-    cache: &SourceCache,
     act: impl Fn(&RecordEntry, Record) -> T + Sync,
 ) -> Vec<T> {
     let Some(first) = entries.first() else {
         return Vec::new();
     };
-    let source = cache.open(&first.file);
+    let source = campaign.sources.open(&first.file);
     entries
         .par_iter()
         .map(|entry| {
@@ -209,8 +156,8 @@ fn read(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Source) -
 }
 
 /// Read one record by its entry.
-pub fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, cache: &SourceCache) -> Record {
-    match cache.open(&entry.file) {
+pub fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry) -> Record {
+    match campaign.sources.open(&entry.file) {
         Ok(source) => read(campaign, entry, source.as_ref()),
         Err(error) => unreadable(&entry.id, &entry.setting, &error),
     }

@@ -9,7 +9,7 @@ use crate::compare::{self, Input};
 use crate::event::RigKind;
 use crate::identify::Provenance;
 use crate::pipeline::identify::{IdentificationFile, settings};
-use crate::pipeline::observe::{SourceCache, read_one};
+use crate::pipeline::observe::read_one;
 use crate::pipeline::{Observed, PipelineError};
 use crate::report::Phrase;
 use crate::report::catalog::Catalog;
@@ -112,10 +112,9 @@ pub fn content(
     found: &IdentificationFile,
     command_line: &str,
 ) -> Result<ReportContent, PipelineError> {
-    let cache = SourceCache::of(campaign);
     let read = |index: usize| {
         let entry = campaign.records.get(index)?;
-        Some(read_one(campaign, entry, &cache))
+        Some(read_one(campaign, entry))
     };
     let compared = compare::compare(&Input {
         rig: campaign.machine,
@@ -127,7 +126,7 @@ pub fn content(
     });
     Ok(ReportContent {
         title: campaign.report.title.clone(),
-        campaign: facts(campaign, &cache),
+        campaign: facts(campaign),
         identification: found.identification.clone(),
         provenance: Provenance {
             settings: settings(campaign)?,
@@ -194,7 +193,7 @@ fn options(stated: &StatedOptions) -> Result<ReportOptions, PipelineError> {
 }
 
 /// What the campaign states about itself.
-fn facts(campaign: &ResolvedCampaign, cache: &SourceCache) -> CampaignFacts {
+fn facts(campaign: &ResolvedCampaign) -> CampaignFacts {
     let files: BTreeSet<_> = campaign.records.iter().map(|r| &r.file).collect();
     CampaignFacts {
         name: campaign.name.clone(),
@@ -203,7 +202,7 @@ fn facts(campaign: &ResolvedCampaign, cache: &SourceCache) -> CampaignFacts {
             RigKind::Single => Subject::OneMass,
         },
         laboratory: campaign.laboratory.clone(),
-        dates: dates(campaign, cache),
+        dates: dates(campaign),
         files: files.len(),
         rig: campaign.rig.name.clone(),
         shared: campaign.rig.shared.clone(),
@@ -236,22 +235,22 @@ fn nominal(campaign: &ResolvedCampaign) -> Vec<NominalValue> {
 
 /// When it was measured: as stated in campaign.toml, else the days of the first and the last record,
 /// if their files state them.
-fn dates(campaign: &ResolvedCampaign, cache: &SourceCache) -> Option<[String; 2]> {
+fn dates(campaign: &ResolvedCampaign) -> Option<[String; 2]> {
     if let Some(words) = &campaign.measured {
         return Some([words.clone(), words.clone()]);
     }
     let ends = [campaign.records.first(), campaign.records.last()];
     let ends = ends.into_iter().flatten();
     let mut days: Vec<String> = ends
-        .filter_map(|r| day(cache, &r.file, r.dataset?))
+        .filter_map(|r| day(campaign, &r.file, r.dataset?))
         .collect();
     days.sort();
     Some([days.first()?.clone(), days.last()?.clone()])
 }
 
 /// The day on which a dataset was acquired.
-fn day(cache: &SourceCache, file: &Path, dataset: usize) -> Option<String> {
-    let source = cache.open(file).ok()?;
+fn day(campaign: &ResolvedCampaign, file: &Path, dataset: usize) -> Option<String> {
+    let source = campaign.sources.open(file).ok()?;
     let info = source.datasets().get(dataset)?;
     let time = info.channels.iter().find_map(|c| c.start_time.clone())?;
     let day = time.split(['T', ' ']).next()?;

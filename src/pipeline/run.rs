@@ -83,10 +83,14 @@ pub(super) fn complete(
     };
     progress("report", 0, 1);
     let content = report::content(campaign, &observed, &found, destination.command_line)?;
-    let report = report::render(&content, campaign, destination.also)?;
+    let (report, tables) = rayon::join(
+        || report::render(&content, campaign, destination.also),
+        || tables::files(&observed),
+    );
+    let (report, tables) = (report?, tables?);
     progress("write", 0, 1);
     store::write_resolved(campaign, out)?;
-    tables::write_all(&observed, out)?;
+    tables::write(&tables, out)?;
     identify::write(&found, out)?;
     report::write(&report, out)?;
     checkpoint::remove(out);

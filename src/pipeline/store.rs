@@ -218,7 +218,7 @@ pub fn classify(out: &Path, progress: Progress<'_>) -> Result<Observed, Pipeline
         }
     }
     observed.brackets = brackets(&observed.observations);
-    super::tables::write_all(&observed, out)?;
+    super::tables::write(&super::tables::files(&observed)?, out)?;
     gzip_json::write(&out.join(OBSERVATIONS), &observed.observations)?;
     Ok(observed)
 }

@@ -108,17 +108,48 @@ impl Table {
     /// # Errors
     /// Those of the library.
     pub(super) fn parquet(&self) -> Result<Vec<u8>, PolarsError> {
-        let columns = self.columns.iter().map(|(n, v)| v.column(n)).collect();
-        let frame = DataFrame::new(self.rows(), columns)?;
-        let mut bytes = Vec::new();
-        let mut writer = ParquetWriter::new(&mut bytes).batched(frame.schema())?;
-        for first in (0..frame.height()).step_by(ROW_GROUP) {
-            let offset = i64::try_from(first).unwrap_or(i64::MAX);
-            writer.write_batch(&frame.slice(offset, ROW_GROUP))?;
-        }
-        writer.finish()?;
-        Ok(bytes)
+        let frame = self.frame()?;
+        let rows = frame.height().max(1);
+        let parts = (0..rows).step_by(ROW_GROUP).map(|first| {
+            let first = i64::try_from(first).unwrap_or(i64::MAX);
+            Ok(frame.slice(first, ROW_GROUP))
+        });
+        parquet(parts)
     }
+
+    /// Tables of the same columns, one below the other, as Parquet; each is dropped before the next is made.
+    ///
+    /// # Errors
+    /// Those of the library.
+    pub(super) fn parquet_of(
+        tables: impl IntoIterator<Item = Self>,
+    ) -> Result<Vec<u8>, PolarsError> {
+        parquet(tables.into_iter().map(|table| table.frame()))
+    }
+
+    fn frame(&self) -> Result<DataFrame, PolarsError> {
+        let columns = self.columns.iter().map(|(n, v)| v.column(n)).collect();
+        DataFrame::new(self.rows(), columns)
+    }
+}
+
+/// Frames of the same columns, each a row group; without any nothing is written.
+fn parquet(
+    frames: impl IntoIterator<Item = Result<DataFrame, PolarsError>>,
+) -> Result<Vec<u8>, PolarsError> {
+    let mut frames = frames.into_iter();
+    let mut bytes = Vec::new();
+    let Some(first) = frames.next().transpose()? else {
+        return Ok(bytes);
+    };
+    let mut writer = ParquetWriter::new(&mut bytes).batched(first.schema())?;
+    writer.write_batch(&first)?;
+    drop(first);
+    for frame in frames {
+        writer.write_batch(&frame?)?;
+    }
+    writer.finish()?;
+    Ok(bytes)
 }
 
 fn counts(values: impl Iterator<Item = Option<usize>>) -> Values {
@@ -179,6 +210,18 @@ mod tests {
         let want = "eta,lyapunov,motion,joined,p\n0.1,,1,true,1\n2,-0.25,\"1,5\",false,2\n";
         assert_eq!(table.csv(), want);
         assert_eq!(&table.parquet().unwrap()[..4], b"PAR1");
+    }
+
+    #[test]
+    fn tables_one_below_the_other_are_one_file() {
+        use polars_io::SerReader;
+        use polars_io::parquet::read::ParquetReader;
+        let table = |values: [Option<f64>; 2]| Table::new().missing("x", values);
+        let parts = [table([None, None]), table([Some(2.0), None])];
+        let bytes = Table::parquet_of(parts).unwrap();
+        let read = ParquetReader::new(std::io::Cursor::new(bytes)).finish();
+        let column = read.unwrap().column("x").unwrap().f64().unwrap().to_vec();
+        assert_eq!(column, [None, None, Some(2.0), None]);
     }
 
     #[test]

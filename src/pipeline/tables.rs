@@ -217,30 +217,58 @@ const BOUNDARIES: &[(&str, Get<Bracket>)] = &[
     ("record_after", Get::Text(|b| Some(b.records[1].clone()))),
 ];
 
-/// Write records.parquet, impacts.parquet and boundaries.csv.
+/// Records whose rows are in memory at a time.
+const RECORDS_AT_ONCE: usize = 4096;
+
+/// records.parquet, impacts.parquet and boundaries.csv: names and bytes.
+///
+/// # Errors
+/// If a table cannot be made.
+pub fn files(observed: &Observed) -> Result<Vec<(&'static str, Vec<u8>)>, PipelineError> {
+    let all = &observed.observations;
+    let none = all.is_empty().then_some(&[][..]);
+    let parts = || all.chunks(RECORDS_AT_ONCE).chain(none);
+    let records = parts().map(|some| Table::of(some, RECORDS));
+    let impacts = parts().map(|some| {
+        let of = |o: &Observation| {
+            let record = o.record.clone();
+            o.impacts
+                .iter()
+                .map(move |i| (record.clone(), i.clone()))
+                .collect::<Vec<_>>()
+        };
+        Table::of(&some.iter().flat_map(of).collect::<Vec<_>>(), IMPACTS)
+    });
+    let boundaries = Table::of(&observed.brackets, BOUNDARIES).csv();
+    Ok(vec![
+        parquet(RECORDS_FILE, records)?,
+        parquet(IMPACTS_FILE, impacts)?,
+        (BOUNDARIES_FILE, boundaries.into_bytes()),
+    ])
+}
+
+const RECORDS_FILE: &str = "records.parquet";
+const IMPACTS_FILE: &str = "impacts.parquet";
+const BOUNDARIES_FILE: &str = "boundaries.csv";
+
+/// Write what [`files`] gave.
 ///
 /// # Errors
 /// If a file cannot be written.
-pub fn write_all(observed: &Observed, out: &Path) -> Result<(), PipelineError> {
-    let impacts: Vec<ImpactRow> = observed
-        .observations
-        .iter()
-        .flat_map(|o| o.impacts.iter().map(|i| (o.record.clone(), i.clone())))
-        .collect();
-    let records = Table::of(&observed.observations, RECORDS);
-    write_parquet(&records, &out.join("records.parquet"))?;
-    write_parquet(&Table::of(&impacts, IMPACTS), &out.join("impacts.parquet"))?;
-    let boundaries = Table::of(&observed.brackets, BOUNDARIES).csv();
-    Ok(write_bytes(
-        &out.join("boundaries.csv"),
-        boundaries.as_bytes(),
-    )?)
+pub fn write(files: &[(&str, Vec<u8>)], out: &Path) -> Result<(), PipelineError> {
+    for (name, bytes) in files {
+        write_bytes(&out.join(name), bytes)?;
+    }
+    Ok(())
 }
 
-fn write_parquet(table: &Table, path: &Path) -> Result<(), PipelineError> {
-    let bytes = table.parquet().map_err(|e| PipelineError::Table {
-        table: path.display().to_string(),
+fn parquet(
+    name: &'static str,
+    parts: impl Iterator<Item = Table>,
+) -> Result<(&'static str, Vec<u8>), PipelineError> {
+    let bytes = Table::parquet_of(parts).map_err(|e| PipelineError::Table {
+        table: name.to_owned(),
         reason: e.to_string(),
     })?;
-    Ok(write_bytes(path, &bytes)?)
+    Ok((name, bytes))
 }

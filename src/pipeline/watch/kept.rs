@@ -186,6 +186,7 @@ fn settings(campaign: &ResolvedCampaign) -> String {
         records: _,
         report: _,
         published: _,
+        sources: _,
     } = campaign;
     format!("{machine:?} {flight:?} {rig:?} {channels:?} {time:?} {sample_rate_hz:?} {analysis:?}")
 }

@@ -33,10 +33,11 @@ pub(super) fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Sectio
     sections
 }
 
-/// Letters before the titles of the appendices, in the order in which they come.
+/// Letters before the titles of the appendices, in the order in which they come; the first begins a page.
 fn letter_appendices(sections: &mut [Section], locale: Locale<'_>) {
     let appendices = sections.iter_mut().filter(|s| s.appendix);
     for (section, letter) in appendices.zip('A'..='Z') {
+        section.new_page = letter == 'A';
         let (letter, title) = (letter.to_string(), section.title.plain());
         let values = [("letter", letter.as_str()), ("title", title.as_str())];
         section.title = Rich::from(locale.translate_with(Phrase::Appendix, &values));
@@ -162,9 +163,11 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
             .collect();
         blocks.extend(drawn.figures_block(&named));
     }
+    // after pages of comparisons; pages that begin anew are set beside each other
+    let new_page = !content.compared.comparisons.is_empty();
     section(
         drawn.locale.translate(Phrase::MethodByMethod),
-        false,
+        new_page,
         blocks,
     )
 }
