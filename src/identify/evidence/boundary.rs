@@ -203,7 +203,7 @@ fn half_gap(machine: &Machine, gap: f64) -> f64 {
     gap / machine.gap(1.0)
 }
 
-/// Crossing of ρ(η) with a level nearest to η0: scanned outward, then bisected.
+/// Crossing of ρ(η) with a level nearest to η0: scanned outward, then closed in on.
 fn nearest_crossing(rho: impl Fn(f64) -> f64, level: f64, eta0: f64) -> Option<f64> {
     let excess = |eta: f64| rho(eta) - level;
     let here = excess(eta0);
@@ -212,7 +212,7 @@ fn nearest_crossing(rho: impl Fn(f64) -> f64, level: f64, eta0: f64) -> Option<f
     let crossing = |low: (f64, f64), high: (f64, f64)| {
         let finite = low.1.is_finite() && high.1.is_finite();
         let root = (finite && low.1.signum() != high.1.signum())
-            .then(|| bisected(&excess, low.0, high.0))?;
+            .then(|| root_between(&excess, low, high))?;
         (excess(root).abs() < 1e-6 * (1.0 + level.abs())).then_some(root)
     };
     let (mut low, mut high) = ((eta0, here), (eta0, here));
@@ -235,28 +235,24 @@ fn nearest_crossing(rho: impl Fn(f64) -> f64, level: f64, eta0: f64) -> Option<f
     None
 }
 
-/// Root between two points of opposite sign, by the ITP-like mix of bisection and secant.
-fn bisected(excess: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    let (mut at_low, mut at_high) = (excess(low), excess(high));
-    for k in 0..80 {
-        let secant = (low * at_high - high * at_low) / (at_high - at_low);
-        let inside = secant > low && secant < high;
-        let eta = if k % 3 == 2 || !inside {
-            0.5 * (low + high)
-        } else {
-            secant
-        };
+/// Root between two points of opposite sign, given with their values: the secant between them, whose older
+/// end counts half where it stays (the Illinois rule).
+fn root_between(excess: &impl Fn(f64) -> f64, mut old: (f64, f64), mut new: (f64, f64)) -> f64 {
+    for _ in 0..100 {
+        let eta = new.0 - new.1 * (new.0 - old.0) / (new.1 - old.1);
         let value = excess(eta);
-        if value == 0.0 || high - low < 1e-13 * high {
-            return eta;
-        }
-        if value.signum() == at_low.signum() {
-            (low, at_low) = (eta, value);
+        let step = (eta - new.0).abs();
+        if value.signum() == new.1.signum() {
+            old.1 *= 0.5;
         } else {
-            (high, at_high) = (eta, value);
+            old = new;
+        }
+        new = (eta, value);
+        if value == 0.0 || step < 1e-13 * eta || (new.0 - old.0).abs() < 1e-13 * eta {
+            break;
         }
     }
-    0.5 * (low + high)
+    new.0
 }
 
 impl Block for BoundaryBlock {

@@ -225,6 +225,14 @@ impl Branch {
 /// # Errors
 /// [`ModelError`] where a parameter is out of range or the flight is not harmonic.
 pub fn orbits(machine: &Machine, setting: Setting, n: u32) -> Result<Vec<Orbit>, ModelError> {
+    let speeds = speeds_of_orbits(machine, setting, n)?.into_iter();
+    Ok(speeds
+        .map(|w| orbit_with_speed(machine, setting, n, w))
+        .collect())
+}
+
+/// Approach speeds of all z = 1/n orbits.
+fn speeds_of_orbits(machine: &Machine, setting: Setting, n: u32) -> Result<Vec<f64>, ModelError> {
     machine.check()?;
     setting.check()?;
     if machine.flight != Flight::Harmonic || n == 0 {
@@ -233,11 +241,8 @@ pub fn orbits(machine: &Machine, setting: Setting, n: u32) -> Result<Vec<Orbit>,
         ));
     }
     let branch = Branch::new(machine, setting.frequency_ratio, n);
-    let speeds = approach_speeds(machine, &branch, machine.gap(setting.clearance));
-    Ok(speeds
-        .into_iter()
-        .map(|w| orbit_with_speed(machine, setting, n, w))
-        .collect())
+    let gap = machine.gap(setting.clearance);
+    Ok(approach_speeds(machine, &branch, gap))
 }
 
 /// The stable, existing z = 1/n orbit, if there is one (at most one of the two roots is).
@@ -261,9 +266,17 @@ pub fn stable_orbit(
     setting: Setting,
     n: u32,
 ) -> Result<Option<Orbit>, ModelError> {
-    Ok(orbits(machine, setting, n)?
-        .into_iter()
-        .find(|o| o.exists() && o.is_stable()))
+    let judged = |w: f64| {
+        let mut orbit = unjudged_orbit(machine, setting, n, w);
+        orbit.multipliers = multipliers(machine, &orbit);
+        if !orbit.is_stable() {
+            return None;
+        }
+        orbit.existence = existence(machine, &orbit);
+        orbit.exists().then_some(orbit)
+    };
+    let mut speeds = speeds_of_orbits(machine, setting, n)?.into_iter();
+    Ok(speeds.find_map(judged))
 }
 
 fn approach_speeds(machine: &Machine, branch: &Branch, gap: f64) -> Vec<f64> {
