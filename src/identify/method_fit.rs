@@ -30,7 +30,7 @@ fn beyond_first_order(parameter: Coordinate) -> f64 {
     match parameter {
         Coordinate::Frequency => 0.0028,
         Coordinate::Restitution => 0.011,
-        Coordinate::Damping => 0.018,
+        Coordinate::Damping => 0.035,
         _ => 0.03,
     }
 }

@@ -202,15 +202,14 @@ impl Belief {
 
     /// Take a measurement of h·state with a variance in; gives its innovation over its deviation.
     fn learn(&mut self, h: Vector4<f64>, value: f64, variance: f64) -> f64 {
-        let gain = self.covariance * h;
-        let spread = h.dot(&gain) + variance;
+        let along = self.covariance * h;
+        let spread = h.dot(&along) + variance;
         let innovation = value - h.dot(&self.mean);
-        self.mean += gain * (innovation / spread);
-        // Joseph's form, which rounding cannot make indefinite.
-        let gain = gain / spread;
-        let kept = Matrix4::identity() - gain * h.transpose();
-        self.covariance =
-            kept * self.covariance * kept.transpose() + gain * gain.transpose() * variance;
+        let gain = along / spread;
+        self.mean += gain * innovation;
+        // Joseph's form, (1 − g hᵀ) P (1 − g hᵀ)ᵀ + v g gᵀ, which rounding cannot make indefinite.
+        let once = self.covariance - gain * along.transpose();
+        self.covariance = once + (gain * variance - once * h) * gain.transpose();
         innovation / spread.sqrt()
     }
 

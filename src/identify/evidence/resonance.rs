@@ -411,50 +411,82 @@ struct Model<'a> {
     responses: Vec<Predicted>,
 }
 
+/// Coordinates of a record's own that change its responses: all physical ones but R.
+const OWN: usize = Coordinate::PHYSICAL.len() - 1;
+
+/// Slopes of the responses over each coordinate of a record's own.
+type OwnSlopes = [Vec<Complex<f64>>; OWN];
+
 impl Model<'_> {
-    /// Slopes of the responses over one coordinate.
-    fn over(&self, coordinate: Coordinate) -> Vec<Complex<f64>> {
-        // The campaign's x_st moves with the record's own where it is what changes.
-        let of_campaign = f64::from(u8::from(coordinate == Coordinate::Deflection));
-        let friction_over_length = 1.0 - of_campaign;
-        let along = |coordinate: Coordinate, weight: f64| {
-            let change = change(&self.machine, self.eta, 0.0, coordinate);
-            (change, relative_length(coordinate), weight)
-        };
-        let physical = Coordinate::PHYSICAL.into_iter();
-        let parts: Vec<(Change, f64, f64)> = match self.parameters.own_slope(&self.at, coordinate) {
-            Some(slope) => physical
-                .zip(slope.physical)
-                .skip(1)
-                .filter(|(_, weight)| *weight != 0.0)
-                .map(|(c, weight)| along(c, weight))
-                .collect(),
-            None => vec![along(coordinate, 1.0)],
-        };
-        let rate = Complex::new(0.0, std::f64::consts::TAU * self.point.frequency_hz);
+    /// Slopes of the responses over a coordinate of the machine and its setting.
+    fn along(&self, coordinate: Coordinate, friction_over_length: f64) -> Vec<Complex<f64>> {
+        let change = change(&self.machine, self.eta, 0.0, coordinate);
+        let length = (relative_length(coordinate), friction_over_length);
         let pairs = self.point.responses.iter().zip(&self.responses);
         pairs
-            .map(|(r, p)| match coordinate {
-                Coordinate::Gain(i) | Coordinate::Corner(i) | Coordinate::Delay(i)
-                    if gain_index(r.role) != Some(i) =>
-                {
-                    Complex::default()
-                }
-                Coordinate::Gain(_) => p.value,
-                Coordinate::Corner(_) => p.value * p.over_corner,
-                Coordinate::Delay(_) => -p.value * rate * 1e-3,
-                Coordinate::Effect(Effect::Hardening) => p.over_effect(0),
-                Coordinate::Effect(Effect::Friction) => p.over_effect(1),
-                Coordinate::Effect(Effect::Drag) => p.over_effect(2),
-                _ => parts
-                    .iter()
-                    .map(|(change, length, weight)| {
-                        let of = (r.role.is_of_y(), change);
-                        p.along(of, self.eta, (*length, friction_over_length)) * weight
-                    })
-                    .sum(),
-            })
+            .map(|(r, p)| p.along((r.role.is_of_y(), &change), self.eta, length))
             .collect()
+    }
+
+    /// Those over the record's own coordinates; see [`Predicted::along`] for `friction_over_length`.
+    fn own_slopes(&self, friction_over_length: f64) -> OwnSlopes {
+        let along = |i: usize| self.along(Coordinate::PHYSICAL[i + 1], friction_over_length);
+        std::array::from_fn(along)
+    }
+
+    /// Slopes of the responses over one coordinate; `own`: those over the record's own where the
+    /// campaign's `x_st` stays.
+    fn over(&self, coordinate: Coordinate, own: &OwnSlopes) -> Vec<Complex<f64>> {
+        match coordinate {
+            Coordinate::Gain(_) | Coordinate::Corner(_) | Coordinate::Delay(_) => {
+                self.over_channel(coordinate)
+            }
+            Coordinate::Effect(Effect::Hardening) => self.over_force(0),
+            Coordinate::Effect(Effect::Friction) => self.over_force(1),
+            Coordinate::Effect(Effect::Drag) => self.over_force(2),
+            _ => match self.parameters.own_slope(&self.at, coordinate) {
+                // The campaign's x_st moves with the record's own.
+                Some(slope) if coordinate == Coordinate::Deflection => {
+                    self.combined(&slope.physical, &self.own_slopes(0.0))
+                }
+                Some(slope) => self.combined(&slope.physical, own),
+                None => self.along(coordinate, 1.0),
+            },
+        }
+    }
+
+    /// Sum of slopes over the record's own coordinates, each times what a coordinate changes of it.
+    fn combined(
+        &self,
+        weights: &[f64; Coordinate::PHYSICAL.len()],
+        own: &OwnSlopes,
+    ) -> Vec<Complex<f64>> {
+        let mut sum = vec![Complex::default(); self.responses.len()];
+        for (weight, slopes) in weights[1..].iter().zip(own) {
+            if *weight != 0.0 {
+                let all = sum.iter_mut().zip(slopes);
+                all.for_each(|(sum, slope)| *sum += slope * weight);
+            }
+        }
+        sum
+    }
+
+    fn over_force(&self, place: usize) -> Vec<Complex<f64>> {
+        let responses = self.responses.iter();
+        responses.map(|p| p.over_effect(place)).collect()
+    }
+
+    /// Over the gain, the corner or the delay of one channel.
+    fn over_channel(&self, coordinate: Coordinate) -> Vec<Complex<f64>> {
+        let rate = Complex::new(0.0, std::f64::consts::TAU * self.point.frequency_hz);
+        let pairs = self.point.responses.iter().zip(&self.responses);
+        let slope = |(r, p): (&Response, &Predicted)| match coordinate {
+            Coordinate::Gain(i) if gain_index(r.role) == Some(i) => p.value,
+            Coordinate::Corner(i) if gain_index(r.role) == Some(i) => p.value * p.over_corner,
+            Coordinate::Delay(i) if gain_index(r.role) == Some(i) => -p.value * rate * 1e-3,
+            _ => Complex::default(),
+        };
+        pairs.map(slope).collect()
     }
 }
 
@@ -547,8 +579,9 @@ impl Block for ResonanceBlock {
             point.shared.apply(&mut column);
             column
         };
+        let own = found.own_slopes(1.0);
         let column = |coordinate: &Coordinate| {
-            let slopes = found.over(*coordinate);
+            let slopes = found.over(*coordinate, &own);
             white(point.weighted(slopes.into_iter().map(|s| -s)))
         };
         let columns = coordinates.iter().map(column).collect();
