@@ -163,8 +163,10 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
             .collect();
         blocks.extend(drawn.figures_block(&named));
     }
-    // after pages of comparisons; pages that begin anew are set beside each other
-    let new_page = !content.compared.comparisons.is_empty();
+    // Three comparisons fill a page; below one alone there is room. Pages that begin anew are set beside
+    // each other.
+    let comparisons = content.compared.comparisons.len();
+    let new_page = comparisons > 0 && comparisons % 3 != 1;
     section(
         drawn.locale.translate(Phrase::MethodByMethod),
         new_page,
