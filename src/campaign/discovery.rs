@@ -47,7 +47,7 @@ pub(super) struct Shared<'a> {
     pub(super) time: Option<&'a ChannelKey>,
     /// The files to list; `None`: all.
     pub(super) taken: Option<Taken<'a>>,
-    /// Keeps the file that was opened last.
+    /// Opens the files and keeps the last.
     pub(super) sources: &'a Sources,
 }
 
@@ -101,7 +101,7 @@ pub(super) fn expand(folder: &Path, pattern: &str) -> Vec<PathBuf> {
 }
 
 fn list_file(path: &Path, shared: Shared<'_>, open: Opener<'_>) -> Vec<Discovered> {
-    match open(path) {
+    match shared.sources.open_by(path, open) {
         Ok(source) => {
             let sets = source.datasets();
             if sets.is_empty() {
@@ -109,9 +109,7 @@ fn list_file(path: &Path, shared: Shared<'_>, open: Opener<'_>) -> Vec<Discovere
             }
             let used = records_of(sets, shared);
             let listed = |i: usize| listed(path, i, &sets[i], None, shared);
-            let all = used.into_iter().map(listed).collect();
-            shared.sources.keep(source);
-            all
+            used.into_iter().map(listed).collect()
         }
         Err(error) => vec![failed(path, None, calibrate::read_flag(&error))],
     }
@@ -230,7 +228,7 @@ fn list_rows_of(
     shared: Shared<'_>,
     open: Opener<'_>,
 ) -> Vec<Discovered> {
-    let source = match open(path) {
+    let source = match shared.sources.open_by(path, open) {
         Ok(source) => source,
         Err(error) => {
             let flag = calibrate::read_flag(&error);
@@ -260,7 +258,6 @@ fn list_rows_of(
             None => all.push(failed(path, Some((*row).clone()), no_dataset(row, sets))),
         }
     }
-    shared.sources.keep(source);
     all
 }
 

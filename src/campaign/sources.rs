@@ -32,33 +32,37 @@ impl Sources {
     /// # Errors
     /// If the file cannot be read.
     pub fn open(&self, path: &Path) -> Result<Arc<dyn Source>, ReadError> {
+        self.open_by(path, labfiles::open)
+    }
+
+    /// As [`Sources::open`], by another way of opening files.
+    ///
+    /// # Errors
+    /// Those of `open`.
+    pub(super) fn open_by(
+        &self,
+        path: &Path,
+        open: impl FnOnce(&Path) -> Result<Box<dyn Source>, ReadError>,
+    ) -> Result<Arc<dyn Source>, ReadError> {
+        // before it is opened: what changes while it is read is another file
         let state = state_of(path);
         let held = self.0.lock().ok().and_then(|held| held.clone());
         let same = |held: &Held| held.source.path() == path && held.state == state;
         if let Some(held) = held.filter(|held| state.is_some() && same(held)) {
             return Ok(held.source);
         }
-        let source: Arc<dyn Source> = Arc::from(labfiles::open(path)?);
-        self.hold(Arc::clone(&source), state);
+        let source: Arc<dyn Source> = Arc::from(open(path)?);
+        if let Ok(mut held) = self.0.lock() {
+            let source = Arc::clone(&source);
+            *held = Some(Held { source, state });
+        }
         Ok(source)
-    }
-
-    /// Keep a file that is open already.
-    pub(super) fn keep(&self, source: Box<dyn Source>) {
-        let state = state_of(source.path());
-        self.hold(Arc::from(source), state);
     }
 
     /// Close the file: its owner may write to it.
     pub fn close(&self) {
         if let Ok(mut held) = self.0.lock() {
             *held = None;
-        }
-    }
-
-    fn hold(&self, source: Arc<dyn Source>, state: FileState) {
-        if let Ok(mut held) = self.0.lock() {
-            *held = Some(Held { source, state });
         }
     }
 }

@@ -185,12 +185,12 @@ impl Axis {
             return 0.0;
         };
         let lag = self.span / (second - first).rem_euclid(self.span);
-        let gain = shape.gain(lag);
+        let gained_by = shape.gained(lag);
         let (mut product, mut square) = (0.0, 0.0);
         for (i, later) in later(values, lag).into_iter().enumerate() {
             let partner = whole::index((i as f64 + lag).round());
             if !self.blocked[i] && !self.blocked[partner] {
-                let gained = gain.of(added[i]);
+                let gained = gained_by(added[i]);
                 product += (later - values[i]) * gained;
                 square += gained * gained;
             }
@@ -214,18 +214,6 @@ enum Shape {
     Decay(f64),
 }
 
-/// What a shape gains over a lag: a share of its value, and a constant.
-struct Gain {
-    share: f64,
-    constant: f64,
-}
-
-impl Gain {
-    fn of(&self, value: f64) -> f64 {
-        self.share * value + self.constant
-    }
-}
-
 impl Shape {
     fn values(&self, count: usize) -> Vec<f64> {
         match self {
@@ -234,12 +222,13 @@ impl Shape {
         }
     }
 
-    fn gain(&self, lag: f64) -> Gain {
+    /// What it gains over a lag from where it has a value.
+    fn gained(&self, lag: f64) -> impl Fn(f64) -> f64 {
         let (share, constant) = match self {
             Self::Ramp => (0.0, lag),
             Self::Decay(rate) => ((-rate * lag).exp_m1(), 0.0),
         };
-        Gain { share, constant }
+        move |value| share * value + constant
     }
 }
 

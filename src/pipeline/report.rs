@@ -124,9 +124,11 @@ pub fn content(
         points: &campaign.report.points,
         read: &read,
     });
+    let facts = facts(campaign);
+    campaign.sources.close();
     Ok(ReportContent {
         title: campaign.report.title.clone(),
-        campaign: facts(campaign),
+        campaign: facts,
         identification: found.identification.clone(),
         provenance: Provenance {
             settings: settings(campaign)?,

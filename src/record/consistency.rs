@@ -47,8 +47,7 @@ pub fn inspect(record: &Record) -> Vec<Flag> {
         Match::of(displacements[mass].as_ref()?, velocities[other].as_ref()?)
     };
     let (x, y) = (compare(0, 0), compare(1, 1));
-    let crossed = || Some([compare(0, 1)?.correlation, compare(1, 0)?.correlation]);
-    if let Some(flag) = swapped(record, crossed, [x, y]) {
+    if let Some(flag) = swapped(record, [x, y], [compare(0, 1), compare(1, 0)]) {
         return vec![flag];
     }
     if let Some(flag) = opposite_masses(record) {
@@ -157,11 +156,11 @@ fn flag(
 /// Each displacement follows the velocity of the other mass better than that of its own.
 fn swapped(
     record: &Record,
-    crossed: impl Fn() -> Option<[f64; 2]>,
     [x, y]: [Option<Match>; 2],
+    [x_with_y, y_with_x]: [Option<Match>; 2],
 ) -> Option<Flag> {
     let (own_x, own_y) = (x?.correlation, y?.correlation);
-    let [crossed_x, crossed_y] = crossed()?;
+    let (crossed_x, crossed_y) = (x_with_y?.correlation, y_with_x?.correlation);
     let crossed = crossed_x > SAME && crossed_y > SAME;
     let own = own_x > SAME - 0.1 || own_y > SAME - 0.1;
     let better = crossed_x - own_x > 0.05 && crossed_y - own_y > 0.05;

@@ -68,6 +68,7 @@ impl Kept {
             let observation = known.unwrap_or_else(|| observe::observe_record(campaign, &record));
             (samples, observation, was_known)
         });
+        campaign.sources.close();
         let mut observed = 0;
         for (entry, (samples, observation, was_known)) in new.into_iter().zip(found) {
             observed += usize::from(!was_known);

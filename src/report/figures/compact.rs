@@ -222,6 +222,8 @@ mod tests {
             <circle cx=\"7\" cy=\"8\" r=\"3\" fill=\"#00bb00\" stroke=\"none\" stroke-width=\"1\"/>\n\
             <circle cx=\"9\" cy=\"8\" r=\"3\" fill=\"#00bb00\" stroke=\"none\" stroke-width=\"1\"/>\n\
             <circle cx=\"9\" cy=\"8\" r=\"4\" fill=\"#00bb00\" stroke=\"none\" stroke-width=\"1\"/>\n\
+            <circle cx=\"9\" cy=\"8\" r=\"4\" fill=\"none\" stroke=\"#00bb00\" stroke-width=\"2\"/>\n\
+            <circle cx=\"9\" cy=\"5\" r=\"4\" fill=\"none\" stroke=\"#00bb00\" stroke-width=\"2\"/>\n\
             <polyline fill=\"none\" stroke=\"#00bb00\" stroke-width=\"6\" points=\"1,1 3,2 3,9 \"/>\n\
             <polyline fill=\"none\" stroke=\"#00bb00\" stroke-width=\"6\" points=\"5,5 4,4 \"/>\n\
             <polyline fill=\"none\" stroke=\"#00bb00\" stroke-width=\"7\" points=\"5,5 4,4 \"/>\n</svg>";
@@ -230,6 +232,8 @@ mod tests {
             <polygon fill=\"#00bb00\" points=\"0,0 4,0 3,2 0,2 \"/>\n\
             <path fill=\"none\" stroke=\"#00bb00\" stroke-width=\"6\" stroke-linecap=\"round\" d=\"M7 8h0M9 8h0\"/>\n\
             <circle cx=\"9\" cy=\"8\" r=\"4\" fill=\"#00bb00\" stroke=\"none\" stroke-width=\"1\"/>\n\
+            <path fill=\"none\" stroke=\"#00bb00\" stroke-width=\"2\" \
+                d=\"M5 8a4 4 0 0 1 8 0a4 4 0 0 1 -8 0zM5 5a4 4 0 0 1 8 0a4 4 0 0 1 -8 0z\"/>\n\
             <path fill=\"none\" stroke=\"#00bb00\" stroke-width=\"6\" d=\"M1 1l2 1v7M5 5l-1 -1\"/>\n\
             <polyline fill=\"none\" stroke=\"#00bb00\" stroke-width=\"7\" points=\"5,5 4,4 \"/>\n</svg>";
         assert_eq!(marks(svg), short);

@@ -150,8 +150,7 @@ pub(crate) fn met<'a>(motions: impl IntoIterator<Item = &'a Motion>) -> Vec<&'a 
 
 /// Draws a mark of a radius in points, with a thin light rim that parts it from its neighbours.
 pub(crate) fn draw(canvas: &mut Canvas, at: Point, radius: f64, mark: MotionLook) {
-    fill(canvas, at, radius, mark);
-    outline(canvas, at, radius, mark);
+    draw_all(canvas, &[at], radius, mark);
 }
 
 /// Draws marks of one look; where they overlap, the outlines of all are seen.
