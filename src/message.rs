@@ -28,22 +28,23 @@ pub trait Message {
         self.kind().to_owned()
     }
 
-    /// The English template: names in braces are replaced by the values, symbols are between dollars.
-    fn english(&self) -> &'static str;
-
-    /// The German template.
-    fn german(&self) -> &'static str;
+    /// The English and the German template: names in braces are replaced by the values, symbols are
+    /// between dollars.
+    fn texts(&self) -> [&'static str; 2];
 
     /// The template in a language.
     fn template(&self, language: Language) -> &'static str {
+        let [english, german] = self.texts();
         match language {
-            Language::English => self.english(),
-            Language::German => self.german(),
+            Language::English => english,
+            Language::German => german,
         }
     }
 
-    /// The values by the names that the templates use; all of a message's templates use the same.
-    fn values(&self) -> Vec<(&'static str, Value<'_>)>;
+    /// The values by the names that the templates use, the same names in both; none by default.
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        Vec::new()
+    }
 }
 
 /// A value in a message.
@@ -168,10 +169,28 @@ pub fn sentence(text: &str) -> String {
     }
 }
 
+/// Messages of one type among those of others.
+pub fn boxed<M: Message + 'static>(
+    each: impl Iterator<Item = M>,
+) -> impl Iterator<Item = Box<dyn Message>> {
+    each.map(|message| Box::new(message) as Box<dyn Message>)
+}
+
 /// Several messages in English without markup, separated by blanks.
 pub fn plain_all(messages: &[impl Display]) -> String {
     let each: Vec<String> = messages.iter().map(ToString::to_string).collect();
     each.join(" ")
+}
+
+/// The English and the German text of the first pattern that matches; a value without a text does
+/// not compile.
+#[macro_export]
+macro_rules! texts {
+    ($of:expr; $($pattern:pat => $english:expr, $german:expr;)+) => {
+        match $of {
+            $($pattern => [$english, $german],)+
+        }
+    };
 }
 
 /// `Display` and the JSON form of types that implement [`Message`] and derive `Serialize` and

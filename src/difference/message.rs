@@ -1,14 +1,17 @@
 //! What a comparison states of itself: why a nuisance is shared or not, and what to keep in mind.
 
 use serde::{Deserialize, Serialize};
+use strum::IntoEnumIterator;
 
 use crate::identify::VerdictKind;
 use crate::identify::fit::coordinate::Coordinate;
-use crate::message::{Message, Value};
-use crate::messages;
+use crate::message::{Message, Value, boxed};
+use crate::{messages, texts};
 
 /// Why a nuisance is one unknown of several campaigns.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Debug, Clone, PartialEq, Serialize, Deserialize, strum::EnumIter, strum::IntoStaticStr,
+)]
 #[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum WhyShared {
@@ -24,7 +27,9 @@ pub enum WhyShared {
 }
 
 /// Why a nuisance that might have been shared is an unknown of each campaign.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Debug, Clone, PartialEq, Serialize, Deserialize, strum::EnumIter, strum::IntoStaticStr,
+)]
 #[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum NotShared {
@@ -50,7 +55,9 @@ pub enum NotShared {
 }
 
 /// What to keep in mind about the differences.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Debug, Clone, PartialEq, Serialize, Deserialize, strum::EnumIter, strum::IntoStaticStr,
+)]
 #[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Remark {
@@ -71,7 +78,9 @@ pub enum Remark {
 }
 
 /// Whether anything changed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Debug, Clone, PartialEq, Serialize, Deserialize, strum::EnumIter, strum::IntoStaticStr,
+)]
 #[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Outcome {
@@ -95,23 +104,16 @@ impl Message for Outcome {
         self.into()
     }
 
-    fn english(&self) -> &'static str {
-        match self {
-            Self::NothingChanged => "No change found",
-            Self::Changed { .. } => "Changed: {parameters}",
-            Self::ChangedTogether => "Something changed, though no parameter alone shows it",
-            Self::Undetermined => "Whether anything changed cannot be determined",
-        }
-    }
-
-    fn german(&self) -> &'static str {
-        match self {
-            Self::NothingChanged => "Keine Änderung gefunden",
-            Self::Changed { .. } => "Geändert: {parameters}",
-            Self::ChangedTogether => {
-                "Etwas hat sich geändert, auch wenn es kein Parameter allein zeigt"
-            }
-            Self::Undetermined => "Ob sich etwas geändert hat, ist nicht zu entscheiden",
+    fn texts(&self) -> [&'static str; 2] {
+        texts! { self;
+            Self::NothingChanged => "No change found", "Keine Änderung gefunden";
+            Self::Changed { .. } => "Changed: {parameters}", "Geändert: {parameters}";
+            Self::ChangedTogether =>
+                "Something changed, though no parameter alone shows it",
+                "Etwas hat sich geändert, auch wenn es kein Parameter allein zeigt";
+            Self::Undetermined =>
+                "Whether anything changed cannot be determined",
+                "Ob sich etwas geändert hat, ist nicht zu entscheiden";
         }
     }
 
@@ -131,19 +133,13 @@ impl Message for WhyShared {
         self.into()
     }
 
-    fn english(&self) -> &'static str {
-        match self {
-            Self::StatedAsShared => "stated under shared",
-            Self::SameInstrument { .. } => "the same instrument: {instrument}",
-            Self::OneCampaign => "measured in one campaign",
-        }
-    }
-
-    fn german(&self) -> &'static str {
-        match self {
-            Self::StatedAsShared => "unter shared angegeben",
-            Self::SameInstrument { .. } => "dasselbe Gerät: {instrument}",
-            Self::OneCampaign => "in einer Messreihe gemessen",
+    fn texts(&self) -> [&'static str; 2] {
+        texts! { self;
+            Self::StatedAsShared => "stated under shared", "unter shared angegeben";
+            Self::SameInstrument { .. } =>
+                "the same instrument: {instrument}",
+                "dasselbe Gerät: {instrument}";
+            Self::OneCampaign => "measured in one campaign", "in einer Messreihe gemessen";
         }
     }
 
@@ -160,21 +156,20 @@ impl Message for NotShared {
         self.into()
     }
 
-    fn english(&self) -> &'static str {
-        match self {
-            Self::OtherInstrument { .. } => "the instruments differ: {first}, {second}",
-            Self::OtherRig { .. } => "the rigs differ: {first}, {second}",
-            Self::StatedOtherwise => "the value that it is an error of is stated otherwise",
-            Self::StatedByOne => "stated under shared by one of the campaigns alone",
-        }
-    }
-
-    fn german(&self) -> &'static str {
-        match self {
-            Self::OtherInstrument { .. } => "verschiedene Geräte: {first}, {second}",
-            Self::OtherRig { .. } => "verschiedene Prüfstände: {first}, {second}",
-            Self::StatedOtherwise => "der Wert, dessen Fehler es ist, ist verschieden angegeben",
-            Self::StatedByOne => "nur von einer der Messreihen unter shared angegeben",
+    fn texts(&self) -> [&'static str; 2] {
+        texts! { self;
+            Self::OtherInstrument { .. } =>
+                "the instruments differ: {first}, {second}",
+                "verschiedene Geräte: {first}, {second}";
+            Self::OtherRig { .. } =>
+                "the rigs differ: {first}, {second}",
+                "verschiedene Prüfstände: {first}, {second}";
+            Self::StatedOtherwise =>
+                "the value that it is an error of is stated otherwise",
+                "der Wert, dessen Fehler es ist, ist verschieden angegeben";
+            Self::StatedByOne =>
+                "stated under shared by one of the campaigns alone",
+                "nur von einer der Messreihen unter shared angegeben";
         }
     }
 
@@ -194,35 +189,22 @@ impl Message for Remark {
         self.into()
     }
 
-    fn english(&self) -> &'static str {
-        match self {
-            Self::CampaignDoesNotFit { .. } => {
-                "the model does not describe the data of {campaign}: its differences may be off by \
-                 more than their intervals; read its own report first"
-            }
-            Self::NoJointFit { .. } => {
-                "{campaign} rests on no joint fit: its errors are taken as independent"
-            }
-            Self::NothingShared => {
-                "nothing is shared, so the campaigns' errors add: state shared under [rig] what stayed \
-                 the same, or the instruments' serial numbers"
-            }
-        }
-    }
-
-    fn german(&self) -> &'static str {
-        match self {
-            Self::CampaignDoesNotFit { .. } => {
-                "das Modell beschreibt die Daten von {campaign} nicht: die Unterschiede können um mehr \
-                 als ihre Intervalle falsch sein; zuerst den Bericht dazu lesen"
-            }
-            Self::NoJointFit { .. } => {
-                "{campaign} beruht auf keiner gemeinsamen Anpassung: die Fehler gelten als unabhängig"
-            }
-            Self::NothingShared => {
-                "nichts ist gemeinsam, daher addieren sich die Fehler der Messreihen: unter [rig] mit \
-                 shared angeben, was gleich geblieben ist, oder die Seriennummern der Geräte"
-            }
+    fn texts(&self) -> [&'static str; 2] {
+        texts! { self;
+            Self::CampaignDoesNotFit { .. } =>
+                "the model does not describe the data of {campaign}: its differences may be off \
+                 by more than their intervals; read its own report first",
+                "das Modell beschreibt die Daten von {campaign} nicht: die Unterschiede können um \
+                 mehr als ihre Intervalle falsch sein; zuerst den Bericht dazu lesen";
+            Self::NoJointFit { .. } =>
+                "{campaign} rests on no joint fit: its errors are taken as independent",
+                "{campaign} beruht auf keiner gemeinsamen Anpassung: die Fehler gelten als \
+                 unabhängig";
+            Self::NothingShared =>
+                "nothing is shared, so the campaigns' errors add: state shared under [rig] what \
+                 stayed the same, or the instruments' serial numbers",
+                "nichts ist gemeinsam, daher addieren sich die Fehler der Messreihen: unter [rig] \
+                 mit shared angeben, was gleich geblieben ist, oder die Seriennummern der Geräte";
         }
     }
 
@@ -236,33 +218,11 @@ impl Message for Remark {
     }
 }
 
-/// One example of each kind of message of a comparison.
-pub fn examples() -> Vec<Box<dyn Message>> {
-    let (first, second) = ("S/N 12".to_owned(), "S/N 13".to_owned());
-    let instrument = first.clone();
-    let campaign = "before".to_owned();
-    vec![
-        Box::new(WhyShared::StatedAsShared),
-        Box::new(WhyShared::SameInstrument { instrument }),
-        Box::new(WhyShared::OneCampaign),
-        Box::new(NotShared::OtherRig {
-            first: first.clone(),
-            second: second.clone(),
-        }),
-        Box::new(NotShared::OtherInstrument { first, second }),
-        Box::new(NotShared::StatedOtherwise),
-        Box::new(NotShared::StatedByOne),
-        Box::new(Remark::CampaignDoesNotFit {
-            campaign: campaign.clone(),
-            verdict: VerdictKind::DoesNotFit,
-        }),
-        Box::new(Remark::NoJointFit { campaign }),
-        Box::new(Remark::NothingShared),
-        Box::new(Outcome::NothingChanged),
-        Box::new(Outcome::Changed {
-            parameters: vec![Coordinate::Restitution],
-        }),
-        Box::new(Outcome::ChangedTogether),
-        Box::new(Outcome::Undetermined),
-    ]
+/// One message of each kind of a comparison, its values at their defaults.
+pub fn kinds() -> Vec<Box<dyn Message>> {
+    boxed(WhyShared::iter())
+        .chain(boxed(NotShared::iter()))
+        .chain(boxed(Remark::iter()))
+        .chain(boxed(Outcome::iter()))
+        .collect()
 }

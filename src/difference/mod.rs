@@ -29,5 +29,5 @@ mod tests;
 pub use campaign::Campaign;
 pub use common::Common;
 pub use comparison::{Comparison, ComparisonError, Difference, EqualityTest, Summary, compare};
-pub use message::{NotShared, Outcome, Remark, WhyShared, examples};
+pub use message::{NotShared, Outcome, Remark, WhyShared, kinds};
 pub use share::{SeparateNuisance, SharedNuisance};

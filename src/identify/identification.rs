@@ -78,23 +78,17 @@ impl Message for Agreement {
         }
     }
 
-    fn english(&self) -> &'static str {
+    fn texts(&self) -> [&'static str; 2] {
         match (self.disagreement(), self.agree) {
-            (Some(pair), _) => pair.english(),
-            (None, None) => "there is nothing to compare",
-            (None, Some(_)) => {
-                "none of the {count} comparisons differs by more than its uncertainty allows"
-            }
-        }
-    }
-
-    fn german(&self) -> &'static str {
-        match (self.disagreement(), self.agree) {
-            (Some(pair), _) => pair.german(),
-            (None, None) => "es ist nichts zu vergleichen",
-            (None, Some(_)) => {
-                "keiner der {count} Vergleiche weicht um mehr ab, als seine Unsicherheit erlaubt"
-            }
+            (Some(pair), _) => pair.texts(),
+            (None, None) => [
+                "there is nothing to compare",
+                "es ist nichts zu vergleichen",
+            ],
+            (None, Some(_)) => [
+                "none of the {count} comparisons differs by more than its uncertainty allows",
+                "keiner der {count} Vergleiche weicht um mehr ab, als seine Unsicherheit erlaubt",
+            ],
         }
     }
 
@@ -115,7 +109,7 @@ impl std::fmt::Display for Agreement {
 }
 
 /// The overall answer in one word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum VerdictKind {
     /// Parameters are identified and the model fits.
@@ -123,6 +117,7 @@ pub enum VerdictKind {
     /// Some parameters only weakly.
     Weak,
     /// Something essential cannot be determined from these data.
+    #[default]
     NotIdentifiable,
     /// The model does not describe these data.
     DoesNotFit,

@@ -2,11 +2,13 @@
 
 use serde::{Deserialize, Serialize, Serializer};
 
-use crate::message::{Message, Value};
+use crate::message::Message;
+use crate::texts;
 
 /// A method of identification.
 #[derive(
     Debug,
+    Default,
     Clone,
     Copy,
     PartialEq,
@@ -16,12 +18,14 @@ use crate::message::{Message, Value};
     Hash,
     Serialize,
     Deserialize,
+    strum::EnumIter,
     strum::IntoStaticStr,
 )]
 #[strum(serialize_all = "snake_case")]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
     /// Brackets of s2, s1 and grazing.
+    #[default]
     Boundaries,
     /// Multiple shooting: records followed from impact to impact.
     Flights,
@@ -85,39 +89,22 @@ impl Message for Method {
         self.into()
     }
 
-    fn english(&self) -> &'static str {
-        match self {
-            Self::Boundaries => "Boundaries",
-            Self::Flights => "Multiple shooting",
-            Self::FlightTimes => "Flight times",
-            Self::FreeDecay => "Free decay",
-            Self::Impacts => "Speeds at impact",
-            Self::PublishedSpeeds => "Published speeds",
-            Self::Resonance => "Resonance curve",
-            Self::Trajectories => "Trajectories",
+    fn texts(&self) -> [&'static str; 2] {
+        texts! { self;
+            Self::Boundaries => "Boundaries", "Grenzen";
+            Self::Flights => "Multiple shooting", "Mehrfachschießen";
+            Self::FlightTimes => "Flight times", "Flugzeiten";
+            Self::FreeDecay => "Free decay", "Ausschwingen";
+            Self::Impacts => "Speeds at impact", "Einzelne Stöße";
+            Self::PublishedSpeeds => "Published speeds", "Veröffentlichte Geschwindigkeiten";
+            Self::Resonance => "Resonance curve", "Resonanzkurve";
+            Self::Trajectories => "Trajectories", "Verläufe";
         }
-    }
-
-    fn german(&self) -> &'static str {
-        match self {
-            Self::Boundaries => "Grenzen",
-            Self::Flights => "Mehrfachschießen",
-            Self::FlightTimes => "Flugzeiten",
-            Self::FreeDecay => "Ausschwingen",
-            Self::Impacts => "Einzelne Stöße",
-            Self::PublishedSpeeds => "Veröffentlichte Geschwindigkeiten",
-            Self::Resonance => "Resonanzkurve",
-            Self::Trajectories => "Verläufe",
-        }
-    }
-
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        Vec::new()
     }
 }
 
 impl std::fmt::Display for Method {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.english())
+        f.write_str(self.texts()[0])
     }
 }

@@ -7,10 +7,11 @@ use crate::motion::observation::Observation;
 use crate::record::Sweep;
 
 /// Which boundary of motion a bracket holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BoundaryKind {
     /// Saddle-node boundary s2: z = 1/n vanishes.
+    #[default]
     SaddleNode,
     /// Period-doubling boundary s1: z = 1/n becomes 2/2n.
     PeriodDoubling,

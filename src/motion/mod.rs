@@ -18,4 +18,3 @@ pub use kind::Motion;
 pub use observation::{Amplitude, Observation, observe, scale_drives};
 pub use response::Response;
 pub use undetermined::Undetermined;
-pub(crate) use undetermined::examples as undetermined_examples;

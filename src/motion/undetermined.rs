@@ -3,10 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use crate::message::{Message, Value};
-use crate::messages;
+use crate::{messages, texts};
 
 /// Why a record does not determine its motion.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize, strum::EnumIter, strum::IntoStaticStr,
+)]
 #[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Undetermined {
@@ -65,74 +67,61 @@ impl Message for Undetermined {
         self.into()
     }
 
-    fn english(&self) -> &'static str {
-        match self {
-            Self::DecayWithoutDrive => "a free decay, without drive",
-            Self::NoDrive => "no drive was measured, so no period is known",
-            Self::FewerThanTwoPeriods => "the record holds fewer than two drive periods",
-            Self::NotComparable => "the waveform could not be compared with itself",
-            Self::NearlyCloses { .. } => {
+    fn texts(&self) -> [&'static str; 2] {
+        texts! { self;
+            Self::DecayWithoutDrive =>
+                "a free decay, without drive",
+                "ein Ausschwingversuch, ohne Erregung";
+            Self::NoDrive =>
+                "no drive was measured, so no period is known",
+                "keine Erregung wurde gemessen, daher ist keine Periode bekannt";
+            Self::FewerThanTwoPeriods =>
+                "the record holds fewer than two drive periods",
+                "die Aufzeichnung enthält weniger als zwei Erregerperioden";
+            Self::NotComparable =>
+                "the waveform could not be compared with itself",
+                "der Verlauf ließ sich nicht mit sich selbst vergleichen";
+            Self::NearlyCloses { .. } =>
                 "the motion nearly closes after {periods} drive periods but not within the noise: \
-                 still settling, or of a longer period"
-            }
-            Self::NoMotion => "neither velocity nor contact shows any motion",
-            Self::NoPeriodOfImpacts => "the impact times alone show no period",
-            Self::NoWholePeriod => "no whole period of the motion fits into the record",
-            Self::TooManyImpacts { .. } => {
-                "the waveform closes after {periods} drive periods with {impacts} impacts, more than \
-                 the {most} that are looked for (analysis.most_impacts_p)"
-            }
-            Self::ImpactsDoNotRepeat { .. } => {
-                "the waveform closes after {periods} drive periods, but the impacts found do not \
-                 repeat with it: some were missed or are too slow to see"
-            }
-            Self::RepeatsWithoutImpact { .. } => {
-                "no impact was found, yet the motion repeats only after {periods} drive periods: \
-                 impacts too slow to see, or still settling"
-            }
-            Self::SettlingWithoutImpact => {
-                "no impact was found, yet the motion does not repeat: still settling"
-            }
-            Self::FewImpacts => "too few impacts to recognise an irregular motion",
-            Self::NotPeriodic => "the noiseless simulation is not periodic",
-            Self::BeyondContact => "starts beyond the contact",
-        }
-    }
-
-    fn german(&self) -> &'static str {
-        match self {
-            Self::DecayWithoutDrive => "ein Ausschwingversuch, ohne Erregung",
-            Self::NoDrive => "keine Erregung wurde gemessen, daher ist keine Periode bekannt",
-            Self::FewerThanTwoPeriods => {
-                "die Aufzeichnung enthält weniger als zwei Erregerperioden"
-            }
-            Self::NotComparable => "der Verlauf ließ sich nicht mit sich selbst vergleichen",
-            Self::NearlyCloses { .. } => {
+                 still settling, or of a longer period",
                 "die Bewegung schließt sich nach {periods} Erregerperioden beinahe, aber nicht \
-                 innerhalb des Rauschens: noch nicht eingeschwungen, oder von längerer Periode"
-            }
-            Self::NoMotion => "weder Geschwindigkeit noch Kontakt zeigt eine Bewegung",
-            Self::NoPeriodOfImpacts => "die Stoßzeiten allein zeigen keine Periode",
-            Self::NoWholePeriod => "keine ganze Periode der Bewegung passt in die Aufzeichnung",
-            Self::TooManyImpacts { .. } => {
-                "der Verlauf schließt sich nach {periods} Erregerperioden mit {impacts} Stößen, mehr \
-                 als den {most}, nach denen gesucht wird (analysis.most_impacts_p)"
-            }
-            Self::ImpactsDoNotRepeat { .. } => {
-                "der Verlauf schließt sich nach {periods} Erregerperioden, aber die gefundenen Stöße \
-                 wiederholen sich nicht mit ihm: einige fehlen oder sind zu langsam, um sichtbar zu sein"
-            }
-            Self::RepeatsWithoutImpact { .. } => {
+                 innerhalb des Rauschens: noch nicht eingeschwungen, oder von längerer Periode";
+            Self::NoMotion =>
+                "neither velocity nor contact shows any motion",
+                "weder Geschwindigkeit noch Kontakt zeigt eine Bewegung";
+            Self::NoPeriodOfImpacts =>
+                "the impact times alone show no period",
+                "die Stoßzeiten allein zeigen keine Periode";
+            Self::NoWholePeriod =>
+                "no whole period of the motion fits into the record",
+                "keine ganze Periode der Bewegung passt in die Aufzeichnung";
+            Self::TooManyImpacts { .. } =>
+                "the waveform closes after {periods} drive periods with {impacts} impacts, more \
+                 than the {most} that are looked for (analysis.most_impacts_p)",
+                "der Verlauf schließt sich nach {periods} Erregerperioden mit {impacts} Stößen, \
+                 mehr als den {most}, nach denen gesucht wird (analysis.most_impacts_p)";
+            Self::ImpactsDoNotRepeat { .. } =>
+                "the waveform closes after {periods} drive periods, but the impacts found do not \
+                 repeat with it: some were missed or are too slow to see",
+                "der Verlauf schließt sich nach {periods} Erregerperioden, aber die gefundenen \
+                 Stöße wiederholen sich nicht mit ihm: einige fehlen oder sind zu langsam, um \
+                 sichtbar zu sein";
+            Self::RepeatsWithoutImpact { .. } =>
+                "no impact was found, yet the motion repeats only after {periods} drive periods: \
+                 impacts too slow to see, or still settling",
                 "kein Stoß wurde gefunden, doch wiederholt sich die Bewegung erst nach {periods} \
-                 Erregerperioden: Stöße, die zu langsam sind, oder noch nicht eingeschwungen"
-            }
-            Self::SettlingWithoutImpact => {
+                 Erregerperioden: Stöße, die zu langsam sind, oder noch nicht eingeschwungen";
+            Self::SettlingWithoutImpact =>
+                "no impact was found, yet the motion does not repeat: still settling",
                 "kein Stoß wurde gefunden, doch wiederholt sich die Bewegung nicht: noch nicht \
-                 eingeschwungen"
-            }
-            Self::FewImpacts => "zu wenige Stöße, um eine unregelmäßige Bewegung zu erkennen",
-            Self::NotPeriodic => "die rauschfreie Simulation ist nicht periodisch",
-            Self::BeyondContact => "beginnt jenseits des Kontakts",
+                 eingeschwungen";
+            Self::FewImpacts =>
+                "too few impacts to recognise an irregular motion",
+                "zu wenige Stöße, um eine unregelmäßige Bewegung zu erkennen";
+            Self::NotPeriodic =>
+                "the noiseless simulation is not periodic",
+                "die rauschfreie Simulation ist nicht periodisch";
+            Self::BeyondContact => "starts beyond the contact", "beginnt jenseits des Kontakts";
         }
     }
 
@@ -154,29 +143,4 @@ impl Message for Undetermined {
             _ => Vec::new(),
         }
     }
-}
-
-/// One example of each kind.
-pub(crate) fn examples() -> Vec<Undetermined> {
-    vec![
-        Undetermined::DecayWithoutDrive,
-        Undetermined::NoDrive,
-        Undetermined::FewerThanTwoPeriods,
-        Undetermined::NotComparable,
-        Undetermined::NearlyCloses { periods_n: 2 },
-        Undetermined::NoMotion,
-        Undetermined::NoPeriodOfImpacts,
-        Undetermined::NoWholePeriod,
-        Undetermined::TooManyImpacts {
-            periods_n: 1,
-            impacts_p: 9,
-            most: 8,
-        },
-        Undetermined::ImpactsDoNotRepeat { periods_n: 1 },
-        Undetermined::RepeatsWithoutImpact { periods_n: 2 },
-        Undetermined::SettlingWithoutImpact,
-        Undetermined::FewImpacts,
-        Undetermined::NotPeriodic,
-        Undetermined::BeyondContact,
-    ]
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::message::{Message, Value};
+use crate::message::Message;
 
 /// Defines [`FlagCode`] with the name of each code in files and tables, and its text in English and
 /// German.
@@ -35,20 +35,10 @@ macro_rules! flag_codes {
                 self.name()
             }
 
-            fn english(&self) -> &'static str {
+            fn texts(&self) -> [&'static str; 2] {
                 match self {
-                    $(Self::$code => $english,)*
+                    $(Self::$code => [$english, $german],)*
                 }
-            }
-
-            fn german(&self) -> &'static str {
-                match self {
-                    $(Self::$code => $german,)*
-                }
-            }
-
-            fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-                Vec::new()
             }
         }
     };

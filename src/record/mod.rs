@@ -22,6 +22,7 @@ pub use flag::{Flag, FlagCode};
 /// What a channel measures on the rig.
 #[derive(
     Debug,
+    Default,
     Clone,
     Copy,
     PartialEq,
@@ -37,6 +38,7 @@ pub use flag::{Flag, FlagCode};
 #[serde(rename_all = "snake_case")]
 pub enum Role {
     /// The harmonic drive (generator voltage or force).
+    #[default]
     Drive,
     /// The electric contact (or force) that shows the bodies touching.
     Contact,

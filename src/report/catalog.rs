@@ -156,8 +156,8 @@ impl Catalog {
 
 /// The English template of every message, by its key.
 fn messages() -> BTreeMap<String, &'static str> {
-    let identified = identify::messages::examples();
-    let each = identified.into_iter().chain(difference::examples());
+    let identified = identify::messages::kinds();
+    let each = identified.into_iter().chain(difference::kinds());
     each.map(|m| (m.key(), m.template(Language::English)))
         .collect()
 }

@@ -59,10 +59,13 @@ const GAP_NAMES: [&str; MOST_GAPS] = [
 
 /// One coordinate of the fit: R itself, the logarithms of f0, β, `x_st`, the gains and the
 /// corners, the asymmetries and effects themselves, delays in ms, errors of clearances in mm.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug, Default, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+)]
 #[serde(into = "String", try_from = "String")]
 pub enum Coordinate {
     /// R
+    #[default]
     Restitution,
     /// ln f0
     Frequency,

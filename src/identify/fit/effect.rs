@@ -4,10 +4,13 @@
 use serde::{Deserialize, Serialize};
 
 /// One effect beyond the model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug, Default, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum Effect {
     /// cos 2θ in the driving force, relative to F0
+    #[default]
     SecondHarmonicCos,
     /// sin 2θ
     SecondHarmonicSin,

@@ -1,6 +1,7 @@
 //! Whether a deviation is high or low, as a word.
 
 use crate::message::{Message, Value};
+use crate::texts;
 
 /// Whether something is too high or too low.
 #[derive(Debug, Clone, Copy, strum::IntoStaticStr)]
@@ -23,21 +24,10 @@ impl Message for Direction {
         self.into()
     }
 
-    fn english(&self) -> &'static str {
-        match self {
-            Self::High => "high",
-            Self::Low => "low",
+    fn texts(&self) -> [&'static str; 2] {
+        texts! { self;
+            Self::High => "high", "hoch";
+            Self::Low => "low", "tief";
         }
-    }
-
-    fn german(&self) -> &'static str {
-        match self {
-            Self::High => "hoch",
-            Self::Low => "tief",
-        }
-    }
-
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        Vec::new()
     }
 }

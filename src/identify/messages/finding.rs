@@ -2,19 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::beyond::{beyond_english, beyond_german};
+use super::beyond::beyond;
 use super::direction::direction;
 use super::{Note, PairAgreement, Reason, Remark, Sentence};
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
 use crate::message::{Message, Value};
-use crate::messages;
 use crate::record::Role;
+use crate::{messages, texts};
 
 /// Something that the data give away. Deviations are relative (0.01 is 1 %); a z-score is a deviation
 /// over its standard error.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Debug, Clone, PartialEq, Serialize, Deserialize, strum::EnumIter, strum::IntoStaticStr,
+)]
 #[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Finding {
@@ -152,93 +154,63 @@ impl Message for Finding {
         }
     }
 
-    fn english(&self) -> &'static str {
-        match self {
-            Self::WrongClearance { .. } => {
+    fn texts(&self) -> [&'static str; 2] {
+        texts! { self;
+            Self::WrongClearance { .. } =>
                 "the gap stated with a clearance of {stated_mm} mm moves like one of {fitting_mm} \
-                 mm: measure it again and correct the run table; its records stay out of the fit"
-            }
-            Self::WrongGain { .. } => {
-                "{channel} reads {share} too {direction}: correct scale in [channels.{channel}], or \
-                 state a larger gain_uncertainty in [rig]"
-            }
-            Self::WrongCorner { .. } => {
-                "the corner of the high-pass of {channel} is {share} too {direction} for the stated \
-                 one: correct high_pass in [channels.{channel}], or state a larger \
-                 corner_uncertainty in [rig]"
-            }
-            Self::SwappedChannels { .. } => {
-                "all data fit far better with the velocities of both masses swapped: swap \
-                 [channels.velocity_x] and [channels.velocity_y], or the displacements"
-            }
-            Self::MomentumNotConserved { .. } => {
-                "the speeds of both masses change as if $m_y$/$m_x$ were {measured}, the stated masses \
-                 give {stated}: weigh them again, check the scales of both velocities, and that nothing \
-                 else touches the masses"
-            }
-            Self::BeyondModel {
-                effect, strength, ..
-            } => beyond_english(*effect, *strength > 0.0),
-            Self::Misfit { .. } | Self::Noticed { .. } => "{method}: {remark}",
-            Self::Parameter { .. } => "{parameter}: {note}",
-            Self::Disagreement { .. } => "the methods do not agree on {pair}",
-            Self::Specimen { .. } => "{specimen}: {verdict}",
-            Self::MisfiledRecord { .. } => "{record}: {reason}",
-            Self::PrintedDampingFits { .. } => "The printed $β$ = {value} fits the speeds.",
-            Self::PrintedDampingDoesNotFit { .. } => {
-                "The printed $β$ = {value} does not fit: a speed is off by {share}."
-            }
-            Self::PrintedDampingWithoutMotion { .. } => {
-                "The printed $β$ = {value} does not fit: the motion for {settings} does not exist \
-                 with it."
-            }
-        }
-    }
-
-    fn german(&self) -> &'static str {
-        match self {
-            Self::WrongClearance { .. } => {
+                 mm: measure it again and correct the run table; its records stay out of the fit",
                 "der mit einem Spiel von {stated_mm} mm angegebene Abstand bewegt sich wie einer \
                  von {fitting_mm} mm: nachmessen und die Versuchstabelle richtigstellen; seine \
-                 Aufzeichnungen bleiben außerhalb der Anpassung"
-            }
-            Self::WrongGain { .. } => {
+                 Aufzeichnungen bleiben außerhalb der Anpassung";
+            Self::WrongGain { .. } =>
+                "{channel} reads {share} too {direction}: correct scale in [channels.{channel}], \
+                 or state a larger gain_uncertainty in [rig]",
                 "{channel} zeigt {share} zu {direction}: scale in [channels.{channel}] \
-                 richtigstellen, oder eine größere gain_uncertainty in [rig] angeben"
-            }
-            Self::WrongCorner { .. } => {
-                "die Grenzfrequenz des Hochpasses von {channel} liegt {share} zu {direction} gegen \
-                 die angegebene: high_pass in [channels.{channel}] richtigstellen, oder eine \
-                 größere corner_uncertainty in [rig] angeben"
-            }
-            Self::SwappedChannels { .. } => {
-                "alle Daten passen weit besser, wenn die Geschwindigkeiten beider Massen vertauscht \
-                 sind: [channels.velocity_x] und [channels.velocity_y] tauschen, oder die Wege"
-            }
-            Self::MomentumNotConserved { .. } => {
-                "die Geschwindigkeiten beider Massen ändern sich, als wäre $m_y$/$m_x$ = {measured}; \
-                 die angegebenen Massen geben {stated}: nachwiegen, die Maßstäbe beider \
-                 Geschwindigkeiten prüfen, und dass sonst nichts die Massen berührt"
-            }
-            Self::BeyondModel {
-                effect, strength, ..
-            } => beyond_german(*effect, *strength > 0.0),
-            Self::Misfit { .. } | Self::Noticed { .. } => "{method}: {remark}",
-            Self::Parameter { .. } => "{parameter}: {note}",
-            Self::Disagreement { .. } => "die Verfahren stimmen nicht überein bei {pair}",
-            Self::Specimen { .. } => "{specimen}: {verdict}",
-            Self::MisfiledRecord { .. } => "{record}: {reason}",
-            Self::PrintedDampingFits { .. } => {
-                "Das gedruckte $β$ = {value} passt zu den Geschwindigkeiten."
-            }
-            Self::PrintedDampingDoesNotFit { .. } => {
+                 richtigstellen, oder eine größere gain_uncertainty in [rig] angeben";
+            Self::WrongCorner { .. } =>
+                "the corner of the high-pass of {channel} is {share} too {direction} for the \
+                 stated one: correct high_pass in [channels.{channel}], or state a larger \
+                 corner_uncertainty in [rig]",
+                "die Grenzfrequenz des Hochpasses von {channel} liegt {share} zu {direction} \
+                 gegen die angegebene: high_pass in [channels.{channel}] richtigstellen, oder \
+                 eine größere corner_uncertainty in [rig] angeben";
+            Self::SwappedChannels { .. } =>
+                "all data fit far better with the velocities of both masses swapped: swap \
+                 [channels.velocity_x] and [channels.velocity_y], or the displacements",
+                "alle Daten passen weit besser, wenn die Geschwindigkeiten beider Massen \
+                 vertauscht sind: [channels.velocity_x] und [channels.velocity_y] tauschen, oder \
+                 die Wege";
+            Self::MomentumNotConserved { .. } =>
+                "the speeds of both masses change as if $m_y$/$m_x$ were {measured}, the stated \
+                 masses give {stated}: weigh them again, check the scales of both velocities, and \
+                 that nothing else touches the masses",
+                "die Geschwindigkeiten beider Massen ändern sich, als wäre $m_y$/$m_x$ = \
+                 {measured}; die angegebenen Massen geben {stated}: nachwiegen, die Maßstäbe \
+                 beider Geschwindigkeiten prüfen, und dass sonst nichts die Massen berührt";
+            Self::BeyondModel { effect, strength, .. } =>
+                beyond(*effect, *strength > 0.0)[0],
+                beyond(*effect, *strength > 0.0)[1];
+            Self::Misfit { .. } | Self::Noticed { .. } =>
+                "{method}: {remark}",
+                "{method}: {remark}";
+            Self::Parameter { .. } => "{parameter}: {note}", "{parameter}: {note}";
+            Self::Disagreement { .. } =>
+                "the methods do not agree on {pair}",
+                "die Verfahren stimmen nicht überein bei {pair}";
+            Self::Specimen { .. } => "{specimen}: {verdict}", "{specimen}: {verdict}";
+            Self::MisfiledRecord { .. } => "{record}: {reason}", "{record}: {reason}";
+            Self::PrintedDampingFits { .. } =>
+                "The printed $β$ = {value} fits the speeds.",
+                "Das gedruckte $β$ = {value} passt zu den Geschwindigkeiten.";
+            Self::PrintedDampingDoesNotFit { .. } =>
+                "The printed $β$ = {value} does not fit: a speed is off by {share}.",
                 "Das gedruckte $β$ = {value} passt nicht: Eine Geschwindigkeit liegt um {share} \
-                 daneben."
-            }
-            Self::PrintedDampingWithoutMotion { .. } => {
-                "Das gedruckte $β$ = {value} passt nicht: Die Bewegung bei {settings} gibt es damit \
-                 nicht."
-            }
+                 daneben.";
+            Self::PrintedDampingWithoutMotion { .. } =>
+                "The printed $β$ = {value} does not fit: the motion for {settings} does not exist \
+                 with it.",
+                "Das gedruckte $β$ = {value} passt nicht: Die Bewegung bei {settings} gibt es \
+                 damit nicht.";
         }
     }
 
@@ -343,12 +315,11 @@ impl Message for PublishedSetting {
         "published_setting"
     }
 
-    fn english(&self) -> &'static str {
-        "$R$ = {restitution} at $η$ = {frequency_ratio}"
-    }
-
-    fn german(&self) -> &'static str {
-        "$R$ = {restitution} und $η$ = {frequency_ratio}"
+    fn texts(&self) -> [&'static str; 2] {
+        [
+            "$R$ = {restitution} at $η$ = {frequency_ratio}",
+            "$R$ = {restitution} und $η$ = {frequency_ratio}",
+        ]
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {

@@ -3,16 +3,16 @@
 
 mod beyond;
 mod direction;
-mod examples;
 mod finding;
+mod kinds;
 mod note;
 mod pair;
 mod reason;
 mod remark;
 mod sentence;
 
-pub use examples::{example_findings, examples};
 pub use finding::{Finding, PublishedSetting};
+pub use kinds::kinds;
 pub use note::Note;
 pub use pair::PairAgreement;
 pub use reason::{Item, LeftOut, Reason};
@@ -27,22 +27,15 @@ impl Message for Coordinate {
         self.name()
     }
 
-    fn english(&self) -> &'static str {
-        match self {
+    fn texts(&self) -> [&'static str; 2] {
+        let symbol = match self {
             Self::Restitution => "$R$",
             Self::Frequency => "$f_0$",
             Self::Damping => "$β$",
             Self::Deflection => "$x_st$",
             other => other.name(),
-        }
-    }
-
-    fn german(&self) -> &'static str {
-        self.english()
-    }
-
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        Vec::new()
+        };
+        [symbol; 2]
     }
 }
 

@@ -5,10 +5,12 @@ use serde::{Deserialize, Serialize};
 use crate::identify::fit::FitError;
 use crate::identify::fit::parameters::Coordinate;
 use crate::message::{Message, Value};
-use crate::messages;
+use crate::{messages, texts};
 
 /// Why a parameter is weak or not identifiable, or why a method has no result.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Debug, Default, Clone, PartialEq, Serialize, Deserialize, strum::EnumIter, strum::IntoStaticStr,
+)]
 #[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Note {
@@ -51,6 +53,7 @@ pub enum Note {
     /// The solver failed.
     SolverFailed,
     /// The data do not separate the parameters.
+    #[default]
     NotSeparable,
 }
 
@@ -74,57 +77,46 @@ impl Message for Note {
         self.into()
     }
 
-    fn english(&self) -> &'static str {
-        match self {
-            Self::Open { .. } => "the data leave {parameter} open by ± {width}",
-            Self::NotDetermined { .. } => "the data do not determine {parameter}",
-            Self::LeansOn { .. } => "depends on {parameter} (correlation {correlation})",
-            Self::MethodsDisagree => {
-                "the methods do not agree on it: the interval is widened by their disagreement"
-            }
-            Self::NotOneNumber => "$R$ is not one number here: see the remark on its change",
-            Self::Drifts => {
-                "the frequency changes over the decay, so that it is no single $f_0$: see the remark"
-            }
-            Self::SeveralSpecimens => {
-                "the campaign has several specimens; each has its own parameters"
-            }
-            Self::NoPublishedMotion => "no damping ratio gives all of these motions",
-            Self::NoStart { .. } => {
-                "the model has no such motion at the starting values for {count} observations"
-            }
-            Self::NothingToFit => "there are no observations to fit",
-            Self::SolverFailed => "the solver failed",
-            Self::NotSeparable => "the data do not separate the parameters",
-        }
-    }
-
-    fn german(&self) -> &'static str {
-        match self {
-            Self::Open { .. } => "die Daten lassen {parameter} um ± {width} offen",
-            Self::NotDetermined { .. } => "die Daten bestimmen {parameter} nicht",
-            Self::LeansOn { .. } => "hängt von {parameter} ab (Korrelation {correlation})",
-            Self::MethodsDisagree => {
-                "die Verfahren stimmen darin nicht überein: das Intervall ist um ihren Unterschied \
-                 verbreitert"
-            }
-            Self::NotOneNumber => {
-                "$R$ ist hier nicht eine Zahl: siehe die Anmerkung zu seiner Änderung"
-            }
-            Self::Drifts => {
+    fn texts(&self) -> [&'static str; 2] {
+        texts! { self;
+            Self::Open { .. } =>
+                "the data leave {parameter} open by ± {width}",
+                "die Daten lassen {parameter} um ± {width} offen";
+            Self::NotDetermined { .. } =>
+                "the data do not determine {parameter}",
+                "die Daten bestimmen {parameter} nicht";
+            Self::LeansOn { .. } =>
+                "depends on {parameter} (correlation {correlation})",
+                "hängt von {parameter} ab (Korrelation {correlation})";
+            Self::MethodsDisagree =>
+                "the methods do not agree on it: the interval is widened by their disagreement",
+                "die Verfahren stimmen darin nicht überein: das Intervall ist um ihren \
+                 Unterschied verbreitert";
+            Self::NotOneNumber =>
+                "$R$ is not one number here: see the remark on its change",
+                "$R$ ist hier nicht eine Zahl: siehe die Anmerkung zu seiner Änderung";
+            Self::Drifts =>
+                "the frequency changes over the decay, so that it is no single $f_0$: see the \
+                 remark",
                 "die Frequenz ändert sich beim Ausschwingen und ist nicht ein $f_0$: siehe die \
-                 Anmerkung"
-            }
-            Self::SeveralSpecimens => {
-                "die Messreihe hat mehrere Prüflinge; jeder hat seine eigenen Parameter"
-            }
-            Self::NoPublishedMotion => "kein Dämpfungsgrad ergibt alle diese Bewegungen",
-            Self::NoStart { .. } => {
-                "das Modell hat bei den Startwerten für {count} Beobachtungen keine solche Bewegung"
-            }
-            Self::NothingToFit => "es gibt keine Beobachtungen für eine Anpassung",
-            Self::SolverFailed => "der Löser versagte",
-            Self::NotSeparable => "die Daten trennen die Parameter nicht",
+                 Anmerkung";
+            Self::SeveralSpecimens =>
+                "the campaign has several specimens; each has its own parameters",
+                "die Messreihe hat mehrere Prüflinge; jeder hat seine eigenen Parameter";
+            Self::NoPublishedMotion =>
+                "no damping ratio gives all of these motions",
+                "kein Dämpfungsgrad ergibt alle diese Bewegungen";
+            Self::NoStart { .. } =>
+                "the model has no such motion at the starting values for {count} observations",
+                "das Modell hat bei den Startwerten für {count} Beobachtungen keine solche \
+                 Bewegung";
+            Self::NothingToFit =>
+                "there are no observations to fit",
+                "es gibt keine Beobachtungen für eine Anpassung";
+            Self::SolverFailed => "the solver failed", "der Löser versagte";
+            Self::NotSeparable =>
+                "the data do not separate the parameters",
+                "die Daten trennen die Parameter nicht";
         }
     }
 

@@ -7,7 +7,7 @@ use crate::identify::method::Method;
 use crate::message::{Message, Value};
 
 /// The estimates of a parameter by two methods, compared; as a message, how far they are apart.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Default, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PairAgreement {
     /// The parameter.
     pub parameter: Coordinate,
@@ -26,15 +26,14 @@ impl Message for PairAgreement {
         "pair"
     }
 
-    fn english(&self) -> &'static str {
-        "{parameter}: {value} ({first}) and {other} ({second}) are {distance} standard \
-                 errors apart; trust neither interval until the cause is found"
-    }
-
-    fn german(&self) -> &'static str {
-        "{parameter}: {value} ({first}) und {other} ({second}) liegen {distance} \
-                 Standardfehler auseinander; keinem der beiden Intervalle ist zu trauen, bis die \
-                 Ursache gefunden ist"
+    fn texts(&self) -> [&'static str; 2] {
+        [
+            "{parameter}: {value} ({first}) and {other} ({second}) are {distance} standard errors \
+             apart; trust neither interval until the cause is found",
+            "{parameter}: {value} ({first}) und {other} ({second}) liegen {distance} \
+             Standardfehler auseinander; keinem der beiden Intervalle ist zu trauen, bis die \
+             Ursache gefunden ist",
+        ]
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {

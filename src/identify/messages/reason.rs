@@ -4,12 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::method::Method;
 use crate::message::{Message, Value};
-use crate::messages;
 use crate::motion::BoundaryKind;
+use crate::{messages, texts};
 
 /// Something that a fit may leave out. Indices count from 0: records in the order of acquisition, the
 /// rows of records.parquet; brackets in the order of boundaries.csv.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Debug, Clone, PartialEq, Serialize, Deserialize, strum::EnumIter, strum::IntoStaticStr,
+)]
 #[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Item {
@@ -45,7 +47,9 @@ pub enum Item {
 }
 
 /// Why something was left out.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Debug, Default, Clone, PartialEq, Serialize, Deserialize, strum::EnumIter, strum::IntoStaticStr,
+)]
 #[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Reason {
@@ -60,6 +64,7 @@ pub enum Reason {
         times_worse: f64,
     },
     /// The model has no such periodic motion at the fitted parameters.
+    #[default]
     NoSuchMotion,
     /// The motion changed far from the simulated boundary.
     FarFromBoundary,
@@ -119,19 +124,13 @@ impl Message for Item {
         self.into()
     }
 
-    fn english(&self) -> &'static str {
-        match self {
-            Self::Record { .. } => "{record}",
-            Self::Bracket { .. } => "bracket {boundary} {low}–{high} Hz at {clearance} mm",
-            Self::Impact { .. } => "{record} at {time} s",
-        }
-    }
-
-    fn german(&self) -> &'static str {
-        match self {
-            Self::Record { .. } => "{record}",
-            Self::Bracket { .. } => "Schranke {boundary} {low}–{high} Hz bei {clearance} mm",
-            Self::Impact { .. } => "{record} bei {time} s",
+    fn texts(&self) -> [&'static str; 2] {
+        texts! { self;
+            Self::Record { .. } => "{record}", "{record}";
+            Self::Bracket { .. } =>
+                "bracket {boundary} {low}–{high} Hz at {clearance} mm",
+                "Schranke {boundary} {low}–{high} Hz bei {clearance} mm";
+            Self::Impact { .. } => "{record} at {time} s", "{record} bei {time} s";
         }
     }
 
@@ -163,89 +162,55 @@ impl Message for Reason {
         self.into()
     }
 
-    fn english(&self) -> &'static str {
-        match self {
-            Self::ResponseUnlikeOthers { .. } => {
-                "its response fits {ratio} times worse than the others (still settling?): left out \
-                 of the resonance curve"
-            }
-            Self::WaveformUnlikeOthers { .. } => {
-                "its waveform fits {ratio} times worse than the others: left out of the \
-                 trajectories"
-            }
-            Self::NoSuchMotion => {
-                "the model has no such periodic motion at the fitted parameters: left out of the \
-                 trajectories"
-            }
-            Self::FarFromBoundary => {
-                "the motion changed far from the simulated boundary: a disturbance, or another \
-                 boundary"
-            }
-            Self::GapNotAsStated => {
-                "its gap is not as stated: left out of trajectories and boundaries"
-            }
-            Self::ImpactsDoNotFollow => {
-                "its impacts do not follow from each other (one missed?): left out of multiple shooting"
-            }
-            Self::Influential { .. } => {
-                "it draws the fit away from what all other records state: left out of {method}"
-            }
-            Self::OutlyingImpact { .. } => {
-                "its speeds, {before} m/s before and {after} m/s after, are far from those of the \
-                 others"
-            }
-            Self::MisfiledLike { .. } => {
-                "filed under {specimen} ({own} Hz) but its natural frequency is {frequency} Hz: it \
-                 behaves as {like} ({other} Hz); it looks misfiled"
-            }
-            Self::Misfiled { .. } => {
-                "filed under {specimen} ({own} Hz) but its natural frequency is {frequency} Hz; it \
-                 looks misfiled"
-            }
-        }
-    }
-
-    fn german(&self) -> &'static str {
-        match self {
-            Self::ResponseUnlikeOthers { .. } => {
+    fn texts(&self) -> [&'static str; 2] {
+        texts! { self;
+            Self::ResponseUnlikeOthers { .. } =>
+                "its response fits {ratio} times worse than the others (still settling?): left \
+                 out of the resonance curve",
                 "ihre Antwort passt {ratio}-mal schlechter als die anderen (noch nicht \
-                 eingeschwungen?): aus der Resonanzkurve ausgelassen"
-            }
-            Self::WaveformUnlikeOthers { .. } => {
+                 eingeschwungen?): aus der Resonanzkurve ausgelassen";
+            Self::WaveformUnlikeOthers { .. } =>
+                "its waveform fits {ratio} times worse than the others: left out of the \
+                 trajectories",
                 "ihr Verlauf passt {ratio}-mal schlechter als die anderen: aus den Verläufen \
-                 ausgelassen"
-            }
-            Self::NoSuchMotion => {
+                 ausgelassen";
+            Self::NoSuchMotion =>
+                "the model has no such periodic motion at the fitted parameters: left out of the \
+                 trajectories",
                 "das Modell hat mit den angepassten Parametern keine solche periodische Bewegung: \
-                 aus den Verläufen ausgelassen"
-            }
-            Self::FarFromBoundary => {
+                 aus den Verläufen ausgelassen";
+            Self::FarFromBoundary =>
+                "the motion changed far from the simulated boundary: a disturbance, or another \
+                 boundary",
                 "die Bewegung wechselte weit von der simulierten Grenze: eine Störung, oder eine \
-                 andere Grenze"
-            }
-            Self::GapNotAsStated => {
-                "ihr Abstand ist nicht der angegebene: aus Verläufen und Grenzen ausgelassen"
-            }
-            Self::ImpactsDoNotFollow => {
+                 andere Grenze";
+            Self::GapNotAsStated =>
+                "its gap is not as stated: left out of trajectories and boundaries",
+                "ihr Abstand ist nicht der angegebene: aus Verläufen und Grenzen ausgelassen";
+            Self::ImpactsDoNotFollow =>
+                "its impacts do not follow from each other (one missed?): left out of multiple \
+                 shooting",
                 "ihre Stöße folgen nicht auseinander (einer nicht erkannt?): aus dem \
-                 Mehrfachschießen ausgelassen"
-            }
-            Self::Influential { .. } => {
+                 Mehrfachschießen ausgelassen";
+            Self::Influential { .. } =>
+                "it draws the fit away from what all other records state: left out of {method}",
                 "sie zieht die Anpassung von dem fort, was alle anderen Aufzeichnungen sagen: \
-                 ausgelassen aus {method}"
-            }
-            Self::OutlyingImpact { .. } => {
+                 ausgelassen aus {method}";
+            Self::OutlyingImpact { .. } =>
+                "its speeds, {before} m/s before and {after} m/s after, are far from those of the \
+                 others",
                 "seine Geschwindigkeiten, {before} m/s davor und {after} m/s danach, liegen weit \
-                 von denen der übrigen"
-            }
-            Self::MisfiledLike { .. } => {
+                 von denen der übrigen";
+            Self::MisfiledLike { .. } =>
+                "filed under {specimen} ({own} Hz) but its natural frequency is {frequency} Hz: \
+                 it behaves as {like} ({other} Hz); it looks misfiled",
                 "unter {specimen} ({own} Hz) abgelegt, aber die Eigenfrequenz ist {frequency} Hz: \
-                 Sie verhält sich wie {like} ({other} Hz); sie sieht falsch abgelegt aus"
-            }
-            Self::Misfiled { .. } => {
+                 Sie verhält sich wie {like} ({other} Hz); sie sieht falsch abgelegt aus";
+            Self::Misfiled { .. } =>
+                "filed under {specimen} ({own} Hz) but its natural frequency is {frequency} Hz; \
+                 it looks misfiled",
                 "unter {specimen} ({own} Hz) abgelegt, aber die Eigenfrequenz ist {frequency} Hz; \
-                 sie sieht falsch abgelegt aus"
-            }
+                 sie sieht falsch abgelegt aus";
         }
     }
 

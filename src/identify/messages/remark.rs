@@ -6,10 +6,10 @@ use super::{Item, Note};
 use crate::identify::diagnostics::structure::ImpactGroup;
 use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::message::{Message, Value};
-use crate::messages;
+use crate::{messages, texts};
 
 /// R at one approach speed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Default, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpeedPoint {
     /// Approach speed before the impact, m/s.
     pub speed_m_s: f64,
@@ -44,12 +44,8 @@ impl Message for GroupPoint {
         "group_point"
     }
 
-    fn english(&self) -> &'static str {
-        "{value} ± {half} ({group})"
-    }
-
-    fn german(&self) -> &'static str {
-        self.english()
+    fn texts(&self) -> [&'static str; 2] {
+        ["{value} ± {half} ({group})"; 2]
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {
@@ -72,7 +68,9 @@ fn points(all: &[GroupPoint]) -> Value<'_> {
 }
 
 /// What a method noticed about its data. Shares and deviations are relative (0.01 is 1 %).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Debug, Default, Clone, PartialEq, Serialize, Deserialize, strum::EnumIter, strum::IntoStaticStr,
+)]
 #[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Remark {
@@ -99,6 +97,7 @@ pub enum Remark {
         periodic: usize,
     },
     /// The method takes the rig as ideal, where effects beyond the model were found.
+    #[default]
     IdealRig,
     /// How far the states deviate from impact to impact.
     StatesDeviate {
@@ -229,176 +228,112 @@ impl Message for Remark {
     }
 
     #[expect(clippy::too_many_lines, reason = "one arm for each variant")]
-    fn english(&self) -> &'static str {
-        match self {
-            Self::OneDegreeOfFreedom { .. } => {
-                "the responses follow one degree of freedom within {share}"
-            }
-            Self::NotOneDegreeOfFreedom { .. } => {
+    fn texts(&self) -> [&'static str; 2] {
+        texts! { self;
+            Self::OneDegreeOfFreedom { .. } =>
+                "the responses follow one degree of freedom within {share}",
+                "die Antworten folgen einem Freiheitsgrad auf {share}";
+            Self::NotOneDegreeOfFreedom { .. } =>
                 "the responses deviate by {share} from the curve of one degree of freedom: there \
-                 is more than one resonance, or the damping is not viscous"
-            }
-            Self::WaveformsUnexplained { .. } => {
-                "the simulated waveforms leave {share} of the measured ones unexplained"
-            }
-            Self::WaveformsThinned { .. } => {
-                "waveforms of {some} of {count} periodic records are fitted, evenly chosen"
-            }
-            Self::IdealRig => {
-                "it takes the rig as ideal, without the delays of channels and the effects found beyond the \
-                 model: it is not compared, and its intervals are widened by what it is off the joint estimate"
-            }
-            Self::StatesDeviate { .. } => {
-                "from impact to impact, the states deviate {ratio} times their errors"
-            }
-            Self::BracketMidpoints { .. } => {
-                "plain least squares on the midpoints of the s2 brackets: $R$ = {value} ± {half}"
-            }
-            Self::EarlyJumps { .. } => {
-                "by the waveforms the motions $z$ = 1 end {share} of the frequency before their s2 on \
-                 average, so the brackets determine $R$ poorly: let the drive go on from setting to \
-                 setting, in smaller steps"
-            }
-            Self::RestitutionConstant { .. } => {
-                "$R$ is the same from {slow} to {fast} m/s within {change}"
-            }
-            Self::RestitutionChanges { .. } => {
+                 is more than one resonance, or the damping is not viscous",
+                "die Antworten weichen um {share} von der Kurve eines Freiheitsgrads ab: Es gibt \
+                 mehr als eine Resonanz, oder die Dämpfung ist nicht zäh";
+            Self::WaveformsUnexplained { .. } =>
+                "the simulated waveforms leave {share} of the measured ones unexplained",
+                "die simulierten Verläufe lassen {share} der gemessenen unerklärt";
+            Self::WaveformsThinned { .. } =>
+                "waveforms of {some} of {count} periodic records are fitted, evenly chosen",
+                "angepasst sind die Verläufe von {some} der {count} periodischen Aufzeichnungen, \
+                 gleichmäßig gewählt";
+            Self::IdealRig =>
+                "it takes the rig as ideal, without the delays of channels and the effects found \
+                 beyond the model: it is not compared, and its intervals are widened by what it \
+                 is off the joint estimate",
+                "es nimmt die Maschine als ideal an, ohne die Verzögerungen der Kanäle und die \
+                 Effekte über das Modell hinaus: es wird nicht verglichen, und seine Intervalle \
+                 sind um die Abweichung vom gemeinsamen Schätzwert erweitert";
+            Self::StatesDeviate { .. } =>
+                "from impact to impact, the states deviate {ratio} times their errors",
+                "von Stoß zu Stoß weichen die Zustände um das {ratio}-Fache ihrer Fehler ab";
+            Self::BracketMidpoints { .. } =>
+                "plain least squares on the midpoints of the s2 brackets: $R$ = {value} ± {half}",
+                "einfache kleinste Quadrate auf den Mitten der Schranken von s2: $R$ = {value} ± \
+                 {half}";
+            Self::EarlyJumps { .. } =>
+                "by the waveforms the motions $z$ = 1 end {share} of the frequency before their \
+                 s2 on average, so the brackets determine $R$ poorly: let the drive go on from \
+                 setting to setting, in smaller steps",
+                "nach den Verläufen enden die Bewegungen $z$ = 1 im Mittel {share} der Frequenz \
+                 vor ihrem s2, die Schranken bestimmen $R$ also schlecht: den Antrieb von \
+                 Einstellung zu Einstellung weiterlaufen lassen, in kleineren Schritten";
+            Self::RestitutionConstant { .. } =>
+                "$R$ is the same from {slow} to {fast} m/s within {change}",
+                "$R$ ist von {slow} bis {fast} m/s gleich, auf {change}";
+            Self::RestitutionChanges { .. } =>
                 "$R$ goes from {first} at {slow} m/s to {last} at {fast} m/s: $R$ depends on the \
-                 speed, one constant does not describe it"
-            }
-            Self::LongContact { .. } => {
+                 speed, one constant does not describe it",
+                "$R$ geht von {first} bei {slow} m/s auf {last} bei {fast} m/s: $R$ hängt von der \
+                 Geschwindigkeit ab, eine Konstante beschreibt es nicht";
+            Self::LongContact { .. } =>
                 "$R$ goes from {first} at {slow} m/s to {last} at {fast} m/s, and a contact lasts \
                  {count} samples: it is not an instantaneous impact, so one coefficient of \
-                 restitution does not describe it"
-            }
-            Self::RestitutionByBounce { .. } => {
-                "$R$ changes from bounce to bounce, and with it the speed: {points}; one constant does \
-                 not describe it"
-            }
-            Self::RecordsDiffer { .. } => {
-                "$R$ differs between the records by more than its errors: {points}; they are not of \
-                 one contact"
-            }
-            Self::MassRatio { .. } => {
-                "by conservation of momentum the masses are $m_y$/$m_x$ = {value} ± {half}"
-            }
-            Self::TimesScatter { .. } => "the times of the impacts scatter by {error} ms",
-            Self::FlightsLeftOut { .. } => {
-                "flights that do not follow from the one before, as where an impact was missed, left \
-                 out: {count}"
-            }
-            Self::OutlyingImpacts { .. } => {
-                "impacts with speeds far from those of the others, left out: {count} ({which})"
-            }
-            Self::DecaysUnexplained { .. } => {
-                "the fits leave {share} of the decays unexplained; {structure} is no noise"
-            }
-            Self::DecaysHaveStructure { .. } => {
-                "the fits leave {share} of the decays unexplained, and {structure} is no noise: there \
-                 is another mode, or the damping is not viscous"
-            }
-            Self::DecaysDrift { .. } => {
-                "in {count} decays the frequency drifts, at most from {first} Hz in the first quarter \
-                 to {last} Hz in the last, {intervals} times half its interval: the spring is not \
-                 linear, or the mass moves in another direction too"
-            }
-            Self::DecaysDiffer { .. } => {
-                "the decays' natural frequencies differ by up to {share}: they are not of one \
-                 oscillator"
-            }
-            Self::NoResult { .. } => "{why}",
-            Self::PublishedSpeedsMet { .. } => {
-                "with $β$ = {value} the speeds are met within {share}"
-            }
-        }
-    }
-
-    #[expect(clippy::too_many_lines, reason = "one arm for each variant")]
-    fn german(&self) -> &'static str {
-        match self {
-            Self::OneDegreeOfFreedom { .. } => {
-                "die Antworten folgen einem Freiheitsgrad auf {share}"
-            }
-            Self::NotOneDegreeOfFreedom { .. } => {
-                "die Antworten weichen um {share} von der Kurve eines Freiheitsgrads ab: Es gibt \
-                 mehr als eine Resonanz, oder die Dämpfung ist nicht zäh"
-            }
-            Self::WaveformsUnexplained { .. } => {
-                "die simulierten Verläufe lassen {share} der gemessenen unerklärt"
-            }
-            Self::WaveformsThinned { .. } => {
-                "angepasst sind die Verläufe von {some} der {count} periodischen Aufzeichnungen, \
-                 gleichmäßig gewählt"
-            }
-            Self::IdealRig => {
-                "es nimmt die Maschine als ideal an, ohne die Verzögerungen der Kanäle und die Effekte über das Modell hinaus: es wird \
-                 nicht verglichen, und seine Intervalle sind um die Abweichung vom gemeinsamen \
-                 Schätzwert erweitert"
-            }
-            Self::StatesDeviate { .. } => {
-                "von Stoß zu Stoß weichen die Zustände um das {ratio}-Fache ihrer Fehler ab"
-            }
-            Self::BracketMidpoints { .. } => {
-                "einfache kleinste Quadrate auf den Mitten der Schranken von s2: $R$ = {value} ± \
-                 {half}"
-            }
-            Self::EarlyJumps { .. } => {
-                "nach den Verläufen enden die Bewegungen $z$ = 1 im Mittel {share} der Frequenz vor \
-                 ihrem s2, die Schranken bestimmen $R$ also schlecht: den Antrieb von Einstellung zu \
-                 Einstellung weiterlaufen lassen, in kleineren Schritten"
-            }
-            Self::RestitutionConstant { .. } => {
-                "$R$ ist von {slow} bis {fast} m/s gleich, auf {change}"
-            }
-            Self::RestitutionChanges { .. } => {
-                "$R$ geht von {first} bei {slow} m/s auf {last} bei {fast} m/s: $R$ hängt von der \
-                 Geschwindigkeit ab, eine Konstante beschreibt es nicht"
-            }
-            Self::LongContact { .. } => {
+                 restitution does not describe it",
                 "$R$ geht von {first} bei {slow} m/s auf {last} bei {fast} m/s, und ein Kontakt \
                  dauert {count} Abtastwerte: Es ist kein augenblicklicher Stoß, und eine Stoßzahl \
-                 beschreibt ihn nicht"
-            }
-            Self::RestitutionByBounce { .. } => {
-                "$R$ ändert sich von Stoß zu Stoß, und mit ihm die Geschwindigkeit: {points}; eine \
-                 Konstante beschreibt es nicht"
-            }
-            Self::RecordsDiffer { .. } => {
+                 beschreibt ihn nicht";
+            Self::RestitutionByBounce { .. } =>
+                "$R$ changes from bounce to bounce, and with it the speed: {points}; one constant \
+                 does not describe it",
+                "$R$ ändert sich von Stoß zu Stoß, und mit ihm die Geschwindigkeit: {points}; \
+                 eine Konstante beschreibt es nicht";
+            Self::RecordsDiffer { .. } =>
+                "$R$ differs between the records by more than its errors: {points}; they are not \
+                 of one contact",
                 "$R$ unterscheidet sich zwischen den Aufzeichnungen um mehr als seine Fehler: \
-                 {points}; sie sind nicht die eines Kontakts"
-            }
-            Self::MassRatio { .. } => {
-                "nach der Impulserhaltung verhalten sich die Massen wie $m_y$/$m_x$ = {value} ± {half}"
-            }
-            Self::TimesScatter { .. } => "die Zeiten der Stöße streuen um {error} ms",
-            Self::FlightsLeftOut { .. } => {
-                "Flüge, die nicht aus dem vorigen folgen, etwa wo ein Stoß fehlt, ausgelassen: {count}"
-            }
-            Self::OutlyingImpacts { .. } => {
+                 {points}; sie sind nicht die eines Kontakts";
+            Self::MassRatio { .. } =>
+                "by conservation of momentum the masses are $m_y$/$m_x$ = {value} ± {half}",
+                "nach der Impulserhaltung verhalten sich die Massen wie $m_y$/$m_x$ = {value} ± \
+                 {half}";
+            Self::TimesScatter { .. } =>
+                "the times of the impacts scatter by {error} ms",
+                "die Zeiten der Stöße streuen um {error} ms";
+            Self::FlightsLeftOut { .. } =>
+                "flights that do not follow from the one before, as where an impact was missed, \
+                 left out: {count}",
+                "Flüge, die nicht aus dem vorigen folgen, etwa wo ein Stoß fehlt, ausgelassen: \
+                 {count}";
+            Self::OutlyingImpacts { .. } =>
+                "impacts with speeds far from those of the others, left out: {count} ({which})",
                 "Stöße mit Geschwindigkeiten weit von denen der übrigen, ausgelassen: {count} \
-                 ({which})"
-            }
-            Self::DecaysUnexplained { .. } => {
+                 ({which})";
+            Self::DecaysUnexplained { .. } =>
+                "the fits leave {share} of the decays unexplained; {structure} is no noise",
                 "die Anpassungen lassen {share} der Ausschwingversuche unerklärt; {structure} ist \
-                 kein Rauschen"
-            }
-            Self::DecaysHaveStructure { .. } => {
-                "die Anpassungen lassen {share} der Ausschwingversuche unerklärt, und {structure} ist \
-                 kein Rauschen: Es gibt eine weitere Eigenschwingung, oder die Dämpfung ist nicht zäh"
-            }
-            Self::DecaysDrift { .. } => {
-                "in {count} Ausschwingversuchen wandert die Frequenz, am meisten von {first} Hz im \
-                 ersten Viertel auf {last} Hz im letzten, um das {intervals}-Fache ihres halben \
-                 Intervalls: Die Feder ist nicht linear, oder die Masse bewegt sich auch anders"
-            }
-            Self::DecaysDiffer { .. } => {
+                 kein Rauschen";
+            Self::DecaysHaveStructure { .. } =>
+                "the fits leave {share} of the decays unexplained, and {structure} is no noise: \
+                 there is another mode, or the damping is not viscous",
+                "die Anpassungen lassen {share} der Ausschwingversuche unerklärt, und {structure} \
+                 ist kein Rauschen: Es gibt eine weitere Eigenschwingung, oder die Dämpfung ist \
+                 nicht zäh";
+            Self::DecaysDrift { .. } =>
+                "in {count} decays the frequency drifts, at most from {first} Hz in the first \
+                 quarter to {last} Hz in the last, {intervals} times half its interval: the \
+                 spring is not linear, or the mass moves in another direction too",
+                "in {count} Ausschwingversuchen wandert die Frequenz, am meisten von {first} Hz \
+                 im ersten Viertel auf {last} Hz im letzten, um das {intervals}-Fache ihres \
+                 halben Intervalls: Die Feder ist nicht linear, oder die Masse bewegt sich auch \
+                 anders";
+            Self::DecaysDiffer { .. } =>
+                "the decays' natural frequencies differ by up to {share}: they are not of one \
+                 oscillator",
                 "die Eigenfrequenzen der Ausschwingversuche unterscheiden sich um bis zu {share}: \
-                 Sie sind nicht die eines Schwingers"
-            }
-            Self::NoResult { .. } => "{why}",
-            Self::PublishedSpeedsMet { .. } => {
-                "mit $β$ = {value} sind die Geschwindigkeiten auf {share} getroffen"
-            }
+                 Sie sind nicht die eines Schwingers";
+            Self::NoResult { .. } => "{why}", "{why}";
+            Self::PublishedSpeedsMet { .. } =>
+                "with $β$ = {value} the speeds are met within {share}",
+                "mit $β$ = {value} sind die Geschwindigkeiten auf {share} getroffen";
         }
     }
 

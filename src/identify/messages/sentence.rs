@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::symbols;
 use crate::identify::fit::parameters::Coordinate;
 use crate::message::{Message, Value};
-use crate::messages;
 use crate::signal::whole;
+use crate::{messages, texts};
 
 /// A parameter with its value as a sentence states it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -24,12 +24,8 @@ impl Message for StatedValue {
         "stated_value"
     }
 
-    fn english(&self) -> &'static str {
-        "{parameter} = {value} ± {half}{unit}"
-    }
-
-    fn german(&self) -> &'static str {
-        self.english()
+    fn texts(&self) -> [&'static str; 2] {
+        ["{parameter} = {value} ± {half}{unit}"; 2]
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {
@@ -51,7 +47,9 @@ impl Message for StatedValue {
 }
 
 /// A sentence of a verdict.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Debug, Clone, PartialEq, Serialize, Deserialize, strum::EnumIter, strum::IntoStaticStr,
+)]
 #[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Sentence {
@@ -129,65 +127,51 @@ impl Message for Sentence {
         self.into()
     }
 
-    fn english(&self) -> &'static str {
-        match self {
-            Self::Identified { .. } => "The rig has {values}.",
-            Self::Weak { .. } => "The rig has {values}; {parameters} only weakly.",
-            Self::PartlyIdentifiable { .. } => {
-                "The rig has {values}, but these data do not determine {parameters}."
-            }
-            Self::NotIdentifiable { .. } => "These data do not determine {parameters}.",
-            Self::NothingUsable => {
-                "Nothing could be identified: no record is usable for any method."
-            }
-            Self::DoesNotFit => "The model does not describe these data: see the findings.",
-            Self::MethodsAgree => "The methods agree.",
-            Self::MethodsDoNotAgree => "The methods do not agree.",
-            Self::OneMethod => "Each parameter is determined by one method only.",
-            Self::Specimens { .. } => {
-                "The campaign has {count} specimens; each is identified by itself."
-            }
-            Self::SpecimensFit { .. } => "The model fits {some} of {count}.",
-            Self::SpecimensPoorlyKnown { .. } => "{parameter} is poorly known in {count}.",
-            Self::MisfiledRecords { .. } => "Records that look misfiled: {count}.",
-            Self::PublishedDamping { .. } => {
-                "The published speeds belong to a damping ratio $β$ of {value}."
-            }
-            Self::NoPublishedDamping => "No damping ratio gives the published speeds.",
-        }
-    }
-
-    fn german(&self) -> &'static str {
-        match self {
-            Self::Identified { .. } => "Der Prüfstand hat {values}.",
-            Self::Weak { .. } => "Der Prüfstand hat {values}; {parameters} nur schwach bestimmt.",
-            Self::PartlyIdentifiable { .. } => {
+    fn texts(&self) -> [&'static str; 2] {
+        texts! { self;
+            Self::Identified { .. } => "The rig has {values}.", "Der Prüfstand hat {values}.";
+            Self::Weak { .. } =>
+                "The rig has {values}; {parameters} only weakly.",
+                "Der Prüfstand hat {values}; {parameters} nur schwach bestimmt.";
+            Self::PartlyIdentifiable { .. } =>
+                "The rig has {values}, but these data do not determine {parameters}.",
                 "Der Prüfstand hat {values}, aber {parameters} ist aus diesen Daten nicht zu \
-                 bestimmen."
-            }
-            Self::NotIdentifiable { .. } => "Aus diesen Daten ist {parameters} nicht zu bestimmen.",
-            Self::NothingUsable => {
-                "Nichts war zu identifizieren: Keine Aufzeichnung ist für ein Verfahren brauchbar."
-            }
-            Self::DoesNotFit => "Das Modell beschreibt diese Daten nicht: siehe die Befunde.",
-            Self::MethodsAgree => "Die Verfahren stimmen überein.",
-            Self::MethodsDoNotAgree => "Die Verfahren stimmen nicht überein.",
-            Self::OneMethod => "Jeden Parameter bestimmt nur ein Verfahren.",
-            Self::Specimens { .. } => {
-                "Die Messreihe hat {count} Prüflinge; jeder ist für sich identifiziert."
-            }
-            Self::SpecimensFit { .. } => "Das Modell passt zu {some} von {count}.",
-            Self::SpecimensPoorlyKnown { .. } => "{parameter} ist in {count} schlecht bekannt.",
-            Self::MisfiledRecords { .. } => {
-                "Aufzeichnungen, die falsch abgelegt aussehen: {count}."
-            }
-            Self::PublishedDamping { .. } => {
+                 bestimmen.";
+            Self::NotIdentifiable { .. } =>
+                "These data do not determine {parameters}.",
+                "Aus diesen Daten ist {parameters} nicht zu bestimmen.";
+            Self::NothingUsable =>
+                "Nothing could be identified: no record is usable for any method.",
+                "Nichts war zu identifizieren: Keine Aufzeichnung ist für ein Verfahren brauchbar.";
+            Self::DoesNotFit =>
+                "The model does not describe these data: see the findings.",
+                "Das Modell beschreibt diese Daten nicht: siehe die Befunde.";
+            Self::MethodsAgree => "The methods agree.", "Die Verfahren stimmen überein.";
+            Self::MethodsDoNotAgree =>
+                "The methods do not agree.",
+                "Die Verfahren stimmen nicht überein.";
+            Self::OneMethod =>
+                "Each parameter is determined by one method only.",
+                "Jeden Parameter bestimmt nur ein Verfahren.";
+            Self::Specimens { .. } =>
+                "The campaign has {count} specimens; each is identified by itself.",
+                "Die Messreihe hat {count} Prüflinge; jeder ist für sich identifiziert.";
+            Self::SpecimensFit { .. } =>
+                "The model fits {some} of {count}.",
+                "Das Modell passt zu {some} von {count}.";
+            Self::SpecimensPoorlyKnown { .. } =>
+                "{parameter} is poorly known in {count}.",
+                "{parameter} ist in {count} schlecht bekannt.";
+            Self::MisfiledRecords { .. } =>
+                "Records that look misfiled: {count}.",
+                "Aufzeichnungen, die falsch abgelegt aussehen: {count}.";
+            Self::PublishedDamping { .. } =>
+                "The published speeds belong to a damping ratio $β$ of {value}.",
                 "Die veröffentlichten Geschwindigkeiten gehören zu einem Dämpfungsgrad $β$ von \
-                 {value}."
-            }
-            Self::NoPublishedDamping => {
-                "Kein Dämpfungsgrad ergibt die veröffentlichten Geschwindigkeiten."
-            }
+                 {value}.";
+            Self::NoPublishedDamping =>
+                "No damping ratio gives the published speeds.",
+                "Kein Dämpfungsgrad ergibt die veröffentlichten Geschwindigkeiten.";
         }
     }
 

@@ -28,6 +28,7 @@ pub(in crate::report) fn campaigns(
         sections: sections(content, &drawn),
         words: layout_phrases::words(locale),
     }
+    .with_numbers()
 }
 
 fn front(comparison: &Comparison, locale: Locale<'_>) -> Front {

@@ -20,6 +20,7 @@ impl Drawn<'_> {
             name: figure.name.clone(),
             width: figure.width,
             height: figure.height,
+            number: None,
             caption: Rich::from(caption),
             alt: richtext::plain(&figure.title),
         })

@@ -41,6 +41,7 @@ pub(super) fn document(
         sections: sections::sections(content, &drawn),
         words: layout_phrases::words(locale),
     }
+    .with_numbers()
 }
 
 fn subtitle(content: &ReportContent, locale: Locale<'_>) -> String {

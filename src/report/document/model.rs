@@ -54,6 +54,20 @@ pub(crate) struct Document {
 }
 
 impl Document {
+    /// With its figures numbered in the order of the sections.
+    pub(crate) fn with_numbers(mut self) -> Self {
+        let blocks = self.sections.iter_mut().flat_map(|s| &mut s.blocks);
+        let figures = blocks.flat_map(|block| match block {
+            Block::Figures { figures } => figures.as_mut_slice(),
+            _ => &mut [],
+        });
+        let captioned = figures.filter(|f| f.caption != Rich::default());
+        for (i, figure) in captioned.enumerate() {
+            figure.number = Some(i + 1);
+        }
+        self
+    }
+
     /// What is printed for a phrase of the layout.
     pub(crate) fn translate(&self, phrase: Phrase) -> &str {
         let english = phrase.english();
@@ -120,6 +134,8 @@ pub(crate) struct FigureRef {
     pub width: f64,
     /// Height, points.
     pub height: f64,
+    /// Its number in the document, from 1; `None` without a caption.
+    pub number: Option<usize>,
     /// Caption; empty for none.
     pub caption: Rich,
     /// Text for those who cannot see it.

@@ -55,9 +55,10 @@ impl MemoryWorld {
             creator: Smart::Custom(Some("impactid".into())),
             ..PdfOptions::default()
         };
-        let bytes = typst_pdf::pdf(&pages, &options).map_err(|e| Unset::Pages(self.first(&e)))?;
         typst::comemo::evict(0);
-        Ok(bytes)
+        let bytes = typst_pdf::pdf(&pages, &options).map_err(|e| Unset::Pages(self.first(&e)));
+        typst::comemo::evict(0);
+        bytes
     }
 
     /// The first complaint with its line in the template and its hints.

@@ -42,7 +42,7 @@ pub(super) fn html(
     page.push_str("</style>\n</head>\n<body>\n");
     page.push_str(&logo(options));
     page.push_str(&live(options));
-    let mut parts = parts::Parts::new(document, figures);
+    let parts = parts::Parts::new(document, figures);
     page.push_str(&parts.body()?);
     let words = serde_json::to_string(&document.words).map_err(ReportError::Data)?;
     page.push_str(&format!(

@@ -11,25 +11,20 @@ use crate::report::phrase::Phrase;
 /// Longer tables can be scrolled.
 const MOST_ROWS: usize = 40;
 
-/// Writes the parts, numbering the captions of figures.
+/// Writes the parts.
 pub(super) struct Parts<'a> {
     document: &'a Document,
     figures: &'a [Figure],
-    numbered: usize,
 }
 
 impl<'a> Parts<'a> {
     /// With the figures that may be referred to.
     pub(super) fn new(document: &'a Document, figures: &'a [Figure]) -> Self {
-        Self {
-            document,
-            figures,
-            numbered: 0,
-        }
+        Self { document, figures }
     }
 
     /// The whole body.
-    pub(super) fn body(&mut self) -> Result<String, ReportError> {
+    pub(super) fn body(&self) -> Result<String, ReportError> {
         let document = self.document;
         let mut body = format!(
             "<header>\n<h1>{}</h1>\n<div class=\"subtitle\">{}</div>\n</header>\n",
@@ -48,7 +43,7 @@ impl<'a> Parts<'a> {
         Ok(body)
     }
 
-    fn front(&mut self, front: &Front) -> Result<String, ReportError> {
+    fn front(&self, front: &Front) -> Result<String, ReportError> {
         let mut text = String::new();
         if front.synthetic {
             let synthetic = Phrase::SyntheticData;
@@ -98,7 +93,7 @@ impl<'a> Parts<'a> {
         Ok(text)
     }
 
-    fn block(&mut self, block: &Block) -> Result<String, ReportError> {
+    fn block(&self, block: &Block) -> Result<String, ReportError> {
         Ok(match block {
             Block::Paragraph { text } => format!("<p>{}</p>\n", rich(text)),
             Block::Figures { figures } => self.figures(figures)?,
@@ -111,7 +106,7 @@ impl<'a> Parts<'a> {
         })
     }
 
-    fn figures(&mut self, refs: &[FigureRef]) -> Result<String, ReportError> {
+    fn figures(&self, refs: &[FigureRef]) -> Result<String, ReportError> {
         let mut text = String::new();
         for reference in refs {
             if let Some(figure) = self.figures.iter().find(|f| f.name == reference.name) {
@@ -125,7 +120,7 @@ impl<'a> Parts<'a> {
         })
     }
 
-    fn figure(&mut self, reference: &FigureRef, figure: &Figure) -> Result<String, ReportError> {
+    fn figure(&self, reference: &FigureRef, figure: &Figure) -> Result<String, ReportError> {
         let class = if figure.width > look::NARROW {
             " class=\"wide\""
         } else {
@@ -145,10 +140,8 @@ impl<'a> Parts<'a> {
             ));
         }
         text.push_str("</div>\n");
-        let caption = rich(&reference.caption);
-        if !caption.is_empty() {
-            self.numbered += 1;
-            let number = self.numbered;
+        if let Some(number) = reference.number {
+            let caption = rich(&reference.caption);
             let word = escape(self.document.translate(Phrase::Figure));
             text.push_str(&format!(
                 "<figcaption><b>{word} {number}.</b> {caption}</figcaption>\n"

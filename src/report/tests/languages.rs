@@ -6,7 +6,6 @@ use super::contents::{kind, kinds};
 use crate::compare::{BracketRow, Correlation, Unusable, UnusableReason};
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::Coordinate;
-use crate::identify::messages::examples;
 use crate::identify::uncertainty::budget::{
     Budget, Combined, Contribution, Evaluation, Row, Source,
 };
@@ -31,8 +30,8 @@ fn marks_for_phrases() -> catalog::Catalog {
         text.push_str(&format!("{key} = \"⟦{i}⟧{values}\"\n"));
     }
     text.push_str("\n[findings]\n");
-    let all = examples().into_iter();
-    let all = all.chain(crate::difference::examples());
+    let all = crate::identify::messages::kinds().into_iter();
+    let all = all.chain(crate::difference::kinds());
     for (i, message) in all.enumerate() {
         let names: String = message
             .values()
@@ -394,7 +393,7 @@ fn a_report_is_made_from_kinds_and_numbers_alone() {
 fn a_german_report_has_german_findings_and_no_english_ones() {
     let mut content = kind("small").clone();
     let id = &mut content.identification;
-    let findings = crate::identify::messages::example_findings();
+    let findings: Vec<Finding> = <Finding as strum::IntoEnumIterator>::iter().collect();
     id.verdict.findings.clone_from(&findings);
     let german = ReportOptions {
         catalog: Some(catalog::Catalog::german().clone()),

@@ -1,0 +1,125 @@
+//! One message of each kind, its values at their defaults, so that all kinds can be listed.
+
+use strum::IntoEnumIterator;
+
+use super::*;
+use crate::identify::fit::effect::Effect;
+use crate::identify::method::Method;
+use crate::message::boxed;
+use crate::motion::Undetermined;
+use crate::record::FlagCode;
+
+/// One message of each kind of an identification.
+pub fn kinds() -> Vec<Box<dyn Message>> {
+    let beyond = [1.0, -1.0].into_iter().flat_map(|strength| {
+        Effect::ALL.map(|effect| Finding::BeyondModel {
+            effect,
+            strength,
+            standard_error: 0.0,
+            z_score: 0.0,
+        })
+    });
+    let findings = Finding::iter().filter(|f| !matches!(f, Finding::BeyondModel { .. }));
+    boxed(Method::iter())
+        .chain(boxed(Note::iter()))
+        .chain(boxed(Remark::iter()))
+        .chain(boxed(Reason::iter()))
+        .chain(boxed(findings))
+        .chain(boxed(beyond))
+        .chain(boxed(Undetermined::iter()))
+        .chain(boxed(FlagCode::ALL.into_iter()))
+        .chain(boxed(Sentence::iter()))
+        .chain(boxed([PairAgreement::default()].into_iter()))
+        .chain(boxed(Item::iter()))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::message::{Language, plain};
+    use crate::record::Role;
+
+    /// The names in braces of a template.
+    fn names(template: &str) -> BTreeSet<&str> {
+        let pieces = template.split('{').skip(1);
+        pieces.filter_map(|p| Some(p.split_once('}')?.0)).collect()
+    }
+
+    #[test]
+    fn every_kind_has_its_own_name_and_templates_of_the_same_values() {
+        let mut keys = BTreeSet::new();
+        for message in kinds() {
+            let kind = message.key();
+            assert!(!kind.is_empty() && keys.insert(kind.clone()), "{kind}");
+            let english = message.template(Language::English);
+            let german = message.template(Language::German);
+            assert_eq!(names(english), names(german), "{kind}");
+            let values: BTreeSet<&str> = message.values().iter().map(|v| v.0).collect();
+            assert_eq!(names(english), values, "{kind}");
+            assert!(!plain(message.as_ref()).contains(['{', '}', '$']), "{kind}");
+        }
+    }
+
+    #[test]
+    fn json_has_kind_numbers_and_text_and_reads_back() {
+        for finding in Finding::iter() {
+            let json = serde_json::to_value(&finding).expect("JSON");
+            assert_eq!(json["kind"], Message::kind(&finding));
+            assert_eq!(json["text"], finding.to_string());
+            let back: Finding = serde_json::from_value(json).expect("a finding");
+            assert_eq!(back, finding);
+        }
+    }
+
+    #[test]
+    fn values_are_printed_at_their_places() {
+        let clearance = Finding::WrongClearance {
+            stated_m: 1e-3,
+            fitting_m: 1.1e-3,
+            z_score: 9.0,
+        };
+        assert_eq!(
+            clearance.to_string(),
+            "the gap stated with a clearance of 1.0000 mm moves like one of 1.1000 mm: measure it \
+             again and correct the run table; its records stay out of the fit"
+        );
+        let json = serde_json::to_value(&clearance).expect("JSON");
+        assert_eq!(json["stated_m"], 1e-3);
+        let gain = Finding::WrongGain {
+            channel: Role::VelocityX,
+            deviation: -0.05,
+            z_score: -9.0,
+        };
+        let text = gain.to_string();
+        assert!(text.starts_with("velocity_x reads 5.0 % too low: "));
+        let deflection = StatedValue {
+            parameter: Coordinate::Deflection,
+            value: 1e-3,
+            half_width: 1e-5,
+        };
+        let weak = Sentence::Weak {
+            values: vec![deflection],
+            parameters: vec![Coordinate::Restitution, Coordinate::Damping],
+        };
+        assert_eq!(
+            weak.to_string(),
+            "The rig has x_st = 1.000 ± 0.010 mm; R, β only weakly."
+        );
+        let impact = Item::Impact {
+            index: 0,
+            record: "r1".into(),
+            time_s: 0.25,
+        };
+        let outlying = Remark::OutlyingImpacts {
+            count: 4,
+            first: vec![impact],
+        };
+        assert_eq!(
+            outlying.to_string(),
+            "impacts with speeds far from those of the others, left out: 4 (r1 at 0.250 s, …)"
+        );
+    }
+}
