@@ -162,19 +162,24 @@ fn shift(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64, gap: f64)
     let (mut own, mut score) = (0.0, 0.0);
     let mut cross = DVector::zeros(fit.free.len());
     let mut seen = 0;
+    // an error of the zero of all clearances is in one record the error of its gap
+    let coordinates = [&fit.free[..], &[Coordinate::ScrewZero]].concat();
+    let relative = 1e3 * gap;
     for (item, record) in block.records.iter().enumerate() {
         if record.clearance_m != gap {
             continue;
         }
-        let over_gap = block.over_relative_clearance(item, &fit.parameters);
-        let over_all = block.slopes(item, &fit.parameters, &fit.free);
-        let Some((slope, (residuals, columns))) = over_gap.zip(over_all) else {
+        let Some((residuals, mut columns)) = block.slopes(item, &fit.parameters, &coordinates)
+        else {
             continue;
         };
-        own += weight * dot(&slope, &slope);
-        score += weight * dot(&slope, &residuals);
+        let Some(slope) = columns.pop() else {
+            continue;
+        };
+        own += weight * relative.powi(2) * dot(&slope, &slope);
+        score += weight * relative * dot(&slope, &residuals);
         for (sum, column) in cross.iter_mut().zip(&columns) {
-            *sum += weight * dot(column, &slope);
+            *sum += weight * relative * dot(column, &slope);
         }
         seen += 1;
     }

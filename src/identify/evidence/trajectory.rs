@@ -170,16 +170,6 @@ impl TrajectoryBlock {
         });
     }
 
-    /// Slopes of a record's weighted residuals over the logarithm of its clearance.
-    pub fn over_relative_clearance(&self, item: usize, at: &Parameters) -> Option<Vec<f64>> {
-        let record = &self.records[item];
-        let motion = RecordMotion::new(self.rig, record, at)?;
-        let slopes = motion.over_clearance(&motion.unperturbed());
-        let slopes = motion.points().values(&slopes);
-        let change: Vec<f64> = slopes.iter().map(|s| -s * record.clearance_m).collect();
-        Some(record.weighing.weighted(&change))
-    }
-
     fn changes(&self, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Changes> {
         let motion = RecordMotion::new(self.rig, record, parameters)?;
         let (terms, points) = (motion.unperturbed(), motion.points());

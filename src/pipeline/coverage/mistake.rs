@@ -102,7 +102,7 @@ impl Mistake {
 }
 
 /// State the gap that most records have (the open one of the resonance curve apart) too wide.
-fn widen_one_gap(records: &mut [Record], by_m: f64) {
+pub(super) fn widen_one_gap(records: &mut [Record], by_m: f64) {
     let open = records.first().and_then(|r| r.setting.clearance_m);
     let Some(gap) = records
         .iter()

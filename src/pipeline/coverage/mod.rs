@@ -95,15 +95,22 @@ fn evidence<'a>(
 
 /// Simulate, observe and identify a campaign, with a mistake or without.
 fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError> {
-    let draw = mistake.map_or_else(|| draw.clone(), |m| m.stated(draw));
+    let Some(mistake) = mistake else {
+        return spoilt(draw, |_| ());
+    };
+    let draw = mistake.stated(draw);
+    let uncertainty_m = draw.clearance_uncertainty_m.unwrap_or(0.0);
+    spoilt(&draw, |records| mistake.commit(records, uncertainty_m))
+}
+
+/// Simulate a campaign, change its records, observe and identify it.
+fn spoilt(draw: &Draw, change: impl Fn(&mut [Record])) -> Result<Seen, PipelineError> {
     let raw = records(&draw.laboratory())?;
     let mut records: Vec<Record> = raw
         .iter()
         .map(|r| calibrated(r, &draw.truth, &draw.faults))
         .collect();
-    if let Some(mistake) = mistake {
-        mistake.commit(&mut records, draw.clearance_uncertainty_m.unwrap_or(0.0));
-    }
+    change(&mut records);
     let motions = raw.into_iter().map(|r| r.motion).collect();
     let mut observations: Vec<Observation> = records
         .into_par_iter()
@@ -116,7 +123,7 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError
         .collect();
     scale_drives(&mut observations);
     let brackets = brackets(&observations);
-    let outcome = identify(&evidence(&observations, &brackets, &draw));
+    let outcome = identify(&evidence(&observations, &brackets, draw));
     Ok(Seen {
         motions,
         observations,
@@ -216,6 +223,7 @@ pub fn study(
 
 #[cfg(test)]
 mod tests {
+    use super::mistake::widen_one_gap;
     use super::*;
     use crate::identify::{Finding, Method};
 
@@ -236,6 +244,28 @@ mod tests {
         };
         assert!(draw.truth.static_deflection_m < 7.0 * 0.05e-3);
         assert!((stated_m - 0.05e-3 - fitting_m).abs() < 1e-7, "{fitting_m}");
+    }
+
+    #[test]
+    fn valid_a_gap_a_few_micrometres_off_is_named_where_no_uncertainty_is_stated() {
+        let rig = "exact".parse().expect("a rig");
+        let draw = draw(0x00FA_0175 ^ 14_001, 11, Reach::Full, &rig);
+        assert_eq!(draw.clearance_uncertainty_m, None);
+        let seen = spoilt(&draw, |records| widen_one_gap(records, 4e-6)).expect("a campaign");
+        let [
+            Finding::WrongClearance {
+                stated_m,
+                fitting_m,
+                ..
+            },
+        ] = seen.outcome.suspicions[..]
+        else {
+            panic!("{:?}", seen.outcome.suspicions);
+        };
+        assert!(
+            (stated_m - 4e-6 - fitting_m).abs() < 2e-7,
+            "{stated_m} {fitting_m}"
+        );
     }
 
     #[test]
