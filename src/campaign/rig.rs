@@ -78,7 +78,8 @@ fn effects(
         match EffectKind::named(name) {
             Some(kind) => kinds.push(kind),
             None => {
-                let known = EffectKind::ALL.map(EffectKind::name).join(", ");
+                let known: Vec<&str> = EffectKind::ALL.iter().map(|kind| kind.name()).collect();
+                let known = known.join(", ");
                 let what = format!("no effect is called '{name}'");
                 let remedy = format!("choose among {known}, or remove the line to allow all");
                 context.fault(Code::OutOfRange, placed, "rig.effects", what, &remedy);

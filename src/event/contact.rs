@@ -1,6 +1,7 @@
 //! Closed intervals of the contact channel.
 
 use crate::record::Channel;
+use crate::signal::{columns, robust};
 
 /// An interval in which the contact was closed; bounces are merged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,32 +52,23 @@ pub(super) fn closed_intervals(channel: &Channel, bounce_samples: usize) -> Vec<
     intervals
 }
 
-fn closed_test(channel: &Channel) -> Option<Box<dyn Fn(f64) -> bool>> {
-    if let Some(threshold) = channel.threshold {
-        return Some(if threshold >= 0.0 {
-            Box::new(move |v| v > threshold)
-        } else {
-            Box::new(move |v| v < threshold)
-        });
-    }
-    let low = channel.values.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = channel
-        .values
-        .iter()
-        .copied()
-        .fold(f64::NEG_INFINITY, f64::max);
-    let noise = crate::signal::robust::noise_deviation(&channel.values);
-    let swing = high - low;
-    if swing.is_nan() || swing <= 8.0 * noise.max(1e-9) {
-        return None;
-    }
-    let middle = 0.5 * (low + high);
-    let above = channel.values.iter().filter(|v| **v > middle).count();
-    Some(if 2 * above > channel.values.len() {
-        Box::new(move |v| v < middle)
-    } else {
-        Box::new(move |v| v > middle)
-    })
+/// Whether a value of the contact channel means closed; `None` where the channel does not tell.
+fn closed_test(channel: &Channel) -> Option<impl Fn(f64) -> bool + use<>> {
+    let (level, above) = match channel.threshold {
+        Some(threshold) => (threshold, threshold >= 0.0),
+        None => {
+            let (low, high) = columns::extremes(&channel.values);
+            let noise = robust::noise_deviation(&channel.values);
+            let swing = high - low;
+            if swing.is_nan() || swing <= 8.0 * noise.max(1e-9) {
+                return None;
+            }
+            let middle = 0.5 * (low + high);
+            let above = channel.values.iter().filter(|v| **v > middle).count();
+            (middle, 2 * above <= channel.values.len())
+        }
+    };
+    Some(move |v: f64| if above { v > level } else { v < level })
 }
 
 #[cfg(test)]

@@ -61,7 +61,6 @@ pub(super) fn limits(coordinate: Coordinate) -> (f64, f64) {
         Coordinate::Restitution => (0.03, 0.15),
         Coordinate::Frequency => (0.01, 0.08),
         Coordinate::Damping => (0.15, 0.9),
-        Coordinate::Deflection => (0.05, 0.5),
         _ => (0.05, 0.5),
     }
 }

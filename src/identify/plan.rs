@@ -11,7 +11,7 @@ use crate::identify::evidence::trajectory_record::{TrajectoryRecord, Weighing};
 use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
 use crate::identify::fit::group::Group;
 use crate::identify::fit::normal::inverse;
-use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::fit::parameters::{Coordinate, GAIN_ROLES, Parameters};
 use crate::identify::fit::{Fit, Problem};
 use crate::motion::Observation;
 use crate::motion::{Folded, FoldedChannel, FoldedPoint};
@@ -207,12 +207,6 @@ impl UsualRecord {
             let values: Vec<f64> = folded.iter().map(|(o, _)| of(o)).collect();
             robust::median(&values)
         };
-        let roles = [
-            Role::VelocityX,
-            Role::VelocityY,
-            Role::DisplacementX,
-            Role::DisplacementY,
-        ];
         let noise = |role: Role| {
             let channels = folded.iter().flat_map(|(_, f)| &f.channels);
             let values: Vec<f64> = channels
@@ -221,9 +215,8 @@ impl UsualRecord {
                 .collect();
             robust::median(&values)
         };
-        let channels: Vec<(Role, f64)> = roles
+        let channels: Vec<(Role, f64)> = GAIN_ROLES
             .into_iter()
-            .filter(|r| gain_index(*r).is_some())
             .filter_map(|r| Some((r, noise(r)?)))
             .collect();
         Some(Self {

@@ -1,6 +1,6 @@
 //! The whole identification: each method alone, all together, and what to make of it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::identify::diagnostics::agreement::{agreement, between_methods};
 use crate::identify::diagnostics::beyond;
@@ -18,7 +18,7 @@ use crate::identify::joint::{self, Weights};
 use crate::identify::messages::{Finding, LeftOut, Reason, Remark};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult, succeeded};
-use crate::identify::selection::{Influential, Selection, TooMany};
+use crate::identify::selection::Selection;
 use crate::identify::uncertainty::budget;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
@@ -360,36 +360,34 @@ impl IdentificationRun<'_> {
             };
             let judged = self.selection.judged() + left_out;
             let most = MOST_INFLUENTIAL.max(judged / 30).saturating_sub(left_out);
-            let found = self
-                .selection
-                .influential(&problem, &present, (&start, most));
             // More than that do not err alone: it is the model, and their scatter widens the intervals.
-            let (influential, too_many) = match found {
-                Ok(found) => (found, false),
-                Err(TooMany(found)) => (found, true),
-            };
-            if !influential.is_empty() {
-                left_out += influential.count();
-                self.selection.leave_out(&influential);
-                fits = self.fitted_again(start, fits, &influential);
+            let (influential, too_many) =
+                self.selection
+                    .influential(&problem, &present, (&start, most));
+            if influential.is_empty() {
+                break;
             }
-            if influential.is_empty() || too_many {
+            left_out += influential.len();
+            let gone: BTreeSet<Method> = influential.iter().map(|(method, _)| *method).collect();
+            self.selection.leave_out(influential);
+            fits = self.fitted_again(start, fits, &gone);
+            if too_many {
                 break;
             }
         }
         fits
     }
 
-    /// The fits after influential records were left out, from a start near the optimum.
-    fn fitted_again(&mut self, start: Parameters, fits: Fits, gone: &Influential) -> Fits {
+    /// The fits after influential records of some methods were left out, from a start near the optimum.
+    fn fitted_again(&mut self, start: Parameters, fits: Fits, of: &BTreeSet<Method>) -> Fits {
         let (blocks, nominal) = (&self.selection.blocks, &self.evidence.nominal);
-        let resonance = match gone.resonance.is_empty() {
-            true => fits.resonance,
-            false => methods::resonance_from(blocks, nominal, start),
+        let resonance = match of.contains(&Method::Resonance) {
+            true => methods::resonance_from(blocks, nominal, start),
+            false => fits.resonance,
         };
-        let trajectories = match gone.trajectory.is_empty() {
-            true => fits.trajectories,
-            false => methods::trajectories(blocks, nominal, start, Precision::Result),
+        let trajectories = match of.contains(&Method::Trajectories) {
+            true => methods::trajectories(blocks, nominal, start, Precision::Result),
+            false => fits.trajectories,
         };
         let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
         self.together(

@@ -1,5 +1,6 @@
 //! Which records and brackets the fits rest on; the others are named with the reason.
 
+use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
 use rayon::prelude::*;
@@ -7,14 +8,14 @@ use rayon::prelude::*;
 use crate::identify::diagnostics::influence;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::weighing::Bulk;
-use crate::identify::evidence::{Blocks, Evidence};
+use crate::identify::evidence::{Blocks, Evidence, boundary};
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::fit::{FitError, Precision, Problem, mean_squares};
 use crate::identify::flight_times;
 use crate::identify::messages::{Item, LeftOut, Reason};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult};
-use crate::motion::Bracket;
+use crate::motion::{Bracket, Observation};
 
 /// Slowest multiplier's distance from 1 at which a motion is at its end.
 const END: f64 = 2e-3;
@@ -26,42 +27,8 @@ const ROUNDS: usize = 2;
 /// Relative change of the error allowed beside the noise below which another round changes nothing.
 const SETTLED: f64 = 0.1;
 
-/// Influential records, by their place in the blocks, rising.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Influential {
-    /// Impactless records.
-    pub resonance: Vec<usize>,
-    /// Periodic records.
-    pub trajectory: Vec<usize>,
-}
-
-impl Influential {
-    /// Of the places of records in the blocks of their methods.
-    fn of(mut places: Vec<(Method, usize)>) -> Self {
-        places.sort_unstable();
-        let of = |method: Method| {
-            let own = places.iter().filter(|(m, _)| *m == method);
-            own.map(|(_, place)| *place).collect()
-        };
-        Self {
-            resonance: of(Method::Resonance),
-            trajectory: of(Method::Trajectories),
-        }
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.count() == 0
-    }
-
-    /// How many.
-    pub fn count(&self) -> usize {
-        self.resonance.len() + self.trajectory.len()
-    }
-}
-
-/// More records are influential than err alone; those that were found before.
-pub struct TooMany(pub Influential);
+/// Records of methods by their places in the methods' blocks.
+pub type Places = Vec<(Method, usize)>;
 
 /// What is fitted, and what was left out of it.
 pub struct Selection<'a> {
@@ -247,20 +214,16 @@ impl<'a> Selection<'a> {
     /// Fit the brackets; those that no boundary reaches, or that lie far from it, are named.
     pub fn boundaries(&mut self, start: Parameters) -> Option<FitResult> {
         let rig = self.evidence.rig;
-        let mut kept = Vec::new();
-        for bracket in std::mem::take(&mut self.blocks.boundary.brackets) {
-            let predicted =
-                crate::identify::evidence::boundary::predicted_hz(&bracket, &start, rig);
-            let near = predicted.is_some_and(|f| {
+        let far = |bracket: &mut Bracket| {
+            let predicted = boundary::predicted_hz(bracket, &start, rig);
+            !predicted.is_some_and(|f| {
                 (f - bracket.middle_hz()).abs() <= 3.0 * bracket.width_hz() + 0.02 * f
-            });
-            if near {
-                kept.push(bracket);
-            } else {
-                self.note_bracket(&bracket, Reason::FarFromBoundary);
-            }
+            })
+        };
+        let brackets = &mut self.blocks.boundary.brackets;
+        for bracket in brackets.extract_if(.., far).collect::<Vec<_>>() {
+            self.note_bracket(&bracket, Reason::FarFromBoundary);
         }
-        self.blocks.boundary.brackets = kept;
         self.blocks.boundary.fit_early_scale(&start);
         methods::boundaries(&self.blocks, &self.evidence.nominal, start)
     }
@@ -271,20 +234,14 @@ impl<'a> Selection<'a> {
         if records.iter().all(|r| r.clearance_m == clearance_m) {
             return false;
         }
-        let (gone, kept): (Vec<_>, Vec<_>) = std::mem::take(records)
-            .into_iter()
-            .partition(|r| r.clearance_m == clearance_m);
-        *records = kept;
-        for record in gone {
+        let gone = records.extract_if(.., |r| r.clearance_m == clearance_m);
+        for record in gone.collect::<Vec<_>>() {
             self.note(record.observation, Reason::GapNotAsStated);
         }
         self.lost.retain(|r| r.clearance_m != clearance_m);
-        let brackets = std::mem::take(&mut self.blocks.boundary.brackets);
-        let (gone, kept): (Vec<_>, Vec<_>) = brackets
-            .into_iter()
-            .partition(|b| b.clearance_m == clearance_m);
-        self.blocks.boundary.brackets = kept;
-        for bracket in gone {
+        let brackets = &mut self.blocks.boundary.brackets;
+        let gone = brackets.extract_if(.., |b| b.clearance_m == clearance_m);
+        for bracket in gone.collect::<Vec<_>>() {
             self.note_bracket(&bracket, Reason::GapNotAsStated);
         }
         true
@@ -303,13 +260,11 @@ impl<'a> Selection<'a> {
             if found.is_some() && scores.iter().all(follows) {
                 break;
             }
-            let records = std::mem::take(&mut self.blocks.flight.records);
-            for (record, score) in records.into_iter().zip(scores) {
-                if follows(&score) {
-                    self.blocks.flight.records.push(record);
-                } else {
-                    self.note(record.observation, Reason::ImpactsDoNotFollow);
-                }
+            let mut scores = scores.iter();
+            let records = &mut self.blocks.flight.records;
+            let gone = records.extract_if(.., |_| !scores.next().is_some_and(follows));
+            for record in gone.collect::<Vec<_>>() {
+                self.note(record.observation, Reason::ImpactsDoNotFollow);
             }
             match methods::flights(&self.blocks, &self.evidence.nominal, parameters)? {
                 Ok(fit) => {
@@ -323,16 +278,14 @@ impl<'a> Selection<'a> {
     }
 
     /// The records that draw a joint fit away from what all others state, `most` of them at most. After
-    /// each batch the others are judged again at the optimum without it, to first order.
-    ///
-    /// # Errors
-    /// [`TooMany`] where another batch would exceed `most`.
+    /// each batch the others are judged again at the optimum without it, to first order. The flag tells
+    /// whether another batch would exceed `most`.
     pub fn influential(
         &self,
         problem: &Problem<'_>,
         present: &[Method],
         (at, most): (&Parameters, usize),
-    ) -> Result<Influential, TooMany> {
+    ) -> (Places, bool) {
         let (mut owners, mut records) = (Vec::new(), Vec::new());
         let mut others = problem.priors_normal(at);
         for ((block, weight), method) in problem.blocks.iter().zip(present) {
@@ -365,7 +318,7 @@ impl<'a> Selection<'a> {
                 break;
             }
             if found.len() + batch.len() > most {
-                return Err(TooMany(Influential::of(found)));
+                return (found, true);
             }
             for i in batch.into_iter().rev() {
                 records.remove(i);
@@ -376,7 +329,7 @@ impl<'a> Selection<'a> {
                 break;
             }
         }
-        Ok(Influential::of(found))
+        (found, false)
     }
 
     /// Whether a periodic record's motion, once disturbed, decays by less than a factor e while it
@@ -410,68 +363,46 @@ impl<'a> Selection<'a> {
     }
 
     /// Leave influential records out, and note them.
-    pub fn leave_out(&mut self, influential: &Influential) {
-        for i in influential.resonance.iter().rev() {
-            let point = self.blocks.resonance.points.remove(*i);
-            let method = Method::Resonance;
-            self.note(point.observation, Reason::Influential { method });
-        }
-        for i in influential.trajectory.iter().rev() {
-            let record = self.blocks.trajectory.records.remove(*i);
-            let method = Method::Trajectories;
-            self.note(record.observation, Reason::Influential { method });
+    pub fn leave_out(&mut self, mut influential: Places) {
+        // the last first, so that the places of the others stay
+        influential.sort_unstable_by_key(|(method, place)| (*method, Reverse(*place)));
+        for (method, place) in influential {
+            let observation = match method {
+                Method::Resonance => self.blocks.resonance.points.remove(place).observation,
+                _ => self.blocks.trajectory.records.remove(place).observation,
+            };
+            self.note(observation, Reason::Influential { method });
         }
     }
 
     /// The records that a method's fit uses, by their indices; one may come several times.
     pub fn records_of(&self, method: Method) -> Vec<usize> {
-        let observations = self.evidence.observations;
         let blocks = &self.blocks;
+        let those = |of: &dyn Fn(&Observation) -> bool| {
+            let indexed = self.evidence.observations.iter().enumerate();
+            indexed.filter(|(_, o)| of(o)).map(|(i, _)| i).collect()
+        };
         match method {
-            Method::Resonance => blocks
-                .resonance
-                .points
-                .iter()
-                .map(|p| p.observation)
-                .collect(),
+            Method::Resonance => {
+                let points = &blocks.resonance.points;
+                points.iter().map(|p| p.observation).collect()
+            }
             Method::Trajectories => {
                 let records = &blocks.trajectory.records;
                 records.iter().map(|r| r.observation).collect()
             }
             Method::Boundaries => {
-                let names: BTreeSet<&String> = blocks
-                    .boundary
-                    .brackets
-                    .iter()
-                    .flat_map(|b| &b.records)
-                    .collect();
-                let indexed = observations.iter().enumerate();
-                indexed
-                    .filter(|(_, o)| names.contains(&o.record))
-                    .map(|(i, _)| i)
-                    .collect()
+                let brackets = blocks.boundary.brackets.iter();
+                let names: BTreeSet<&String> = brackets.flat_map(|b| &b.records).collect();
+                those(&|o| names.contains(&o.record))
             }
             Method::Impacts => blocks.impact.pairs.iter().map(|p| p.observation).collect(),
-            Method::Flights => blocks
-                .flight
-                .records
-                .iter()
-                .map(|r| r.observation)
-                .collect(),
-            Method::FlightTimes => {
-                let indexed = observations.iter().enumerate();
-                indexed
-                    .filter(|(_, o)| !o.excluded() && flight_times::is_timed(o))
-                    .map(|(i, _)| i)
-                    .collect()
+            Method::Flights => {
+                let records = &blocks.flight.records;
+                records.iter().map(|r| r.observation).collect()
             }
-            Method::FreeDecay => {
-                let indexed = observations.iter().enumerate();
-                indexed
-                    .filter(|(_, o)| !o.excluded() && o.decay.is_some())
-                    .map(|(i, _)| i)
-                    .collect()
-            }
+            Method::FlightTimes => those(&|o| !o.excluded() && flight_times::is_timed(o)),
+            Method::FreeDecay => those(&|o| !o.excluded() && o.decay.is_some()),
             Method::PublishedSpeeds => Vec::new(),
         }
     }

@@ -16,8 +16,6 @@ pub(super) struct WaveformClosure {
     pub periods_n: u32,
     /// Deviation of w(t + nT) − w(t) over √2 and over the waveform's root mean square.
     pub ratio: f64,
-    /// Number of samples compared.
-    pub samples: usize,
 }
 
 /// Closure of a waveform for n = 1 … `most`, samples near impacts left out.
@@ -58,7 +56,6 @@ pub(super) fn waveform(
             Some(WaveformClosure {
                 periods_n: n,
                 ratio: (0.5 * square / samples).sqrt() / scale,
-                samples: whole::index(samples),
             })
         })
         .collect()
@@ -128,8 +125,6 @@ pub(super) struct Count {
     pub impacts_p: u32,
     /// Fraction of windows that agree.
     pub agreement: f64,
-    /// Number of windows.
-    pub windows: usize,
 }
 
 /// Count impacts (times and period in one unit) in windows of n periods that are wholly within
@@ -158,7 +153,6 @@ pub(super) fn count(times: &[f64], period: f64, duration: f64, periods_n: u32) -
     Some(Count {
         impacts_p,
         agreement: most as f64 / windows as f64,
-        windows,
     })
 }
 

@@ -11,7 +11,6 @@ use nalgebra::DMatrix;
 pub struct LocalFit {
     /// By power; those above the degree are zero.
     coefficients: Row,
-    degree: usize,
     basis: Arc<Basis>,
     origin: f64,
     /// Number of samples.
@@ -51,17 +50,11 @@ impl LocalFit {
         let residual_squares = residuals.map(|r| r * r).sum();
         Some(Self {
             coefficients,
-            degree,
             basis,
             origin: 0.5 * (first + last - 1) as f64,
             samples: count,
             residual_squares,
         })
-    }
-
-    /// Degree of the polynomial.
-    pub fn degree(&self) -> usize {
-        self.degree
     }
 
     fn place(&self, time: f64) -> f64 {

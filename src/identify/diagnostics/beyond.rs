@@ -13,7 +13,8 @@ const NAMED_PAIR: f64 = 15.3;
 /// The significant effects of a joint fit. The two parts of a harmonic are named as its amplitude.
 pub fn beyond(found: &MethodFit) -> Vec<Finding> {
     Effect::ALL
-        .into_iter()
+        .iter()
+        .copied()
         .filter_map(|effect| match effect {
             Effect::SecondHarmonicCos => harmonic(found, effect, Effect::SecondHarmonicSin),
             Effect::ThirdHarmonicCos => harmonic(found, effect, Effect::ThirdHarmonicSin),

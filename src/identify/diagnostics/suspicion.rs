@@ -9,11 +9,10 @@ use nalgebra::DVector;
 use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::{Blocks, Nominal};
-use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::parameters::{Coordinate, GAIN_ROLES, Parameters};
 use crate::identify::fit::{Block, Fit, mean_squares};
 use crate::identify::messages::Finding;
 use crate::identify::method_fit::MethodFit;
-use crate::record::Role;
 use crate::signal::columns::dot;
 
 /// Standard errors from which a deviation is named.
@@ -37,14 +36,6 @@ fn is_named(odd: &OddGap, uncertainty_m: f64) -> bool {
     }
 }
 
-/// The channels in the order of [`Parameters::gains`].
-const CHANNELS: [Role; 4] = [
-    Role::VelocityX,
-    Role::VelocityY,
-    Role::DisplacementX,
-    Role::DisplacementY,
-];
-
 /// Gains and corners of channels that are far outside what the laboratory states of them.
 pub fn channels(fit: &Fit, factor: f64, nominal: &Nominal) -> Vec<Finding> {
     let of = |coordinate: &Coordinate| {
@@ -57,7 +48,7 @@ pub fn channels(fit: &Fit, factor: f64, nominal: &Nominal) -> Vec<Finding> {
         let error = fit.error(*coordinate)? * factor.sqrt();
         let z_score = off / allowed.hypot(error).max(f64::MIN_POSITIVE);
         let odd = z_score.abs() > CHANNEL_LIMIT && off.abs() > SURE * error;
-        let channel = *CHANNELS.get(*index).filter(|_| odd)?;
+        let channel = *GAIN_ROLES.get(*index).filter(|_| odd)?;
         let deviation = off.exp_m1();
         Some(match coordinate {
             Coordinate::Corner(_) => Finding::WrongCorner {

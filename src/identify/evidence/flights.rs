@@ -117,11 +117,6 @@ impl FlightBlock {
     }
 }
 
-/// Whether a record is shot from impact to impact.
-pub fn is_flown(rig: RigKind, o: &Observation) -> bool {
-    has_no_closed_form(&o.classification.motion) && flight_record(rig, 0, o).is_some()
-}
-
 fn has_no_closed_form(motion: &Motion) -> bool {
     match motion {
         Motion::Periodic {

@@ -489,14 +489,8 @@ pub(super) mod tests {
     use crate::identify::evidence::trajectory_record::Weighing;
     use crate::identify::fit::effect::Effect;
     use crate::identify::fit::effect::Effects;
+    use crate::identify::fit::parameters::GAIN_ROLES;
     use crate::motion::{Folded, FoldedPoint};
-
-    const ROLES: [Role; 4] = [
-        Role::VelocityX,
-        Role::VelocityY,
-        Role::DisplacementX,
-        Role::DisplacementY,
-    ];
 
     /// Everything in effect that is not a perturbation.
     pub(in crate::identify::evidence) fn parameters() -> Parameters {
@@ -540,7 +534,7 @@ pub(super) mod tests {
         let folded = Folded {
             periods_n,
             impact_phase_rad: Some(0.2),
-            channels: ROLES
+            channels: GAIN_ROLES
                 .map(|role| FoldedChannel {
                     role,
                     noise: 1.0,

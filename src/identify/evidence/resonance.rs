@@ -674,8 +674,8 @@ mod tests {
             Coordinate::Delay(0),
             Coordinate::DampingAsymmetry,
         ]);
-        let effects = Effect::ALL.map(Coordinate::Effect);
-        coordinates.extend(effects.into_iter().filter(|c| block.touches(*c)));
+        let effects = Effect::ALL.iter().copied().map(Coordinate::Effect);
+        coordinates.extend(effects.filter(|c| block.touches(*c)));
         let (here, columns) = block.slopes(0, &p, &coordinates).expect("slopes");
         for (coordinate, exact) in coordinates.iter().zip(columns) {
             let found = difference(&p, *coordinate, &here, |p| block.residuals(0, p));

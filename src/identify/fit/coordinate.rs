@@ -1,61 +1,15 @@
 //! The coordinates of a fit.
 
+use std::sync::LazyLock;
+
 use serde::{Deserialize, Serialize};
 
 use super::effect::Effect;
 use super::gap_errors::MOST_GAPS;
 
-/// Names of those errors.
-const GAP_NAMES: [&str; MOST_GAPS] = [
-    "clearance_error_1_mm",
-    "clearance_error_2_mm",
-    "clearance_error_3_mm",
-    "clearance_error_4_mm",
-    "clearance_error_5_mm",
-    "clearance_error_6_mm",
-    "clearance_error_7_mm",
-    "clearance_error_8_mm",
-    "clearance_error_9_mm",
-    "clearance_error_10_mm",
-    "clearance_error_11_mm",
-    "clearance_error_12_mm",
-    "clearance_error_13_mm",
-    "clearance_error_14_mm",
-    "clearance_error_15_mm",
-    "clearance_error_16_mm",
-    "clearance_error_17_mm",
-    "clearance_error_18_mm",
-    "clearance_error_19_mm",
-    "clearance_error_20_mm",
-    "clearance_error_21_mm",
-    "clearance_error_22_mm",
-    "clearance_error_23_mm",
-    "clearance_error_24_mm",
-    "clearance_error_25_mm",
-    "clearance_error_26_mm",
-    "clearance_error_27_mm",
-    "clearance_error_28_mm",
-    "clearance_error_29_mm",
-    "clearance_error_30_mm",
-    "clearance_error_31_mm",
-    "clearance_error_32_mm",
-    "clearance_error_33_mm",
-    "clearance_error_34_mm",
-    "clearance_error_35_mm",
-    "clearance_error_36_mm",
-    "clearance_error_37_mm",
-    "clearance_error_38_mm",
-    "clearance_error_39_mm",
-    "clearance_error_40_mm",
-    "clearance_error_41_mm",
-    "clearance_error_42_mm",
-    "clearance_error_43_mm",
-    "clearance_error_44_mm",
-    "clearance_error_45_mm",
-    "clearance_error_46_mm",
-    "clearance_error_47_mm",
-    "clearance_error_48_mm",
-];
+/// Names of the errors of single clearances.
+static GAP_NAMES: LazyLock<[String; MOST_GAPS]> =
+    LazyLock::new(|| std::array::from_fn(|i| format!("clearance_error_{}_mm", i + 1)));
 
 /// One coordinate of the fit: R itself, the logarithms of f0, β, `x_st`, the gains and the
 /// corners, the asymmetries and effects themselves, delays in ms, errors of clearances in mm.
@@ -121,7 +75,9 @@ impl Coordinate {
             Self::Delay(_) => "delay_displacement_y_ms",
             Self::Effect(effect) => effect.name(),
             Self::ScrewZero => "screw_zero_mm",
-            Self::Gap(i) => GAP_NAMES.get(i).copied().unwrap_or("clearance_error_mm"),
+            Self::Gap(i) => GAP_NAMES
+                .get(i)
+                .map_or("clearance_error_mm", String::as_str),
             Self::Gain(0) => "gain_velocity_x",
             Self::Gain(1) => "gain_velocity_y",
             Self::Gain(2) => "gain_displacement_x",
@@ -147,19 +103,8 @@ impl Coordinate {
             .into_iter()
             .chain(single)
             .chain(channels.chain((0..4).map(Self::Delay)))
-            .chain(Effect::ALL.map(Self::Effect))
+            .chain(Effect::ALL.iter().copied().map(Self::Effect))
             .chain((0..MOST_GAPS).map(Self::Gap))
-    }
-
-    /// Symbol in running text.
-    pub fn symbol(self) -> &'static str {
-        match self {
-            Self::Restitution => "R",
-            Self::Frequency => "f0",
-            Self::Damping => "β",
-            Self::Deflection => "x_st",
-            other => other.name(),
-        }
     }
 
     /// Whether the coordinate is a logarithm of the value.

@@ -2,21 +2,39 @@
 //! the fit whose prior is centred on zero and as wide as a good laboratory would accept.
 
 use serde::{Deserialize, Serialize};
+use strum::VariantArray;
 
 /// One effect beyond the model.
 #[derive(
-    Debug, Default, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+    Debug,
+    Default,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    strum::IntoStaticStr,
+    strum::VariantArray,
 )]
+#[strum(serialize_all = "snake_case")]
 #[serde(rename_all = "snake_case")]
 pub enum Effect {
     /// cos 2θ in the driving force, relative to F0
     #[default]
+    #[strum(to_string = "drive_harmonic_2_cos")]
     SecondHarmonicCos,
     /// sin 2θ
+    #[strum(to_string = "drive_harmonic_2_sin")]
     SecondHarmonicSin,
     /// cos 3θ
+    #[strum(to_string = "drive_harmonic_3_cos")]
     ThirdHarmonicCos,
     /// sin 3θ
+    #[strum(to_string = "drive_harmonic_3_sin")]
     ThirdHarmonicSin,
     /// Relative change of the force per unit of η, about η = 1
     ForceSlope,
@@ -29,12 +47,14 @@ pub enum Effect {
     /// Relative change of f0 from the first record to the last
     FrequencyDrift,
     /// Relative change of f0 in the middle of the campaign against both ends
+    #[strum(to_string = "frequency_drift_bend")]
     FrequencyBend,
     /// Relative change of β from the first record to the last
     DampingDrift,
     /// Relative change of `x_st` (the force) from the first record to the last
     DeflectionDrift,
     /// Length of a contact, ms
+    #[strum(to_string = "contact_duration_ms")]
     ContactDuration,
     /// Relative departure of what a contact's length makes of R from that of a spring and a damper
     ContactLaw,
@@ -66,6 +86,7 @@ pub enum Effect {
     Serialize,
     Deserialize,
     strum::IntoStaticStr,
+    strum::VariantArray,
 )]
 #[strum(serialize_all = "snake_case")]
 #[serde(rename_all = "snake_case")]
@@ -92,17 +113,7 @@ pub enum EffectKind {
 
 impl EffectKind {
     /// All of them.
-    pub const ALL: [Self; 9] = [
-        Self::Harmonics,
-        Self::ForceFrequency,
-        Self::Hardening,
-        Self::Friction,
-        Self::Drift,
-        Self::ContactDuration,
-        Self::Drag,
-        Self::SpringAsymmetry,
-        Self::HystereticDamping,
-    ];
+    pub const ALL: &'static [Self] = Self::VARIANTS;
 
     /// Name in `campaign.toml`.
     pub fn name(self) -> &'static str {
@@ -111,36 +122,16 @@ impl EffectKind {
 
     /// The kind of a name.
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.name() == name)
+        Self::ALL.iter().copied().find(|kind| kind.name() == name)
     }
 }
 
 impl Effect {
-    /// Number of effects.
-    pub const COUNT: usize = 19;
-
     /// All of them, in the order of their places.
-    pub const ALL: [Self; Self::COUNT] = [
-        Self::SecondHarmonicCos,
-        Self::SecondHarmonicSin,
-        Self::ThirdHarmonicCos,
-        Self::ThirdHarmonicSin,
-        Self::ForceSlope,
-        Self::ForceCurve,
-        Self::Hardening,
-        Self::Friction,
-        Self::FrequencyDrift,
-        Self::FrequencyBend,
-        Self::DampingDrift,
-        Self::DeflectionDrift,
-        Self::ContactDuration,
-        Self::ContactLaw,
-        Self::ContactReach,
-        Self::Drag,
-        Self::SpringAsymmetry,
-        Self::HystereticDamping,
-        Self::ClearanceDrift,
-    ];
+    pub const ALL: &'static [Self] = Self::VARIANTS;
+
+    /// Number of effects.
+    pub const COUNT: usize = Self::ALL.len();
 
     /// Place among all.
     pub fn place(self) -> usize {
@@ -206,27 +197,7 @@ impl Effect {
 
     /// Name in `identification.json`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::SecondHarmonicCos => "drive_harmonic_2_cos",
-            Self::SecondHarmonicSin => "drive_harmonic_2_sin",
-            Self::ThirdHarmonicCos => "drive_harmonic_3_cos",
-            Self::ThirdHarmonicSin => "drive_harmonic_3_sin",
-            Self::ForceSlope => "force_slope",
-            Self::ForceCurve => "force_curve",
-            Self::Hardening => "hardening",
-            Self::Friction => "friction",
-            Self::FrequencyDrift => "frequency_drift",
-            Self::FrequencyBend => "frequency_drift_bend",
-            Self::DampingDrift => "damping_drift",
-            Self::DeflectionDrift => "deflection_drift",
-            Self::ContactDuration => "contact_duration_ms",
-            Self::ContactLaw => "contact_law",
-            Self::ContactReach => "contact_reach",
-            Self::Drag => "drag",
-            Self::SpringAsymmetry => "spring_asymmetry",
-            Self::HystereticDamping => "hysteretic_damping",
-            Self::ClearanceDrift => "clearance_drift",
-        }
+        self.into()
     }
 }
 
@@ -245,7 +216,7 @@ impl Default for Effects {
 impl Effects {
     /// Every kind.
     pub fn all() -> Self {
-        Self::of(&EffectKind::ALL)
+        Self::of(EffectKind::ALL)
     }
 
     /// No kind.
@@ -256,14 +227,14 @@ impl Effects {
     /// Given kinds.
     pub fn of(kinds: &[EffectKind]) -> Self {
         Self {
-            allowed: EffectKind::ALL.map(|kind| kinds.contains(&kind)),
+            allowed: std::array::from_fn(|i| kinds.contains(&EffectKind::ALL[i])),
         }
     }
 
     /// The effects allowed, in their order.
     pub fn iter(self) -> impl Iterator<Item = Effect> {
         let allowed = move |e: &Effect| self.allowed[e.kind() as usize];
-        Effect::ALL.into_iter().filter(allowed)
+        Effect::ALL.iter().copied().filter(allowed)
     }
 }
 
@@ -273,11 +244,11 @@ mod tests {
 
     #[test]
     fn prop_places_and_names_are_those_of_the_lists() {
-        for (i, effect) in Effect::ALL.into_iter().enumerate() {
+        for (i, effect) in Effect::ALL.iter().enumerate() {
             assert_eq!(effect.place(), i);
         }
         for kind in EffectKind::ALL {
-            assert_eq!(EffectKind::named(kind.name()), Some(kind));
+            assert_eq!(EffectKind::named(kind.name()), Some(*kind));
         }
         assert_eq!(EffectKind::named("gravity"), None);
         assert_eq!(Effects::all().iter().count(), Effect::COUNT);

@@ -12,8 +12,8 @@ use crate::record::FlagCode;
 /// One message of each kind of an identification.
 pub fn kinds() -> Vec<Box<dyn Message>> {
     let beyond = [1.0, -1.0].into_iter().flat_map(|strength| {
-        Effect::ALL.map(|effect| Finding::BeyondModel {
-            effect,
+        Effect::ALL.iter().map(move |effect| Finding::BeyondModel {
+            effect: *effect,
             strength,
             standard_error: 0.0,
             z_score: 0.0,

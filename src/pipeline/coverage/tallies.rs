@@ -151,7 +151,7 @@ impl Tallies {
             tallies.motions.join(&statement.motions);
         }
         for effect in Effect::ALL {
-            let tally = Tally::count(statements.iter().map(|s| s.effects.contains(&effect)));
+            let tally = Tally::count(statements.iter().map(|s| s.effects.contains(effect)));
             if tally.found > 0 {
                 tallies.named_effects.insert(effect.name(), tally);
             }
