@@ -54,10 +54,11 @@ fn shared(placed: &Placed<Vec<String>>, context: &mut ResolveContext<'_>) -> Vec
     };
     let mut kinds = Vec::new();
     for name in placed.get_ref() {
-        match Common::named(name) {
-            Some(kind) => kinds.push(kind),
-            None => {
-                let known = Common::ALL.map(Common::name).join(", ");
+        match name.parse() {
+            Ok(kind) => kinds.push(kind),
+            Err(_) => {
+                let known: Vec<&str> = Common::ALL.iter().map(|c| c.name()).collect();
+                let known = known.join(", ");
                 let what = format!("campaigns cannot share '{name}'");
                 let remedy = format!("choose among {known}, or remove the line");
                 context.fault(Code::OutOfRange, placed, "rig.shared", what, &remedy);

@@ -15,7 +15,7 @@ pub use crate::identify::uncertainty::IntervalMethod;
 use crate::record::ContactContent;
 use crate::record::calibrate::ChannelKey;
 pub use crate::record::{Excitation, Sweep};
-pub use crate::report::Format;
+pub use crate::report::{Format, Paper};
 
 /// A value with its place in the file.
 pub type Placed<T> = Option<Spanned<T>>;
@@ -243,30 +243,10 @@ pub struct Report {
     pub logo: Placed<String>,
 }
 
-/// Paper size of the report.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Paper {
-    /// 210 mm × 297 mm.
-    #[serde(rename = "a4")]
-    A4,
-    /// 8.5 in × 11 in.
-    #[serde(rename = "us-letter")]
-    UsLetter,
-}
-
-impl Paper {
-    /// The name that campaign.toml and typst use.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::A4 => "a4",
-            Self::UsLetter => "us-letter",
-        }
-    }
-}
-
 /// Language of the report.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Language {
     /// English.
     En,

@@ -9,12 +9,11 @@ use super::progress::Progress;
 use super::report_args::quoted;
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity, interrupt};
-use crate::campaign::written::Paper as WrittenPaper;
 use crate::difference::{self, Campaign, Comparison};
-use crate::pipeline::campaigns::{self, Wanted};
+use crate::pipeline::campaigns;
 use crate::pipeline::{self, Observed};
 use crate::report::catalog::Catalog;
-use crate::report::{Format, Paper, ReportOptions};
+use crate::report::{CampaignsContent, Format, Paper, ReportOptions};
 use labfiles::output::Lock;
 
 /// Arguments of `impactid compare`.
@@ -44,7 +43,7 @@ pub(super) struct Compare {
     language: Language,
     /// Paper size
     #[arg(long, value_name = "PAPER", value_enum)]
-    paper: Option<WrittenPaper>,
+    paper: Option<Paper>,
     /// Print numbers with a decimal comma
     #[arg(long)]
     decimal_comma: bool,
@@ -93,12 +92,18 @@ impl Compare {
             .collect();
         campaigns::tell_apart(&mut all, &places);
         let comparison = difference::compare(&all).map_err(pipeline::PipelineError::from)?;
-        let files = campaigns::files(&comparison, &self.wanted())?;
+        let content = CampaignsContent {
+            title: self.title.clone(),
+            comparison,
+            command_line: self.typed(),
+        };
+        let comparison = &content.comparison;
+        let files = campaigns::files(&content, &self.format, &self.options())?;
         pipeline::report::write(&files, &self.out)?;
         if self.json {
-            print_json(&comparison)?;
+            print_json(comparison)?;
         } else if !verbosity.is_quiet() {
-            print(&table(&comparison))?;
+            print(&table(comparison))?;
         }
         for (name, _) in files.iter().filter(|(name, _)| !name.contains('/')) {
             verbosity.info(&format!("Written: {}", self.out.join(name).display()));
@@ -120,22 +125,15 @@ impl Compare {
         Ok(())
     }
 
-    fn wanted(&self) -> Wanted {
+    /// The look of the documents.
+    fn options(&self) -> ReportOptions {
         let german = self.language == Language::De;
-        Wanted {
-            formats: self.format.clone(),
-            options: ReportOptions {
-                paper: match self.paper {
-                    Some(WrittenPaper::UsLetter) => Paper::Letter,
-                    _ => Paper::A4,
-                },
-                language: if german { "de" } else { "en" }.to_owned(),
-                catalog: german.then(|| Catalog::german().clone()),
-                decimal_comma: self.decimal_comma,
-                ..ReportOptions::default()
-            },
-            title: self.title.clone(),
-            command_line: self.typed(),
+        ReportOptions {
+            paper: self.paper.unwrap_or_default(),
+            language: if german { "de" } else { "en" }.to_owned(),
+            catalog: german.then(|| Catalog::german().clone()),
+            decimal_comma: self.decimal_comma,
+            ..ReportOptions::default()
         }
     }
 

@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
 use crate::pipeline::theory::block_cache::BlockCache;
-use crate::pipeline::theory::{Pictures, Study, StudyContext, StudyError, run};
+use crate::pipeline::theory::{Pictures, Study, StudyContext, run};
 use labfiles::output::{Lock, write_bytes};
 
 /// Where results go.
@@ -23,12 +23,6 @@ pub(super) struct OutArgs {
 
 /// Name of the study beside its results; it is written last, so its presence marks complete results.
 pub(super) const COPY: &str = "study.toml";
-
-impl From<StudyError> for Failure {
-    fn from(error: StudyError) -> Self {
-        Self::new(error.to_string(), error.remedy())
-    }
-}
 
 impl OutArgs {
     /// The folder.

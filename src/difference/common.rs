@@ -7,7 +7,18 @@ use crate::identify::fit::effect::EffectKind;
 
 /// A kind of error or asymmetry that stays the same from campaign to campaign on a rig.
 #[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, strum::IntoStaticStr,
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    strum::IntoStaticStr,
+    strum::EnumString,
+    strum::VariantArray,
 )]
 #[strum(serialize_all = "snake_case")]
 #[serde(rename_all = "snake_case")]
@@ -32,25 +43,11 @@ pub enum Common {
 
 impl Common {
     /// All of them.
-    pub const ALL: [Self; 8] = [
-        Self::Gains,
-        Self::Corners,
-        Self::Delays,
-        Self::ClearanceZero,
-        Self::Clearances,
-        Self::Asymmetries,
-        Self::Harmonics,
-        Self::ForceFrequency,
-    ];
+    pub const ALL: &'static [Self] = <Self as strum::VariantArray>::VARIANTS;
 
     /// Name in `campaign.toml`.
     pub fn name(self) -> &'static str {
         self.into()
-    }
-
-    /// The kind of a name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
     /// The kind that a coordinate of a fit belongs to; `None` of what each campaign has of its own: the

@@ -51,9 +51,6 @@ pub enum ExploreError {
     /// A stage of the pipeline failed.
     #[error(transparent)]
     Pipeline(#[from] crate::pipeline::PipelineError),
-    /// A study failed.
-    #[error(transparent)]
-    Study(#[from] crate::pipeline::theory::StudyError),
     /// Steps of demos did not show what they state.
     #[error("{} of the demos' steps differ: {}", .0.len(), .0.join("; "))]
     Demos(Vec<String>),
@@ -79,7 +76,6 @@ impl ExploreError {
             Self::Server(_) => "start `impactid explore` again",
             Self::Demos(_) => "correct the demos' `expect`, or report the difference",
             Self::Pipeline(error) => return error.remedy(),
-            Self::Study(error) => error.remedy(),
         }
         .to_owned()
     }

@@ -10,8 +10,9 @@ use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::identify::uncertainty::scatter::Spread;
 
 /// How well the data determine a parameter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Status {
     /// Well.
     Identified,
@@ -19,6 +20,13 @@ pub enum Status {
     Weak,
     /// Not at all: there is no value.
     NotIdentifiable,
+}
+
+impl Status {
+    /// Its name in the results.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
 }
 
 /// An estimate of one parameter with its interval.

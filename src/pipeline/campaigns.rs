@@ -129,32 +129,18 @@ struct Written<'a> {
     versions: BTreeMap<String, String>,
 }
 
-/// What a comparison is written as.
-#[derive(Debug, Clone)]
-pub struct Wanted {
-    /// Documents and figures beside the tables.
-    pub formats: Vec<Format>,
-    /// Their look.
-    pub options: ReportOptions,
-    /// Title of the documents.
-    pub title: String,
-    /// The command that makes them again.
-    pub command_line: String,
-}
-
 /// The files of a comparison: comparison.json, comparison.csv, the data of the figure, and the documents
 /// that are wanted.
 ///
 /// # Errors
 /// If a document cannot be set or the result is no JSON.
-pub fn files(comparison: &Comparison, wanted: &Wanted) -> Result<Vec<ReportFile>, PipelineError> {
-    let content = CampaignsContent {
-        title: wanted.title.clone(),
-        comparison: comparison.clone(),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        command_line: wanted.command_line.clone(),
-    };
-    let report = Report::of_campaigns(&content, &wanted.options);
+pub fn files(
+    content: &CampaignsContent,
+    formats: &[Format],
+    options: &ReportOptions,
+) -> Result<Vec<ReportFile>, PipelineError> {
+    let comparison = &content.comparison;
+    let report = Report::of_campaigns(content, options);
     let written = Written {
         outcome: comparison.outcome(),
         comparison,
@@ -168,12 +154,7 @@ pub fn files(comparison: &Comparison, wanted: &Wanted) -> Result<Vec<ReportFile>
         (COMPARISON.to_owned(), (json + "\n").into_bytes()),
         (TABLE.to_owned(), table(comparison)?),
     ];
-    let mut formats = wanted.formats.clone();
-    formats.retain(|f| *f != Format::Csv);
-    formats.push(Format::Csv);
-    for format in formats {
-        files.extend(report.files(format)?);
-    }
+    files.extend(report.all_files(formats)?);
     Ok(files)
 }
 

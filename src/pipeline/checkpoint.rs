@@ -11,10 +11,9 @@ use std::time::UNIX_EPOCH;
 use sha2::{Digest, Sha256};
 
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::motion::Observation;
-use crate::pipeline::gzip_json;
 use crate::pipeline::inputs::hexadecimal;
-use labfiles::output::{self, OutputError};
+use crate::pipeline::theory::block_cache::BlockCache;
+use labfiles::output::OutputError;
 
 /// Folder of the chunks in the output folder; it is removed when the run is done.
 const FOLDER: &str = ".impactid-observed";
@@ -29,63 +28,16 @@ pub fn chunk_of(records: usize) -> usize {
     (records / 16).clamp(8, 512)
 }
 
-/// The chunks of one run in its output folder.
-#[derive(Debug)]
-pub struct Checkpoint {
-    folder: PathBuf,
-    key: String,
-}
-
-/// A chunk as it is stored.
-#[derive(serde::Serialize, serde::Deserialize)]
-struct Chunk<T> {
-    key: String,
-    observations: T,
-}
-
-impl Checkpoint {
-    /// The chunks in an output folder. Without `resume` those of an earlier run are removed.
-    ///
-    /// # Errors
-    /// If the folder cannot be written into.
-    pub fn open(
-        campaign: &ResolvedCampaign,
-        out: &Path,
-        resume: bool,
-    ) -> Result<Self, OutputError> {
-        let checkpoint = Self {
-            folder: out.join(FOLDER),
-            key: key(campaign),
-        };
-        if !resume {
-            remove(out);
-        }
-        output::make_folder(&checkpoint.folder)?;
-        output::clear_parts(&checkpoint.folder);
-        Ok(checkpoint)
-    }
-
-    fn path(&self, number: usize) -> PathBuf {
-        self.folder.join(format!("{number:06}.json.gz"))
-    }
-
-    /// The observations of a chunk; `None` if it is missing, of another run or unreadable.
-    pub fn load(&self, number: usize, records: usize) -> Option<Vec<Observation>> {
-        let chunk: Chunk<Vec<Observation>> = gzip_json::read(&self.path(number)).ok()?;
-        (chunk.key == self.key && chunk.observations.len() == records).then_some(chunk.observations)
-    }
-
-    /// Save the observations of a chunk.
-    ///
-    /// # Errors
-    /// If it cannot be written.
-    pub fn save(&self, number: usize, observations: &[Observation]) -> Result<(), OutputError> {
-        let chunk = Chunk {
-            key: self.key.clone(),
-            observations,
-        };
-        gzip_json::write(&self.path(number), &chunk)
-    }
+/// The chunks in an output folder. Without `resume` those of an earlier run are removed.
+///
+/// # Errors
+/// If the folder cannot be written into.
+pub fn open(
+    campaign: &ResolvedCampaign,
+    out: &Path,
+    resume: bool,
+) -> Result<BlockCache, OutputError> {
+    BlockCache::in_folder(out.join(FOLDER), key(campaign), resume)
 }
 
 /// Remove all chunks in an output folder: the run is done.
@@ -128,10 +80,10 @@ fn state(file: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::observe::{observe_all, observe_in_chunks};
+    use crate::motion::Observation;
+    use crate::pipeline::observe::observe_in_chunks;
     use crate::pipeline::synthesise::{Recipe, write_campaign};
     use crate::synthetic::Truth;
-    use labfiles::open;
 
     #[test]
     fn a_resumed_observation_is_that_of_an_uninterrupted_run() {
@@ -146,27 +98,31 @@ mod tests {
         };
         write_campaign(&recipe, folder.path()).unwrap();
         let toml = folder.path().join("campaign.toml");
-        let campaign = crate::campaign::load(&toml, &open).campaign.unwrap();
+        let campaign = crate::campaign::load(&toml, &labfiles::open)
+            .campaign
+            .unwrap();
         let quiet = |_: &'static str, _: u64, _: u64| {};
-        let whole = observe_all(&campaign, &quiet);
+        let whole = observe_in_chunks(&campaign, &BlockCache::none(), 12, &quiet).unwrap();
 
         let out = folder.path().join("out");
-        let kept = Checkpoint::open(&campaign, &out, false).unwrap();
+        let kept = open(&campaign, &out, false).unwrap();
         let first = observe_in_chunks(&campaign, &kept, 5, &quiet).unwrap();
         assert_eq!(json(&whole), json(&first));
         // interrupted: one chunk was not yet written, one is damaged
-        std::fs::remove_file(kept.path(1)).unwrap();
-        std::fs::write(kept.path(2), b"half").unwrap();
-        let kept = Checkpoint::open(&campaign, &out, true).unwrap();
-        assert!(kept.load(0, 5).is_some() && kept.load(2, 2).is_none());
+        let chunks = out.join(FOLDER);
+        std::fs::remove_file(chunks.join("000001.json.gz")).unwrap();
+        std::fs::write(chunks.join("000002.json.gz"), b"half").unwrap();
+        let kept = open(&campaign, &out, true).unwrap();
+        let is_there = |kept: &BlockCache, name| kept.load::<Vec<Observation>>(name).is_some();
+        assert!(is_there(&kept, "000000") && !is_there(&kept, "000002"));
         let resumed = observe_in_chunks(&campaign, &kept, 5, &quiet).unwrap();
         assert_eq!(json(&whole), json(&resumed));
 
         // another campaign loads nothing
         let mut other = campaign.clone();
         other.analysis.skip_s = 0.1;
-        let kept = Checkpoint::open(&other, &out, true).unwrap();
-        assert!(kept.load(0, 5).is_none());
+        let kept = open(&other, &out, true).unwrap();
+        assert!(!is_there(&kept, "000000"));
     }
 
     fn json(observations: &[Observation]) -> String {

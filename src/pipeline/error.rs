@@ -1,6 +1,7 @@
 //! Why the pipeline stops, and how it reports its progress.
 
 use crate::record::Flag;
+use impact_oscillator::model::ModelError;
 use labfiles::ReadError;
 use labfiles::output::OutputError;
 
@@ -80,13 +81,29 @@ pub enum PipelineError {
     Report(#[from] crate::report::ReportError),
     /// The simulation refused its parameters.
     #[error(transparent)]
-    Model(#[from] impact_oscillator::model::params::ModelError),
+    Model(#[from] ModelError),
+    /// A study refuses its parameters.
+    #[error("{name}: {source}")]
+    Study {
+        /// What was computed.
+        name: String,
+        /// Which parameter.
+        source: ModelError,
+    },
     /// The HDF5 writer failed.
     #[error(transparent)]
     Hdf5(#[from] labfiles::hdf5_write::WriteError),
 }
 
 impl PipelineError {
+    /// A model's refusal of a named study.
+    pub(super) fn of(name: &str) -> impl Fn(ModelError) -> Self + use<'_> {
+        move |source| Self::Study {
+            name: name.to_owned(),
+            source,
+        }
+    }
+
     /// What the user can do.
     pub fn remedy(&self) -> String {
         match self {
@@ -110,6 +127,7 @@ impl PipelineError {
             }
             Self::Hdf5(error) => error.remedy().to_owned(),
             Self::Report(_) => "fix the template or the logo, or leave them out".to_owned(),
+            Self::Study { .. } => "give a value within the range that the message names".into(),
             Self::Model(_) => "choose parameters within the range that the message names".into(),
             _ => {
                 "this is an error of the program: please report it with the command line".to_owned()

@@ -8,7 +8,7 @@ use crate::campaign::check::by_file;
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
 use crate::motion::{Observation, observe};
 use crate::pipeline::Progress;
-use crate::pipeline::checkpoint::Checkpoint;
+use crate::pipeline::theory::block_cache::BlockCache;
 use crate::record::calibrate::{calibrate, unreadable};
 use crate::record::{Flag, FlagCode, Record};
 use labfiles::Source;
@@ -22,23 +22,14 @@ const MOST_WAVEFORMS: usize = 4_000;
 /// Records read ahead of the one that is processed.
 const READ_AHEAD: usize = 256;
 
-/// Observe every record, in the order of the campaign.
-pub fn observe_all(campaign: &ResolvedCampaign, progress: Progress<'_>) -> Vec<Observation> {
-    let total = campaign.records.len() as u64;
-    let done = AtomicU64::new(0);
-    observe_some(campaign, &campaign.records, &|| {
-        progress("observe", done.fetch_add(1, Ordering::Relaxed) + 1, total);
-    })
-}
-
-/// Observe every record in chunks of `chunk` records; chunks in the checkpoint are loaded, the others
-/// are saved there.
+/// Observe every record, in the order of the campaign, in chunks of `chunk` records; those that are kept
+/// are loaded, the others are saved.
 ///
 /// # Errors
 /// If a chunk cannot be written.
 pub fn observe_in_chunks(
     campaign: &ResolvedCampaign,
-    checkpoint: &Checkpoint,
+    kept: &BlockCache,
     chunk: usize,
     progress: Progress<'_>,
 ) -> Result<Vec<Observation>, OutputError> {
@@ -46,15 +37,17 @@ pub fn observe_in_chunks(
     let done = AtomicU64::new(0);
     let mut all = Vec::with_capacity(campaign.records.len());
     for (number, entries) in campaign.records.chunks(chunk.max(1)).enumerate() {
-        if let Some(kept) = checkpoint.load(number, entries.len()) {
+        let name = format!("{number:06}");
+        let chunk: Option<Vec<Observation>> = kept.load(&name);
+        if let Some(chunk) = chunk.filter(|chunk| chunk.len() == entries.len()) {
             done.fetch_add(entries.len() as u64, Ordering::Relaxed);
-            all.extend(kept);
+            all.extend(chunk);
             continue;
         }
         let observed = observe_some(campaign, entries, &|| {
             progress("observe", done.fetch_add(1, Ordering::Relaxed) + 1, total);
         });
-        checkpoint.save(number, &observed)?;
+        kept.save(&name, &observed)?;
         all.extend(observed);
     }
     Ok(all)

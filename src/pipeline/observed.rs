@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use super::checkpoint::{self, Checkpoint};
+use super::checkpoint;
 use super::error::{PipelineError, Progress, RefusedRecord};
 use super::observe;
+use super::theory::block_cache::BlockCache;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::motion::{Bracket, Observation, brackets, scale_drives};
 
@@ -23,7 +24,11 @@ impl Observed {
     /// # Errors
     /// [`PipelineError::NothingUsable`] where no record can be used.
     pub fn of(campaign: &ResolvedCampaign, progress: Progress<'_>) -> Result<Self, PipelineError> {
-        Self::from_observations(observe::observe_all(campaign, progress))
+        let kept = BlockCache::none();
+        let whole = campaign.records.len();
+        Self::from_observations(observe::observe_in_chunks(
+            campaign, &kept, whole, progress,
+        )?)
     }
 
     /// Observe all records of a campaign with checkpoints in `out`; with `resume` those of an
@@ -36,7 +41,7 @@ impl Observed {
         (out, resume): (&Path, bool),
         progress: Progress<'_>,
     ) -> Result<Self, PipelineError> {
-        let kept = Checkpoint::open(campaign, out, resume)?;
+        let kept = checkpoint::open(campaign, out, resume)?;
         let chunk = checkpoint::chunk_of(campaign.records.len());
         let observations = observe::observe_in_chunks(campaign, &kept, chunk, progress)?;
         Self::from_observations(observations)

@@ -9,7 +9,6 @@ use crate::identify::plan::{Proposal, Reach, propose};
 use crate::motion::Motion;
 use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, report};
-use crate::report::ProposedPoint;
 use labfiles::output::{make_folder, write_bytes};
 
 /// What is written as plan.json.
@@ -58,22 +57,13 @@ pub fn plan(
     make_folder(out)?;
     let mut content = report::content(campaign, &observed, &found, "")?;
     content.compared.comparisons.clear();
-    content.proposals = plan.proposals.iter().map(point).collect();
+    content.proposals.clone_from(&plan.proposals);
     for (name, bytes) in crate::report::plan_map(&content, campaign.report.decimal_comma)? {
         write_bytes(&out.join(name), &bytes)?;
     }
     write_bytes(&out.join("plan.csv"), csv(&plan.proposals).as_bytes())?;
     write_json(&out.join(FILE), &plan)?;
     Ok(plan)
-}
-
-fn point(proposal: &Proposal) -> ProposedPoint {
-    ProposedPoint {
-        eta: proposal.frequency_ratio,
-        rho: proposal.clearance_ratio,
-        frequency_hz: proposal.frequency_hz,
-        clearance_m: proposal.clearance_m,
-    }
 }
 
 fn csv(proposals: &[Proposal]) -> String {

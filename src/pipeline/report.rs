@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::campaign::resolved::{Report as StatedOptions, ResolvedCampaign};
-use crate::campaign::written::{Language, Paper as WrittenPaper};
+use crate::campaign::written::Language;
 use crate::compare::{self, Input};
 use crate::event::RigKind;
 use crate::identify::Provenance;
@@ -14,8 +14,8 @@ use crate::pipeline::{Observed, PipelineError};
 use crate::report::Phrase;
 use crate::report::catalog::Catalog;
 use crate::report::{
-    CampaignFacts, Format, LivePage, Logo, NominalValue, Paper, Report, ReportContent,
-    ReportOptions, Subject,
+    CampaignFacts, Format, LivePage, Logo, NominalValue, Report, ReportContent, ReportOptions,
+    Subject,
 };
 use labfiles::output::{make_folder, write_bytes};
 
@@ -62,13 +62,7 @@ pub fn render(
     let report = Report::new(content, &options(&campaign.report)?);
     let mut formats = campaign.report.formats.clone();
     formats.extend(also.filter(|f| !formats.contains(f)));
-    formats.retain(|f| *f != Format::Csv);
-    formats.push(Format::Csv);
-    let mut out = Vec::new();
-    for format in formats {
-        out.extend(report.files(format)?);
-    }
-    Ok(out)
+    Ok(report.all_files(&formats)?)
 }
 
 /// The page of a campaign whose records are still arriving.
@@ -177,17 +171,9 @@ fn options(stated: &StatedOptions) -> Result<ReportOptions, PipelineError> {
     };
     Ok(ReportOptions {
         catalog: catalog(stated)?,
-        paper: match stated.paper {
-            WrittenPaper::A4 => Paper::A4,
-            WrittenPaper::UsLetter => Paper::Letter,
-        },
+        paper: stated.paper,
         decimal_comma: stated.decimal_comma,
-        language: match stated.language {
-            Language::En => "en",
-            Language::Cs => "cs",
-            Language::De => "de",
-        }
-        .to_owned(),
+        language: <&str>::from(stated.language).to_owned(),
         template: stated.template.as_ref().map(template).transpose()?,
         logo: stated.logo.as_ref().map(logo).transpose()?,
         live: None,

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::identify;
 use super::json::{store_error, write_json};
 use super::{Completed, PipelineError};
+use crate::identify::fit::parameters::Coordinate;
 use crate::identify::{Estimate, ParameterSet, VerdictKind};
 use labfiles::output::write_bytes;
 
@@ -89,26 +90,7 @@ impl Found {
             joint: done.identification.joint.parameters.clone(),
         }
     }
-
-    /// The estimates under the names that the table gives them; `None`: not determined at all.
-    fn estimates(&self) -> [Option<&Estimate>; 4] {
-        let p = &self.joint;
-        [
-            p.restitution.as_ref(),
-            p.natural_frequency_hz.as_ref(),
-            p.damping_ratio.as_ref(),
-            p.static_deflection_m.as_ref(),
-        ]
-    }
 }
-
-/// The parameters' names in the table, in the order of [`Found::estimates`].
-const PARAMETERS: [&str; 4] = [
-    "restitution",
-    "natural_frequency_hz",
-    "damping_ratio",
-    "static_deflection_m",
-];
 
 impl Summary {
     /// Rows with this program's versions.
@@ -136,7 +118,8 @@ impl Summary {
             .map(String::from)
             .to_vec();
         heads.push("usable_records".to_owned());
-        for name in PARAMETERS {
+        for parameter in Coordinate::PHYSICAL {
+            let name = parameter.name();
             heads.extend(
                 ["", "_standard_error", "_low", "_high", "_status"].map(|e| format!("{name}{e}")),
             );
@@ -144,14 +127,14 @@ impl Summary {
         heads.push("error".to_owned());
         table.write_record(&heads)?;
         for row in &self.campaigns {
-            table.write_record(row.cells()?)?;
+            table.write_record(row.cells())?;
         }
         Ok(table.into_inner()?)
     }
 }
 
 impl Row {
-    fn cells(&self) -> Result<Vec<String>, serde_json::Error> {
+    fn cells(&self) -> Vec<String> {
         let mut cells = vec![
             self.campaign.clone(),
             self.folder.clone(),
@@ -159,42 +142,36 @@ impl Row {
         ];
         match &self.outcome {
             Outcome::Result(found) => {
-                cells.push(word(&found.verdict)?);
+                cells.push(found.verdict.name().to_owned());
                 cells.push(found.records.to_string());
                 cells.push(found.usable_records.to_string());
-                for estimate in found.estimates() {
-                    cells.extend(estimate_cells(estimate)?);
+                for parameter in Coordinate::PHYSICAL {
+                    cells.extend(estimate_cells(found.joint.get(parameter)));
                 }
                 cells.push(String::new());
             }
             Outcome::Errors(faults) => {
-                cells.resize(6 + 5 * PARAMETERS.len(), String::new());
+                cells.resize(6 + 5 * Coordinate::PHYSICAL.len(), String::new());
                 let messages: Vec<&str> = faults.iter().map(|f| f.message.as_str()).collect();
                 cells.push(messages.join("; "));
             }
         }
-        Ok(cells)
+        cells
     }
 }
 
-fn estimate_cells(estimate: Option<&Estimate>) -> Result<[String; 5], serde_json::Error> {
+fn estimate_cells(estimate: Option<&Estimate>) -> [String; 5] {
     let Some(estimate) = estimate else {
-        return Ok(Default::default());
+        return Default::default();
     };
     let number = |v: Option<f64>| v.map(|v| v.to_string()).unwrap_or_default();
-    Ok([
+    [
         number(estimate.value),
         number(estimate.standard_error),
         number(estimate.interval95.map(|i| i[0])),
         number(estimate.interval95.map(|i| i[1])),
-        word(&estimate.status)?,
-    ])
-}
-
-/// A variant by its name in JSON.
-fn word(variant: &impl Serialize) -> Result<String, serde_json::Error> {
-    let text = serde_json::to_value(variant)?;
-    Ok(text.as_str().unwrap_or_default().to_owned())
+        estimate.status.name().to_owned(),
+    ]
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::pipeline::PipelineError;
+use crate::pipeline::json::write_json;
 use crate::pipeline::store::RECORDS_A_FILE;
 use crate::synthetic::acquisition::{FULL_SCALE_V, converter_step};
 use crate::synthetic::rig::{ROLES, sensitivities};
@@ -121,9 +122,9 @@ pub fn write_campaign(recipe: &Recipe, out: &Path) -> Result<usize, PipelineErro
     };
     write_bytes(&out.join(RUN_TABLE), run_table(&files).as_bytes())?;
     write_bytes(&out.join("campaign.toml"), campaign_toml(recipe).as_bytes())?;
-    write_bytes(
+    write_json(
         &out.join("truth.json"),
-        truth_json(recipe, &effects, &files)?.as_bytes(),
+        &truth_file(recipe, &effects, &files),
     )?;
     Ok(plan.steps.len())
 }
@@ -229,12 +230,12 @@ fn run_table(files: &[RecordsFile]) -> String {
     text
 }
 
-fn truth_json(
-    recipe: &Recipe,
-    effects: &Effects,
-    files: &[RecordsFile],
-) -> Result<String, PipelineError> {
-    let file = TruthFile {
+fn truth_file<'a>(
+    recipe: &'a Recipe,
+    effects: &'a Effects,
+    files: &'a [RecordsFile],
+) -> TruthFile<'a> {
+    TruthFile {
         synthetic: true,
         restitution: recipe.truth.restitution,
         natural_frequency_hz: recipe.truth.natural_frequency_hz,
@@ -244,13 +245,7 @@ fn truth_json(
         speed_ratio: speed_ratio(files).filter(|_| effects.contact_duration_s > 0.0),
         recipe,
         records: files.iter().flat_map(|f| &f.truths).collect(),
-    };
-    let mut text = serde_json::to_string_pretty(&file).map_err(|e| PipelineError::Table {
-        table: "truth.json".into(),
-        reason: e.to_string(),
-    })?;
-    text.push('\n');
-    Ok(text)
+    }
 }
 
 /// campaign.toml as the virtual laboratory would have filled it in: nominal values only.

@@ -2,6 +2,7 @@
 
 use crate::compare::Compared;
 use crate::difference::{Common, Comparison};
+use crate::identify::plan::Proposal;
 use crate::identify::{Identification, Provenance};
 use crate::record::calibrate::ChannelSetup;
 use crate::report::phrase::{Phrase, Text};
@@ -21,7 +22,7 @@ pub struct ReportContent {
     /// The fitted model beside the measurement.
     pub compared: Compared,
     /// Settings proposed for measuring next, the best first.
-    pub proposals: Vec<ProposedPoint>,
+    pub proposals: Vec<Proposal>,
     /// Further tables of numbers, printed with the methods.
     pub tables: Vec<DataTable>,
     /// The command that makes this report again.
@@ -35,8 +36,6 @@ pub struct CampaignsContent {
     pub title: String,
     /// The campaigns, their differences, what they share.
     pub comparison: Comparison,
-    /// Version of the program.
-    pub version: String,
     /// The command that makes this report again.
     pub command_line: String,
 }
@@ -98,17 +97,4 @@ pub struct DataTable {
     pub heads: Vec<Text>,
     /// The rows, one cell per head.
     pub rows: Vec<Vec<String>>,
-}
-
-/// A setting proposed for measuring next.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ProposedPoint {
-    /// η with the fitted f0.
-    pub eta: f64,
-    /// ρ with the fitted `x_st`.
-    pub rho: f64,
-    /// Drive frequency, Hz.
-    pub frequency_hz: f64,
-    /// Half the gap, m.
-    pub clearance_m: f64,
 }

@@ -18,7 +18,7 @@ pub mod style;
 pub(crate) mod theory;
 
 pub use content::{
-    CampaignFacts, CampaignsContent, DataTable, NominalValue, ProposedPoint, ReportContent, Subject,
+    CampaignFacts, CampaignsContent, DataTable, NominalValue, ReportContent, Subject,
 };
 pub use document::budget_source;
 pub use error::ReportError;
@@ -110,6 +110,19 @@ impl Report {
             Format::Tex => Ok(latex::tables(&self.document)),
             Format::Csv => each("csv", &|f| Ok(f.csv.clone().into_bytes())),
         }
+    }
+
+    /// The files of some formats; the figures' data are always among them, last.
+    ///
+    /// # Errors
+    /// Those of [`Self::files`].
+    pub fn all_files(&self, formats: &[Format]) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
+        let others = formats.iter().filter(|f| **f != Format::Csv);
+        let each: Result<Vec<_>, _> = others
+            .chain([&Format::Csv])
+            .map(|f| self.files(*f))
+            .collect();
+        Ok(each?.concat())
     }
 }
 

@@ -4,28 +4,41 @@ use super::catalog::Catalog;
 use super::locale::Locale;
 
 /// Paper of the document.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Paper {
     /// 210 mm × 297 mm.
     #[default]
     A4,
     /// 8.5 in × 11 in.
-    Letter,
+    UsLetter,
 }
 
 impl Paper {
-    /// Its name in the template.
-    pub(super) fn name(self) -> &'static str {
+    /// Its name in campaign.toml and in the template.
+    pub fn name(self) -> &'static str {
         match self {
             Self::A4 => "a4",
-            Self::Letter => "us-letter",
+            Self::UsLetter => "us-letter",
         }
     }
 }
 
 /// What a report can be written as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Hash,
+    serde::Serialize,
+    serde::Deserialize,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum Format {
     /// The document as PDF.
     Pdf,
@@ -36,7 +49,6 @@ pub enum Format {
     /// Each figure as PNG.
     Png,
     /// Each figure as PDF of its size, for papers.
-    #[serde(rename = "figure-pdf")]
     FigurePdf,
     /// Each table as LaTeX.
     Tex,
@@ -46,27 +58,11 @@ pub enum Format {
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 7] = [
-        Self::Pdf,
-        Self::Html,
-        Self::Svg,
-        Self::Png,
-        Self::FigurePdf,
-        Self::Tex,
-        Self::Csv,
-    ];
+    pub const ALL: &'static [Self] = <Self as strum::VariantArray>::VARIANTS;
 
     /// The format's name on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Pdf => "pdf",
-            Self::Html => "html",
-            Self::Svg => "svg",
-            Self::Png => "png",
-            Self::FigurePdf => "figure-pdf",
-            Self::Tex => "tex",
-            Self::Csv => "csv",
-        }
+        self.into()
     }
 }
 
@@ -74,8 +70,9 @@ impl std::str::FromStr for Format {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        let found = Self::ALL.into_iter().find(|f| f.name() == name);
-        let known = Self::ALL.map(Self::name).join(", ");
+        let found = Self::ALL.iter().find(|f| f.name() == name).copied();
+        let known: Vec<&str> = Self::ALL.iter().map(|f| f.name()).collect();
+        let known = known.join(", ");
         found.ok_or_else(|| format!("unknown format '{name}'; known are {known}"))
     }
 }

@@ -1,14 +1,15 @@
 //! Parameters and methods as printed: names, symbols, units, digits.
 
 use super::locale::{Locale, decimal_exponent};
-use crate::identify::{Estimate, Method, ParameterSet, Status};
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::{Estimate, Method};
 use crate::report::phrase::Phrase;
 
 /// How a parameter is named and printed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ParameterLook {
-    /// Its name in `identification.json`.
-    pub key: &'static str,
+    /// Which one.
+    pub parameter: Coordinate,
     /// Its symbol, with markup.
     pub symbol: &'static str,
     /// Its name in words.
@@ -17,49 +18,51 @@ pub(super) struct ParameterLook {
     pub unit: &'static str,
     /// Multiply an SI value by this.
     pub factor: f64,
-    /// Where it stands in the set.
-    pub pick: fn(&ParameterSet) -> Option<&Estimate>,
+}
+
+impl ParameterLook {
+    /// Title of its axis: symbol and unit.
+    pub(super) fn axis_title(&self) -> String {
+        let unit = if self.unit.is_empty() { "1" } else { self.unit };
+        format!("{} ({unit})", self.symbol)
+    }
 }
 
 /// The four parameters of the oscillator.
 pub(super) const PARAMETERS: [ParameterLook; 4] = [
     ParameterLook {
-        key: "restitution",
+        parameter: Coordinate::Restitution,
         symbol: "$R$",
         name: Phrase::CoefficientOfRestitution,
         unit: "",
         factor: 1.0,
-        pick: |p| p.restitution.as_ref(),
     },
     ParameterLook {
-        key: "natural_frequency_hz",
+        parameter: Coordinate::Frequency,
         symbol: "$f_0$",
         name: Phrase::NaturalFrequency,
         unit: "Hz",
         factor: 1.0,
-        pick: |p| p.natural_frequency_hz.as_ref(),
     },
     ParameterLook {
-        key: "damping_ratio",
+        parameter: Coordinate::Damping,
         symbol: "$β$",
         name: Phrase::DampingRatio,
         unit: "",
         factor: 1.0,
-        pick: |p| p.damping_ratio.as_ref(),
     },
     ParameterLook {
-        key: "static_deflection_m",
+        parameter: Coordinate::Deflection,
         symbol: "$x_{st}$",
         name: Phrase::StaticDeflection,
         unit: "mm",
         factor: 1e3,
-        pick: |p| p.static_deflection_m.as_ref(),
     },
 ];
 
-/// The look of a parameter by its name.
-pub(super) fn parameter(key: &str) -> Option<&'static ParameterLook> {
-    PARAMETERS.iter().find(|p| p.key == key)
+/// The look of a parameter; `None` of what is fitted beside them.
+pub(super) fn parameter(coordinate: Coordinate) -> Option<&'static ParameterLook> {
+    PARAMETERS.iter().find(|p| p.parameter == coordinate)
 }
 
 /// Name of a method inside a sentence or a list.
@@ -68,15 +71,6 @@ pub(super) fn method_inline(method: Method, locale: Locale<'_>) -> String {
     match locale.is_english() {
         true => name.to_lowercase(),
         false => name,
-    }
-}
-
-/// Name of a status in the document.
-pub(super) fn status_name(status: Status) -> &'static str {
-    match status {
-        Status::Identified => "identified",
-        Status::Weak => "weak",
-        Status::NotIdentifiable => "not_identifiable",
     }
 }
 
@@ -141,6 +135,7 @@ pub(super) fn short(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identify::Status;
 
     fn estimate(value: f64, half: f64) -> Estimate {
         Estimate {

@@ -1,7 +1,8 @@
 //! The report's type, colours and marks, for pages that look like it.
 
 use super::figures::canvas::Colour;
-use super::figures::{fonts, marks};
+pub use super::figures::fonts::{Face as FontFace, face_bytes as font};
+use super::figures::marks;
 use crate::motion::Motion;
 use serde::Serialize;
 
@@ -36,24 +37,4 @@ impl MotionStyle {
 
 fn hexadecimal(c: Colour) -> String {
     format!("#{:02x}{:02x}{:02x}", c.0, c.1, c.2)
-}
-
-/// A face of the report's type.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FontFace {
-    /// Upright.
-    Regular,
-    /// Slanted.
-    Italic,
-    /// Bold.
-    Bold,
-}
-
-/// The font file of a face.
-pub fn font(face: FontFace) -> Option<&'static [u8]> {
-    fonts::face_bytes(match face {
-        FontFace::Regular => fonts::Face::Regular,
-        FontFace::Italic => fonts::Face::Italic,
-        FontFace::Bold => fonts::Face::Bold,
-    })
 }

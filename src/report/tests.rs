@@ -135,7 +135,7 @@ fn no_text_of_a_figure_is_overfull() {
 #[test]
 fn no_word_leaves_the_page_s_margins() {
     let folder = tempfile::tempdir().expect("a folder");
-    let papers = [Paper::A4, Paper::Letter];
+    let papers = [Paper::A4, Paper::UsLetter];
     for ((name, content), paper) in kinds().iter().zip(papers.into_iter().cycle()) {
         let options = ReportOptions {
             paper,
@@ -255,7 +255,7 @@ fn wrong_template_is_named_with_its_line() {
 #[test]
 fn every_format_has_its_files() {
     let report = Report::new(kind("cart"), &ReportOptions::default());
-    for format in Format::ALL {
+    for &format in Format::ALL {
         let files = report.files(format).expect("files");
         assert!(!files.is_empty() && files.iter().all(|(_, bytes)| !bytes.is_empty()));
         for (path, bytes) in files {

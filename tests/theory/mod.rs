@@ -126,7 +126,7 @@ fn a_killed_sweep_resumes_to_the_same_bytes() {
         .stderr(Stdio::null())
         .spawn()
         .expect("the program");
-    let block = lab.path("broken/.impactid-blocks/sweep_forward.json");
+    let block = lab.path("broken/.impactid-blocks/sweep_forward.json.gz");
     let start = Instant::now();
     while !block.exists() && start.elapsed() < Duration::from_secs(20) {
         std::thread::sleep(Duration::from_millis(2));

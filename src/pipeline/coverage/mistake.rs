@@ -6,14 +6,15 @@ use crate::record::{FlagCode, Record, Role};
 use crate::synthetic::{Draw, Effect};
 
 /// A mistake of the laboratory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr, strum::VariantArray)]
+#[strum(serialize_all = "snake_case")]
 pub(super) enum Mistake {
     /// One gap is stated 0.05 mm too wide.
     WrongClearance,
     /// One gap is off by five times its stated uncertainty.
-    GapOffByFive,
+    GapOffByFiveUncertainties,
     /// One gap is off by its stated uncertainty: no mistake, and not to be called one.
-    GapOffByOne,
+    GapOffByItsUncertainty,
     /// The velocities of both masses are plugged the wrong way round.
     SwappedChannels,
     /// One channel's gain is 5 % off.
@@ -22,30 +23,18 @@ pub(super) enum Mistake {
 
 impl Mistake {
     /// All of them.
-    pub(super) const ALL: [Self; 5] = [
-        Self::WrongClearance,
-        Self::GapOffByFive,
-        Self::GapOffByOne,
-        Self::SwappedChannels,
-        Self::WrongGain,
-    ];
+    pub(super) const ALL: &'static [Self] = <Self as strum::VariantArray>::VARIANTS;
 
     /// Name in the result.
     pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::WrongClearance => "wrong_clearance",
-            Self::GapOffByFive => "gap_off_by_five_uncertainties",
-            Self::GapOffByOne => "gap_off_by_its_uncertainty",
-            Self::SwappedChannels => "swapped_channels",
-            Self::WrongGain => "wrong_gain",
-        }
+        self.into()
     }
 
     /// The campaign with an uncertainty of its gaps stated, where the mistake is measured by it.
     pub(super) fn stated(self, draw: &Draw) -> Draw {
         let typical_m = Effect::Gaps.typical_strength() * draw.truth.static_deflection_m;
         let uncertainty_m = match self {
-            Self::GapOffByFive | Self::GapOffByOne => {
+            Self::GapOffByFiveUncertainties | Self::GapOffByItsUncertainty => {
                 Some(draw.clearance_uncertainty_m.unwrap_or(typical_m))
             }
             _ => draw.clearance_uncertainty_m,
@@ -60,8 +49,10 @@ impl Mistake {
     pub(super) fn commit(self, records: &mut [Record], clearance_uncertainty_m: f64) {
         match self {
             Self::WrongClearance => widen_one_gap(records, 0.05e-3),
-            Self::GapOffByFive => widen_one_gap(records, 5.0 * clearance_uncertainty_m),
-            Self::GapOffByOne => widen_one_gap(records, clearance_uncertainty_m),
+            Self::GapOffByFiveUncertainties => {
+                widen_one_gap(records, 5.0 * clearance_uncertainty_m);
+            }
+            Self::GapOffByItsUncertainty => widen_one_gap(records, clearance_uncertainty_m),
             Self::SwappedChannels => {
                 for record in records {
                     swap_roles(record, Role::VelocityX, Role::VelocityY);
@@ -84,7 +75,9 @@ impl Mistake {
     /// Whether a finding is this mistake.
     fn is(self, finding: &Finding) -> bool {
         match self {
-            Self::WrongClearance | Self::GapOffByFive | Self::GapOffByOne => {
+            Self::WrongClearance
+            | Self::GapOffByFiveUncertainties
+            | Self::GapOffByItsUncertainty => {
                 matches!(finding, Finding::WrongClearance { .. })
             }
             Self::SwappedChannels => matches!(finding, Finding::SwappedChannels { .. }),

@@ -203,7 +203,7 @@ pub fn study(
         r.is_none_or(|r| r.value.is_none())
     })?;
     let mut mistakes = BTreeMap::new();
-    for mistake in Mistake::ALL {
+    for &mistake in Mistake::ALL {
         let tally = count(Reach::Full, Some(mistake), &|seen| {
             mistake.is_named_by(seen)
         })?;

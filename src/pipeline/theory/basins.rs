@@ -1,11 +1,11 @@
 //! Basins of attraction, block of rows by block of rows, and their figure.
 
+use super::StudyContext;
 use super::plan::BasinPlan;
 use super::table::Table;
-use super::{StudyContext, StudyError};
 use crate::compare::RegionMap;
 use crate::motion::{Motion, Undetermined};
-use crate::report::locale::Locale;
+use crate::pipeline::PipelineError;
 use crate::report::theory::basins::draw;
 use impact_oscillator::atlas::basins::{Basins, basin_rows};
 use impact_oscillator::atlas::map::even;
@@ -17,13 +17,13 @@ const BLOCK: usize = 8;
 /// Settle every start and write table and figure.
 ///
 /// # Errors
-/// [`StudyError`] where a parameter is out of range or an output cannot be written.
+/// [`PipelineError`] where a parameter is out of range or an output cannot be written.
 pub fn run(
     machine: &Machine,
     name: &str,
     plan: &BasinPlan,
     context: &StudyContext<'_>,
-) -> Result<(), StudyError> {
+) -> Result<(), PipelineError> {
     let machine = match plan.restitution {
         Some(r) => machine.clone().with_restitution(Restitution::Constant(r)),
         None => machine.clone(),
@@ -36,10 +36,7 @@ pub fn run(
     context.table(name, &table(&basins))?;
     (context.inform)(&shares(name, &basins));
     let title = format!("Basins of attraction at {}", setting(plan));
-    match draw(&motions(&basins), name, &title, Locale::default()) {
-        Some(figure) => context.figure(&figure),
-        None => Ok(()),
-    }
+    context.figure(draw(&motions(&basins), name, &title).as_ref())
 }
 
 /// The motion to which each start leads.
@@ -67,24 +64,16 @@ fn cells(
     name: &str,
     plan: &BasinPlan,
     context: &StudyContext<'_>,
-) -> Result<Vec<Option<SettledMotion>>, StudyError> {
+) -> Result<Vec<Option<SettledMotion>>, PipelineError> {
     let settings = MapSettings {
         watch: plan.watch,
         ..MapSettings::default()
     };
-    let rows = plan.grid.rows();
-    let mut cells = Vec::with_capacity(rows * plan.grid.x.2);
-    for first in (0..rows).step_by(BLOCK) {
-        let last = (first + BLOCK).min(rows);
-        let found: Vec<Option<SettledMotion>> =
-            context.blocks.block(&format!("{name} rows {first}"), || {
-                basin_rows(machine, plan.setting, &plan.grid, &settings, first..last)
-                    .map_err(StudyError::of(name))
-            })?;
-        cells.extend(found);
-        (context.progress)(last as u64, rows as u64);
-    }
-    Ok(cells)
+    let rows = format!("{name} rows");
+    context.in_blocks(&rows, (plan.grid.rows(), BLOCK), |rows| {
+        basin_rows(machine, plan.setting, &plan.grid, &settings, rows)
+            .map_err(PipelineError::of(name))
+    })
 }
 
 fn label(cell: &Option<SettledMotion>) -> String {

@@ -7,6 +7,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 
+use crate::pipeline::gzip_json;
 use crate::pipeline::inputs::hexadecimal;
 use labfiles::output::{self, OutputError};
 
@@ -49,10 +50,18 @@ impl BlockCache {
             impact_oscillator::atlas::map::Kernel::of_this_machine()
         ));
         hash.update(work);
-        let folder = out.join(FOLDER);
+        Self::in_folder(out.join(FOLDER), hexadecimal(hash), resume)
+    }
+
+    /// The blocks in a folder of their own, of work with a key; see [`open`](Self::open).
+    pub(in crate::pipeline) fn in_folder(
+        folder: PathBuf,
+        key: String,
+        resume: bool,
+    ) -> Result<Self, OutputError> {
         let cache = Self {
             folder: Some(folder.clone()),
-            key: hexadecimal(hash),
+            key,
         };
         if !resume {
             cache.remove();
@@ -64,8 +73,7 @@ impl BlockCache {
 
     /// A block; `None` where it is not there, of other work or unreadable.
     pub fn load<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
-        let bytes = std::fs::read(self.path(name)?).ok()?;
-        let block: Block<T> = serde_json::from_slice(&bytes).ok()?;
+        let block: Block<T> = gzip_json::read(&self.path(name)?).ok()?;
         (block.key == self.key).then_some(block.content)
     }
 
@@ -81,7 +89,7 @@ impl BlockCache {
             key: self.key.clone(),
             content,
         };
-        output::write_json_line(&path, &block)
+        gzip_json::write(&path, &block)
     }
 
     /// A block of an earlier run, or one that is computed and saved now.
@@ -114,7 +122,7 @@ impl BlockCache {
             .chars()
             .map(|c| if c.is_alphanumeric() { c } else { '_' })
             .collect();
-        Some(self.folder.as_ref()?.join(format!("{safe}.json")))
+        Some(self.folder.as_ref()?.join(format!("{safe}.json.gz")))
     }
 }
 

@@ -9,61 +9,18 @@ pub mod regions;
 pub mod sweep;
 pub mod time_series;
 
+use std::ops::Range;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::pipeline::PipelineError;
 use crate::pipeline::table::{self, Table};
-use crate::report::ReportError;
 use crate::report::figures::Figure;
 use crate::report::picture::pictures;
 use block_cache::BlockCache;
-use impact_oscillator::model::ModelError;
 use labfiles::output::OutputError;
 pub use plan::Study;
-
-/// Why a study stopped.
-#[derive(Debug, thiserror::Error)]
-pub enum StudyError {
-    /// A parameter is out of range.
-    #[error("{name}: {source}")]
-    Model {
-        /// What was computed.
-        name: String,
-        /// Which parameter.
-        source: ModelError,
-    },
-    /// An output could not be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// A table could not be made.
-    #[error("{table}: {reason}")]
-    Table {
-        /// Which table.
-        table: String,
-        /// The library's message.
-        reason: String,
-    },
-    /// A figure could not be drawn.
-    #[error(transparent)]
-    Figure(#[from] ReportError),
-}
-
-impl StudyError {
-    /// What the user can do.
-    pub fn remedy(&self) -> &'static str {
-        match self {
-            Self::Model { .. } => "give a value within the range that the message names",
-            Self::Output(e) => e.remedy(),
-            Self::Table { .. } => "look at the disk, then run again",
-            Self::Figure(_) => "the tables are written; draw them with another program",
-        }
-    }
-
-    /// A model's refusal of a named piece of work.
-    pub fn of(name: &str) -> impl Fn(ModelError) -> Self + use<'_> {
-        move |source| Self::Model {
-            name: name.to_owned(),
-            source,
-        }
-    }
-}
 
 /// Which pictures of its figures a piece of work makes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,17 +52,39 @@ pub struct StudyContext<'a> {
 
 impl StudyContext<'_> {
     /// Write a table as `NAME.csv` and `NAME.parquet`.
-    fn table(&self, name: &str, table: &Table) -> Result<(), StudyError> {
+    fn table(&self, name: &str, table: &Table) -> Result<(), PipelineError> {
         self.bytes(&format!("{name}.csv"), table.csv().as_bytes())?;
-        let parquet = table.parquet().map_err(|e| StudyError::Table {
+        let parquet = table.parquet().map_err(|e| PipelineError::Table {
             table: name.to_owned(),
             reason: e.to_string(),
         })?;
         self.bytes(&format!("{name}.parquet"), &parquet)
     }
 
-    /// Write a figure as the pictures that are wanted.
-    fn figure(&self, figure: &Figure) -> Result<(), StudyError> {
+    /// Work in blocks of some rows, which are kept for a resumed run.
+    fn in_blocks<T: Serialize + DeserializeOwned>(
+        &self,
+        name: &str,
+        (rows, size): (usize, usize),
+        of: impl Fn(Range<usize>) -> Result<Vec<T>, PipelineError>,
+    ) -> Result<Vec<T>, PipelineError> {
+        let mut all = Vec::new();
+        for first in (0..rows).step_by(size) {
+            let last = (first + size).min(rows);
+            let block = self
+                .blocks
+                .block(&format!("{name} {first}"), || of(first..last));
+            all.extend(block?);
+            (self.progress)(last as u64, rows as u64);
+        }
+        Ok(all)
+    }
+
+    /// Write a figure, where there is one, as the pictures that are wanted.
+    fn figure(&self, figure: Option<&Figure>) -> Result<(), PipelineError> {
+        let Some(figure) = figure else {
+            return Ok(());
+        };
         match self.pictures {
             Pictures::None => Ok(()),
             Pictures::Svg => self.bytes(&format!("{}.svg", figure.name), figure.svg.as_bytes()),
@@ -117,7 +96,7 @@ impl StudyContext<'_> {
         }
     }
 
-    fn bytes(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
+    fn bytes(&self, name: &str, bytes: &[u8]) -> Result<(), PipelineError> {
         Ok((self.output)(name, bytes)?)
     }
 }
@@ -125,10 +104,10 @@ impl StudyContext<'_> {
 /// Do all the work of a study.
 ///
 /// # Errors
-/// [`StudyError`] with the first piece of work that could not be done.
-pub fn run(study: &Study, context: &StudyContext<'_>) -> Result<(), StudyError> {
+/// [`PipelineError`] with the first piece of work that could not be done.
+pub fn run(study: &Study, context: &StudyContext<'_>) -> Result<(), PipelineError> {
     let machine = study.machine();
-    machine.check().map_err(StudyError::of("machine"))?;
+    machine.check().map_err(PipelineError::of("machine"))?;
     for (name, plan) in &study.time_series {
         time_series::run(&machine, name, plan, context)?;
     }

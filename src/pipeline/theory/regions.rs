@@ -3,12 +3,12 @@
 
 use serde_json::json;
 
+use super::StudyContext;
 use super::plan::RegionsPlan;
 use super::table::Table;
-use super::{StudyContext, StudyError};
 use crate::compare::RegionMap;
 use crate::motion::Motion;
-use crate::report::locale::Locale;
+use crate::pipeline::PipelineError;
 use crate::report::theory::regions as figure;
 use impact_oscillator::atlas::curves::{Curve, CurvePoint};
 use impact_oscillator::atlas::regions::{assemble, columns};
@@ -24,17 +24,17 @@ const PRINTED: usize = 20;
 /// Compute the regions and write tables and figure.
 ///
 /// # Errors
-/// [`StudyError`] where a parameter is out of range or an output cannot be written.
+/// [`PipelineError`] where a parameter is out of range or an output cannot be written.
 pub fn run(
     machine: &Machine,
     name: &str,
     plan: &RegionsPlan,
     context: &StudyContext<'_>,
-) -> Result<(), StudyError> {
+) -> Result<(), PipelineError> {
     let request = AtlasRequest::new(machine.clone(), plan.settings());
     let maps: Maps = context.blocks.block(&format!("{name} maps"), || {
         brute_maps(machine, &request.settings.grid, &request.settings.map)
-            .map_err(StudyError::of(name))
+            .map_err(PipelineError::of(name))
     })?;
     write_atlas(&request, &maps, name, context)
 }
@@ -42,13 +42,13 @@ pub fn run(
 /// From the maps on: follow every motion, compare, and write tables and figure.
 ///
 /// # Errors
-/// [`StudyError`] where an output cannot be written.
+/// [`PipelineError`] where an output cannot be written.
 pub fn write_atlas(
     request: &AtlasRequest,
     maps: &Maps,
     name: &str,
     context: &StudyContext<'_>,
-) -> Result<(), StudyError> {
+) -> Result<(), PipelineError> {
     let slices = all_columns(request, maps, name, context)?;
     let (machine, settings) = (&request.machine, &request.settings);
     let atlas = assemble(machine, settings, maps, slices);
@@ -75,10 +75,7 @@ pub fn write_atlas(
     );
     let drawn: Vec<figure::Curve> = atlas.curves.iter().map(drawn).collect();
     let title = "Regions of existence and stability of all motions";
-    match figure::draw((&map, &drawn), name, title, Locale::default()) {
-        Some(figure) => context.figure(&figure),
-        None => Ok(()),
-    }
+    context.figure(figure::draw((&map, &drawn), name, title).as_ref())
 }
 
 /// What the figure shows of a boundary.
@@ -95,22 +92,11 @@ fn all_columns(
     maps: &Maps,
     name: &str,
     context: &StudyContext<'_>,
-) -> Result<Vec<Vec<Slice>>, StudyError> {
+) -> Result<Vec<Vec<Slice>>, PipelineError> {
     let count = request.settings.grid.eta.len();
-    let mut slices = Vec::with_capacity(count);
-    for first in (0..count).step_by(BLOCK) {
-        let last = (first + BLOCK).min(count);
-        let found: Vec<Vec<Slice>> =
-            context
-                .blocks
-                .block(&format!("{name} columns {first}"), || {
-                    let chosen = first..last;
-                    Ok::<_, StudyError>(columns(&request.machine, &request.settings, maps, chosen))
-                })?;
-        slices.extend(found);
-        (context.progress)(last as u64, count as u64);
-    }
-    Ok(slices)
+    context.in_blocks(&format!("{name} columns"), (count, BLOCK), |chosen| {
+        Ok(columns(&request.machine, &request.settings, maps, chosen))
+    })
 }
 
 /// How curves and maps agree, as every run prints it.

@@ -4,10 +4,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::{Deserialize, Serialize};
 
+use super::StudyContext;
 use super::plan::SweepPlan;
 use super::table::Table;
-use super::{StudyContext, StudyError};
-use crate::report::locale::Locale;
+use crate::pipeline::PipelineError;
 use crate::report::theory::sweep::{Characteristics, Step, draw};
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactless};
@@ -27,13 +27,13 @@ struct Walked {
 /// Sweep there and back and write tables and figure.
 ///
 /// # Errors
-/// [`StudyError`] where a parameter is out of range or an output cannot be written.
+/// [`PipelineError`] where a parameter is out of range or an output cannot be written.
 pub fn run(
     machine: &Machine,
     name: &str,
     plan: &SweepPlan,
     context: &StudyContext<'_>,
-) -> Result<(), StudyError> {
+) -> Result<(), PipelineError> {
     let (eta, rho) = (
         even((plan.eta.0, plan.eta.1, plan.steps)),
         even((plan.rho.0, plan.rho.1, plan.steps)),
@@ -65,7 +65,7 @@ pub fn run(
         impactless_y: impactless.iter().filter_map(|i| i.y).collect(),
     };
     let title = "Quasi-stationary characteristics";
-    context.figure(&draw(&data, name, title, Locale::default()))
+    context.figure(Some(&draw(&data, name, title)))
 }
 
 /// What the figure shows of a step.
@@ -94,9 +94,9 @@ impl Walk<'_> {
         way: &str,
         steps: &[(f64, f64)],
         tick: &(dyn Fn(u64) + Sync),
-    ) -> Result<Vec<SweepPoint>, StudyError> {
+    ) -> Result<Vec<SweepPoint>, PipelineError> {
         let block = format!("{} {way}", self.name);
-        let refused = StudyError::of(self.name);
+        let refused = PipelineError::of(self.name);
         let mut walked: Walked = self.context.blocks.load(&block).unwrap_or_default();
         tick(walked.points.len() as u64);
         let Some(&first) = steps.first() else {

@@ -1,8 +1,8 @@
 //! A motion in full: time series, impacts, Poincaré map, autocorrelation, and their figure.
 
+use super::StudyContext;
 use super::table::Table;
-use super::{StudyContext, StudyError};
-use crate::report::locale::Locale;
+use crate::pipeline::PipelineError;
 use crate::report::theory::motion as figure;
 use impact_oscillator::atlas::portrait::{Portrait, PortraitPlan, Strike, portrait};
 use impact_oscillator::model::Machine;
@@ -10,15 +10,15 @@ use impact_oscillator::model::Machine;
 /// Simulate and write tables and figure.
 ///
 /// # Errors
-/// [`StudyError`] where a parameter is out of range or an output cannot be written.
+/// [`PipelineError`] where a parameter is out of range or an output cannot be written.
 pub fn run(
     machine: &Machine,
     name: &str,
     plan: &PortraitPlan,
     context: &StudyContext<'_>,
-) -> Result<(), StudyError> {
+) -> Result<(), PipelineError> {
     (context.progress)(0, 2);
-    let portrait = portrait(machine, plan).map_err(StudyError::of(name))?;
+    let portrait = portrait(machine, plan).map_err(PipelineError::of(name))?;
     (context.progress)(1, 2);
     context.table(name, &series(&portrait))?;
     context.table(&format!("{name}-impacts"), &impacts(&portrait))?;
@@ -29,8 +29,8 @@ pub fn run(
     )?;
     let s = &plan.setting;
     let title = format!("Motion at η = {}, ρ = {}", s.frequency_ratio, s.clearance);
-    let drawn = figure::draw(&drawn(&portrait), name, &title, Locale::default());
-    context.figure(&drawn)?;
+    let drawn = figure::draw(&drawn(&portrait), name, &title);
+    context.figure(Some(&drawn))?;
     (context.progress)(2, 2);
     Ok(())
 }

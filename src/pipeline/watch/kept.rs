@@ -1,6 +1,6 @@
 //! Observations that are kept while records arrive, so that each record is observed once.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
@@ -11,15 +11,19 @@ use crate::motion::Observation;
 use crate::pipeline::observe;
 use crate::record::Record;
 
-/// Which record of which file: its dataset, and its name in the campaign.
-type Key = (Option<usize>, String);
+/// Which record: its file, its dataset, and its name in the campaign.
+type Key = (PathBuf, Option<usize>, String);
 
-/// Observations by file and record.
+fn key(entry: &RecordEntry) -> Key {
+    (entry.file.clone(), entry.dataset, entry.id.clone())
+}
+
+/// Observations by record.
 #[derive(Debug, Default)]
 pub(super) struct Kept {
     /// What of the campaign they depend on.
     settings: String,
-    files: HashMap<PathBuf, BTreeMap<Key, One>>,
+    records: HashMap<Key, One>,
 }
 
 /// One record.
@@ -45,7 +49,7 @@ impl Kept {
     ) -> usize {
         let settings = settings(campaign);
         if settings != self.settings {
-            self.files.clear();
+            self.records.clear();
             self.settings = settings;
         }
         let mut stamps: HashMap<&Path, Option<Stamp>> = HashMap::new();
@@ -56,8 +60,6 @@ impl Kept {
                 .or_insert_with(|| stamp(&entry.file));
             *sizes.entry(&entry.file).or_default() += 1;
         }
-        self.files
-            .retain(|path, _| stamps.contains_key(path.as_path()));
         let new = campaign.records.iter();
         let new = new.filter(|entry| !self.has(entry, stamps[entry.file.as_path()]));
         let new: Vec<RecordEntry> = new.cloned().collect();
@@ -78,16 +80,15 @@ impl Kept {
                 observation,
                 entry: out_of_order(&entry),
             };
-            let records = self.files.entry(entry.file.clone()).or_default();
-            records.insert((entry.dataset, entry.id), one);
+            self.records.insert(key(&entry), one);
         }
-        self.forget_datasets(campaign);
+        let named: HashSet<Key> = campaign.records.iter().map(key).collect();
+        self.records.retain(|key, _| named.contains(key));
         observed
     }
 
     fn one(&self, entry: &RecordEntry) -> Option<&One> {
-        let records = self.files.get(&entry.file)?;
-        records.get(&(entry.dataset, entry.id.clone()))
+        self.records.get(&key(entry))
     }
 
     fn has(&self, entry: &RecordEntry, stamp: Option<Stamp>) -> bool {
@@ -99,25 +100,6 @@ impl Kept {
         let one = self.one(entry)?;
         let same = one.samples == Some(samples) && one.entry == out_of_order(entry);
         same.then(|| one.observation.clone())
-    }
-
-    /// Forget records of files that are still there.
-    fn forget_datasets(&mut self, campaign: &ResolvedCampaign) {
-        let kept: usize = self.files.values().map(BTreeMap::len).sum();
-        if kept == campaign.records.len() {
-            return;
-        }
-        let mut named: HashMap<&Path, HashSet<(Option<usize>, &str)>> = HashMap::new();
-        for entry in &campaign.records {
-            let names = named.entry(&entry.file).or_default();
-            names.insert((entry.dataset, &entry.id));
-        }
-        for (path, records) in &mut self.files {
-            let names = named.get(path.as_path());
-            records.retain(|(dataset, id), _| {
-                names.is_some_and(|names| names.contains(&(*dataset, id.as_str())))
-            });
-        }
     }
 
     /// The observations of a campaign, each record of which was observed, in its order and as a run

@@ -23,7 +23,7 @@ pub(in crate::report) fn campaigns(
     Document {
         title: content.title.clone(),
         subtitle: Rich::from(names.collect::<Vec<_>>().join(" · ").replace('$', "")),
-        footer: Rich::from(format!("impactid {}", content.version)),
+        footer: Rich::from(concat!("impactid ", env!("CARGO_PKG_VERSION"))),
         front: front(&content.comparison, locale),
         sections: sections(content, &drawn),
         words: layout_phrases::words(locale),
@@ -74,13 +74,13 @@ fn summary(comparison: &Comparison, locale: Locale<'_>) -> String {
 /// The differences of the last campaign from the first.
 fn answers(comparison: &Comparison, locale: Locale<'_>) -> Vec<Answer> {
     let last = comparison.campaigns.len() - 1;
-    let of = |key: &str| {
+    let of = |parameter| {
         let mut all = comparison.differences.iter();
-        all.find(|d| d.campaign == last && d.parameter.name() == key)
+        all.find(|d| d.campaign == last && d.parameter == parameter)
     };
     PARAMETERS
         .iter()
-        .map(|look| answer(look, of(look.key), locale))
+        .map(|look| answer(look, of(look.parameter), locale))
         .collect()
 }
 

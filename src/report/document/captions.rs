@@ -65,7 +65,7 @@ fn narrow(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
     let correlation = Phrase::CaptionCorrelation;
     let others = Phrase::CaptionCorrelationOthers;
     let shown = content.compared.correlation.as_ref();
-    let beside = shown.is_some_and(|c| c.parameters.iter().any(|p| parameter(p.name()).is_none()));
+    let beside = shown.is_some_and(|c| c.parameters.iter().any(|p| parameter(*p).is_none()));
     let correlation = match beside {
         true => format!(
             "{} {}",

@@ -82,13 +82,8 @@ fn records(overview: &Overview, files: usize, locale: Locale<'_>) -> String {
 fn sampling(overview: &Overview, locale: Locale<'_>) -> String {
     let rate = overview.sample_rate_hz.map(|r| {
         if r >= 1e3 {
-            format!(
-                "{}\u{2009}kHz",
-                locale
-                    .significant(r / 1e3, 4)
-                    .trim_end_matches('0')
-                    .trim_end_matches(['.', ','])
-            )
+            let rate = trimmed(&locale.significant(r / 1e3, 4));
+            format!("{rate}\u{2009}kHz")
         } else {
             format!("{}\u{2009}Hz", locale.significant(r, 4))
         }

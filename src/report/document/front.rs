@@ -132,7 +132,7 @@ fn answers(content: &ReportContent, locale: Locale<'_>) -> Vec<Answer> {
     let id = &content.identification;
     let estimates = PARAMETERS
         .iter()
-        .map(|look| (look, (look.pick)(&id.joint.parameters)));
+        .map(|look| (look, id.joint.parameters.get(look.parameter)));
     let known = estimates
         .clone()
         .any(|(_, e)| e.is_some_and(|e| e.value.is_some()));
@@ -162,7 +162,7 @@ fn answer(look: &ParameterLook, estimate: Option<&Estimate>, locale: Locale<'_>)
             .map(|h| locale.fixed(h, decimals)),
         unit: look.unit.into(),
         interval: interval.map(|[low, high]| locale.range(&print(low), &print(high))),
-        status: estimate.map_or("not_asked", |e| parameters::status_name(e.status)),
+        status: estimate.map_or("not_asked", |e| e.status.name()),
         note: estimate
             .and_then(|e| e.note.as_ref())
             .map(|n| Rich::from(locale.message(n))),

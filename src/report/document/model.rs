@@ -199,8 +199,9 @@ pub(crate) struct Definition {
 }
 
 /// Alignment of the cells of a column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub(crate) enum Align {
     /// At the left.
     Left,
@@ -208,17 +209,6 @@ pub(crate) enum Align {
     Right,
     /// In the middle.
     Center,
-}
-
-impl Align {
-    /// Its name in the template and in the page.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Left => "left",
-            Self::Right => "right",
-            Self::Center => "center",
-        }
-    }
 }
 
 /// A table.

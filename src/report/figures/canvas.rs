@@ -111,12 +111,25 @@ enum Shape {
     },
 }
 
+/// A point of a figure with a text.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub(crate) struct Spot {
+    /// From the left, points.
+    pub x: f64,
+    /// From the top, points.
+    pub y: f64,
+    /// The text; line feeds separate its lines.
+    pub text: String,
+}
+
 /// A drawing of a given size in points.
 pub(crate) struct Canvas {
     /// Width, points.
     pub width: f64,
     /// Height, points.
     pub height: f64,
+    /// Points with a text that is shown on hovering.
+    pub spots: Vec<Spot>,
     layer: i32,
     shapes: Vec<(i32, Shape)>,
 }
@@ -127,6 +140,7 @@ impl Canvas {
         Self {
             width,
             height,
+            spots: Vec::new(),
             layer: 0,
             shapes: Vec::new(),
         }
@@ -216,6 +230,11 @@ impl Canvas {
                 upward,
             });
         }
+    }
+
+    /// A point with a text that is shown on hovering.
+    pub(crate) fn spot(&mut self, (x, y): Point, text: String) {
+        self.spots.push(Spot { x, y, text });
     }
 
     fn push(&mut self, shape: Shape) {

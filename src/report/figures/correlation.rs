@@ -153,7 +153,7 @@ impl Cells<'_> {
 /// The columns of the matrix: the parameters that are asked for.
 fn columns(correlation: &Correlation) -> Vec<usize> {
     let all = 0..correlation.parameters.len();
-    let asked = |i: &usize| parameter(correlation.parameters[*i].name()).is_some();
+    let asked = |i: &usize| parameter(correlation.parameters[*i]).is_some();
     let main: Vec<usize> = all.clone().filter(asked).collect();
     if main.is_empty() { all.collect() } else { main }
 }
@@ -206,9 +206,7 @@ fn coordinate_text(coordinate: Coordinate) -> Text {
         Coordinate::ScrewZero => Phrase::ScrewZero,
         Coordinate::Effect(effect) => effect_phrase(effect),
         other => {
-            return parameter(other.name())
-                .map_or(other.name(), |p| p.symbol)
-                .into();
+            return parameter(other).map_or(other.name(), |p| p.symbol).into();
         }
     };
     phrase.into()

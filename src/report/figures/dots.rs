@@ -53,6 +53,17 @@ pub(crate) struct DotLook {
     pub open: bool,
 }
 
+impl DotLook {
+    /// A full dot.
+    pub(crate) const fn full(radius: f64, colour: Colour) -> Self {
+        Self {
+            radius,
+            colour,
+            open: false,
+        }
+    }
+}
+
 /// Radius for a number of dots.
 pub(crate) fn radius(count: usize) -> f64 {
     match count {

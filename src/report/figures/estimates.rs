@@ -87,7 +87,7 @@ fn lines<'a>(content: &'a ReportContent, locale: Locale<'_>) -> Vec<Line<'a>> {
         ),
         key: method.map_or_else(|| "Joint".to_owned(), |m| m.to_string()),
         joint: method.is_none(),
-        estimates: std::array::from_fn(|k| (PARAMETERS[k].pick)(parameters)),
+        estimates: std::array::from_fn(|k| parameters.get(PARAMETERS[k].parameter)),
     })
     .filter(|l| l.joint || l.estimates.iter().any(Option::is_some))
     .collect()
@@ -108,12 +108,7 @@ fn parameter(
     let ends: Vec<f64> = ends
         .flat_map(|(a, b)| [a * shown.factor, b * shown.factor])
         .collect();
-    let unit = if shown.unit.is_empty() {
-        "1"
-    } else {
-        shown.unit
-    };
-    let x = Axis::around(view(&ends), 0.08, format!("{} ({unit})", shown.symbol)).with_ticks(3);
+    let x = Axis::around(view(&ends), 0.08, shown.axis_title()).with_ticks(3);
     let panel = Panel::new(
         rect,
         x,
@@ -217,7 +212,7 @@ fn csv(lines: &[Line<'_>]) -> String {
             let Some(e) = estimate else { continue };
             let (low, high) = (interval95(e).map(|i| i.0), interval95(e).map(|i| i.1));
             csv.row()
-                .texts(&[&line.key, shown.key])
+                .texts(&[&line.key, shown.parameter.name()])
                 .numbers(&[e.value, low, high]);
         }
     }

@@ -1,6 +1,6 @@
 //! A finished figure.
 
-use super::canvas::Canvas;
+use super::canvas::{Canvas, Spot};
 
 /// A finished figure.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,25 +23,20 @@ pub(crate) struct Figure {
     pub overfull: Vec<String>,
 }
 
-/// A point of a figure with a text.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub(crate) struct Spot {
-    /// From the left, points.
-    pub x: f64,
-    /// From the top, points.
-    pub y: f64,
-    /// The text; line feeds separate its lines.
-    pub text: String,
-}
-
 /// Most points with a text in one figure: more would only enlarge the page.
 const MOST_SPOTS: usize = 2500;
 
 impl Figure {
     /// A figure from its drawing.
-    pub(crate) fn new(name: impl Into<String>, title: &str, canvas: Canvas, csv: String) -> Self {
+    pub(crate) fn new(
+        name: impl Into<String>,
+        title: &str,
+        mut canvas: Canvas,
+        csv: String,
+    ) -> Self {
         let (width, height) = (canvas.width, canvas.height);
         let overfull = canvas.overfull();
+        let spots = fewer(std::mem::take(&mut canvas.spots));
         let svg = canvas.into_svg(title);
         let (name, title) = (name.into(), title.to_owned());
         Self {
@@ -51,26 +46,23 @@ impl Figure {
             width,
             height,
             csv,
-            spots: Vec::new(),
+            spots,
             overfull,
         }
     }
+}
 
-    /// With points that have a text.
-    pub(crate) fn with_spots(self, mut spots: Vec<Spot>) -> Self {
-        let stride = spots.len().div_ceil(MOST_SPOTS).max(1);
-        let mut index = 0;
-        spots.retain(|_| {
-            index += 1;
-            (index - 1) % stride == 0
-        });
-        // a hundredth of a point is finer than any screen shows
-        let coarse = |v: f64| (v * 100.0).round() / 100.0;
-        for spot in &mut spots {
-            (spot.x, spot.y) = (coarse(spot.x), coarse(spot.y));
-        }
-        Self { spots, ..self }
-    }
+/// Points as many and as fine as a page needs.
+fn fewer(spots: Vec<Spot>) -> Vec<Spot> {
+    let stride = spots.len().div_ceil(MOST_SPOTS).max(1);
+    // a hundredth of a point is finer than any screen shows
+    let coarse = |v: f64| (v * 100.0).round() / 100.0;
+    let of = |spot: Spot| Spot {
+        x: coarse(spot.x),
+        y: coarse(spot.y),
+        text: spot.text,
+    };
+    spots.into_iter().step_by(stride).map(of).collect()
 }
 
 /// Name of the i-th figure of a kind.

@@ -10,7 +10,7 @@ pub(crate) const FAMILY: &str = "Libertinus Serif";
 
 /// A face of the family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Face {
+pub enum Face {
     /// Upright.
     Regular,
     /// Slanted: symbols of quantities.
@@ -26,7 +26,7 @@ pub(crate) fn embedded() -> &'static [(Font, FontInfo)] {
 }
 
 /// The font file of a face, for pages that carry their own fonts.
-pub(crate) fn face_bytes(face: Face) -> Option<&'static [u8]> {
+pub fn face_bytes(face: Face) -> Option<&'static [u8]> {
     find(face).map(|(font, _)| font.data().as_slice())
 }
 

@@ -4,7 +4,7 @@ use super::axis::{Axis, range};
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
-use super::figure::{Figure, Spot};
+use super::figure::Figure;
 use super::legend::{self, Key, Sign};
 use super::look;
 use super::panel::{PAIR_LEFT, Panel, Sides, pair};
@@ -33,7 +33,7 @@ pub(crate) fn draw(scatter: &ImpactScatter, name: &str, locale: Locale<'_>) -> O
     let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + look::BELOW_PANEL);
     let panels = panels(scatter, unit);
     lines(&mut canvas, &panels, scatter, unit);
-    let spots = points(&mut canvas, &panels, scatter, (unit, locale));
+    points(&mut canvas, &panels, scatter, (unit, locale));
     for panel in &panels {
         panel.frame(&mut canvas, Sides::BOTH, locale);
     }
@@ -45,7 +45,7 @@ pub(crate) fn draw(scatter: &ImpactScatter, name: &str, locale: Locale<'_>) -> O
         locale,
     );
     let title = locale.translate(Phrase::SpeedsAfterOverBeforeImpact);
-    Some(Figure::new(name, &title, canvas, csv(scatter)).with_spots(spots))
+    Some(Figure::new(name, &title, canvas, csv(scatter)))
 }
 
 /// The two panels: speed after, and restitution, over speed before.
@@ -113,38 +113,29 @@ fn lines(canvas: &mut Canvas, panels: &[Panel; 2], scatter: &ImpactScatter, unit
     speeds.curve(canvas, of_speed().map(|(v, r)| (v, v * r)), dashed);
 }
 
-/// Draws the impacts; returns their texts for hovering.
+/// Draws the impacts, with their texts for hovering.
 fn points(
     canvas: &mut Canvas,
     panels: &[Panel; 2],
     scatter: &ImpactScatter,
     (unit, locale): (PrintUnit, Locale<'_>),
-) -> Vec<Spot> {
-    let mut spots = Vec::new();
+) {
     canvas.layer(1);
     let radius = dots::radius(scatter.points.len());
     let mut taken = [Dots::default(), Dots::default()];
-    let dot = DotLook {
-        radius,
-        colour: look::BLUE,
-        open: false,
-    };
+    let dot = DotLook::full(radius, look::BLUE);
     for p in &scatter.points {
         let before = p.before_m_s * unit.factor;
         let values = [p.after_m_s * unit.factor, p.after_m_s / p.before_m_s];
         for ((panel, dots), value) in panels.iter().zip(&mut taken).zip(values) {
-            if let Some((x, y)) = dots.put(canvas, panel, (before, value), dot) {
+            if let Some(at) = dots.put(canvas, panel, (before, value), dot) {
                 let ratio = p.after_m_s / p.before_m_s;
-                spots.push(Spot {
-                    x,
-                    y,
-                    text: format!("{}\nR = {}", p.record, locale.fixed(ratio, 3)),
-                });
+                let text = format!("{}\nR = {}", p.record, locale.fixed(ratio, 3));
+                canvas.spot(at, text);
             }
         }
     }
     canvas.layer(3);
-    spots
 }
 
 fn keys(scatter: &ImpactScatter, locale: Locale<'_>) -> Vec<Key> {

@@ -3,8 +3,9 @@
 use super::axis::{Axis, range};
 use crate::compare::{BracketRow, RecordRow};
 use crate::identify::Estimate;
+use crate::identify::plan::Proposal;
 use crate::motion::Motion;
-use crate::report::content::{ProposedPoint, ReportContent};
+use crate::report::content::ReportContent;
 use crate::report::phrase::Phrase;
 
 /// Least and greatest value, where there is any.
@@ -131,9 +132,9 @@ impl Plane {
     }
 
     /// Place of a setting that is proposed.
-    pub(crate) fn proposed(&self, point: &ProposedPoint) -> (f64, f64) {
+    pub(crate) fn proposed(&self, point: &Proposal) -> (f64, f64) {
         if self.dimensionless {
-            (point.eta, point.rho)
+            (point.frequency_ratio, point.clearance_ratio)
         } else {
             (point.frequency_hz, 1e3 * point.clearance_m)
         }

@@ -52,15 +52,11 @@ fn one(
     rect: Rect,
     locale: Locale<'_>,
 ) {
-    let key = profile.parameter.name();
-    let shown = parameter(key);
+    let shown = parameter(profile.parameter);
     let factor = shown.map_or(1.0, |p| p.factor);
     let title = shown.map_or_else(
         || Text::from(name(profile.parameter, locale)),
-        |p| {
-            let unit = if p.unit.is_empty() { "1" } else { p.unit };
-            format!("{} ({unit})", p.symbol).into()
-        },
+        |p| p.axis_title().into(),
     );
     let x = Axis::around(profile.values.iter().map(|v| v * factor), 0.02, title).with_ticks(3);
     let panel = Panel::new(

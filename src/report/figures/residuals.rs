@@ -4,7 +4,7 @@ use super::axis::{Axis, range};
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
-use super::figure::{Figure, Spot};
+use super::figure::Figure;
 use super::look;
 use super::marks;
 use super::panel::{Panel, Sides};
@@ -29,7 +29,6 @@ pub(crate) fn draw<'a>(set: &'a ResidualSet, name: &str, locale: Locale<'a>) -> 
         set,
         locale,
         canvas: Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + look::BELOW_PANEL),
-        spots: Vec::new(),
     };
     let mut drawers: Vec<fn(&mut Sheet<'_>, Rect)> = vec![|s, r| s.histogram(r)];
     if set.autocorrelation.len() > 2 {
@@ -54,14 +53,13 @@ pub(crate) fn draw<'a>(set: &'a ResidualSet, name: &str, locale: Locale<'a>) -> 
         );
     }
     let title = locale.translate(Phrase::ResidualDiagnostics);
-    Some(Figure::new(name, &title, sheet.canvas, csv(set)).with_spots(sheet.spots))
+    Some(Figure::new(name, &title, sheet.canvas, csv(set)))
 }
 
 struct Sheet<'a> {
     set: &'a ResidualSet,
     locale: Locale<'a>,
     canvas: Canvas,
-    spots: Vec<Spot>,
 }
 
 impl Sheet<'_> {
@@ -157,27 +155,16 @@ impl Sheet<'_> {
             let stroke = Stroke::dashed(look::ZERO_STROKE.colour, 0.5, &[2.0, 2.0]);
             panel.level(&mut self.canvas, level, stroke);
         }
-        let dot = DotLook {
-            radius: dots::radius(self.set.points.len()),
-            colour: look::BLUE,
-            open: false,
-        };
+        let dot = DotLook::full(dots::radius(self.set.points.len()), look::BLUE);
         let mut taken = Dots::default();
         for p in &self.set.points {
             let Some(value) = of(p) else { continue };
             let shown = p.residual.clamp(-reach, reach);
-            if let Some((x, y)) = taken.put(&mut self.canvas, &panel, (value, shown), dot) {
+            if let Some(at) = taken.put(&mut self.canvas, &panel, (value, shown), dot) {
                 let r = self.locale.fixed(p.residual, 2);
-                self.spots.push(Spot {
-                    x,
-                    y,
-                    text: format!(
-                        "{}\n{}",
-                        p.record,
-                        self.locale
-                            .translate_with(Phrase::ResidualOf, &[("value", &r)])
-                    ),
-                });
+                let values = [("value", r.as_str())];
+                let residual = self.locale.translate_with(Phrase::ResidualOf, &values);
+                self.canvas.spot(at, format!("{}\n{residual}", p.record));
             }
         }
         panel.frame(&mut self.canvas, Sides::BOTH, self.locale);

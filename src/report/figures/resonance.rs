@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
-use super::figure::{Figure, Spot};
+use super::figure::Figure;
 use super::legend::{self, Key, Sign};
 use super::look;
 use super::panel::{PAIR_LEFT, Panel, Sides, pair};
@@ -32,17 +32,16 @@ pub(crate) fn draw(
     let [left, right] = pair(TOP, HEIGHT);
     let peak = curve.points.iter().map(|p| p.amplitude).fold(0.0, f64::max);
     let unit = print_unit(curve.dimension, peak);
-    let mut spots = Vec::new();
     let panel = amplitude_panel(curve, unit, left);
     let value = |p: &ResonancePoint| [p.amplitude, p.amplitude_error].map(|v| v * unit.factor);
     let fitted = curve.fitted.iter();
     let fit = fitted.map(|f| (f[0], f[1] * unit.factor)).collect();
-    Series { curve, panel, fit }.draw(&mut canvas, value, locale, &mut spots);
+    Series { curve, panel, fit }.draw(&mut canvas, value, locale);
     let panel = phase_panel(curve, right);
     let value = |p: &ResonancePoint| [p.phase_rad, p.phase_error_rad].map(f64::to_degrees);
     let fitted = curve.fitted.iter();
     let fit = fitted.map(|f| (f[0], f[2].to_degrees())).collect();
-    Series { curve, panel, fit }.draw(&mut canvas, value, locale, &mut spots);
+    Series { curve, panel, fit }.draw(&mut canvas, value, locale);
     legend::draw(
         &mut canvas,
         (PAIR_LEFT, 0.0),
@@ -51,7 +50,7 @@ pub(crate) fn draw(
         locale,
     );
     let title = locale.translate(Phrase::ResonanceCurve);
-    Some(Figure::new(name, &title, canvas, csv(curve)).with_spots(spots))
+    Some(Figure::new(name, &title, canvas, csv(curve)))
 }
 
 fn frequency_axis(curve: &ResonanceCurve) -> Axis {
@@ -106,7 +105,6 @@ impl Series<'_> {
         canvas: &mut Canvas,
         value: impl Fn(&ResonancePoint) -> [f64; 2],
         locale: Locale<'_>,
-        spots: &mut Vec<Spot>,
     ) {
         let radius = dots::radius(self.curve.points.len()) + 0.2;
         let colour = |point: &ResonancePoint| if point.used { look::BLUE } else { look::QUIET };
@@ -131,13 +129,9 @@ impl Series<'_> {
                 colour,
                 open: !point.used,
             };
-            if let Some((x, y)) = taken.put(canvas, &self.panel, (point.frequency_hz, y), dot) {
+            if let Some(at) = taken.put(canvas, &self.panel, (point.frequency_hz, y), dot) {
                 let f = locale.fixed(point.frequency_hz, 3);
-                spots.push(Spot {
-                    x,
-                    y,
-                    text: format!("{}\nf = {f} Hz", point.record),
-                });
+                canvas.spot(at, format!("{}\nf = {f} Hz", point.record));
             }
         }
         canvas.layer(2);

@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{DotLook, Dots};
-use super::figure::{Figure, Spot};
+use super::figure::Figure;
 use super::legend::{self, Key, Sign};
 use super::look;
 use super::panel::{Panel, Sides};
@@ -48,17 +48,16 @@ pub(crate) fn draw(comparison: &Comparison, locale: Locale<'_>) -> Option<Figure
     let rows = shown.len().div_ceil(2);
     let mut canvas = Canvas::new(look::FULL_WIDTH, top + rows as f64 * ROW);
     legend::draw(&mut canvas, (LEFT[0], 0.0), width, &keys, locale);
-    let mut spots = Vec::new();
     for (i, look) in shown.iter().enumerate() {
         let rect = Rect::new(LEFT[i % 2], top + (i / 2) as f64 * ROW, WIDTH, HEIGHT);
-        spots.extend(parameter(&mut canvas, rect, (comparison, look), locale));
+        parameter(&mut canvas, rect, (comparison, look), locale);
     }
     let title = locale.translate(Phrase::Trend);
-    Some(Figure::new("trend", &title, canvas, csv(comparison)).with_spots(spots))
+    Some(Figure::new("trend", &title, canvas, csv(comparison)))
 }
 
 fn has(look: &ParameterLook, set: &ParameterSet) -> bool {
-    (look.pick)(set).is_some_and(|e| e.value.is_some())
+    set.get(look.parameter).is_some_and(|e| e.value.is_some())
 }
 
 fn difference<'a>(
@@ -67,7 +66,7 @@ fn difference<'a>(
     look: &ParameterLook,
 ) -> Option<&'a Difference> {
     let mut all = comparison.differences.iter();
-    all.find(|d| d.campaign == campaign && d.parameter.name() == look.key)
+    all.find(|d| d.campaign == campaign && d.parameter == look.parameter)
 }
 
 /// The first campaign's value plus a difference: value, low, high, in the look's unit.
@@ -76,7 +75,8 @@ fn against_first(
     campaign: usize,
     look: &ParameterLook,
 ) -> Option<[f64; 3]> {
-    let first = (look.pick)(&comparison.campaigns.first()?.parameters)?.value?;
+    let first = &comparison.campaigns.first()?.parameters;
+    let first = first.get(look.parameter)?.value?;
     let found = difference(comparison, campaign, look)?;
     let [low, high] = found.interval95;
     Some([found.value, low, high].map(|v| (first + v) * look.factor))
@@ -84,7 +84,7 @@ fn against_first(
 
 /// A campaign's own estimate: value, low, high, in the look's unit.
 fn alone(set: &ParameterSet, look: &ParameterLook) -> Option<[f64; 3]> {
-    let estimate = (look.pick)(set)?;
+    let estimate = set.get(look.parameter)?;
     let (low, high) = interval95(estimate)?;
     Some([estimate.value?, low, high].map(|v| v * look.factor))
 }
@@ -94,21 +94,19 @@ fn parameter(
     rect: Rect,
     (comparison, look): (&Comparison, &ParameterLook),
     locale: Locale<'_>,
-) -> Vec<Spot> {
+) {
     let count = comparison.campaigns.len();
     let own = |i: usize| alone(&comparison.campaigns[i].parameters, look);
     let against = |i: usize| against_first(comparison, i, look);
     let ends = (0..count).flat_map(|i| [own(i), against(i)]).flatten();
     let ends: Vec<f64> = ends.flat_map(|[_, low, high]| [low, high]).collect();
-    let unit = if look.unit.is_empty() { "1" } else { look.unit };
-    let y = Axis::around(ends, 0.08, format!("{} ({unit})", look.symbol)).with_ticks(4);
+    let y = Axis::around(ends, 0.08, look.axis_title()).with_ticks(4);
     let x = Axis::new(0.4, count as f64 + 0.6, Phrase::Campaign).with_ticks(count.min(10));
     let panel = Panel::new(rect, x, y);
     if let Some([first, ..]) = own(0) {
         panel.level(canvas, first, Stroke::dashed(look::QUIET, 0.5, &[2.0, 2.0]));
     }
     let mut dots = Dots::default();
-    let mut spots = Vec::new();
     for i in 0..count {
         let number = (i + 1) as f64;
         let marks = [
@@ -120,21 +118,15 @@ fn parameter(
                 continue;
             };
             panel.error_bar(canvas, at, (low, high), Stroke::solid(colour, width));
-            let dot = DotLook {
-                radius: 1.8,
-                colour,
-                open: false,
-            };
+            let dot = DotLook::full(1.8, colour);
             let campaign = &comparison.campaigns[i];
-            let estimate = short(look, (look.pick)(&campaign.parameters), locale);
-            if let Some((x, y)) = dots.put(canvas, &panel, (at, value), dot) {
-                let text = format!("{}\n{estimate}", campaign.name);
-                spots.push(Spot { x, y, text });
+            let estimate = short(look, campaign.parameters.get(look.parameter), locale);
+            if let Some(at) = dots.put(canvas, &panel, (at, value), dot) {
+                canvas.spot(at, format!("{}\n{estimate}", campaign.name));
             }
         }
     }
     panel.frame(canvas, Sides::BOTH, locale);
-    spots
 }
 
 fn csv(comparison: &Comparison) -> String {
@@ -160,7 +152,7 @@ fn csv(comparison: &Comparison) -> String {
             let found = difference(comparison, i, look);
             let of = |pick: &dyn Fn(&Difference) -> f64| found.map(pick);
             csv.row()
-                .texts(&[&campaign.name, look.key])
+                .texts(&[&campaign.name, look.parameter.name()])
                 .numbers(&own)
                 .numbers(&[
                     of(&|d| d.value),

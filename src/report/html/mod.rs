@@ -1,8 +1,10 @@
 //! The report as one self-contained page: the same document, figures that can be zoomed, points
 //! that show their record.
 
-mod base64;
 mod parts;
+
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
 
 use super::document::model::Document;
 use super::error::ReportError;
@@ -69,7 +71,7 @@ fn font_face(face: Face, style: &str, weight: &str) -> String {
     format!(
         "@font-face {{ font-family: \"{FAMILY}\"; font-style: {style}; font-weight: {weight}; \
          src: url(data:font/otf;base64,{}) format(\"opentype\"); }}\n",
-        base64::encode(bytes)
+        BASE64_STANDARD.encode(bytes)
     )
 }
 
@@ -102,7 +104,7 @@ fn logo(options: &ReportOptions) -> String {
         "pdf" => return String::new(),
         _ => "image/png",
     };
-    let data = base64::encode(&logo.bytes);
+    let data = BASE64_STANDARD.encode(&logo.bytes);
     format!(
         "<img alt=\"logo\" style=\"float:right;height:3.4rem\" src=\"data:{kind};base64,{data}\">\n"
     )

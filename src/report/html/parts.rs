@@ -237,9 +237,9 @@ fn pairs(class: &str, entries: impl Iterator<Item = (String, String)>) -> String
 }
 
 fn table(table: &Table) -> String {
-    let rows = html_rows(table);
+    let rows = table.cells();
     let cell = |tag: &str, i: usize, text: &str| {
-        let align = table.align.get(i).map_or("left", |a| a.name());
+        let align = table.align.get(i).map_or("left", <&str>::from);
         format!("<{tag} class=\"{align}\">{text}</{tag}>")
     };
     let heads = table.heads.iter().enumerate();
@@ -255,7 +255,7 @@ fn table(table: &Table) -> String {
         let cells: String = row
             .iter()
             .enumerate()
-            .map(|(i, t)| cell("td", i, t))
+            .map(|(i, t)| cell("td", i, &rich(t)))
             .collect();
         text.push_str(&format!("<tr>{cells}</tr>\n"));
     }
@@ -265,29 +265,4 @@ fn table(table: &Table) -> String {
     } else {
         text
     }
-}
-
-/// The rows as HTML; those of a dense table are taken from its columns.
-fn html_rows(table: &Table) -> Vec<Vec<String>> {
-    if !table.dense {
-        return table
-            .rows
-            .iter()
-            .map(|row| row.iter().map(rich).collect())
-            .collect();
-    }
-    let columns: Vec<Vec<&str>> = table
-        .columns_text
-        .iter()
-        .map(|c| c.split('\n').collect())
-        .collect();
-    let count = columns.first().map_or(0, Vec::len);
-    (0..count)
-        .map(|i| {
-            columns
-                .iter()
-                .map(|c| escape(c.get(i).copied().unwrap_or("")))
-                .collect()
-        })
-        .collect()
 }

@@ -213,7 +213,6 @@ pub(super) fn compared() -> CampaignsContent {
             }],
             remarks: vec![Remark::NothingShared],
         },
-        version: "0.2.0".into(),
         command_line: "impactid compare before after --out compared".into(),
     }
 }

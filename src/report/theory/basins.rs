@@ -1,15 +1,14 @@
 //! Basins of attraction in the plane of the starts.
 
-use super::keys::{keys_height, keys_on_top, tint_keys};
+use super::ENGLISH;
+use super::keys::{sheet, tint_keys};
 use crate::compare::RegionMap;
 use crate::report::figures::axis::Axis;
-use crate::report::figures::canvas::Canvas;
 use crate::report::figures::figure::Figure;
 use crate::report::figures::look;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::figures::regions::Regions;
-use crate::report::locale::Locale;
 
 /// Room left of the panel, points.
 const LEFT: f64 = 36.0;
@@ -19,16 +18,9 @@ const HEIGHT: f64 = 300.0;
 const MOST_KEYS: usize = 12;
 
 /// Draws the motion to which each start (X, X′) leads; `None` if the grid has no area.
-pub(crate) fn draw(
-    basins: &RegionMap,
-    name: &str,
-    title: &str,
-    locale: Locale<'_>,
-) -> Option<Figure> {
+pub(crate) fn draw(basins: &RegionMap, name: &str, title: &str) -> Option<Figure> {
     let keys = tint_keys(basins, MOST_KEYS);
-    let top = keys_height(LEFT, &keys, locale);
-    let mut canvas = Canvas::new(look::FULL_WIDTH, top + HEIGHT + 26.0);
-    keys_on_top(&mut canvas, LEFT, &keys, locale);
+    let (mut canvas, top) = sheet(LEFT, &keys, HEIGHT);
     let axis = |v: &[f64], title: &str| {
         let half = 0.5 * (v.get(1)? - v.first()?);
         Some(Axis::new(v.first()? - half, v.last()? + half, title).with_ticks(7))
@@ -41,6 +33,6 @@ pub(crate) fn draw(
     canvas.layer(0);
     Regions::new(basins, &panel)?.draw(&mut canvas);
     canvas.layer(4);
-    panel.frame(&mut canvas, Sides::BOTH, locale);
+    panel.frame(&mut canvas, Sides::BOTH, ENGLISH);
     Some(Figure::new(name, title, canvas, String::new()))
 }

@@ -1,22 +1,20 @@
 //! The keys of the theory's figures.
 
+use super::ENGLISH;
 use crate::compare::RegionMap;
 use crate::motion::Motion;
 use crate::report::figures::canvas::Canvas;
 use crate::report::figures::legend::{self, Key, Sign};
 use crate::report::figures::look;
 use crate::report::figures::marks;
-use crate::report::locale::Locale;
 
-/// Draws keys over the whole width of the figure's top; gives the height they take.
-pub(super) fn keys_on_top(canvas: &mut Canvas, left: f64, keys: &[Key], locale: Locale<'_>) {
+/// A canvas of the text's width for panels of a height, with keys on its top, and where the panels begin.
+pub(super) fn sheet(left: f64, keys: &[Key], height: f64) -> (Canvas, f64) {
     let width = look::FULL_WIDTH - left;
-    legend::draw(canvas, (left, 1.0), width, keys, locale);
-}
-
-/// Height of keys on the figure's top.
-pub(super) fn keys_height(left: f64, keys: &[Key], locale: Locale<'_>) -> f64 {
-    legend::height(keys, look::FULL_WIDTH - left, locale) + 4.0
+    let top = legend::height(keys, width, ENGLISH) + 4.0;
+    let mut canvas = Canvas::new(look::FULL_WIDTH, top + height + 26.0);
+    legend::draw(&mut canvas, (left, 1.0), width, keys, ENGLISH);
+    (canvas, top)
 }
 
 /// Keys of the motions that a map shows, each with its tint; the rare ones last and left out

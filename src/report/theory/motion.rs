@@ -1,6 +1,7 @@
 //! One motion: time series, phase trajectories, Poincaré map, autocorrelation.
 
-use super::keys::{keys_height, keys_on_top};
+use super::ENGLISH;
+use super::keys::sheet;
 use crate::report::figures::axis::{Axis, range};
 use crate::report::figures::canvas::{Canvas, Stroke};
 use crate::report::figures::dots::{self, DotLook, Dots};
@@ -10,7 +11,6 @@ use crate::report::figures::look;
 use crate::report::figures::marks::mix;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
-use crate::report::locale::Locale;
 
 /// Room left of the panels, points.
 const LEFT: f64 = 36.0;
@@ -71,16 +71,14 @@ pub(crate) struct Strike {
 }
 
 /// Draws a portrait.
-pub(crate) fn draw(portrait: &Portrait, name: &str, title: &str, locale: Locale<'_>) -> Figure {
+pub(crate) fn draw(portrait: &Portrait, name: &str, title: &str) -> Figure {
     let keys = keys(portrait);
-    let top = keys_height(LEFT, &keys, locale);
-    let squares = top + SERIES_HEIGHT + 8.0 + SPEED_HEIGHT + 40.0;
-    let mut canvas = Canvas::new(look::FULL_WIDTH, squares + SQUARE + 26.0);
-    keys_on_top(&mut canvas, LEFT, &keys, locale);
+    let above = SERIES_HEIGHT + 8.0 + SPEED_HEIGHT + 40.0;
+    let (mut canvas, top) = sheet(LEFT, &keys, above + SQUARE);
+    let squares = top + above;
     let drawing = Drawing {
         portrait,
         samples: with_impacts(portrait),
-        locale,
     };
     drawing.series(&mut canvas, top);
     drawing.speeds(&mut canvas, top + SERIES_HEIGHT + 8.0);
@@ -151,7 +149,6 @@ fn keys(portrait: &Portrait) -> Vec<Key> {
 struct Drawing<'a> {
     portrait: &'a Portrait,
     samples: Vec<Sample>,
-    locale: Locale<'a>,
 }
 
 impl Drawing<'_> {
@@ -195,11 +192,7 @@ impl Drawing<'_> {
         panel.curve(canvas, data(&|s| s.x), thick);
         canvas.layer(3);
         let mut taken = Dots::default();
-        let dot = DotLook {
-            radius: dots::radius(self.portrait.impacts.len()),
-            colour: look::INK,
-            open: false,
-        };
+        let dot = DotLook::full(dots::radius(self.portrait.impacts.len()), look::INK);
         for i in &self.portrait.impacts {
             taken.put(canvas, &panel, (i.periods, i.x), dot);
         }
@@ -208,7 +201,7 @@ impl Drawing<'_> {
             below: false,
             left: true,
         };
-        panel.frame(canvas, sides, self.locale);
+        panel.frame(canvas, sides, ENGLISH);
     }
 
     /// Shades the times at which the masses are together.
@@ -252,7 +245,7 @@ impl Drawing<'_> {
         let data: Vec<_> = self.samples.iter().map(|s| (s.periods, s.vx)).collect();
         panel.curve(canvas, data, Stroke::solid(look::BLUE, 0.8));
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.locale);
+        panel.frame(canvas, Sides::BOTH, ENGLISH);
     }
 
     fn phase_plane(&self, canvas: &mut Canvas, rect: Rect) {
@@ -279,12 +272,12 @@ impl Drawing<'_> {
         let data: Vec<_> = self.samples.iter().map(|s| (s.x, s.vx)).collect();
         panel.curve(canvas, data, Stroke::solid(look::BLUE, 0.6));
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.locale);
+        panel.frame(canvas, Sides::BOTH, ENGLISH);
     }
 
     fn poincare(&self, canvas: &mut Canvas, rect: Rect) {
         let points = &self.portrait.poincare;
-        let phase = self.locale.fixed(self.portrait.poincare_phase, 2);
+        let phase = ENGLISH.fixed(self.portrait.poincare_phase, 2);
         let title = format!("$X$ at drive phase {phase} (1)");
         let wide = |values: Vec<f64>| {
             let (low, high) = range(values).unwrap_or((0.0, 1.0));
@@ -300,16 +293,12 @@ impl Drawing<'_> {
             Axis::new(c, d, "$X$′ (1)").with_ticks(4),
         );
         let mut taken = Dots::default();
-        let dot = DotLook {
-            radius: dots::radius(points.len()),
-            colour: look::BLUE,
-            open: false,
-        };
+        let dot = DotLook::full(dots::radius(points.len()), look::BLUE);
         for p in points {
             taken.put(canvas, &panel, (p[0], p[1]), dot);
         }
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.locale);
+        panel.frame(canvas, Sides::BOTH, ENGLISH);
     }
 
     fn autocorrelation(&self, canvas: &mut Canvas, rect: Rect) {
@@ -322,6 +311,6 @@ impl Drawing<'_> {
         let stroke = Stroke::solid(mix(look::BLUE, 0.9), 0.6);
         panel.curve(canvas, values.iter().copied(), stroke);
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.locale);
+        panel.frame(canvas, Sides::BOTH, ENGLISH);
     }
 }

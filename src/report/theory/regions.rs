@@ -1,19 +1,18 @@
 //! Regions of existence and stability of all motions in the (η, ρ) plane: the brute-force maps as
 //! tints (hatched where they differ), the boundaries as curves.
 
-use super::keys::{keys_height, keys_on_top};
+use super::ENGLISH;
+use super::keys::sheet;
 use crate::compare::RegionMap;
 use crate::report::figures::axis::Axis;
-use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
+use crate::report::figures::canvas::{Canvas, Stroke};
 use crate::report::figures::figure::Figure;
-use crate::report::figures::fonts::Face;
 use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::look;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::regions::Regions;
-use crate::report::locale::Locale;
 
 /// Room left of the panel, points.
 const LEFT: f64 = 34.0;
@@ -38,13 +37,9 @@ pub(crate) fn draw(
     (map, curves): (&RegionMap, &[Curve]),
     name: &str,
     title: &str,
-    locale: Locale<'_>,
 ) -> Option<Figure> {
     let keys = keys(curves, map.cells != map.second);
-    let top = keys_height(LEFT, &keys, locale);
-    let size = (look::FULL_WIDTH, top + HEIGHT + 26.0);
-    let mut canvas = Canvas::new(size.0, size.1);
-    keys_on_top(&mut canvas, LEFT, &keys, locale);
+    let (mut canvas, top) = sheet(LEFT, &keys, HEIGHT);
     let axis = |v: &[f64], title: &str, ticks| {
         Some(Axis::new(*v.first()?, *v.last()?, title).with_ticks(ticks))
     };
@@ -56,16 +51,12 @@ pub(crate) fn draw(
     let regions = Regions::new(map, &panel)?;
     canvas.layer(0);
     regions.draw(&mut canvas);
-    let mut occupancy = Occupancy::new(size.0, size.1);
+    let mut occupancy = Occupancy::new(canvas.width, canvas.height);
     draw_curves(&mut canvas, &panel, curves, &mut occupancy);
     canvas.layer(5);
-    for label in regions.labels(&mut occupancy, 9.5, locale) {
-        let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
-        let at = (label.at.0, label.at.1 + 0.33 * label.size);
-        canvas.text(at, &label.text, text_look.colour(look::INK));
-    }
+    regions.draw_labels(&mut canvas, &mut occupancy, 9.5, ENGLISH);
     canvas.layer(6);
-    panel.frame(&mut canvas, Sides::BOTH, locale);
+    panel.frame(&mut canvas, Sides::BOTH, ENGLISH);
     Some(Figure::new(name, title, canvas, String::new()))
 }
 

@@ -1,7 +1,8 @@
 //! Quasi-stationary characteristics: amplitude, closing speed, Lyapunov exponent,
 //! autocorrelation, and amplitude and phase of the impactless motion.
 
-use super::keys::{keys_height, keys_on_top};
+use super::ENGLISH;
+use super::keys::sheet;
 use crate::report::figures::axis::{Axis, range};
 use crate::report::figures::canvas::{Canvas, Colour, Stroke};
 use crate::report::figures::dots::{self, DotLook, Dots};
@@ -10,7 +11,6 @@ use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::look;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
-use crate::report::locale::Locale;
 
 /// Room left of the panels, points.
 const LEFT: f64 = 42.0;
@@ -91,13 +91,11 @@ const ROWS: [Row; 4] = [
 const PHASE_HEIGHT: f64 = 62.0;
 
 /// Draws the characteristics over the quantity that moves.
-pub(crate) fn draw(data: &Characteristics, name: &str, title: &str, locale: Locale<'_>) -> Figure {
+pub(crate) fn draw(data: &Characteristics, name: &str, title: &str) -> Figure {
     let keys = keys(!data.impactless_y.is_empty());
-    let top = keys_height(LEFT, &keys, locale);
     let rows: f64 = ROWS.iter().map(|r| r.height + GAP).sum();
-    let mut canvas = Canvas::new(look::FULL_WIDTH, top + rows + PHASE_HEIGHT + 26.0);
-    keys_on_top(&mut canvas, LEFT, &keys, locale);
-    let drawing = Drawing { data, locale };
+    let (mut canvas, top) = sheet(LEFT, &keys, rows + PHASE_HEIGHT);
+    let drawing = Drawing { data };
     let mut y = top;
     for (i, row) in ROWS.iter().enumerate() {
         drawing.row(&mut canvas, y, row, i == 0);
@@ -131,7 +129,6 @@ const IMPACTLESS: Colour = look::QUIET;
 
 struct Drawing<'a> {
     data: &'a Characteristics,
-    locale: Locale<'a>,
 }
 
 impl Drawing<'_> {
@@ -181,11 +178,7 @@ impl Drawing<'_> {
             (&self.data.forward, look::BLUE),
         ] {
             let mut taken = Dots::default();
-            let dot = DotLook {
-                radius: 0.8 * dots::radius(count),
-                colour,
-                open: false,
-            };
+            let dot = DotLook::full(0.8 * dots::radius(count), colour);
             for p in points {
                 for v in (row.values)(p) {
                     taken.put(canvas, &panel, (self.at(p), v), dot);
@@ -197,7 +190,7 @@ impl Drawing<'_> {
             below: false,
             left: true,
         };
-        panel.frame(canvas, sides, self.locale);
+        panel.frame(canvas, sides, ENGLISH);
     }
 
     /// The impactless motion's curve of X, and of Y where there is one.
@@ -217,6 +210,6 @@ impl Drawing<'_> {
         let panel = self.panel(top, PHASE_HEIGHT, y, true);
         self.impactless(canvas, &panel, |p| p.1.to_degrees());
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.locale);
+        panel.frame(canvas, Sides::BOTH, ENGLISH);
     }
 }

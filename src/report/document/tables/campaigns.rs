@@ -1,5 +1,6 @@
 //! The tables of campaigns compared: their estimates, the differences, what they share.
 
+use super::estimates::{LEAST_P, estimate_cells, p_value};
 use super::{Column, Head, table, verbatim};
 use crate::difference::{Comparison, Difference};
 use crate::identify::fit::parameters::Coordinate;
@@ -7,24 +8,13 @@ use crate::report::document::model::{Rich, Table};
 use crate::report::document::verdict::headline;
 use crate::report::figures::correlation::name;
 use crate::report::locale::Locale;
-use crate::report::parameters::{self, PARAMETERS};
+use crate::report::parameters;
 use crate::report::phrase::Phrase;
-
-/// Smaller p-values are printed as smaller than this.
-const LEAST_P: f64 = 1e-3;
 
 /// A p-value as printed behind its name.
 pub(crate) fn p_equals(p: f64, locale: Locale<'_>) -> String {
     let relation = if p < LEAST_P { "" } else { "= " };
     format!("{relation}{}", p_value(p, locale))
-}
-
-/// A p-value as printed.
-fn p_value(p: f64, locale: Locale<'_>) -> String {
-    match p < LEAST_P {
-        true => format!("< {}", locale.fixed(LEAST_P, 3)),
-        false => locale.fixed(p, 3),
-    }
 }
 
 /// The campaigns with their joint estimates.
@@ -35,8 +25,7 @@ pub(crate) fn campaigns(comparison: &Comparison, locale: Locale<'_>) -> Option<T
             verbatim(c.name.clone()),
             verbatim(c.measured.clone().unwrap_or_default()),
         ];
-        let cell = |look| Rich::from(parameters::short(look, (look.pick)(&c.parameters), locale));
-        row.extend(PARAMETERS.iter().map(cell));
+        row.extend(estimate_cells(&c.parameters, locale));
         row.push(Rich::from(locale.translate(headline(c.verdict, true))));
         row
     });
@@ -80,8 +69,7 @@ pub(crate) fn differences(comparison: &Comparison, locale: Locale<'_>) -> Option
 }
 
 fn row(d: &Difference, locale: Locale<'_>) -> Vec<Rich> {
-    let key = d.parameter.name();
-    let Some(look) = parameters::parameter(key) else {
+    let Some(look) = parameters::parameter(d.parameter) else {
         return vec![Rich::default(); 7];
     };
     let half = |[low, high]: [f64; 2]| 0.5 * (high - low) * look.factor;

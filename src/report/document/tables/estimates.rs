@@ -8,13 +8,13 @@ use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::document::verdict::headline;
 use crate::report::locale::Locale;
-use crate::report::parameters::{self, PARAMETERS};
+use crate::report::parameters::{self, PARAMETERS, ParameterLook};
 use crate::report::phrase::{Phrase, Text};
 
 /// Size of the type of the methods' tables, points.
 const SIZE: f64 = 7.5;
 /// Smaller p-values are printed as smaller than this.
-const LEAST_P: f64 = 1e-3;
+pub(super) const LEAST_P: f64 = 1e-3;
 
 /// The estimates, as [`estimate_cells`] fills them.
 const ESTIMATES: [Column; 4] = [
@@ -85,8 +85,12 @@ pub(crate) fn specimens(content: &ReportContent, locale: Locale<'_>) -> Option<T
     table(&"".into(), &columns, rows.collect(), locale)
 }
 
-fn estimate_cells(set: &ParameterSet, locale: Locale<'_>) -> Vec<Rich> {
-    let cell = |look| Rich::from(parameters::short(look, (look.pick)(set), locale));
+/// A cell for each of the four parameters.
+pub(super) fn estimate_cells(set: &ParameterSet, locale: Locale<'_>) -> Vec<Rich> {
+    let cell = |look: &ParameterLook| {
+        let estimate = set.get(look.parameter);
+        Rich::from(parameters::short(look, estimate, locale))
+    };
     PARAMETERS.iter().map(cell).collect()
 }
 
@@ -98,7 +102,11 @@ fn method_rows(
 ) -> Vec<Vec<Rich>> {
     let all = methods.iter().map(|(k, m)| (locale.message(k), m));
     let all = all.chain([(locale.translate(Phrase::JointTitle), joint)]);
-    let says = |m: &MethodResult| PARAMETERS.iter().any(|p| (p.pick)(&m.parameters).is_some());
+    let says = |m: &MethodResult| {
+        PARAMETERS
+            .iter()
+            .any(|p| m.parameters.get(p.parameter).is_some())
+    };
     all.filter(|(_, m)| says(m))
         .map(|(name, m)| method_row(name, m, locale))
         .collect()
@@ -128,22 +136,25 @@ fn method_row(name: String, method: &MethodResult, locale: Locale<'_>) -> Vec<Ri
     row
 }
 
+/// A p-value as printed.
+pub(super) fn p_value(p: f64, locale: Locale<'_>) -> String {
+    match p < LEAST_P {
+        true => format!("< {}", locale.fixed(LEAST_P, 3)),
+        false => locale.fixed(p, 3),
+    }
+}
+
 /// Whether the methods agree, pair by pair.
 pub(crate) fn agreement(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let rows = content.identification.agreement.pairs.iter().map(|pair| {
-        let key = pair.parameter.name();
-        let symbol = parameters::parameter(key).map_or(key, |p| p.symbol);
-        let p = if pair.p_value < LEAST_P {
-            format!("< {}", locale.fixed(LEAST_P, 3))
-        } else {
-            locale.fixed(pair.p_value, 3)
-        };
+        let look = parameters::parameter(pair.parameter);
+        let symbol = look.map_or(pair.parameter.name(), |p| p.symbol);
         vec![
             Rich::from(symbol),
             Rich::from(locale.message(&pair.methods[0])),
             Rich::from(locale.message(&pair.methods[1])),
             Rich::from(locale.fixed(pair.z_score, 2)),
-            Rich::from(p),
+            Rich::from(p_value(pair.p_value, locale)),
         ]
     });
     let columns: [Column; 5] = [

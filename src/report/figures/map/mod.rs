@@ -11,9 +11,8 @@ use crate::motion::Motion;
 use crate::record::Sweep;
 use crate::report::content::ReportContent;
 use crate::report::figures::boundaries;
-use crate::report::figures::canvas::{Anchor, Canvas, Point, TextLook};
-use crate::report::figures::figure::{Figure, Spot};
-use crate::report::figures::fonts::Face;
+use crate::report::figures::canvas::{Canvas, Point};
+use crate::report::figures::figure::Figure;
 use crate::report::figures::legend::{self, Key};
 use crate::report::figures::look;
 use crate::report::figures::marks;
@@ -74,7 +73,6 @@ struct Map<'a> {
     /// Radius of the marks, points.
     radius: f64,
     occupancy: Occupancy,
-    spots: Vec<Spot>,
 }
 
 /// Every other column and row of a region map: enough for a small figure.
@@ -132,7 +130,6 @@ impl<'a> Map<'a> {
             strips,
             radius: 0.0,
             occupancy: Occupancy::new(width, total),
-            spots: Vec::new(),
         };
         map.radius = map.fitting_radius();
         map
@@ -167,13 +164,7 @@ impl<'a> Map<'a> {
         regions.draw(&mut self.canvas);
         let size = if self.full() { 10.0 } else { 8.0 };
         self.canvas.layer(6);
-        for label in regions.labels(&mut self.occupancy, size, locale) {
-            let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
-            let (x, y) = label.at;
-            let baseline = (x, y + 0.33 * label.size);
-            self.canvas
-                .text(baseline, &label.text, text_look.colour(look::INK));
-        }
+        regions.draw_labels(&mut self.canvas, &mut self.occupancy, size, locale);
     }
 
     fn take_records_and_curves(&mut self) {
@@ -306,12 +297,7 @@ impl<'a> Map<'a> {
             let Some(at) = self.place(record) else {
                 continue;
             };
-            let text = data::describe(record, locale);
-            self.spots.push(Spot {
-                x: at.0,
-                y: at.1,
-                text,
-            });
+            self.canvas.spot(at, data::describe(record, locale));
             let order = (marks::order(&record.motion), record.motion.label());
             let cell = [at.0, at.1].map(|v| whole::integer((v / side).floor()));
             let (_, places) = drawn
@@ -344,7 +330,7 @@ impl<'a> Map<'a> {
             MapSize::Full => ("map", Phrase::RegionsSimulatedAndMeasured),
             MapSize::Small => ("map_small", Phrase::MotionsAndBoundaries),
         };
-        Figure::new(name, &locale.translate(title), self.canvas, csv).with_spots(self.spots)
+        Figure::new(name, &locale.translate(title), self.canvas, csv)
     }
 }
 

@@ -1,51 +1,46 @@
 //! The labels of the regions.
 
 use super::{LEAST_SHARE, Regions};
-use crate::report::figures::canvas::Point;
+use crate::report::figures::canvas::{Anchor, Canvas, Point, TextLook};
 use crate::report::figures::fonts::{self, Face};
+use crate::report::figures::look;
 use crate::report::figures::path::Rect;
 use crate::report::figures::placing::Occupancy;
 use crate::report::locale::Locale;
 
-/// A region's label in its place.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct RegionLabel {
-    /// Its text.
-    pub text: String,
-    /// Middle of the text, points.
-    pub at: Point,
-    /// Size of the text, points.
-    pub size: f64,
-}
-
 impl Regions<'_> {
-    /// A label for each region that is large enough, placed where nothing else is drawn.
-    pub(crate) fn labels(
+    /// Draws a label in each region that is large enough, where nothing else is drawn.
+    pub(crate) fn draw_labels(
         &self,
+        canvas: &mut Canvas,
         occupancy: &mut Occupancy,
         size: f64,
         locale: Locale<'_>,
-    ) -> Vec<RegionLabel> {
+    ) {
         let mut order: Vec<usize> = (0..self.areas.len()).collect();
         order.sort_by_key(|&r| std::cmp::Reverse(self.areas[r]));
         let least = LEAST_SHARE * self.region.len() as f64;
         let large = order
             .into_iter()
             .take_while(|&r| self.areas[r] as f64 >= least);
-        let place = |r| {
-            [size, 0.8 * size]
-                .into_iter()
-                .find_map(|s| self.label((r, locale), occupancy, s))
-        };
-        large.filter_map(place).collect()
+        for region in large {
+            for size in [size, 0.8 * size] {
+                if let Some((text, (x, y))) = self.label((region, locale), occupancy, size) {
+                    let bold = TextLook::new(size, Anchor::Middle).face(Face::Bold);
+                    canvas.text((x, y + 0.33 * size), &text, bold.colour(look::INK));
+                    break;
+                }
+            }
+        }
     }
 
+    /// The text of a region's label and the middle of its place.
     fn label(
         &self,
         (region, locale): (usize, Locale<'_>),
         occupancy: &mut Occupancy,
         size: f64,
-    ) -> Option<RegionLabel> {
+    ) -> Option<(String, Point)> {
         let first_cell = self.region.iter().position(|&r| r == region)?;
         let text = self.name(first_cell, locale);
         let half = (
@@ -70,11 +65,7 @@ impl Regions<'_> {
             2.0 * half.0,
             2.0 * half.1,
         ));
-        Some(RegionLabel {
-            text,
-            at: best.1,
-            size,
-        })
+        Some((text, best.1))
     }
 
     fn name(&self, cell: usize, locale: Locale<'_>) -> String {
