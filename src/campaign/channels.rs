@@ -33,7 +33,7 @@ pub(super) fn resolve(
     context: &mut ResolveContext<'_>,
 ) -> Vec<ChannelSetup> {
     let mut setups = Vec::new();
-    for role in Role::ALL {
+    for &role in Role::ALL {
         let Some(placed) = channels.of(role) else {
             continue;
         };

@@ -138,28 +138,13 @@ fn remedy_for_unknown(name: &str, expected: &[&str]) -> String {
 /// The candidate nearest to a name, where one is near enough to be meant.
 pub(super) fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
     let limit = 1 + name.chars().count() / 3;
+    let small = name.to_lowercase();
     candidates
         .iter()
-        .map(|c| (distance(name, c), *c))
+        .map(|c| (strsim::levenshtein(&small, &c.to_lowercase()), *c))
         .filter(|(d, c)| *d <= limit || c.starts_with(name) || name.starts_with(c))
         .min_by_key(|(d, _)| *d)
         .map(|(_, c)| c)
-}
-
-/// Levenshtein distance, letters compared without case.
-fn distance(a: &str, b: &str) -> usize {
-    let (a, b) = (a.to_lowercase(), b.to_lowercase());
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for (j, y) in b.iter().enumerate() {
-            let change = diagonal + usize::from(x != *y);
-            diagonal = row[j + 1];
-            row[j + 1] = change.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[b.len()]
 }
 
 /// Remove the innermost entry whose key or value covers `span`; gives its dotted path.

@@ -105,25 +105,12 @@ fn records(text: &mut String, found: &FolderContents) -> std::fmt::Result {
 
 /// Which attributes may hold the setting; where the name bears no unit, the usual one.
 fn attributes(found: &FolderContents) -> Vec<(&'static str, String)> {
-    /// Key, stems of attribute names, dimension and usual unit.
-    type Key = (
-        &'static str,
-        &'static [&'static str],
-        Option<(Dimension, &'static str)>,
-    );
-    const KEYS: [Key; 4] = [
-        (
-            "clearance",
-            &["clearance", "gap"],
-            Some((Dimension::Length, "mm")),
-        ),
-        (
-            "drive_frequency",
-            &["freq"],
-            Some((Dimension::Frequency, "Hz")),
-        ),
-        ("drive_amplitude", &["amplitude"], None),
-        ("sweep", &["sweep", "direction"], None),
+    /// Key, stems of attribute names, usual unit.
+    const KEYS: [(&str, &[&str], &str); 4] = [
+        ("clearance", &["clearance", "gap"], "mm"),
+        ("drive_frequency", &["freq"], "Hz"),
+        ("drive_amplitude", &["amplitude"], ""),
+        ("sweep", &["sweep", "direction"], ""),
     ];
     let find = |stems: &[&str]| {
         found.attributes.keys().find(|name| {
@@ -133,14 +120,14 @@ fn attributes(found: &FolderContents) -> Vec<(&'static str, String)> {
         })
     };
     KEYS.iter()
-        .filter_map(|(key, stems, unit)| Some((*key, with_unit(find(stems)?, *unit))))
+        .filter_map(|(key, stems, usual)| Some((*key, with_unit(find(stems)?, usual))))
         .collect()
 }
 
-fn with_unit(name: &str, unit: Option<(Dimension, &str)>) -> String {
+fn with_unit(name: &str, usual: &str) -> String {
     let own = units::split_unit(name).1.and_then(units::parse_split_unit);
-    match unit {
-        Some((dimension, usual)) if own.is_none_or(|u| u.dimension != dimension) => {
+    match units::parse_unit(usual) {
+        Some(unit) if own.is_none_or(|u| u.dimension != unit.dimension) => {
             format!("{name} [{usual}]")
         }
         _ => name.to_owned(),
@@ -154,7 +141,7 @@ fn channels(text: &mut String, found: &FolderContents) -> std::fmt::Result {
     }
     text.write_str(CHANNELS)?;
     let mut named = 0;
-    for role in Role::ALL {
+    for &role in Role::ALL {
         let Some(channel) = found.channels.iter().find(|c| c.role == Some(role)) else {
             continue;
         };

@@ -70,10 +70,7 @@ impl Basins {
             Starts::BothMasses
         };
         let plan = BasinPlan {
-            setting: Setting {
-                phase: self.phase,
-                ..Setting::new(self.eta, self.rho)
-            },
+            setting: Setting::new(self.eta, self.rho).at_phase(self.phase),
             grid: BasinGrid {
                 x: (self.x.0, self.x.1, self.columns.max(2)),
                 vx: (self.vx.0, self.vx.1, self.rows.max(2)),

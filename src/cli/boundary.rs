@@ -1,13 +1,13 @@
 //! `impactid boundary`: single points of the boundaries in the (η, ρ) plane.
 
 use clap::{Args, ValueEnum};
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::machine::{MachineArgs, motion, refused};
 use super::stdout::print;
 use super::{Exit, Failure, Verbosity};
+use impact_oscillator::Machine;
 use impact_oscillator::atlas::{At, Boundary as Sought, BoundaryQuery, Point, boundary_points};
-use impact_oscillator::{Existence, Machine};
 
 /// Arguments of `impactid boundary`.
 #[derive(Debug, Args)]
@@ -112,7 +112,7 @@ impl Boundary {
             name: name.as_ref().map_or("", |v| v.get_name()),
         };
         print(&if self.json {
-            answer.json()?
+            answer.json()
         } else {
             answer.text()
         })?;
@@ -132,113 +132,53 @@ struct Answer<'a> {
     name: &'a str,
 }
 
-/// A point in JSON, or why there is none.
-#[derive(Serialize)]
-struct Row {
-    rho: Option<f64>,
-    valid: bool,
-    eta: Option<f64>,
-    #[serde(flatten)]
-    detail: Detail,
-}
-
-/// What is known of a point beside its place.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Detail {
-    Missing {
-        reason: String,
-    },
-    Value {
-        closing_speed: f64,
-    },
-    ClosedForm {
-        closing_speed: f64,
-        phase_at_impact_rad: f64,
-        existence: Existence,
-        ends_stability: bool,
-    },
-    Followed {
-        closing_speed: f64,
-        side: &'static str,
-    },
-    Resting {
-        closing_speed: f64,
-        side: &'static str,
-        of: String,
-    },
-}
-
-/// The first point with the boundary's name, the further ones under `others`.
-#[derive(Serialize)]
-struct Rows<'a> {
-    #[serde(flatten)]
-    first: Row,
-    kind: &'a str,
-    motion: String,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    others: Vec<Row>,
-}
-
 impl Answer<'_> {
-    /// One object on one line.
-    fn json(&self) -> Result<String, Failure> {
+    /// One object on one line: the first point with the boundary's name, the further ones under `others`.
+    fn json(&self) -> String {
         let mut rows = self.points.iter().map(|point| self.row(point));
-        let rows = Rows {
-            first: rows.next().unwrap_or_else(|| self.missing()),
-            kind: self.name,
-            motion: self.motion(),
-            others: rows.collect(),
-        };
-        let text = serde_json::to_string(&rows)
-            .map_err(|e| Failure::new(e.to_string(), "please report it with the command line"))?;
-        Ok(format!("{text}\n"))
+        let mut first = rows.next().unwrap_or_else(|| self.missing());
+        first["kind"] = self.name.into();
+        first["motion"] = self.motion().into();
+        let others: Vec<Value> = rows.collect();
+        if !others.is_empty() {
+            first["others"] = others.into();
+        }
+        format!("{first}\n")
     }
 
-    fn missing(&self) -> Row {
+    fn missing(&self) -> Value {
         let (eta, rho) = match self.query.at {
             At::FrequencyRatio(eta) => (Some(eta), None),
             At::Clearance(rho) => (None, Some(rho)),
         };
-        let reason = self.none();
-        Row {
-            rho,
-            valid: false,
-            eta,
-            detail: Detail::Missing { reason },
-        }
+        json!({"rho": rho, "valid": false, "eta": eta, "reason": self.none()})
     }
 
-    fn row(&self, point: &Point) -> Row {
+    fn row(&self, point: &Point) -> Value {
+        let mut row = json!({"rho": point.rho(), "valid": point.is_valid(), "eta": point.eta(), "closing_speed": 0.0});
         let side = |upper: bool| if upper { "high" } else { "low" };
-        let detail = match *point {
-            Point::Value { .. } => Detail::Value { closing_speed: 0.0 },
-            Point::ClosedForm(p) => Detail::ClosedForm {
-                closing_speed: p.approach_speed,
-                phase_at_impact_rad: p.phase,
-                existence: p.existence,
-                ends_stability: p.ends_stability,
-            },
+        match *point {
+            Point::Value { .. } => {}
+            Point::ClosedForm(p) => {
+                row["closing_speed"] = p.approach_speed.into();
+                row["phase_at_impact_rad"] = p.phase.into();
+                row["existence"] = json!(p.existence);
+                row["ends_stability"] = p.ends_stability.into();
+            }
             Point::Followed {
                 approach_speed,
                 upper,
                 ..
-            } => Detail::Followed {
-                closing_speed: approach_speed,
-                side: side(upper),
-            },
-            Point::Resting { upper, .. } => Detail::Resting {
-                closing_speed: 0.0,
-                side: side(upper),
-                of: format!("{}/{}j", self.query.p, self.query.n),
-            },
-        };
-        Row {
-            rho: Some(point.rho()),
-            valid: point.is_valid(),
-            eta: Some(point.eta()),
-            detail,
+            } => {
+                row["closing_speed"] = approach_speed.into();
+                row["side"] = side(upper).into();
+            }
+            Point::Resting { upper, .. } => {
+                row["side"] = side(upper).into();
+                row["of"] = format!("{}/{}j", self.query.p, self.query.n).into();
+            }
         }
+        row
     }
 
     /// A line per point.
@@ -304,5 +244,5 @@ impl Answer<'_> {
 
 /// A number as JSON has it.
 fn number(value: f64) -> String {
-    serde_json::json!(value).to_string()
+    json!(value).to_string()
 }

@@ -184,12 +184,8 @@ fn of_path(path: &Path, number: usize, verbosity: Verbosity) -> Result<Vec<Campa
         ));
     }
     let bar = Progress::new(verbosity, "observe", campaign.records.len() as u64);
-    let progress = |stage: &'static str, done: u64, total: u64| {
-        bar.stage(stage);
-        bar.set(done, total);
-    };
-    let observed = Observed::of(&campaign, &progress)?;
-    progress("identify", 0, 1);
+    let observed = Observed::of(&campaign, &|s, d, t| bar.step(s, d, t))?;
+    bar.step("identify", 0, 1);
     let found = pipeline::identify::identify(&campaign, &observed, Some(bar.fits()))?;
     drop(bar);
     Ok(campaigns::campaigns(

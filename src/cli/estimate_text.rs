@@ -1,6 +1,7 @@
 //! Estimates in a line of the terminal.
 
 use crate::identify::{Estimate, Status};
+use crate::signal::whole;
 
 /// A value with half of its 95 % interval.
 pub(super) fn with_error(estimate: &Estimate) -> String {
@@ -9,12 +10,7 @@ pub(super) fn with_error(estimate: &Estimate) -> String {
     };
     let half = 0.5 * (high - low);
     let decimals = (1.0 - half.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0);
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "it lies between 0 and 9"
-    )]
-    let decimals = decimals as usize;
+    let decimals = whole::index(decimals);
     let weak = match estimate.status {
         Status::Weak => " (weak)",
         Status::Identified | Status::NotIdentifiable => "",

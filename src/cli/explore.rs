@@ -137,11 +137,7 @@ fn open(path: &Path, verbosity: Verbosity) -> Result<Session, Failure> {
     let bar = || Progress::new(verbosity, "observe", 0);
     if path.is_dir() {
         let bar = bar();
-        let progress = |stage: &'static str, done: u64, total: u64| {
-            bar.stage(stage);
-            bar.set(done, total);
-        };
-        let (campaign, notes) = Campaign::read(path, &progress)?;
+        let (campaign, notes) = Campaign::read(path, &|s, d, t| bar.step(s, d, t))?;
         return Ok(Session::of_campaign(campaign, notes));
     }
     let text = read(path)?;
@@ -158,11 +154,7 @@ fn open(path: &Path, verbosity: Verbosity) -> Result<Session, Failure> {
     }
     let campaign = load_campaign(path, verbosity)?;
     let bar = bar();
-    let progress = |stage: &'static str, done: u64, total: u64| {
-        bar.stage(stage);
-        bar.set(done, total);
-    };
-    let campaign = Campaign::of(campaign, &progress)?;
+    let campaign = Campaign::of(campaign, &|s, d, t| bar.step(s, d, t))?;
     Ok(Session::of_campaign(campaign, Vec::new()))
 }
 

@@ -10,6 +10,7 @@ use crate::identify::plan::Proposal;
 use crate::motion::{Bracket, Motion, Observation};
 use crate::pipeline::watch::{Live, Outline, Watcher};
 use crate::report::budget_source;
+use crate::signal::whole;
 
 /// What happened to a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,7 +90,7 @@ fn map(outline: &Outline) -> String {
             .rfind(|i| *i as f64 <= share * (COLUMNS - 1) as f64 + 0.5)
             .unwrap_or(0)
     };
-    let mut rows: BTreeMap<i64, [char; COLUMNS]> = BTreeMap::new();
+    let mut rows: BTreeMap<i32, [char; COLUMNS]> = BTreeMap::new();
     let step = row_step(&places);
     for (frequency_hz, clearance_m, o) in &places {
         let row = rows
@@ -112,7 +113,7 @@ fn map(outline: &Outline) -> String {
         let row: String = row.iter().collect();
         text += &format!(
             "{:>8.3} mm {}\n",
-            *place as f64 * step * 1e3,
+            f64::from(*place) * step * 1e3,
             row.trim_end()
         );
     }
@@ -130,7 +131,7 @@ fn map(outline: &Outline) -> String {
 fn row_step(places: &[(f64, f64, &Observation)]) -> f64 {
     let mut step = 1e-6;
     loop {
-        let mut rows: Vec<i64> = places.iter().map(|p| row(p.1, step)).collect();
+        let mut rows: Vec<i32> = places.iter().map(|p| row(p.1, step)).collect();
         rows.sort_unstable();
         rows.dedup();
         if rows.len() <= MOST_ROWS {
@@ -140,12 +141,8 @@ fn row_step(places: &[(f64, f64, &Observation)]) -> f64 {
     }
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "clearances are millimetres"
-)]
-fn row(clearance_m: f64, step: f64) -> i64 {
-    (clearance_m / step).round() as i64
+fn row(clearance_m: f64, step: f64) -> i32 {
+    whole::integer((clearance_m / step).round())
 }
 
 /// A motion in one letter.

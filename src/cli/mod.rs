@@ -89,9 +89,26 @@ pub struct Common {
     threads: Option<std::num::NonZeroUsize>,
 }
 
-/// The commands, in the order in which they are needed.
-#[derive(Debug, Subcommand)]
-enum Command {
+/// Defines the commands; each runs itself.
+macro_rules! commands {
+    ($($(#[$doc:meta])* $name:ident($command:ty),)*) => {
+        #[derive(Debug, Subcommand)]
+        enum Command {
+            $($(#[$doc])* $name($command),)*
+        }
+
+        impl Command {
+            fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+                match self {
+                    $(Self::$name(command) => command.run(verbosity),)*
+                }
+            }
+        }
+    };
+}
+
+// in the order in which they are needed
+commands! {
     /// Write a commented campaign.toml for the files in a folder
     Init(init::Init),
     /// Read all records and list every problem; change nothing
@@ -138,36 +155,6 @@ enum Command {
     Completions(completions::Completions),
     /// Write manual pages
     Man(completions::Man),
-}
-
-impl Command {
-    fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
-        match self {
-            Self::Init(command) => command.run(verbosity),
-            Self::Check(command) => command.run(verbosity),
-            Self::Run(command) => command.run(verbosity),
-            Self::Watch(command) => command.run(verbosity),
-            Self::Ingest(command) => command.run(verbosity),
-            Self::Classify(command) => command.run(verbosity),
-            Self::Identify(command) => command.run(verbosity),
-            Self::Report(command) => command.run(verbosity),
-            Self::Compare(command) => command.run(verbosity),
-            Self::Plan(command) => command.run(verbosity),
-            Self::Explore(command) => command.run(verbosity),
-            Self::Inspect(command) => command.run(verbosity),
-            Self::Convert(command) => command.run(verbosity),
-            Self::Atlas(command) => command.run(verbosity),
-            Self::Merge(command) => command.run(verbosity),
-            Self::Boundary(command) => command.run(verbosity),
-            Self::Sweep(command) => command.run(verbosity),
-            Self::Basins(command) => command.run(verbosity),
-            Self::Study(command) => command.run(verbosity),
-            Self::Simulate(command) => command.run(verbosity),
-            Self::Selftest(command) => command.run(verbosity),
-            Self::Completions(command) => command.run(verbosity),
-            Self::Man(command) => command.run(verbosity),
-        }
-    }
 }
 
 /// Run the program on the process's own arguments.

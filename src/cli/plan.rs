@@ -46,11 +46,8 @@ impl Plan {
         let _lock = Lock::take(&self.out)?;
         interrupt::watch(self.out.clone());
         let bar = Progress::new(verbosity, "observe", campaign.records.len() as u64);
-        let progress = |stage: &'static str, done: u64, total: u64| {
-            bar.stage(stage);
-            bar.set(done, total);
-        };
-        let found = plan::plan(&campaign, self.settings, &self.out, &progress)?;
+        let step = |stage: &str, done, total| bar.step(stage, done, total);
+        let found = plan::plan(&campaign, self.settings, &self.out, &step)?;
         drop(bar);
         if self.json {
             print_json(&found)?;

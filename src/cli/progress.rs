@@ -82,8 +82,14 @@ impl Progress {
         self
     }
 
+    /// Steps done so far and steps in all of a stage, which begins where it is another than before.
+    pub fn step(&self, stage: &'static str, done: u64, total: u64) {
+        self.stage(stage);
+        self.set(done, total);
+    }
+
     /// Another stage begins; with `-v` the time of the one before is printed.
-    pub fn stage(&self, stage: &'static str) {
+    fn stage(&self, stage: &'static str) {
         let now = Instant::now();
         let ended = {
             let mut running = self.stage.lock().unwrap_or_else(PoisonError::into_inner);

@@ -44,10 +44,6 @@ impl RunOptions<'_> {
         interrupt::watch(out.to_path_buf());
         let records = resolved.records.len() as u64;
         let bar = Progress::new(verbosity, "observe", records).with_later(LATER);
-        let progress = |stage: &'static str, done: u64, total: u64| {
-            bar.stage(stage);
-            bar.set(done, total);
-        };
         let destination = Destination {
             out,
             resume: self.resume,
@@ -56,7 +52,7 @@ impl RunOptions<'_> {
             also: None,
             fits: bar.fits(),
         };
-        let done = pipeline::run(&resolved, &destination, &progress)?;
+        let done = pipeline::run(&resolved, &destination, &|s, d, t| bar.step(s, d, t))?;
         drop(bar);
         print_completed(&done, verbosity);
         print_report_paths(&resolved, out, verbosity);

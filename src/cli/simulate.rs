@@ -103,10 +103,8 @@ impl MotionArgs {
     fn run(&self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let mut study = self.machine.study("A motion")?;
         let plan = PortraitPlan {
-            setting: Setting {
-                phase: self.phase,
-                ..Setting::new(self.eta.unwrap_or(1.0), self.rho.unwrap_or(1.0))
-            },
+            setting: Setting::new(self.eta.unwrap_or(1.0), self.rho.unwrap_or(1.0))
+                .at_phase(self.phase),
             start: self.start.initial()?,
             skip_periods: self.skip_periods.max(0.0),
             periods: self.periods.max(0.0),

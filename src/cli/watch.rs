@@ -151,10 +151,6 @@ impl Watch {
         let mut campaign = load_campaign(&self.campaign, verbosity)?;
         self.options.apply(&mut campaign.report, verbosity)?;
         let bar = Progress::new(verbosity, "observe", campaign.records.len() as u64);
-        let progress = |stage: &'static str, done: u64, total: u64| {
-            bar.stage(stage);
-            bar.set(done, total);
-        };
         let destination = Destination {
             out: &self.out,
             resume: false,
@@ -163,7 +159,7 @@ impl Watch {
             also: Some(Format::Html),
             fits: bar.fits(),
         };
-        let done = watcher.complete(&campaign, &destination, &progress)?;
+        let done = watcher.complete(&campaign, &destination, &|s, d, t| bar.step(s, d, t))?;
         drop(bar);
         print_completed(&done, verbosity);
         print_report_paths(&campaign, &self.out, verbosity);

@@ -124,7 +124,7 @@ const MOST_POINTS: usize = 20_000;
 
 /// Resonance curves of the channels that have one, velocities first.
 pub(super) fn resonance(input: &Input<'_>) -> Vec<ResonanceCurve> {
-    let roles = Role::ALL.into_iter().filter(|r| r.is_motion());
+    let roles = Role::ALL.iter().copied().filter(|r| r.is_motion());
     let curves = roles.filter_map(|role| curve(input, role));
     curves.take(MOST_CURVES).collect()
 }

@@ -227,11 +227,7 @@ pub(super) fn region_map(input: &Input<'_>) -> Option<RegionMap> {
 
 /// A stable z = 1/n motion that exists beside another one.
 fn coexisting(machine: &Machine, (eta, rho): (f64, f64), beside: &Motion) -> Option<Motion> {
-    let setting = Setting {
-        frequency_ratio: eta,
-        clearance: rho,
-        phase: 0.0,
-    };
+    let setting = Setting::new(eta, rho);
     let stable = |n: &u32| {
         let orbit = stable_orbit(machine, setting, *n).ok().flatten();
         orbit.is_some()

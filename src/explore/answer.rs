@@ -89,7 +89,7 @@ fn send_demo(demo: &demo::Demo, job: &Job) -> Result<(), Stop> {
     let steps: Vec<_> = demo
         .steps
         .iter()
-        .map(|s| json!({"seconds": s.seconds, "caption": s.caption, "carry": s.carry, "state": s.state}))
+        .map(|(s, state)| json!({"seconds": s.seconds, "caption": s.caption, "carry": s.carry, "state": state}))
         .collect();
     let frame = job.frame("demo").with("title", &demo.title);
     Ok(job.send(frame.with("steps", steps))?)

@@ -34,8 +34,8 @@ pub(super) fn check_one(demo: &Demo) -> Result<String, ExploreError> {
     let mut differing = Vec::new();
     let mut expected = 0;
     let mut before: Option<State> = None;
-    for (number, step) in demo.steps.iter().enumerate() {
-        let mut state = step.state.clone();
+    for (number, (step, state)) in demo.steps.iter().enumerate() {
+        let mut state = state.clone();
         let mut from = None;
         if let Some(then) = before.as_ref().filter(|_| step.carry) {
             (state.cursor.start, state.cursor.phase) = (then.cursor.start, then.cursor.phase);

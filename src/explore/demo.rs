@@ -9,70 +9,33 @@ use serde_json::{Map, Value};
 use super::ExploreError;
 use super::state::{State, VERSION};
 
-/// The demos that come with the program: name, key, text.
+/// A demo that comes with the program: its name, its first character the key, and its text.
+macro_rules! shipped {
+    ($name:literal, $file:literal) => {
+        ($name, include_str!(concat!("demos/", $file, ".toml")))
+    };
+}
+
+/// The demos that come with the program.
 const SHIPPED: [(&str, &str); 10] = [
-    (
-        "0 Regions of all motions",
-        include_str!("demos/0-regions.toml"),
-    ),
-    (
-        "1 Plastic impacts (Fig. 2)",
-        include_str!("demos/1-fig2.toml"),
-    ),
-    (
-        "2 Characteristics along line q (Fig. 4)",
-        include_str!("demos/2-fig4.toml"),
-    ),
-    (
-        "3 Basins of attraction (Fig. 5)",
-        include_str!("demos/3-fig5.toml"),
-    ),
-    (
-        "4 A road into chaos (Fig. 7(b))",
-        include_str!("demos/4-fig7b.toml"),
-    ),
-    (
-        "5 Boundaries of chaos (Fig. 8)",
-        include_str!("demos/5-fig8.toml"),
-    ),
-    (
-        "6 Points A to H (Figs. 11 to 13)",
-        include_str!("demos/6-points.toml"),
-    ),
-    (
-        "7 Hysteresis carried by hand",
-        include_str!("demos/7-hysteresis.toml"),
-    ),
-    (
-        "8 Asymmetric masses (Fig. 6)",
-        include_str!("demos/8-fig6.toml"),
-    ),
-    (
-        "9 Restitution that depends on the speed",
-        include_str!("demos/9-law.toml"),
-    ),
+    shipped!("0 Regions of all motions", "0-regions"),
+    shipped!("1 Plastic impacts (Fig. 2)", "1-fig2"),
+    shipped!("2 Characteristics along line q (Fig. 4)", "2-fig4"),
+    shipped!("3 Basins of attraction (Fig. 5)", "3-fig5"),
+    shipped!("4 A road into chaos (Fig. 7(b))", "4-fig7b"),
+    shipped!("5 Boundaries of chaos (Fig. 8)", "5-fig8"),
+    shipped!("6 Points A to H (Figs. 11 to 13)", "6-points"),
+    shipped!("7 Hysteresis carried by hand", "7-hysteresis"),
+    shipped!("8 Asymmetric masses (Fig. 6)", "8-fig6"),
+    shipped!("9 Restitution that depends on the speed", "9-law"),
 ];
 
 /// A demo.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Demo {
     pub title: String,
-    pub steps: Vec<Step>,
-}
-
-/// A step of a demo.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Step {
-    /// How long it is shown, s.
-    pub seconds: f64,
-    /// What it shows.
-    pub caption: String,
-    /// Whether the motion of the step before is carried along.
-    pub carry: bool,
-    /// The label that the motion at the cursor must have.
-    pub expect: Option<String>,
-    /// What is shown.
-    pub state: State,
+    /// Its steps, each with what is shown.
+    pub steps: Vec<(Step, State)>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -80,19 +43,25 @@ pub(super) struct Step {
 struct Written {
     version: u32,
     title: String,
-    step: Vec<WrittenStep>,
+    step: Vec<Step>,
 }
 
-#[derive(Serialize, Deserialize)]
+/// A step of a demo.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct WrittenStep {
-    seconds: f64,
+pub(super) struct Step {
+    /// How long it is shown, s.
+    pub seconds: f64,
+    /// What it shows.
     #[serde(default, skip_serializing_if = "String::is_empty")]
-    caption: String,
+    pub caption: String,
+    /// Whether the motion of the step before is carried along.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    carry: bool,
+    pub carry: bool,
+    /// The label that the motion at the cursor must have.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    expect: Option<String>,
+    pub expect: Option<String>,
+    /// What differs from the step before.
     #[serde(default, skip_serializing_if = "Map::is_empty")]
     state: Map<String, Value>,
 }
@@ -108,10 +77,7 @@ impl Demo {
     /// # Errors
     /// [`ExploreError`] where it is malformed, of another version, or shows what is out of range.
     pub(super) fn read(text: &str) -> Result<Self, ExploreError> {
-        let malformed = |reason: String| ExploreError::Malformed {
-            what: "demo".into(),
-            reason,
-        };
+        let malformed = |reason: String| ExploreError::malformed("demo", reason);
         let written: Written = toml::from_str(text).map_err(|e| malformed(e.to_string()))?;
         if written.version != VERSION {
             return Err(ExploreError::Version {
@@ -129,15 +95,10 @@ impl Demo {
                 let reason = format!("step {}: seconds must be 0 to 600", number + 1);
                 return Err(malformed(reason));
             }
-            merge(&mut state, Value::Object(step.state));
-            steps.push(Step {
-                seconds: step.seconds,
-                caption: step.caption,
-                carry: step.carry,
-                expect: step.expect,
-                state: State::read(state.clone())
-                    .map_err(|e| malformed(format!("step {}: {e}", number + 1)))?,
-            });
+            merge(&mut state, Value::Object(step.state.clone()));
+            let shown = State::read(state.clone())
+                .map_err(|e| malformed(format!("step {}: {e}", number + 1)))?;
+            steps.push((step, shown));
         }
         Ok(Self {
             title: written.title,
@@ -170,7 +131,7 @@ pub(super) fn write(title: &str, steps: &[(f64, Value)]) -> Result<String, Explo
     let mut written = Vec::with_capacity(steps.len());
     for (seconds, state) in steps {
         let now = value_of(&State::read(state.clone())?)?;
-        written.push(WrittenStep {
+        written.push(Step {
             seconds: *seconds,
             caption: String::new(),
             carry: false,
@@ -187,17 +148,11 @@ pub(super) fn write(title: &str, steps: &[(f64, Value)]) -> Result<String, Explo
         title: title.to_owned(),
         step: written,
     };
-    toml::to_string(&demo).map_err(|e| ExploreError::Malformed {
-        what: "demo".into(),
-        reason: e.to_string(),
-    })
+    toml::to_string(&demo).map_err(|e| ExploreError::malformed("demo", e))
 }
 
 fn value_of(state: &State) -> Result<Value, ExploreError> {
-    serde_json::to_value(state).map_err(|e| ExploreError::Malformed {
-        what: "state".into(),
-        reason: e.to_string(),
-    })
+    serde_json::to_value(state).map_err(|e| ExploreError::malformed("state", e))
 }
 
 /// Keys that hold one of several forms, which replace each other as a whole.

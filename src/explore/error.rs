@@ -22,16 +22,6 @@ pub enum ExploreError {
         reason: String,
     },
     /// A value is outside its range.
-    #[error("{name} = {value} is out of range: {range}")]
-    OutOfRange {
-        /// The key of the state.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// The range.
-        range: &'static str,
-    },
-    /// The model refuses a parameter.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// A record has no place here, or no such thing exists.
@@ -57,6 +47,14 @@ pub enum ExploreError {
 }
 
 impl ExploreError {
+    /// That a text is not what it should be.
+    pub(super) fn malformed(what: &str, reason: impl ToString) -> Self {
+        Self::Malformed {
+            what: what.into(),
+            reason: reason.to_string(),
+        }
+    }
+
     /// What the user can do.
     pub fn remedy(&self) -> String {
         match self {
@@ -65,7 +63,7 @@ impl ExploreError {
                  state"
             }
             Self::Malformed { .. } => "correct the place named",
-            Self::OutOfRange { .. } | Self::Model(_) => {
+            Self::Model(_) => {
                 "give a value within the range that the message names"
             }
             Self::Absent(_) => "choose one that the page lists",

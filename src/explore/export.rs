@@ -39,10 +39,7 @@ pub(super) fn files(
 
 /// The study as TOML.
 pub(super) fn study_text(state: &State) -> Result<String, ExploreError> {
-    toml::to_string(&state.study()).map_err(|e| ExploreError::Malformed {
-        what: "study".into(),
-        reason: e.to_string(),
-    })
+    toml::to_string(&state.study()).map_err(|e| ExploreError::malformed("study", e))
 }
 
 /// Send the files that the page asks for.

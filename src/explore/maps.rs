@@ -15,6 +15,7 @@ use crate::report::style::MotionStyle;
 use impact_oscillator::atlas::map::{UnitMass, even};
 use impact_oscillator::model::boundary::{rho_sticking, s1_of_branch, s2_of_branch};
 use impact_oscillator::model::orbit::Branch;
+use impact_oscillator::model::range;
 use impact_oscillator::{
     BoundaryPoint, Machine, MapGrid, SettledMotion, region_map, rho_grazing, rho_s1, rho_s2,
 };
@@ -165,13 +166,8 @@ type Boundary = fn(&Machine, f64, u32) -> Option<BoundaryPoint>;
 
 /// The η at which a page wants the boundaries.
 fn boundary_etas(state: &State, points: usize) -> Result<Vec<f64>, ExploreError> {
-    if !(2..=MOST_POINTS).contains(&points) {
-        return Err(ExploreError::OutOfRange {
-            name: "points",
-            value: points as f64,
-            range: "2 to 2000",
-        });
-    }
+    let some = (2..=MOST_POINTS).contains(&points);
+    range("points", points as f64, some, "2 to 2000")?;
     let (low, high) = state.view.eta;
     Ok(even((low, high, points)))
 }

@@ -12,11 +12,13 @@ use super::state::Cursor;
 use super::{ExploreError, State};
 use crate::motion::Motion;
 use crate::report::style::MotionStyle;
+use crate::signal::whole;
 use impact_oscillator::atlas::BasinGrid;
 use impact_oscillator::atlas::basins::basin_rows;
 use impact_oscillator::atlas::map::{UnitMass, even};
 use impact_oscillator::atlas::portrait::{Portrait, portrait};
 use impact_oscillator::atlas::sweep::{Carried, SweepPoint, impactless};
+use impact_oscillator::model::range;
 use impact_oscillator::{Machine, MapSettings, Setting, SettledMotion, Simulator, Trajectory};
 
 /// Time after which steps of a sweep are sent together.
@@ -37,17 +39,7 @@ const STEP_PERIODS: f64 = 12.0;
 /// Steps on the way of a carried motion; none where it stays.
 fn steps_between(from: (f64, f64), to: (f64, f64)) -> u32 {
     let steps = ((to.0 - from.0).abs() / STEP.0).max((to.1 - from.1).abs() / STEP.1);
-    whole(steps.clamp(0.0, MOST_STEPS))
-}
-
-/// The whole number at or above a number between 0 and some thousands.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the numbers of steps and samples are small and not negative; `as` saturates"
-)]
-fn whole(number: f64) -> u32 {
-    number.ceil() as u32
+    whole::count(steps.clamp(0.0, MOST_STEPS).ceil())
 }
 
 /// What is seen at the cursor.
@@ -65,10 +57,7 @@ pub(super) fn seen(state: &State, carried_from: Option<(f64, f64)>) -> Result<Se
     let machine = state.machine();
     let cursor = state.cursor;
     let (eta, rho) = carried_from.unwrap_or((cursor.eta, cursor.rho));
-    let setting = Setting {
-        phase: cursor.phase,
-        ..Setting::new(eta, rho)
-    };
+    let setting = Setting::new(eta, rho).at_phase(cursor.phase);
     let mut carried = Carried::start_in(&machine, setting, cursor.start, state.watch)?;
     let (begun, phase_then) = carried.place();
     let to = (cursor.eta, cursor.rho);
@@ -152,13 +141,8 @@ const RUN_SAMPLES: f64 = 80.0;
 
 /// The next stretch of the motion at the cursor, and where it is then.
 pub(super) fn run(state: &State, periods: f64, job: &Job) -> Result<(), Stop> {
-    if !(periods > 0.0 && periods <= MOST_RUN) {
-        return Err(Stop::Refused(ExploreError::OutOfRange {
-            name: "periods",
-            value: periods,
-            range: "above 0, at most 50",
-        }));
-    }
+    let some = periods > 0.0 && periods <= MOST_RUN;
+    range("periods", periods, some, "above 0, at most 50")?;
     let machine = state.machine();
     let setting = state.cursor.setting();
     let start = Carried::start_in(&machine, setting, state.cursor.start, state.watch)?;
@@ -166,7 +150,7 @@ pub(super) fn run(state: &State, periods: f64, job: &Job) -> Result<(), Stop> {
     let mut stretch = Trajectory::default();
     let period = setting.period();
     simulator.advance(periods * period, &mut stretch);
-    let steps = whole(periods * RUN_SAMPLES) as usize;
+    let steps = whole::index((periods * RUN_SAMPLES).ceil());
     let taus = even((0.0, periods * period, steps + 1));
     let states = stretch.sample(taus.iter().copied());
     let place = Carried::resume(&machine, &simulator.snapshot(), state.watch)?.place();

@@ -272,7 +272,10 @@ async fn page(socket: WebSocket, session: Arc<Session>) {
     while let Some(Ok(message)) = stream.next().await {
         let request = match &message {
             Message::Text(text) => wire::read(text.as_str()),
-            Message::Binary(_) => Err((0, binary())),
+            Message::Binary(_) => {
+                let reason = "a binary message; requests are text";
+                Err((0, ExploreError::malformed("request", reason)))
+            }
             Message::Close(_) => break,
             Message::Ping(_) | Message::Pong(_) => continue,
         };
@@ -299,13 +302,6 @@ async fn tell_changes(session: Arc<Session>, outbox: mpsc::Sender<Frame>) {
         {
             return;
         }
-    }
-}
-
-fn binary() -> ExploreError {
-    ExploreError::Malformed {
-        what: "request".into(),
-        reason: "a binary message; requests are text".into(),
     }
 }
 

@@ -11,6 +11,7 @@ use crate::pipeline::theory::plan::{BasinPlan, Law, MapPlan, SweepPlan};
 use impact_oscillator::atlas::portrait::PortraitPlan;
 use impact_oscillator::atlas::{BasinGrid, MapSettings, Starts};
 use impact_oscillator::model::params::Asymmetry;
+use impact_oscillator::model::{ModelError, range};
 use impact_oscillator::{Initial, Machine, Setting, Watch};
 
 /// The version of the state that this program reads and writes.
@@ -104,10 +105,7 @@ pub struct Cursor {
 impl Cursor {
     /// η, ρ and φ.
     pub fn setting(&self) -> Setting {
-        Setting {
-            phase: self.phase,
-            ..Setting::new(self.eta, self.rho)
-        }
+        Setting::new(self.eta, self.rho).at_phase(self.phase)
     }
 }
 
@@ -234,10 +232,8 @@ impl State {
                 expected: VERSION,
             });
         }
-        let state: Self = serde_json::from_value(value).map_err(|e| ExploreError::Malformed {
-            what: "state".into(),
-            reason: e.to_string(),
-        })?;
+        let state: Self =
+            serde_json::from_value(value).map_err(|e| ExploreError::malformed("state", e))?;
         state.check()?;
         Ok(state)
     }
@@ -252,10 +248,10 @@ impl State {
         self.cursor.start.check()?;
         self.map_start.check()?;
         let Window { eta, rho } = self.view;
-        within("view.eta", eta.0, eta.0 > 0.0, "positive")?;
+        range("view.eta", eta.0, eta.0 > 0.0, "positive")?;
         rising("view.eta", eta)?;
         rising("view.rho", rho)?;
-        within(
+        range(
             "periods",
             self.periods,
             (0.1..=400.0).contains(&self.periods),
@@ -267,27 +263,27 @@ impl State {
             tolerance,
         } = self.watch;
         let some = |n: f64, least: f64| (least..=MOST_PERIODS).contains(&n);
-        within(
+        range(
             "watch.settle_periods",
             settle_periods,
             some(settle_periods, 0.0),
             "0 to 20000",
         )?;
-        within(
+        range(
             "watch.watch_periods",
             watch_periods,
             some(watch_periods, 1.0),
             "1 to 20000",
         )?;
-        within("watch.tolerance", tolerance, tolerance > 0.0, "positive")?;
+        range("watch.tolerance", tolerance, tolerance > 0.0, "positive")?;
         self.check_line()?;
         self.check_insets()?;
         self.check_basins()?;
         let scales = self
             .rig
             .map(|r| [r.natural_frequency_hz, r.static_deflection_m]);
-        let positive = |v: &f64| within("rig", *v, *v > 0.0, "positive");
-        scales.iter().flatten().try_for_each(positive)
+        let positive = |v: &f64| range("rig", *v, *v > 0.0, "positive");
+        Ok(scales.iter().flatten().try_for_each(positive)?)
     }
 
     fn check_line(&self) -> Result<(), ExploreError> {
@@ -295,8 +291,13 @@ impl State {
             return Ok(());
         };
         let steps = line.steps as f64;
-        let range = "2 to 2001";
-        within("line.steps", steps, (2.0..=2001.0).contains(&steps), range)?;
+        let expected = "2 to 2001";
+        range(
+            "line.steps",
+            steps,
+            (2.0..=2001.0).contains(&steps),
+            expected,
+        )?;
         line.start.check()?;
         let ends = [(line.eta.0, line.rho.0), (line.eta.1, line.rho.1)];
         for (eta, rho) in ends {
@@ -307,7 +308,7 @@ impl State {
 
     fn check_insets(&self) -> Result<(), ExploreError> {
         let count = self.insets.len();
-        within("insets", count as f64, count <= MOST_INSETS, "at most 12")?;
+        range("insets", count as f64, count <= MOST_INSETS, "at most 12")?;
         self.insets.iter().try_for_each(|inset| {
             inset.setting().check()?;
             Ok(inset.start.check()?)
@@ -321,13 +322,9 @@ impl State {
         rising("basins.x", basins.x)?;
         rising("basins.vx", basins.vx)?;
         for cells in [basins.cells.0, basins.cells.1] {
-            let range = "2 to 600";
-            within(
-                "basins.cells",
-                cells as f64,
-                (2..=600).contains(&cells),
-                range,
-            )?;
+            let expected = "2 to 600";
+            let some = (2..=600).contains(&cells);
+            range("basins.cells", cells as f64, some, expected)?;
         }
         Ok(())
     }
@@ -440,21 +437,8 @@ impl State {
     }
 }
 
-fn within(
-    name: &'static str,
-    value: f64,
-    holds: bool,
-    range: &'static str,
-) -> Result<(), ExploreError> {
-    if holds && value.is_finite() {
-        Ok(())
-    } else {
-        Err(ExploreError::OutOfRange { name, value, range })
-    }
-}
-
-fn rising(name: &'static str, (low, high): (f64, f64)) -> Result<(), ExploreError> {
-    within(name, low, low.abs() < 1e6, "finite and moderate")?;
-    within(name, high, high.abs() < 1e6, "finite and moderate")?;
-    within(name, high, high > low, "above the range's lower end")
+fn rising(name: &'static str, (low, high): (f64, f64)) -> Result<(), ModelError> {
+    range(name, low, low.abs() < 1e6, "finite and moderate")?;
+    range(name, high, high.abs() < 1e6, "finite and moderate")?;
+    range(name, high, high > low, "above the range's lower end")
 }

@@ -85,24 +85,30 @@ line = "none"
 #[test]
 fn a_step_of_a_demo_states_what_differs_from_the_one_before() {
     let demo = Demo::read(TWO_STEPS).unwrap();
-    let [first, second] = demo.steps.as_slice() else {
+    let [(_, first), (_, second)] = demo.steps.as_slice() else {
         panic!("two steps");
     };
-    assert_eq!(first.state.cursor, State::default().cursor);
-    assert_eq!(first.state.line.map(|l| l.steps), Some(5));
-    assert_eq!(second.state.restitution, first.state.restitution);
-    assert_eq!(
-        (second.state.cursor.eta, second.state.cursor.rho),
-        (1.5, 1.0)
-    );
-    assert_eq!(second.state.line, None);
-    let states = demo.steps.iter().map(|s| (s.seconds, json!(s.state)));
+    assert_eq!(first.cursor, State::default().cursor);
+    assert_eq!(first.line.map(|l| l.steps), Some(5));
+    assert_eq!(second.restitution, first.restitution);
+    assert_eq!((second.cursor.eta, second.cursor.rho), (1.5, 1.0));
+    assert_eq!(second.line, None);
+    let states = demo
+        .steps
+        .iter()
+        .map(|(s, state)| (s.seconds, json!(state)));
     let text = demo::write("again", &states.collect::<Vec<_>>()).unwrap();
     assert!(
         text.contains("line = \"none\"") && !text.contains("damping_ratio"),
         "{text}"
     );
-    assert_eq!(Demo::read(&text).unwrap().steps, demo.steps);
+    let again = Demo::read(&text).unwrap().steps;
+    assert!(
+        again
+            .iter()
+            .map(|s| &s.1)
+            .eq(demo.steps.iter().map(|s| &s.1))
+    );
 }
 
 #[test]

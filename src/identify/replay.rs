@@ -66,10 +66,7 @@ impl Replay {
         let drive_amplitude = o.setting.drive_amplitude;
         let setting = parameters.setting(drive.frequency_hz, clearance_m, drive_amplitude);
         let end = settled(&machine, setting, o, &parameters)?;
-        let start = Setting {
-            phase: end.phase,
-            ..setting
-        };
+        let start = setting.at_phase(end.phase);
         let mut simulator = Simulator::new(&machine, start, end.initial).ok()?;
         let to_zero = (TAU - simulator.phase().rem_euclid(TAU)) / setting.frequency_ratio;
         simulator.advance(to_zero, &mut Trajectory::default());

@@ -238,7 +238,8 @@ const DRIVE_CHANGES: f64 = 5e-3;
 fn free_decay(record: &Record) -> Option<Decay> {
     let of_mass = |y: bool| {
         let channels: Vec<&[f64]> = Role::ALL
-            .into_iter()
+            .iter()
+            .copied()
             .filter(|role| role.is_motion() && role.is_of_y() == y)
             .filter_map(|role| record.values(role))
             .filter(|values| values.iter().all(|v| v.is_finite()))

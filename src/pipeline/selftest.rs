@@ -49,10 +49,7 @@ pub fn checks() -> Result<Vec<Check>, ModelError> {
 
 /// Fig. 2: plastic impacts with dead zones, η = 0.95, β = 0.1, ρ = 0.7, R = 0, φ = π/4.
 fn figure_2() -> Result<Vec<Check>, ModelError> {
-    let setting = Setting {
-        phase: PI / 4.0,
-        ..Setting::new(0.95, 0.7)
-    };
+    let setting = Setting::new(0.95, 0.7).at_phase(PI / 4.0);
     let start = Initial {
         x: -1.0,
         vx: 1.5,

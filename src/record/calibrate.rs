@@ -3,7 +3,7 @@
 
 use super::bind::flag;
 pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
-use super::time_axis::{self, TimeAxis};
+use super::time_axis;
 use super::{Channel, ContactContent, Flag, FlagCode, Record, Role, Setting};
 use super::{condition, consistency, events};
 use crate::signal::whole;
@@ -284,11 +284,7 @@ fn settle_rate(
     bound: &[BoundRole<'_>],
     times: Option<&[f64]>,
 ) {
-    let TimeAxis {
-        sample_rate_hz,
-        flags,
-    } = times.map(time_axis::inspect).unwrap_or_default();
-    record.flags.extend(flags);
+    let sample_rate_hz = times.and_then(|times| time_axis::inspect(times, &mut record.flags));
     let stated = stated_rate(record, dataset, bound);
     let rate = sample_rate_hz.or(stated).or(setup.sample_rate_hz);
     match rate.filter(|r| r.is_finite() && *r > 0.0) {

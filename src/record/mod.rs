@@ -33,6 +33,7 @@ pub use flag::{Flag, FlagCode};
     Serialize,
     Deserialize,
     strum::IntoStaticStr,
+    strum::VariantArray,
 )]
 #[strum(serialize_all = "snake_case")]
 #[serde(rename_all = "snake_case")]
@@ -62,18 +63,7 @@ pub enum Role {
 
 impl Role {
     /// All roles, in the order of campaign.toml.
-    pub const ALL: [Self; 10] = [
-        Self::Drive,
-        Self::Contact,
-        Self::VelocityX,
-        Self::VelocityY,
-        Self::DisplacementX,
-        Self::DisplacementY,
-        Self::AccelerationX,
-        Self::AccelerationY,
-        Self::FrameX,
-        Self::FrameY,
-    ];
+    pub const ALL: &[Self] = <Self as strum::VariantArray>::VARIANTS;
 
     /// The role's name as campaign.toml spells it.
     pub fn name(self) -> &'static str {

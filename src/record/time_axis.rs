@@ -9,15 +9,6 @@ use labfiles::units;
 /// Most steps by which a time axis without gaps may stray from equal steps.
 const MOST_STRAY_STEPS: f64 = 2.0;
 
-/// The result for a time axis.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct TimeAxis {
-    /// Samples per second, Hz; `None` if no step can be determined.
-    pub sample_rate_hz: Option<f64>,
-    /// Problems found.
-    pub flags: Vec<Flag>,
-}
-
 /// Index of the channel that holds the time: as campaign.toml states, else as the reader found.
 ///
 /// # Errors
@@ -82,18 +73,22 @@ pub fn seconds_per_unit(dataset: &DatasetInfo, index: usize) -> f64 {
         .map_or(1.0, |u| u.to_si)
 }
 
-/// Check a time axis in s.
+/// Samples per second of a time axis in s, Hz; `None` if no step can be determined. What is wrong with it
+/// is noted in `flags`.
 ///
 /// Time stamps printed with few digits are taken as uniform as long as no stamp strays from a
 /// straight line by more than their own rounding.
-pub fn inspect(times: &[f64]) -> TimeAxis {
+pub fn inspect(times: &[f64], flags: &mut Vec<Flag>) -> Option<f64> {
     if times.len() < 2 || times.iter().any(|t| !t.is_finite()) {
-        return unreadable(times);
+        if !times.is_empty() {
+            flags.push(unreadable());
+        }
+        return None;
     }
     let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-    let backward = steps.iter().position(|s| *s < 0.0);
-    if let Some(at) = backward {
-        return backward_at(times, at);
+    if let Some(at) = steps.iter().position(|s| *s < 0.0) {
+        flags.push(backward_at(times, at));
+        return None;
     }
     let in_order = steps.clone();
     steps.sort_by(f64::total_cmp);
@@ -101,56 +96,33 @@ pub fn inspect(times: &[f64]) -> TimeAxis {
     let mean = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
     let spread = quantile(0.95) - quantile(0.05);
     if spread > 0.2 * mean {
-        return coarse(times, mean, spread);
+        // steps that scatter: rounded stamps of a uniform axis, or no uniform axis
+        if strays(times, mean) > 1.05 * spread.max(mean) {
+            let what = format!("steps scatter by {spread:.3e} s about {mean:.3e} s");
+            flags.push(not_uniform(&what));
+        }
+        return Some(1.0 / mean);
     }
-    regular(times, &in_order, quantile(0.5))
+    regular(times, &in_order, quantile(0.5), flags)
 }
 
-fn unreadable(times: &[f64]) -> TimeAxis {
-    let flags = match times.len() {
-        0 => Vec::new(),
-        _ => vec![Flag::new(
-            FlagCode::TimeUnreadable,
-            None,
-            "the time axis has a single sample or holds no numbers".to_owned(),
-            "name the right channel in time of [records], or give sample_rate",
-        )],
-    };
-    TimeAxis {
-        sample_rate_hz: None,
-        flags,
-    }
+fn unreadable() -> Flag {
+    Flag::new(
+        FlagCode::TimeUnreadable,
+        None,
+        "the time axis has a single sample or holds no numbers",
+        "name the right channel in time of [records], or give sample_rate",
+    )
 }
 
-fn backward_at(times: &[f64], at: usize) -> TimeAxis {
+fn backward_at(times: &[f64], at: usize) -> Flag {
     let what = format!(
         "the time runs backward after sample {at}: {} s, then {} s",
         times[at],
         times[at + 1]
     );
-    let flag = Flag::new(
-        FlagCode::TimeBackward,
-        None,
-        what,
-        "sort or re-export the record; it is left out",
-    );
-    TimeAxis {
-        sample_rate_hz: None,
-        flags: vec![flag],
-    }
-}
-
-/// An axis whose steps scatter: rounded stamps of a uniform axis, or no uniform axis.
-fn coarse(times: &[f64], mean: f64, spread: f64) -> TimeAxis {
-    let mut flags = Vec::new();
-    if strays(times, mean) > 1.05 * spread.max(mean) {
-        let what = format!("steps scatter by {spread:.3e} s about {mean:.3e} s");
-        flags.push(not_uniform(&what));
-    }
-    TimeAxis {
-        sample_rate_hz: Some(1.0 / mean),
-        flags,
-    }
+    let remedy = "sort or re-export the record; it is left out";
+    Flag::new(FlagCode::TimeBackward, None, what, remedy)
 }
 
 /// How far times are at most from a straight line through the first, s.
@@ -169,8 +141,8 @@ fn not_uniform(what: &str) -> Flag {
 }
 
 /// An axis of equal steps but for gaps and repetitions.
-fn regular(times: &[f64], steps: &[f64], step: f64) -> TimeAxis {
-    let mut flags = Vec::new();
+fn regular(times: &[f64], steps: &[f64], step: f64, flags: &mut Vec<Flag>) -> Option<f64> {
+    let known = flags.len();
     let lost: f64 = steps
         .iter()
         .filter(|s| **s > 1.5 * step)
@@ -198,7 +170,7 @@ fn regular(times: &[f64], steps: &[f64], step: f64) -> TimeAxis {
     }
     let whole = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
     let strayed = strays(times, whole);
-    if flags.is_empty() && strayed > MOST_STRAY_STEPS * whole {
+    if flags.len() == known && strayed > MOST_STRAY_STEPS * whole {
         let what = format!("it strays by {strayed:.3e} s from equal steps of {whole:.3e} s");
         flags.push(not_uniform(&what));
     }
@@ -208,10 +180,7 @@ fn regular(times: &[f64], steps: &[f64], step: f64) -> TimeAxis {
         .filter(|s| (s / step - 1.0).abs() <= 0.5)
         .collect();
     let mean = good.iter().sum::<f64>() / good.len().max(1) as f64;
-    TimeAxis {
-        sample_rate_hz: (mean > 0.0).then(|| 1.0 / mean),
-        flags,
-    }
+    (mean > 0.0).then(|| 1.0 / mean)
 }
 
 #[cfg(test)]
@@ -222,15 +191,20 @@ mod tests {
         (0..n).map(|i| i as f64 * step).collect()
     }
 
-    fn codes(axis: &TimeAxis) -> Vec<&str> {
-        axis.flags.iter().map(|f| f.code.name()).collect()
+    fn inspected(times: &[f64]) -> (Option<f64>, Vec<Flag>) {
+        let mut flags = Vec::new();
+        (inspect(times, &mut flags), flags)
+    }
+
+    fn codes((_, flags): &(Option<f64>, Vec<Flag>)) -> Vec<&str> {
+        flags.iter().map(|f| f.code.name()).collect()
     }
 
     #[test]
     fn a_uniform_axis_gives_its_rate() {
-        let axis = inspect(&uniform(2000, 5e-4));
-        assert!(axis.flags.is_empty());
-        assert!((axis.sample_rate_hz.unwrap() - 2000.0).abs() < 1e-6);
+        let axis = inspected(&uniform(2000, 5e-4));
+        assert!(axis.1.is_empty());
+        assert!((axis.0.unwrap() - 2000.0).abs() < 1e-6);
     }
 
     #[test]
@@ -240,9 +214,9 @@ mod tests {
                 .iter()
                 .map(|t| (t * digits).round() / digits)
                 .collect();
-            let axis = inspect(&t);
-            assert!(axis.flags.is_empty(), "{digits}: {:?}", axis.flags);
-            assert!((axis.sample_rate_hz.unwrap() * 0.000_605_5 - 1.0).abs() < 1e-3);
+            let axis = inspected(&t);
+            assert!(axis.1.is_empty(), "{digits}: {:?}", axis.1);
+            assert!((axis.0.unwrap() * 0.000_605_5 - 1.0).abs() < 1e-3);
         }
     }
 
@@ -250,24 +224,24 @@ mod tests {
     fn gaps_repetitions_and_backward_time_are_reported() {
         let mut t = uniform(1000, 1e-3);
         t.drain(300..303);
-        let axis = inspect(&t);
+        let axis = inspected(&t);
         assert_eq!(codes(&axis), ["dropped_samples"]);
-        assert!(axis.flags[0].message.starts_with("3 samples"));
-        assert!((axis.sample_rate_hz.unwrap() - 1000.0).abs() < 1e-6);
+        assert!(axis.1[0].message.starts_with("3 samples"));
+        assert!((axis.0.unwrap() - 1000.0).abs() < 1e-6);
 
         let mut t = uniform(1000, 1e-3);
         t[500] = t[499];
-        assert!(codes(&inspect(&t)).contains(&"repeated_samples"));
+        assert!(codes(&inspected(&t)).contains(&"repeated_samples"));
 
         let mut t = uniform(1000, 1e-3);
         t.reverse();
-        assert_eq!(codes(&inspect(&t)), ["time_backward"]);
+        assert_eq!(codes(&inspected(&t)), ["time_backward"]);
     }
 
     #[test]
     fn an_irregular_axis_is_reported() {
         let t: Vec<f64> = uniform(1000, 1e-3).iter().map(|t| t * t).collect();
-        assert_eq!(codes(&inspect(&t)), ["time_not_uniform"]);
+        assert_eq!(codes(&inspected(&t)), ["time_not_uniform"]);
     }
 
     #[test]
@@ -276,7 +250,7 @@ mod tests {
             let t = uniform(2000, 1e-3);
             t.iter().map(|t| t * (1.0 + by * t)).collect()
         };
-        assert!(inspect(&drift(1e-4)).flags.is_empty());
-        assert_eq!(codes(&inspect(&drift(0.02))), ["time_not_uniform"]);
+        assert!(inspected(&drift(1e-4)).1.is_empty());
+        assert_eq!(codes(&inspected(&drift(0.02))), ["time_not_uniform"]);
     }
 }

@@ -7,7 +7,7 @@ use impact_oscillator::model::simulate::{Simulator, Trajectory};
 
 use super::effects::Effects;
 use super::equations::{ContactLaw, Equations, Phase4};
-use super::integrate::{Integrator, Recording};
+use super::integrate::{Hit, Integrator, Recording};
 use super::plan::Step;
 use super::truth::Truth;
 use crate::signal::whole;
@@ -32,28 +32,13 @@ pub enum Engine {
     Integrated(Box<Integrator>),
 }
 
-/// One impact of a recorded motion, dimensionless.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch {
-    /// τ of first touch.
-    pub tau: f64,
-    /// Approach speed then.
-    pub approach: f64,
-    /// Separation speed when the contact ends.
-    pub separation: f64,
-    /// How long the contact lasts, without a dead zone.
-    pub duration: f64,
-    /// How long the masses stay together in a dead zone; zero without one.
-    pub dead_zone: f64,
-}
-
 /// A recorded stretch of motion.
 #[derive(Debug, Clone)]
 pub enum Recorded {
     /// Of the model.
     Exact(Trajectory),
-    /// Of an integration; contacts longer than this are dead zones.
-    Integrated(Recording, f64),
+    /// Of an integration.
+    Integrated(Recording),
 }
 
 impl Physics<'_> {
@@ -220,13 +205,7 @@ impl Engine {
                 simulator.advance(duration, &mut trajectory);
                 Recorded::Exact(trajectory)
             }
-            Self::Integrated(integrator) => {
-                let longest = match integrator.law() {
-                    ContactLaw::Compliant(c) => 3.0 * c.duration,
-                    ContactLaw::Newton(_) => 0.0,
-                };
-                Recorded::Integrated(integrator.record(duration), longest)
-            }
+            Self::Integrated(integrator) => Recorded::Integrated(integrator.record(duration)),
         }
     }
 }
@@ -239,36 +218,24 @@ impl Recorded {
                 let states = trajectory.sample(taus).into_iter();
                 states.map(|s| [s.x, s.vx, s.y, s.vy]).collect()
             }
-            Self::Integrated(recording, _) => recording.sample(taus),
+            Self::Integrated(recording) => recording.sample(taus),
         }
     }
 
     /// Its impacts in the order of time.
-    pub fn impacts(&self) -> Vec<Touch> {
+    pub fn impacts(&self) -> Vec<Hit> {
         match self {
             Self::Exact(trajectory) => {
-                let touch = |i: &Impact| Touch {
+                let hit = |i: &Impact| Hit {
                     tau: i.tau,
                     approach: i.approach_speed,
                     separation: i.separation_speed,
                     duration: 0.0,
                     dead_zone: i.dead_zone,
                 };
-                trajectory.impacts.iter().map(touch).collect()
+                trajectory.impacts.iter().map(hit).collect()
             }
-            Self::Integrated(recording, longest) => {
-                let touch = |h: &super::integrate::Hit| {
-                    let stays = h.duration > *longest;
-                    Touch {
-                        tau: h.tau,
-                        approach: h.approach,
-                        separation: h.separation,
-                        duration: if stays { 0.0 } else { h.duration },
-                        dead_zone: if stays { h.duration } else { 0.0 },
-                    }
-                };
-                recording.hits.iter().map(touch).collect()
-            }
+            Self::Integrated(recording) => recording.hits.clone(),
         }
     }
 }
@@ -324,7 +291,7 @@ mod tests {
                 let error = (a[0] - b[0]).abs().max((a[2] - b[2]).abs());
                 assert!(error < 2e-6, "{r} {eta} {rho}: {error} at {i}");
             }
-            let fast = |i: &Touch| i.approach > 0.05;
+            let fast = |i: &Hit| i.approach > 0.05;
             let [a, b] = pair.map(|p| p.impacts().into_iter().filter(fast).collect::<Vec<_>>());
             assert_eq!(a.len(), b.len(), "{r} {eta} {rho}");
             for (a, b) in a.iter().zip(&b) {

@@ -32,37 +32,23 @@ pub fn sensitivities(truth: &Truth) -> [Sensitivity; 7] {
     let reach = (0.5 / truth.damping_ratio / (0.8 * acquisition::FULL_SCALE_V)).max(2.0);
     let length = round_up(truth.static_deflection_m * reach);
     let speed = round_up(truth.static_deflection_m * truth.natural_rate() * reach);
-    [
-        Sensitivity {
-            name: "generator",
-            si_per_volt: 1.0,
-        },
-        Sensitivity {
-            name: "contact",
-            si_per_volt: 1.0,
-        },
-        Sensitivity {
-            name: "laser_x",
-            si_per_volt: speed,
-        },
-        Sensitivity {
-            name: "integrator_vy",
-            si_per_volt: speed,
-        },
-        Sensitivity {
-            name: "integrator_x",
-            si_per_volt: length,
-        },
-        Sensitivity {
-            name: "integrator_y",
-            si_per_volt: length,
-        },
-        Sensitivity {
-            name: "frame_x",
-            si_per_volt: 1e-2 * length,
-        },
-    ]
+    let si_per_volt = [1.0, 1.0, speed, speed, length, length, 1e-2 * length];
+    std::array::from_fn(|i| Sensitivity {
+        name: NAMES[i],
+        si_per_volt: si_per_volt[i],
+    })
 }
+
+/// Names of the channels in the files, in the order of [`ROLES`].
+const NAMES: [&str; 7] = [
+    "generator",
+    "contact",
+    "laser_x",
+    "integrator_vy",
+    "integrator_x",
+    "integrator_y",
+    "frame_x",
+];
 
 fn round_up(value: f64) -> f64 {
     let power = 10f64.powf(value.log10().floor());

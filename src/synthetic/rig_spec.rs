@@ -32,6 +32,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
+use strum::VariantArray;
 use thiserror::Error;
 
 use super::acquisition::RATE_HZ;
@@ -40,7 +41,22 @@ use super::plan::Plan;
 use super::truth::Truth;
 
 /// One effect beyond the model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Hash,
+    Serialize,
+    Deserialize,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 #[serde(rename_all = "kebab-case")]
 pub enum Effect {
     /// Each stated gap is off by its own draw.
@@ -90,58 +106,9 @@ pub enum Effect {
 }
 
 impl Effect {
-    /// All effects.
-    pub const ALL: [Self; 22] = [
-        Self::Gaps,
-        Self::GapOffset,
-        Self::DampingAsymmetry,
-        Self::SecondHarmonic,
-        Self::ThirdHarmonic,
-        Self::ForceSlope,
-        Self::ForceCurvature,
-        Self::Hardening,
-        Self::Friction,
-        Self::FrequencyDrift,
-        Self::DampingDrift,
-        Self::Contact,
-        Self::Delays,
-        Self::Flicker,
-        Self::Hum,
-        Self::Drag,
-        Self::SpringAsymmetry,
-        Self::HystereticDamping,
-        Self::GapDrift,
-        Self::Backlash,
-        Self::Compression,
-        Self::Restarts,
-    ];
-
     /// Name on the command line and in truth.json.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Gaps => "gaps",
-            Self::GapOffset => "gap-offset",
-            Self::DampingAsymmetry => "damping-asymmetry",
-            Self::SecondHarmonic => "second-harmonic",
-            Self::ThirdHarmonic => "third-harmonic",
-            Self::ForceSlope => "force-slope",
-            Self::ForceCurvature => "force-curvature",
-            Self::Hardening => "hardening",
-            Self::Friction => "friction",
-            Self::FrequencyDrift => "frequency-drift",
-            Self::DampingDrift => "damping-drift",
-            Self::Contact => "contact",
-            Self::Delays => "delays",
-            Self::Flicker => "flicker",
-            Self::Hum => "hum",
-            Self::Drag => "drag",
-            Self::SpringAsymmetry => "spring-asymmetry",
-            Self::HystereticDamping => "hysteretic-damping",
-            Self::GapDrift => "gap-drift",
-            Self::Backlash => "backlash",
-            Self::Compression => "compression",
-            Self::Restarts => "restarts",
-        }
+        self.into()
     }
 
     /// Strength that a good laboratory would accept, in the effect's own unit.
@@ -212,7 +179,8 @@ pub enum RigError {
 }
 
 fn names() -> String {
-    Effect::ALL.map(Effect::name).join(", ")
+    let names: Vec<&str> = Effect::VARIANTS.iter().map(|e| e.name()).collect();
+    names.join(", ")
 }
 
 /// One effect of a rig and its strength.
@@ -303,7 +271,10 @@ impl RigSpec {
     /// A rig with the effects that every real one has at typical strengths, their sizes drawn for each
     /// campaign.
     pub fn realistic() -> Self {
-        let known = Effect::ALL.into_iter().filter(|e| e.is_realistic());
+        let known = Effect::VARIANTS
+            .iter()
+            .copied()
+            .filter(|e| e.is_realistic());
         let switches = known.map(|effect| Switch {
             effect,
             strength: effect.typical_strength(),
@@ -390,8 +361,8 @@ impl FromStr for RigSpec {
                 ("exact", None) => rig = Self::exact(),
                 ("realistic", None) => rig = Self::realistic(),
                 _ => {
-                    let effect = Effect::ALL.into_iter().find(|e| e.name() == name);
-                    let effect = effect.ok_or_else(|| RigError::Unknown(name.to_owned()))?;
+                    let unknown = |_| RigError::Unknown(name.to_owned());
+                    let effect = Effect::from_str(name).map_err(unknown)?;
                     let strength = match strength {
                         None => effect.typical_strength(),
                         Some(text) => text.parse().map_err(|_| RigError::NotANumber {

@@ -1,7 +1,7 @@
 //! What was probably measured: a driven rig, free decays, free flights, or the times of impacts.
 
 use super::{FolderContents, InferredChannel};
-use crate::event::{DetectSettings, FlightKind, RigKind, detect};
+use crate::event::{DetectSettings, Detection, FlightKind, RigKind, detect};
 use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
 use crate::record::{ContactContent, Excitation, FlagCode, Record, Role, Setting, Sweep};
 use crate::signal::{decay, onsets};
@@ -72,8 +72,6 @@ pub(super) fn infer(sources: &[&dyn Source], found: &mut FolderContents) {
         .take(MOST_RECORDS)
         .map(|source| read(*source, &found.channels))
         .collect();
-    let most =
-        |is: &dyn Fn(&Record) -> bool| 2 * records.iter().filter(|r| is(r)).count() > records.len();
     let two = found
         .channels
         .iter()
@@ -83,11 +81,26 @@ pub(super) fn infer(sources: &[&dyn Source], found: &mut FolderContents) {
     } else {
         RigKind::Single
     };
-    if most(&decays) {
+    if 2 * records.iter().filter(|r| decays(r)).count() > records.len() {
         found.experiment = Experiment::FreeDecay;
-    } else if most(&|r| !flights(r, rig).is_empty() || measured_along_one_axis(r, rig)) {
+        return;
+    }
+    let settings = DetectSettings {
+        flight: FlightKind::ConstantForce,
+        ..DetectSettings::default()
+    };
+    let sampled = records.iter().filter(|r| r.sample_rate_hz > 0.0);
+    let detected: Vec<Detection> = sampled.map(|r| detect(r, rig, &settings)).collect();
+    let most = |is: &dyn Fn(&Detection) -> bool| {
+        2 * detected.iter().filter(|d| is(d)).count() > records.len()
+    };
+    let flies = |d: &Detection| !d.impacts.is_empty();
+    let notes = |d: &Detection, code| d.flags.iter().any(|f| f.code == code);
+    let along = |d: &Detection| notes(d, FlagCode::OppositeSign);
+    if most(&|d| flies(d) || along(d)) {
         found.experiment = Experiment::FreeFlight(rig);
-        orient(&records, rig, &mut found.channels);
+        let away = most(&|d| flies(d) && notes(d, FlagCode::MeasuredAway));
+        orient(away, most(&along), &mut found.channels);
         without_acceleration(&mut found.channels);
     }
 }
@@ -187,48 +200,11 @@ fn decays(record: &Record) -> bool {
     })
 }
 
-fn settings() -> DetectSettings {
-    DetectSettings {
-        flight: FlightKind::ConstantForce,
-        ..DetectSettings::default()
-    }
-}
-
-fn flights(record: &Record, rig: RigKind) -> Vec<FlagCode> {
-    if record.sample_rate_hz <= 0.0 {
-        return Vec::new();
-    }
-    let found = detect(record, rig, &settings());
-    match found.impacts.is_empty() {
-        true => Vec::new(),
-        false => {
-            let codes = found.flags.iter().map(|f| f.code);
-            std::iter::once(FlagCode::NoImpact).chain(codes).collect()
-        }
-    }
-}
-
-fn measured_along_one_axis(record: &Record, rig: RigKind) -> bool {
-    record.sample_rate_hz > 0.0
-        && detect(record, rig, &settings())
-            .flags
-            .iter()
-            .any(|f| f.code == FlagCode::OppositeSign)
-}
-
-/// Signs of the channels as most impacts show them.
-fn orient(records: &[Record], rig: RigKind, channels: &mut [InferredChannel]) {
-    let count = |is: &dyn Fn(&Record) -> bool| records.iter().filter(|r| is(r)).count();
-    let away = count(&|r| flights(r, rig).contains(&FlagCode::MeasuredAway));
-    let along = count(&|r| measured_along_one_axis(r, rig));
+/// Signs of the channels as most impacts show them: all measured away, or both masses along one axis.
+fn orient(away: bool, along: bool, channels: &mut [InferredChannel]) {
     for channel in channels {
-        let Some(role) = channel.role.filter(|r| r.is_motion()) else {
-            continue;
-        };
-        if 2 * away > records.len() {
-            channel.sign = -1;
-        }
-        if 2 * along > records.len() && role.is_of_y() {
+        let moving = channel.role.filter(|r| r.is_motion());
+        if moving.is_some_and(|role| away || (along && role.is_of_y())) {
             channel.sign = -1;
         }
     }

@@ -8,7 +8,7 @@ use labfiles::units::{self, Dimension};
 pub(super) fn assign(channels: &mut [InferredChannel]) {
     let groups = Groups::of(channels);
     let y_first = sides(channels) || groups.second.is_some();
-    for role in Role::ALL {
+    for &role in Role::ALL {
         let best = channels
             .iter()
             .enumerate()

@@ -50,11 +50,11 @@ fn unlucky() -> ReportContent {
     let campaign = &mut content.campaign;
     campaign.files = 1;
     campaign.subject = Subject::OneMass;
-    let channels = Role::ALL.map(|role| ChannelSetup {
+    let channels = Role::ALL.iter().map(|&role| ChannelSetup {
         high_pass_hz: Some(0.5),
         ..ChannelSetup::plain(role, ChannelKey::Name("channel".into()))
     });
-    campaign.channels = channels.into();
+    campaign.channels = channels.collect();
     let names = [
         Phrase::StaticDeflectionSymbol,
         Phrase::UncertaintyOfTheGains,

@@ -308,7 +308,8 @@ impl Integrator {
                 tau: self.tau,
                 approach: self.state[1] + self.state[3],
                 separation: 0.0,
-                duration: f64::INFINITY,
+                duration: 0.0,
+                dead_zone: f64::INFINITY,
             });
         }
     }
@@ -316,11 +317,16 @@ impl Integrator {
     /// The contact ends; one that lasted longer than `dead_zone` counts as a dead zone.
     fn end_hit(&mut self, dead_zone: f64) {
         let duration = self.tau - self.touched_at;
-        self.dead_zones += usize::from(duration > dead_zone);
+        let stays = duration > dead_zone;
+        self.dead_zones += usize::from(stays);
         // A contact that began before the recording is not in it.
         if let Some(hit) = self.recording.as_mut().and_then(|r| r.hits.last_mut()) {
             hit.separation = -(self.state[1] + self.state[3]);
-            hit.duration = duration;
+            [hit.duration, hit.dead_zone] = if stays {
+                [0.0, duration]
+            } else {
+                [duration, 0.0]
+            };
         }
     }
 }

@@ -11,8 +11,10 @@ pub struct Hit {
     pub approach: f64,
     /// Separation speed at the end of contact.
     pub separation: f64,
-    /// How long the contact lasts, a dead zone included; infinite if it has not ended.
+    /// How long the contact lasts, without a dead zone.
     pub duration: f64,
+    /// How long the masses stay together in a dead zone; zero without one, infinite if it has not ended.
+    pub dead_zone: f64,
 }
 
 /// A step with the motion's derivatives at both ends.

@@ -49,34 +49,10 @@ pub fn brute_maps(
     settings: &MapSettings,
 ) -> Result<Maps, ModelError> {
     check(machine, grid, settings)?;
-    let start = brute_map(machine, grid, settings, Seeding::FromStart)?;
-    // both seedings in one march, so that all lanes have work
-    let mut carried = carried(
-        machine,
-        grid,
-        settings,
-        &[Seeding::Rising, Seeding::Falling],
-    )?;
-    let falling = carried.pop().unwrap_or_default();
-    let rising = carried.pop().unwrap_or_default();
+    let start = march_grid(machine, grid, settings)?;
+    // both directions in one march, so that all lanes have work
+    let [rising, falling] = carried(machine, grid, settings)?;
     Ok([start, rising, falling])
-}
-
-/// What every cell settles on, row by row as in [`RegionMap`](super::RegionMap).
-///
-/// # Errors
-/// [`ModelError`] where a parameter is out of range.
-pub(super) fn brute_map(
-    machine: &Machine,
-    grid: &MapGrid,
-    settings: &MapSettings,
-    seeding: Seeding,
-) -> Result<Vec<End>, ModelError> {
-    if seeding != Seeding::FromStart {
-        let mut carried = carried(machine, grid, settings, &[seeding])?;
-        return Ok(carried.pop().unwrap_or_default());
-    }
-    march_grid(machine, grid, settings)
 }
 
 /// Rows that the marching kernel continues from column to column, each on its own: a lane whose
@@ -84,19 +60,19 @@ pub(super) fn brute_map(
 struct Chains<'a> {
     unit: UnitMass,
     grid: &'a MapGrid,
-    seedings: &'a [Seeding],
     ready: Vec<(usize, Cell)>,
     done: Vec<(usize, Outcome)>,
 }
 
-/// Which seeding's map, and which cell of it, a numbered step is; steps are numbered
-/// (seeding · rows + row) · columns + step.
-fn place(grid: &MapGrid, seedings: &[Seeding], number: usize) -> (usize, usize) {
+/// Which of the carried maps (rising, falling), and which cell of it, a numbered step is; steps are
+/// numbered (map · rows + row) · columns + step.
+fn place(grid: &MapGrid, number: usize) -> (usize, usize) {
     let (columns, rows) = (grid.eta.len(), grid.rho.len());
     let (chain, step) = (number / columns, number % columns);
-    let column = match seedings[chain / rows] {
-        Seeding::Falling => columns - 1 - step,
-        _ => step,
+    let column = if chain < rows {
+        step
+    } else {
+        columns - 1 - step
     };
     (chain / rows, (chain % rows) * columns + column)
 }
@@ -111,7 +87,7 @@ impl Feed for Chains<'_> {
         if !next.is_multiple_of(self.grid.eta.len()) {
             let end = self.unit.end(&outcome);
             let start = Start {
-                at: self.grid.at(place(self.grid, self.seedings, next).1),
+                at: self.grid.at(place(self.grid, next).1),
                 initial: end.initial,
                 phase: end.phase,
             };
@@ -121,21 +97,16 @@ impl Feed for Chains<'_> {
 }
 
 /// Continue motions from column to column in the marching kernel.
-fn carried_in_lanes(
-    unit: UnitMass,
-    grid: &MapGrid,
-    settings: &MapSettings,
-    seedings: &[Seeding],
-) -> Vec<Vec<End>> {
+fn carried_in_lanes(unit: UnitMass, grid: &MapGrid, settings: &MapSettings) -> [Vec<End>; 2] {
     let (columns, course) = (grid.eta.len(), unit.course(settings));
     let kernel = settings.kernel.filter(|k| k.is_available());
     let kernel = kernel.unwrap_or_else(Kernel::of_this_machine);
     let first = |number: usize| Start {
-        at: grid.at(place(grid, seedings, number).1),
+        at: grid.at(place(grid, number).1),
         initial: settings.start,
         phase: 0.0,
     };
-    let rows: Vec<(usize, Cell)> = (0..seedings.len() * grid.rho.len())
+    let rows: Vec<(usize, Cell)> = (0..2 * grid.rho.len())
         .map(|chain| (chain * columns, unit.cell(&first(chain * columns))))
         .collect();
     let share = rows.len().div_ceil(parallel::threads()).max(1);
@@ -143,7 +114,6 @@ fn carried_in_lanes(
         let mut chains = Chains {
             unit,
             grid,
-            seedings,
             ready: ready.to_vec(),
             done: Vec::new(),
         };
@@ -152,52 +122,46 @@ fn carried_in_lanes(
     };
     let chunks: Vec<&[(usize, Cell)]> = rows.chunks(share).collect();
     let mut done: Vec<(usize, Outcome)> = parallel::map(&chunks, march).concat();
-    done.sort_unstable_by_key(|d| place(grid, seedings, d.0));
+    done.sort_unstable_by_key(|d| place(grid, d.0));
     let judged = |(_, outcome): &(usize, Outcome)| End {
         motion: unit.judge(outcome, &settings.watch),
         ..unit.end(outcome)
     };
-    let ends: Vec<End> = parallel::map(&done, judged);
-    ends.chunks(grid.len().max(1))
-        .map(<[End]>::to_vec)
-        .collect()
+    let mut rising: Vec<End> = parallel::map(&done, judged);
+    let falling = rising.split_off(grid.len());
+    [rising, falling]
 }
 
-/// Carry motions from column to column, in one or both directions at once.
+/// Motions carried from column to column in rising and in falling η, both at once.
 fn carried(
     machine: &Machine,
     grid: &MapGrid,
     settings: &MapSettings,
-    seedings: &[Seeding],
-) -> Result<Vec<Vec<End>>, ModelError> {
+) -> Result<[Vec<End>; 2], ModelError> {
     let (columns, rows) = (grid.eta.len(), grid.rho.len());
     let together = |i: &Initial| machine.y.is_none() || (i.x == i.y && i.vx == i.vy);
     if let Some(unit) = UnitMass::of(machine).filter(|_| together(&settings.start)) {
-        return Ok(carried_in_lanes(unit, grid, settings, seedings));
+        return Ok(carried_in_lanes(unit, grid, settings));
     }
-    let mut cells: Vec<Vec<Option<End>>> = vec![vec![None; grid.len()]; seedings.len()];
+    let mut maps = [0, 1].map(|_| vec![None; grid.len()]);
     let mut before: Option<Vec<End>> = None;
     for step in 0..columns {
-        let column = |seeding: Seeding| match seeding {
-            Seeding::Falling => columns - 1 - step,
-            _ => step,
-        };
-        let number = |k: usize| (k % rows) * columns + column(seedings[k / rows]);
-        let start = |k: usize| {
-            let last = before.as_ref().map(|ends| ends[k]);
+        let place = |chain: usize| place(grid, chain * columns + step);
+        let start = |chain: usize| {
+            let last = before.as_ref().map(|ends| ends[chain]);
             Start {
-                at: grid.at(number(k)),
+                at: grid.at(place(chain).1),
                 initial: last.map_or(settings.start, |end| end.initial),
                 phase: last.map_or(0.0, |end| end.phase),
             }
         };
-        let starts: Vec<Start> = (0..seedings.len() * rows).map(start).collect();
+        let starts: Vec<Start> = (0..2 * rows).map(start).collect();
         let ends = march_from(machine, &starts, settings)?;
-        for (k, end) in ends.iter().enumerate() {
-            cells[k / rows][number(k)] = Some(*end);
+        for (chain, end) in ends.iter().enumerate() {
+            let (map, cell) = place(chain);
+            maps[map][cell] = Some(*end);
         }
         before = Some(ends);
     }
-    let whole = |map: Vec<Option<End>>| map.into_iter().flatten().collect();
-    Ok(cells.into_iter().map(whole).collect())
+    Ok(maps.map(|map| map.into_iter().flatten().collect()))
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::edge::{EdgeKind, RestingEdge};
+use super::edge::EdgeKind;
 use super::line::Slice;
 use super::resting::RestingSlice;
 use crate::model::orbit::stable_orbit;
@@ -23,35 +23,11 @@ pub struct CurvePoint {
     pub approach_speed: f64,
 }
 
-/// What the points of a curve have in common.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum CurveKind {
-    /// ρ': grazing of the impactless motion.
-    ImpactlessGrazing,
-    /// An edge of a motion without a dead zone.
-    Moving(EdgeKind),
-    /// An edge of a motion that rests in a dead zone.
-    Resting(RestingEdge),
-}
-
-impl CurveKind {
-    /// The name in tables: s1, s2, grazing, `dead_zone`, …; `rho_grazing` is ρ', joined is ρp.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::ImpactlessGrazing => "rho_grazing",
-            Self::Moving(kind) => kind.name(),
-            Self::Resting(kind) => kind.name(),
-        }
-    }
-}
-
 /// A boundary as a curve in the (η, ρ) plane, η rising.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
     /// Which boundary.
-    pub kind: CurveKind,
+    pub kind: EdgeKind,
     /// Impacts of the motion that it bounds.
     pub p: u32,
     /// Drive periods of the motion.
@@ -107,8 +83,8 @@ fn refined(etas: &[f64]) -> Vec<f64> {
 fn is_closed_form(machine: &Machine, mark: &Mark) -> bool {
     let constant = machine.restitution().constant().is_some();
     let closed = match mark.kind {
-        CurveKind::Moving(EdgeKind::SaddleNode) => true,
-        CurveKind::Moving(EdgeKind::PeriodDoubling) => constant,
+        EdgeKind::SaddleNode => true,
+        EdgeKind::PeriodDoubling => constant,
         _ => false,
     };
     mark.key.0 == 1 && closed
@@ -137,7 +113,7 @@ fn closed_forms(
             .collect();
         let pieces = points.split(Option::is_none).filter(|p| !p.is_empty());
         let curve = |piece: &[Option<BoundaryPoint>]| Curve {
-            kind: CurveKind::Moving(kind),
+            kind,
             p: 1,
             n,
             dead_zone: false,
@@ -174,7 +150,7 @@ fn grazing_curve(machine: &Machine, etas: &[f64]) -> Curve {
         approach_speed: 0.0,
     };
     Curve {
-        kind: CurveKind::ImpactlessGrazing,
+        kind: EdgeKind::ImpactlessGrazing,
         p: 0,
         n: 1,
         dead_zone: false,
@@ -191,7 +167,7 @@ type Key = (u32, u32, bool, bool, &'static str);
 #[derive(Debug, Clone)]
 struct Mark {
     key: Key,
-    kind: CurveKind,
+    kind: EdgeKind,
     point: CurvePoint,
     interval: (f64, f64),
 }
@@ -209,7 +185,7 @@ fn slice_marks(s: &Slice) -> Vec<Mark> {
             };
             Mark {
                 key: (s.p, s.n, false, upper, edge.kind.name()),
-                kind: CurveKind::Moving(edge.kind),
+                kind: edge.kind,
                 point,
                 interval,
             }
@@ -229,7 +205,7 @@ fn resting_marks(s: &RestingSlice) -> Vec<Mark> {
             };
             Some(Mark {
                 key: (s.p, s.n, true, upper, kind.name()),
-                kind: CurveKind::Resting(kind),
+                kind,
                 point,
                 interval: s.interval,
             })

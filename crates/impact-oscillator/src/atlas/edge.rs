@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::PeriodicOrbit;
 
-/// What ends a motion z = p/n.
+/// What ends a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EdgeKind {
@@ -18,8 +18,15 @@ pub enum EdgeKind {
     Grazing,
     /// An impact's approach speed falls to zero.
     ImpactVanishes,
-    /// The masses begin to stay together after an impact (1 | 1j).
+    /// The masses begin to stay together after an impact (1 | 1j); of a motion with a dead zone: it closes,
+    /// or the number of impacts between two of them changes.
     DeadZone,
+    /// ρ': the impactless motion touches the contact.
+    ImpactlessGrazing,
+    /// ρp: the masses stick together for all time below.
+    Sticking,
+    /// A motion with a dead zone loses its stability (asymmetric machines).
+    Unstable,
     /// The search's bound: the motion goes on.
     Bound,
     /// The continuation broke off.
@@ -27,7 +34,7 @@ pub enum EdgeKind {
 }
 
 impl EdgeKind {
-    /// The name in tables; s1 and s2 as in the paper.
+    /// The name in tables; s1 and s2 as in the paper, joined is ρp.
     pub fn name(self) -> &'static str {
         match self {
             Self::SaddleNode => "s2",
@@ -36,6 +43,9 @@ impl EdgeKind {
             Self::Grazing => "grazing",
             Self::ImpactVanishes => "impact_vanishes",
             Self::DeadZone => "dead_zone",
+            Self::ImpactlessGrazing => "rho_grazing",
+            Self::Sticking => "joined",
+            Self::Unstable => "stability_lost",
             Self::Bound => "bound",
             Self::Lost => "lost",
         }
@@ -49,27 +59,4 @@ pub struct Edge {
     pub kind: EdgeKind,
     /// The last orbit.
     pub orbit: PeriodicOrbit,
-}
-
-/// What bounds a motion with a dead zone.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RestingEdge {
-    /// ρp: the masses stick together for all time below.
-    Sticking,
-    /// The dead zone closes, or the number of impacts between two of them changes.
-    DeadZone,
-    /// The motion loses its stability (asymmetric machines).
-    Unstable,
-}
-
-impl RestingEdge {
-    /// The name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Sticking => "joined",
-            Self::DeadZone => "dead_zone",
-            Self::Unstable => "stability_lost",
-        }
-    }
 }

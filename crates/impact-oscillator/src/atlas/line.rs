@@ -337,10 +337,7 @@ fn greatest_speed(machine: &Machine, at: (f64, f64), end: &End, n: u32) -> Optio
 
 /// The motion of a cell where it ended.
 fn from_end(machine: &Machine, at: (f64, f64), end: &End) -> Option<(Simulator, Setting)> {
-    let setting = Setting {
-        phase: end.phase,
-        ..Setting::new(at.0, at.1)
-    };
+    let setting = Setting::new(at.0, at.1).at_phase(end.phase);
     let initial: Initial = clear_of(machine, at.1, end.initial);
     Some((Simulator::new(machine, setting, initial).ok()?, setting))
 }
@@ -371,10 +368,7 @@ pub(super) fn orbit_of_cell(
     motion: (u32, u32),
 ) -> Option<PeriodicOrbit> {
     let impacts = last_impacts(machine, (eta, rho), end, motion)?;
-    let setting = Setting {
-        phase: end.phase,
-        ..Setting::new(eta, rho)
-    };
+    let setting = Setting::new(eta, rho).at_phase(end.phase);
     let orbit = PeriodicOrbit::from_impacts(&impacts, setting, motion.1)?.solve(machine)?;
     Some(orbit.reduced())
 }

@@ -225,24 +225,14 @@ pub(super) fn check(
 /// One cell in the exact simulator.
 fn exact_cell(machine: &Machine, s: &Start, settings: &MapSettings) -> Result<End, ModelError> {
     let (eta, rho) = s.at;
-    let setting = Setting {
-        phase: s.phase,
-        ..Setting::new(eta, rho)
-    };
+    let setting = Setting::new(eta, rho).at_phase(s.phase);
     let mut simulator = Simulator::new(machine, setting, clear_of(machine, rho, s.initial))?;
     let settle = settings.watch.settle_periods * setting.period();
     simulator.advance(settle, &mut |_: &Impact| {});
     let motion = observe(&mut simulator, setting, &settings.watch).0;
-    let now = simulator.state();
-    let initial = Initial {
-        x: now.x,
-        vx: now.vx,
-        y: now.y,
-        vy: now.vy,
-    };
     Ok(End {
         motion,
-        initial,
+        initial: simulator.state().into(),
         phase: simulator.phase(),
     })
 }
@@ -322,10 +312,7 @@ impl UnitMass {
             return outcome.motion;
         }
         let (end, machine) = (outcome.end, self.machine());
-        let setting = Setting {
-            phase: end.phase,
-            ..Setting::new(end.eta, end.rho)
-        };
+        let setting = Setting::new(end.eta, end.rho).at_phase(end.phase);
         let start = Initial {
             x: end.x.min(end.rho),
             vx: end.v,

@@ -24,7 +24,7 @@ pub use agreement::{Agreement, Cause, Differing};
 pub use basins::{BasinGrid, Basins, Starts, basins};
 pub use brute::{Maps, Seeding, brute_maps};
 pub use curves::Curve;
-pub use edge::{Edge, EdgeKind, RestingEdge};
+pub use edge::{Edge, EdgeKind};
 pub use line::Slice;
 pub use lyapunov::Lyapunov;
 pub use map::{MapGrid, MapSettings, RegionMap, region_map};

@@ -3,9 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::brute::{Seeding, brute_map};
-use super::edge::{Edge, EdgeKind, RestingEdge};
-use super::map::{MapGrid, MapSettings};
+use super::edge::{Edge, EdgeKind};
+use super::map::{MapGrid, MapSettings, march_grid};
 use super::regions::{slices_at, spans_at_clearance};
 use super::resting::{resting_etas, resting_slices};
 use super::settings::AtlasSettings;
@@ -268,7 +267,7 @@ impl BoundaryQuery {
 
     /// Edges along ρ of the motion that rests in a dead zone.
     fn resting(&self, machine: &Machine, s: &AtlasSettings) -> Result<Vec<Point>, ModelError> {
-        let starts = brute_map(machine, &s.grid, &s.map, Seeding::FromStart)?;
+        let starts = march_grid(machine, &s.grid, &s.map)?;
         let most = (self.p, self.n);
         let columns = resting_slices(machine, &s.grid, most, s.map.kernel, &[starts]);
         let slices = columns.iter().flatten().filter(|s| s.is(self.p, self.n));
@@ -276,7 +275,7 @@ impl BoundaryQuery {
             .flat_map(|s| [(s.low, false, s.eta), (s.high, true, s.eta)])
             .filter_map(|(edge, upper, eta)| {
                 let (rho, kind) = edge?;
-                (kind == RestingEdge::DeadZone).then_some(Point::Resting { eta, rho, upper })
+                (kind == EdgeKind::DeadZone).then_some(Point::Resting { eta, rho, upper })
             })
             .collect())
     }

@@ -2,13 +2,13 @@
 //! autocorrelation.
 
 use std::f64::consts::TAU;
+use std::iter::successors;
 
 use serde::{Deserialize, Serialize};
 
 use super::sweep::autocorrelation;
 use crate::model::flight::State;
 use crate::model::motion::count;
-use crate::model::simulate::{Arc, Sink};
 use crate::model::soft::{SoftContact, simulate_soft};
 use crate::model::{Impact, Initial, Machine, ModelError, Setting, Simulator, Trajectory};
 
@@ -119,23 +119,6 @@ pub struct Portrait {
     pub autocorrelation: Vec<(f64, f64)>,
 }
 
-/// States at even times, in the middle of a simulation.
-#[derive(Debug)]
-struct Strobe {
-    next: f64,
-    step: f64,
-    states: Vec<State>,
-}
-
-impl Sink for Strobe {
-    fn arc(&mut self, arc: &Arc) {
-        while self.next < arc.tau + arc.duration {
-            self.states.push(arc.paths.at(self.next - arc.tau));
-            self.next += self.step;
-        }
-    }
-}
-
 /// Samples of X per drive period in its autocorrelation.
 const CORRELATED: usize = 24;
 /// Longest lag of the autocorrelation, drive periods.
@@ -210,7 +193,10 @@ fn rigid(machine: &Machine, plan: &PortraitPlan, skip: f64) -> Result<Run, Model
     let mut simulator = Simulator::new(machine, plan.setting, plan.start)?;
     simulator.advance(skip, &mut |_: &Impact| {});
     let mut trajectory = Trajectory::default();
-    let follower = simulator.clone();
+    let mut whole = Trajectory::default();
+    let long = (plan.poincare_periods as f64 + 0.5) * period;
+    let last = first_strobe(plan, skip) - skip + long;
+    simulator.clone().advance(last, &mut whole);
     simulator.advance(plan.periods * period, &mut trajectory);
     let strike = |i: &Impact| Strike {
         periods: i.tau / period,
@@ -226,30 +212,29 @@ fn rigid(machine: &Machine, plan: &PortraitPlan, skip: f64) -> Result<Run, Model
         kind: i.kind.name(),
     };
     let impacts = trajectory.impacts.iter().map(strike).collect();
-    let long = |step: f64, first: f64, count: usize| {
-        let mut strobe = Strobe {
-            next: first,
-            step,
-            states: Vec::new(),
-        };
-        let mut runner = follower.clone();
-        runner.advance(
-            first - follower.tau() + (count as f64 + 0.5) * step,
-            &mut strobe,
-        );
-        strobe.states.truncate(count);
-        strobe.states
-    };
-    let first = first_strobe(plan, skip);
-    let later = Later {
-        poincare: states(&long(period, first, plan.poincare_periods)),
-        autocorrelation: correlated(&long(
-            period / CORRELATED as f64,
-            skip,
-            CORRELATED * plan.poincare_periods,
-        )),
-    };
+    let next = |step: f64| move |tau: &f64| Some(tau + step);
+    let times = |from, step, count| successors(Some(from), next(step)).take(count).collect();
+    let later = Later::of(plan, skip, &whole, times);
     Ok((trajectory, impacts, later))
+}
+
+impl Later {
+    /// From a run that is long enough; `times`: even ones by the first, the step and their number.
+    fn of(
+        plan: &PortraitPlan,
+        skip: f64,
+        run: &Trajectory,
+        times: impl Fn(f64, f64, usize) -> Vec<f64>,
+    ) -> Self {
+        let (period, count) = (plan.setting.period(), plan.poincare_periods);
+        let poincare = times(first_strobe(plan, skip), period, count);
+        let even = times(skip, period / CORRELATED as f64, CORRELATED * count);
+        let states = run.sample(poincare).into_iter();
+        Self {
+            poincare: states.map(|s| [s.x, s.vx, s.y, s.vy]).collect(),
+            autocorrelation: correlated(&run.sample(even)),
+        }
+    }
 }
 
 /// τ of the first instant at or after the skipped time at which the drive has the map's phase.
@@ -261,10 +246,6 @@ fn first_strobe(plan: &PortraitPlan, skip: f64) -> f64 {
         lead = 0.0;
     }
     skip + lead / s.frequency_ratio
-}
-
-fn states(states: &[State]) -> Vec<[f64; 4]> {
-    states.iter().map(|s| [s.x, s.vx, s.y, s.vy]).collect()
 }
 
 fn correlated(states: &[State]) -> Vec<(f64, f64)> {
@@ -313,19 +294,10 @@ fn pressed(
         .iter()
         .filter(|c| c.tau >= skip && c.tau <= end);
     let impacts = within.map(strike).collect();
-    let first = first_strobe(plan, skip);
-    let every = |from: f64, step: f64, count: usize| {
-        motion
-            .trajectory
-            .sample((0..count).map(|k| from + step * k as f64))
+    let times = |from: f64, step: f64, count: usize| {
+        let even = (0..count).map(|k| from + step * k as f64);
+        even.collect()
     };
-    let later = Later {
-        poincare: states(&every(first, period, plan.poincare_periods)),
-        autocorrelation: correlated(&every(
-            skip,
-            period / CORRELATED as f64,
-            CORRELATED * plan.poincare_periods,
-        )),
-    };
+    let later = Later::of(plan, skip, &motion.trajectory, times);
     Ok((motion.trajectory, impacts, later))
 }

@@ -5,11 +5,11 @@
 use std::collections::BTreeMap;
 
 use super::agreement::{Agreement, compare};
-use super::brute::{Maps, Seeding, brute_map, brute_maps};
+use super::brute::{Maps, brute_maps};
 use super::continuation::Along;
 use super::curves::{Curve, curves};
 use super::line::{Line, Slice, Span};
-use super::map::{End, MapGrid};
+use super::map::{End, MapGrid, march_grid};
 use super::resting::{RestingSlice, resting_slices};
 use super::settings::AtlasSettings;
 use crate::model::{Machine, ModelError, SettledMotion};
@@ -134,7 +134,7 @@ pub(super) fn slices_at(
 ) -> Result<Vec<Slice>, ModelError> {
     let mut settings = settings.clone();
     settings.grid.eta = vec![eta];
-    let map = brute_map(machine, &settings.grid, &settings.map, Seeding::FromStart)?;
+    let map = march_grid(machine, &settings.grid, &settings.map)?;
     Ok(column(machine, &settings, &[map], 0))
 }
 

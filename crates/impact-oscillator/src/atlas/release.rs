@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::edge::RestingEdge;
+use super::edge::EdgeKind;
 use crate::model::boundary::rho_sticking;
 use crate::model::recurrence::observe;
 use crate::model::simulate::{Arc, Sink};
@@ -53,7 +53,7 @@ pub(super) struct RunEnd {
     /// The last place that shows it, to 1e-7.
     pub(super) at: Place,
     /// What ends it.
-    pub(super) kind: RestingEdge,
+    pub(super) kind: EdgeKind,
 }
 
 /// Neighbouring points of a line that show one resting motion.
@@ -224,15 +224,15 @@ impl<'a> Releases<'a> {
         }
     }
 
-    fn kind(&self, inside: Place, outside: Place, rest: &Rest) -> RestingEdge {
+    fn kind(&self, inside: Place, outside: Place, rest: &Rest) -> EdgeKind {
         let sticking = rho_sticking(self.machine, inside.0);
         let goes_on = self.continued(outside, rest);
         if inside.1 - sticking < 1e-5 * (1.0 + sticking.abs()) {
-            RestingEdge::Sticking
+            EdgeKind::Sticking
         } else if goes_on.is_some_and(|r| r.label == rest.label && !r.is_stable()) {
-            RestingEdge::Unstable
+            EdgeKind::Unstable
         } else {
-            RestingEdge::DeadZone
+            EdgeKind::DeadZone
         }
     }
 
@@ -248,10 +248,7 @@ impl<'a> Releases<'a> {
 
     /// The resting motion near to which a start settles.
     fn settled(&self, at: Place, (initial, phase): (Initial, f64)) -> Option<Rest> {
-        let setting = Setting {
-            phase,
-            ..Setting::new(at.0, at.1)
-        };
+        let setting = Setting::new(at.0, at.1).at_phase(phase);
         let mut simulator = Simulator::new(self.machine, setting, initial).ok()?;
         let mut seen = Seen::default();
         let turns = f64::from(2 * self.longest + 1);
@@ -316,10 +313,7 @@ impl<'a> Releases<'a> {
             (initial.y, initial.vy) = (rho - j, -dj);
         }
         let cosine = held_back / drive;
-        let setting = Setting {
-            phase: cosine.acos(),
-            ..Setting::new(eta, rho)
-        };
+        let setting = Setting::new(eta, rho).at_phase(cosine.acos());
         (-1.0..1.0).contains(&cosine).then_some((setting, initial))
     }
 

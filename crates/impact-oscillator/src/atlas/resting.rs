@@ -8,7 +8,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::edge::RestingEdge;
+use super::edge::EdgeKind;
 use super::kernel::Cell;
 use super::map::{
     End as MapEnd, Kernel, MapGrid, MapSettings, Start, UnitMass, clear_of, march_all,
@@ -29,9 +29,9 @@ pub struct RestingSlice {
     /// Rows that show it, first and last.
     pub interval: (f64, f64),
     /// Its lower edge; `None` where the search's bound comes first.
-    pub low: Option<(f64, RestingEdge)>,
+    pub low: Option<(f64, EdgeKind)>,
     /// Its upper edge.
-    pub high: Option<(f64, RestingEdge)>,
+    pub high: Option<(f64, EdgeKind)>,
 }
 
 impl RestingSlice {
@@ -133,15 +133,18 @@ pub(super) fn resting_slices(
     let labels = releases.labels(&points);
     let (mut slices, mut ends) = (Vec::new(), Vec::new());
     for column in 0..grid.eta.len() {
-        runs(
-            grid,
-            &labels,
-            column,
-            (most, longest),
-            &mut |label, rows| {
-                slices.push((column, add_ends(grid, column, label, rows, &mut ends)));
-            },
-        );
+        let own: Vec<Option<Label>> = (0..grid.rho.len())
+            .map(|k| labels[k * grid.eta.len() + column])
+            .collect();
+        let mut first = 0;
+        for run in own.chunk_by(|a, b| a == b) {
+            let last = first + run.len() - 1;
+            if let Some(label) = run[0].filter(|l| l.0 <= most && l.1 <= longest) {
+                let open = add_ends(grid, column, label, (first, last), &mut ends);
+                slices.push((column, open));
+            }
+            first = last + 1;
+        }
     }
     releases.bisect(&mut ends);
     let mut columns = vec![Vec::new(); grid.eta.len()];
@@ -245,10 +248,7 @@ fn exact_etas(machine: &Machine, rho: f64, label: Label, etas: &[f64]) -> Vec<(f
     };
     let points: Vec<(f64, f64)> = etas.iter().map(|&eta| (eta, rho)).collect();
     let runs = releases.runs(&points, |_| Vec::new());
-    let told = |end: Option<RunEnd>| {
-        end.filter(|e| e.kind == RestingEdge::DeadZone)
-            .map(|e| e.at.0)
-    };
+    let told = |end: Option<RunEnd>| end.filter(|e| e.kind == EdgeKind::DeadZone).map(|e| e.at.0);
     let ends = |run: Run| {
         let (low, high) = (told(run.low), told(run.high));
         low.map(|eta| (eta, false))
@@ -269,27 +269,6 @@ fn release_settings(longest: u32, kernel: Option<Kernel>) -> MapSettings {
         },
         kernel,
         ..MapSettings::default()
-    }
-}
-
-/// Report every run of rows of one column with the same label.
-fn runs(
-    grid: &MapGrid,
-    labels: &[Option<Label>],
-    column: usize,
-    (most, longest): (u32, u32),
-    told: &mut impl FnMut(Label, (usize, usize)),
-) {
-    let at = |k: usize| labels[k * grid.eta.len() + column];
-    let mut first = 0;
-    for k in 1..=grid.rho.len() {
-        if k < grid.rho.len() && at(k) == at(first) {
-            continue;
-        }
-        if let Some(label) = at(first).filter(|l| l.0 <= most && l.1 <= longest) {
-            told(label, (first, k - 1));
-        }
-        first = k;
     }
 }
 
@@ -331,9 +310,9 @@ fn finished((slice, low, high): Open, ends: &[End], length: f64) -> RestingSlice
         let rho = ends[i].inside;
         let sticking = rho / length < -1.0 + 1e-6;
         let kind = if sticking {
-            RestingEdge::Sticking
+            EdgeKind::Sticking
         } else {
-            RestingEdge::DeadZone
+            EdgeKind::DeadZone
         };
         (rho, kind)
     };

@@ -4,12 +4,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::lyapunov::Lyapunov;
-use crate::model::flight::{Drive, forced_amplitude};
+use crate::model::flight::{Drive, FlightPaths, forced_amplitude};
 use crate::model::motion::count;
+use crate::model::path::Path;
 use crate::model::recurrence::observe;
-use crate::model::simulate::{Arc, Sink, Snapshot};
+use crate::model::simulate::Snapshot;
 use crate::model::{
-    Impact, Initial, Machine, ModelError, Oscillator, Setting, SettledMotion, Simulator, Watch,
+    Impact, Initial, Machine, ModelError, Oscillator, Setting, SettledMotion, Simulator,
+    Trajectory, Watch,
 };
 
 /// What a sweep goes through.
@@ -51,31 +53,8 @@ pub struct SweepPoint {
     pub autocorrelation: Vec<f64>,
 }
 
-/// Greatest displacements over arcs, from samples refined where the velocity turns.
-#[derive(Debug, Default)]
-struct Extremes {
-    x: f64,
-    y: f64,
-}
-
-impl Extremes {
-    fn new() -> Self {
-        Self {
-            x: f64::NEG_INFINITY,
-            y: f64::NEG_INFINITY,
-        }
-    }
-}
-
-impl Sink for Extremes {
-    fn arc(&mut self, arc: &Arc) {
-        self.x = self.x.max(maximum(&arc.paths.x, arc.duration));
-        self.y = self.y.max(maximum(&arc.paths.y, arc.duration));
-    }
-}
-
 /// Greatest value of a path over [0, duration].
-fn maximum(path: &crate::model::path::Path, duration: f64) -> f64 {
+fn maximum(path: &Path, duration: f64) -> f64 {
     let steps = (duration * path.rate() * 8.0).ceil().clamp(2.0, 1e5);
     let at = |k: f64| path.at(duration * k / steps);
     let mut best = at(0.0)[0].max(at(steps)[0]);
@@ -99,23 +78,6 @@ const MOST_IMPACTS: usize = 64;
 const SAMPLES: usize = 32;
 /// Longest lag of a point's autocorrelation, drive periods.
 pub const LONGEST_LAG: usize = 6;
-
-/// X at even times.
-#[derive(Debug)]
-struct Sampler {
-    next: f64,
-    step: f64,
-    x: Vec<f64>,
-}
-
-impl Sink for Sampler {
-    fn arc(&mut self, arc: &Arc) {
-        while self.next < arc.tau + arc.duration {
-            self.x.push(arc.paths.at(self.next - arc.tau).x);
-            self.next += self.step;
-        }
-    }
-}
 
 /// A motion that continues step by step.
 #[derive(Debug, Clone)]
@@ -159,14 +121,7 @@ impl<'a> Carried<'a> {
 
     /// The motion's state and the phase of the drive, rad: where another can start to continue it.
     pub fn place(&self) -> (Initial, f64) {
-        let s = self.simulator.state();
-        let initial = Initial {
-            x: s.x,
-            vx: s.vx,
-            y: s.y,
-            vy: s.vy,
-        };
-        (initial, self.simulator.phase())
+        (self.simulator.state().into(), self.simulator.phase())
     }
 
     /// Go on from where another was, bit for bit.
@@ -283,20 +238,21 @@ fn one_step(
     simulator.advance(watch.settle_periods * period, &mut |_: &Impact| {});
     let mut follower = simulator.clone();
     let (motion, impacts) = observe(simulator, setting, watch);
-    let mut extremes = Extremes::new();
+    let mut watched = Trajectory::default();
+    let begin = follower.tau();
     follower
         .clone()
-        .advance(watch.watch_periods * period, &mut extremes);
-    let mut sampler = Sampler {
-        next: follower.tau(),
-        step: period / SAMPLES as f64,
-        x: Vec::new(),
-    };
-    follower
-        .clone()
-        .advance(watch.watch_periods * period, &mut sampler);
+        .advance(watch.watch_periods * period, &mut watched);
     let mut lyapunov = Lyapunov::new(machine, setting.frequency_ratio);
     follower.advance(watch.watch_periods * period, &mut lyapunov);
+    let greatest = |of: fn(&FlightPaths) -> &Path| {
+        let arcs = watched.arcs.iter();
+        arcs.map(|arc| maximum(of(&arc.paths), arc.duration))
+            .fold(f64::NEG_INFINITY, f64::max)
+    };
+    let next = |tau: &f64| Some(tau + period / SAMPLES as f64);
+    let even = std::iter::successors(Some(begin), next).take_while(|tau| *tau < watched.end());
+    let x: Vec<f64> = watched.sample(even).iter().map(|s| s.x).collect();
     let shown = match motion {
         SettledMotion::Periodic {
             p, chatter: false, ..
@@ -309,13 +265,13 @@ fn one_step(
         eta: setting.frequency_ratio,
         rho: setting.clearance,
         motion,
-        x_max: extremes.x,
-        y_max: extremes.y,
+        x_max: greatest(|paths| &paths.x),
+        y_max: greatest(|paths| &paths.y),
         approach_speeds: of(|i| i.approach_speed),
         x_speeds: of(|i| i.vx_before),
         phases: of(|i| i.phase),
         lyapunov: Some(lyapunov.exponent()).filter(|l| l.is_finite()),
-        autocorrelation: whole_periods(&sampler.x),
+        autocorrelation: whole_periods(&x),
     }
 }
 

@@ -403,7 +403,7 @@ fn one_and_one_with_a_dead_zone_share_their_edge() {
             let resting = resting_at(&machine, eta, 41);
             let resting = resting.iter().find(|s| s.is(1, 1)).unwrap();
             let (rho, kind) = resting.high.unwrap();
-            assert_eq!(kind, super::edge::RestingEdge::DeadZone);
+            assert_eq!(kind, super::edge::EdgeKind::DeadZone);
             let other = moving.low.orbit.rho;
             assert!((rho - other).abs() < 1e-6, "{eta}: {rho} {other}");
             shared += 1;

@@ -65,17 +65,6 @@ pub struct Impact {
 /// from rest.
 const RESOLUTION: f64 = 1e-13;
 
-/// What an impact leads to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Outcome {
-    /// The state just after.
-    pub(crate) after: State,
-    /// Kind of impact.
-    pub(crate) kind: ImpactKind,
-    /// Time from this impact until the chatter has come to rest (0 for the other kinds).
-    pub(crate) until_rest: f64,
-}
-
 /// Velocities after an impact: X'₊ = X'₋ − μ₁(1+R)w, Y'₊ = Y'₋ − μ₂(1+R)w with the approach
 /// speed w and the mobilities μ of [`Machine::mobility`]: eq. (4).
 pub(crate) fn newton(machine: &Machine, before: &State) -> State {
@@ -113,12 +102,18 @@ pub(crate) fn is_plastic(machine: &Machine, approach_speed: f64) -> bool {
     machine.restitution().at(approach_speed) <= 1e-15
 }
 
-/// What the impact of a state at contact leads to. `size` is the motion's displacement scale.
+/// What the impact of a state at contact leads to: the state just after, the kind of impact, and the time
+/// until a chatter has come to rest (0 for the other kinds). `size` is the motion's displacement scale.
 ///
 /// A rebound that would not rise above the resolution while the masses are pressed together is
 /// the end of a chatter: flights last 2v/a, speeds fall by R, so rest comes after
 /// 2v/(a(1−R)), the sum of the geometric sequence.
-pub(crate) fn impact(machine: &Machine, drive: Drive, before: &State, size: f64) -> Outcome {
+pub(crate) fn impact(
+    machine: &Machine,
+    drive: Drive,
+    before: &State,
+    size: f64,
+) -> (State, ImpactKind, f64) {
     let mut after = newton(machine, before);
     let (ax, ay) = free_accelerations(machine, drive, &after);
     (after.ax, after.ay) = (ax, ay);
@@ -142,11 +137,7 @@ pub(crate) fn impact(machine: &Machine, drive: Drive, before: &State, size: f64)
     } else {
         (ImpactKind::Bounce, 0.0)
     };
-    Outcome {
-        after,
-        kind,
-        until_rest,
-    }
+    (after, kind, until_rest)
 }
 
 /// Sum of the flights of a chatter, eq. (6), that starts with separation speed v under relative
@@ -207,5 +198,5 @@ pub(crate) fn release_time(machine: &Machine, drive: Drive, clearance: f64, s: &
         (40.0 / slowest).min(1e4 * period)
     };
     let horizon = transient + 2.0 * period;
-    first_zero(&path, horizon).map_or(f64::INFINITY, |c| c.time)
+    first_zero(&path, horizon).unwrap_or(f64::INFINITY)
 }

@@ -6,19 +6,10 @@
 
 use super::path::{Jet, Path};
 
-/// A zero reached from above.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Crossing {
-    /// Time since the path's start.
-    pub(super) time: f64,
-    /// Speed −f' at which the path falls through zero, positive.
-    pub(super) speed: f64,
-}
-
 /// First time in [0, `t_max`] at which the path falls to zero, starting from f(0) ≥ 0 (or below
 /// by rounding). A start at f = 0 that moves away is not a zero; one that moves on below zero
 /// is a zero at once; touching zero within rounding without passing it is not counted.
-pub(super) fn first_zero(path: &Path, t_max: f64) -> Option<Crossing> {
+pub(super) fn first_zero(path: &Path, t_max: f64) -> Option<f64> {
     let tolerance = 4e-15 * path.size();
     let longest = 1.6 / path.rate();
     let mut hm = longest;
@@ -34,7 +25,7 @@ pub(super) fn first_zero(path: &Path, t_max: f64) -> Option<Crossing> {
             leaving_step(&jet, hm)
         } else if near && v >= -STILL * tolerance {
             let zero = accept(before, t, &jet);
-            return (zero.time <= t_max).then_some(zero);
+            return (zero <= t_max).then_some(zero);
         } else {
             safe_step(g.max(0.0), v, &jet, hm)
         };
@@ -64,7 +55,7 @@ fn leaves(jet: &Jet, tolerance: f64) -> bool {
 
 /// Newton's correction of an accepted zero, with the curvature where the speed is small; never
 /// back beyond the point before, where the path was above zero.
-fn accept(before: f64, t: f64, jet: &Jet) -> Crossing {
+fn accept(before: f64, t: f64, jet: &Jet) -> f64 {
     let (g, v, a) = (jet.value, -jet.d1, -jet.d2);
     let root = v * v + 2.0 * a * g;
     let dt = if root > 0.0 && v > 0.0 {
@@ -72,11 +63,7 @@ fn accept(before: f64, t: f64, jet: &Jet) -> Crossing {
     } else {
         0.0
     };
-    let dt = dt.max(0.5 * (before - t));
-    Crossing {
-        time: t + dt,
-        speed: (v + a * dt).max(0.0),
-    }
+    t + dt.max(0.5 * (before - t))
 }
 
 /// First root of −g + vh + M h²/2, or hm where there is none before.

@@ -29,7 +29,10 @@ pub enum ModelError {
 }
 
 /// A finite value that meets a condition.
-pub(super) fn range(
+///
+/// # Errors
+/// [`ModelError::OutOfRange`] where it is not finite or does not meet it.
+pub fn range(
     name: &'static str,
     value: f64,
     ok: bool,

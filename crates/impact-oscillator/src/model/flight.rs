@@ -1,7 +1,7 @@
 //! The exact flight of each mass between impacts: homogeneous and forced response, eqs. (1), (2);
 //! and of masses that stick together, eq. (5).
 
-use super::params::{Flight, Machine, Oscillator};
+use super::params::{Flight, Initial, Machine, ModelError, Oscillator};
 use super::path::{C64, Mode, Path};
 
 /// Displacements, velocities and accelerations of both masses.
@@ -19,6 +19,41 @@ pub struct State {
     pub vy: f64,
     /// Y''
     pub ay: f64,
+}
+
+impl From<State> for Initial {
+    fn from(State { x, vx, y, vy, .. }: State) -> Self {
+        Self { x, vx, y, vy }
+    }
+}
+
+impl Initial {
+    /// The state of a machine that starts so, without accelerations; y is left out against a stop.
+    ///
+    /// # Errors
+    /// [`ModelError`] where it is not finite or lies beyond the contact.
+    pub(super) fn state(self, machine: &Machine, clearance: f64) -> Result<State, ModelError> {
+        self.check()?;
+        let second = machine.y.is_some();
+        let (y, vy) = if second {
+            (self.y, self.vy)
+        } else {
+            (0.0, 0.0)
+        };
+        let depth = -(machine.gap(clearance) - self.x - y);
+        if depth > 1e-12 * (1.0 + self.x.abs() + y.abs()) {
+            return Err(ModelError::StartsInContact { depth });
+        }
+        let Self { x, vx, .. } = self;
+        let still = State::default();
+        Ok(State {
+            x,
+            vx,
+            y,
+            vy,
+            ..still
+        })
+    }
 }
 
 /// The drive as the flight sees it at its start: η and the phase there.

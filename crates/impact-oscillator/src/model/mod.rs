@@ -24,6 +24,7 @@ pub mod variation;
 
 pub use boundary::{BoundaryPoint, eta_s2, rho_grazing, rho_s1, rho_s2};
 pub use contact::{Impact, ImpactKind};
+pub use error::range;
 pub use motion::{SettledMotion, periodic_label};
 pub use orbit::{Existence, Orbit};
 pub use params::{Contact, Flight, Initial, Machine, ModelError, Oscillator, Restitution, Setting};

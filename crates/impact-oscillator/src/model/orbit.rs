@@ -343,7 +343,7 @@ fn unjudged_orbit(machine: &Machine, setting: Setting, n: u32, w: f64) -> Orbit 
     let mut after = newton(machine, &before);
     (after.ax, after.ay) = free_accelerations(machine, drive, &after);
     let flight = free_flight(machine, drive, &after);
-    let setting = Setting { phase, ..setting };
+    let setting = setting.at_phase(phase);
     Orbit {
         n,
         setting,

@@ -266,6 +266,12 @@ impl Setting {
         }
     }
 
+    /// The same with another phase of the drive at τ = 0, rad.
+    #[must_use]
+    pub fn at_phase(self, phase: f64) -> Self {
+        Self { phase, ..self }
+    }
+
     /// Drive period 2π/η.
     pub fn period(&self) -> f64 {
         std::f64::consts::TAU / self.frequency_ratio

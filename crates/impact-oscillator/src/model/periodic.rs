@@ -121,15 +121,13 @@ impl Response {
     }
 }
 
-/// Residuals (gap closure, speed) of all impacts and their Jacobian by times and speeds.
-struct Linearised {
-    residual: DVector<f64>,
-    jacobian: DMatrix<f64>,
-}
-
-/// Linearise the orbit's equations about (times, speeds); unknowns and residuals are ordered
-/// times (closures) first.
-fn linearise(machine: &Machine, response: &Response, orbit: &PeriodicOrbit) -> Linearised {
+/// Linearise the orbit's equations about (times, speeds): residuals (gap closure, speed) of all impacts and
+/// their Jacobian by times and speeds, times (closures) first.
+fn linearise(
+    machine: &Machine,
+    response: &Response,
+    orbit: &PeriodicOrbit,
+) -> (DVector<f64>, DMatrix<f64>) {
     let p = orbit.times.len();
     let gap = machine.gap(orbit.rho);
     let law = machine.restitution();
@@ -161,7 +159,7 @@ fn linearise(machine: &Machine, response: &Response, orbit: &PeriodicOrbit) -> L
             }
         }
     }
-    Linearised { residual, jacobian }
+    (residual, jacobian)
 }
 
 impl PeriodicOrbit {
@@ -226,8 +224,7 @@ impl PeriodicOrbit {
 
     /// Residual and Jacobian by the unknowns.
     pub fn linearised(&self, machine: &Machine) -> (DVector<f64>, DMatrix<f64>) {
-        let l = linearise(machine, &Response::new(machine, self.eta, self.n), self);
-        (l.residual, l.jacobian)
+        linearise(machine, &Response::new(machine, self.eta, self.n), self)
     }
 
     /// Newton's method at fixed η and ρ. `None`: it does not converge, or impacts change their
@@ -235,10 +232,10 @@ impl PeriodicOrbit {
     pub fn solve(mut self, machine: &Machine) -> Option<Self> {
         let response = Response::new(machine, self.eta, self.n);
         for _ in 0..30 {
-            let l = linearise(machine, &response, &self);
+            let (residual, jacobian) = linearise(machine, &response, &self);
             let size = 1.0 + self.speeds.iter().fold(0.0, |m: f64, w| m.max(w.abs()));
-            let done = l.residual.amax() <= 1e-13 * size;
-            let change = l.jacobian.lu().solve(&l.residual)?;
+            let done = residual.amax() <= 1e-13 * size;
+            let change = jacobian.lu().solve(&residual)?;
             let z = self.unknowns() - &change;
             self = self.with_unknowns(&z);
             if done || change.amax() <= 1e-15 * size {

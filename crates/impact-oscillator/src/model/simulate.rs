@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::contact::{self, Impact, ImpactKind, Outcome};
+use super::contact::{self, Impact, ImpactKind};
 use super::crossing::first_zero;
 use super::flight::{Drive, FlightPaths, State, free_flight, press, sticking_flight};
 use super::params::{Initial, Machine, ModelError, Setting};
@@ -82,35 +82,17 @@ impl Simulator {
     pub fn new(machine: &Machine, setting: Setting, initial: Initial) -> Result<Self, ModelError> {
         machine.check()?;
         setting.check()?;
-        initial.check()?;
-        let (y, vy) = if machine.y.is_some() {
-            (initial.y, initial.vy)
-        } else {
-            (0.0, 0.0)
-        };
-        let Initial { x, vx, .. } = initial;
-        let state = State {
-            x,
-            vx,
-            y,
-            vy,
-            ..State::default()
-        };
         let now = Snapshot {
             eta: setting.frequency_ratio,
             clearance: setting.clearance,
             tau: 0.0,
             phase: setting.phase.rem_euclid(TAU),
-            state,
+            state: initial.state(machine, setting.clearance)?,
             sticking: false,
             size: 0.0,
         };
         let machine = machine.clone();
         let mut new = Self { machine, now };
-        let depth = -new.gap_left();
-        if depth > 1e-12 * (1.0 + state.x.abs() + state.y.abs()) {
-            return Err(ModelError::StartsInContact { depth });
-        }
         new.settle();
         Ok(new)
     }
@@ -247,8 +229,8 @@ impl Simulator {
         self.now.size = gap.size().max(known);
         let limit = (end - self.now.tau).min(paths.valid_for);
         match first_zero(&gap, limit) {
-            Some(hit) => {
-                self.move_on(&paths, hit.time, end, sink);
+            Some(time) => {
+                self.move_on(&paths, time, end, sink);
                 self.impact(sink);
             }
             None => {
@@ -262,11 +244,8 @@ impl Simulator {
 
     fn impact(&mut self, sink: &mut impl Sink) {
         let before = contact::in_contact(&self.machine, self.now.clearance, &self.now.state);
-        let Outcome {
-            after,
-            kind,
-            until_rest,
-        } = contact::impact(&self.machine, self.drive(), &before, self.now.size);
+        let (after, kind, until_rest) =
+            contact::impact(&self.machine, self.drive(), &before, self.now.size);
         self.now.state = after;
         let sticks = matches!(kind, ImpactKind::Stick | ImpactKind::ChatterEnd);
         let mut dead_zone = 0.0;
@@ -304,8 +283,8 @@ impl Simulator {
         }
         let limit = end - self.now.tau;
         match first_zero(&press, limit) {
-            Some(release) => {
-                self.move_on(&paths, release.time, end, sink);
+            Some(time) => {
+                self.move_on(&paths, time, end, sink);
                 self.now.sticking = false;
             }
             None => self.move_on(&paths, limit, end, sink),

@@ -10,6 +10,7 @@ use std::f64::consts::{PI, TAU};
 use serde::{Deserialize, Serialize};
 
 use super::crossing::first_zero;
+use super::error::range;
 use super::flight::{Drive, FlightPaths, State, forced_amplitude, free_mode};
 use super::params::{Flight, Initial, Machine, ModelError, Oscillator, Setting};
 use super::path::{C64, Mode, Path};
@@ -57,14 +58,8 @@ impl SoftContact {
     /// [`ModelError`] where R is not within 0 (excluded) and 1, or the stiffness not positive.
     pub fn with_restitution(machine: &Machine, stiffness: f64, r: f64) -> Result<Self, ModelError> {
         let least = restitution_of(1.0 - 1e-12);
-        if !(least < r && r <= 1.0) {
-            let expected = "0.1353 (critically damped contact) < R ≤ 1";
-            return Err(ModelError::OutOfRange {
-                name: "restitution",
-                value: r,
-                expected,
-            });
-        }
+        let expected = "0.1353 (critically damped contact) < R ≤ 1";
+        range("restitution", r, least < r && r <= 1.0, expected)?;
         let (mut low, mut high) = (0.0, 1.0 - 1e-12);
         for _ in 0..200 {
             let middle = 0.5 * (low + high);
@@ -84,24 +79,9 @@ impl SoftContact {
     }
 
     fn check(&self) -> Result<(), ModelError> {
-        let positive = self.stiffness > 0.0 && self.stiffness.is_finite();
-        if !positive {
-            let (name, expected) = ("stiffness", "positive");
-            return Err(ModelError::OutOfRange {
-                name,
-                value: self.stiffness,
-                expected,
-            });
-        }
-        if !(self.damping >= 0.0 && self.damping.is_finite()) {
-            let (name, expected) = ("damping", "not negative");
-            return Err(ModelError::OutOfRange {
-                name,
-                value: self.damping,
-                expected,
-            });
-        }
-        Ok(())
+        let Self { stiffness, damping } = *self;
+        range("stiffness", stiffness, stiffness > 0.0, "positive")?;
+        range("damping", damping, damping >= 0.0, "not negative")
     }
 }
 
@@ -170,12 +150,7 @@ pub fn simulate_soft(
     initial: Initial,
     duration: f64,
 ) -> Result<SoftMotion, ModelError> {
-    check(machine, contact, setting, initial)?;
-    let (y, vy) = if machine.y.is_some() {
-        (initial.y, initial.vy)
-    } else {
-        (0.0, 0.0)
-    };
+    check(machine, contact, setting)?;
     let mut runner = Runner {
         machine,
         contact,
@@ -183,20 +158,10 @@ pub fn simulate_soft(
         eta: setting.frequency_ratio,
         tau: 0.0,
         drive_phase: setting.phase.rem_euclid(TAU),
-        state: State {
-            x: initial.x,
-            vx: initial.vx,
-            y,
-            vy,
-            ..State::default()
-        },
+        state: initial.state(machine, setting.clearance)?,
         phase: Phase::Free,
         touch: None,
     };
-    let depth = initial.x + y - runner.gap;
-    if depth > 1e-12 * (1.0 + initial.x.abs() + y.abs()) {
-        return Err(ModelError::StartsInContact { depth });
-    }
     let mut motion = SoftMotion::default();
     while runner.tau < duration {
         runner.step(duration, &mut motion);
@@ -204,16 +169,10 @@ pub fn simulate_soft(
     Ok(motion)
 }
 
-fn check(
-    machine: &Machine,
-    contact: SoftContact,
-    setting: Setting,
-    initial: Initial,
-) -> Result<(), ModelError> {
+fn check(machine: &Machine, contact: SoftContact, setting: Setting) -> Result<(), ModelError> {
     machine.check()?;
     contact.check()?;
     setting.check()?;
-    initial.check()?;
     let alike = |y: &Oscillator| {
         Oscillator {
             drive_amplitude: machine.x.drive_amplitude,
@@ -290,11 +249,11 @@ impl Runner<'_> {
             .scaled(-self.contact.stiffness)
             .plus(-self.contact.damping, &gap.derivative());
         let (change, next) = match self.phase {
-            Phase::Free => (first_zero(&gap, limit).map(|c| c.time), Phase::Pressed),
-            Phase::Pressed => (first_zero(&press, limit).map(|c| c.time), Phase::Recovering),
+            Phase::Free => (first_zero(&gap, limit), Phase::Pressed),
+            Phase::Pressed => (first_zero(&press, limit), Phase::Recovering),
             Phase::Recovering => {
-                let apart = first_zero(&gap.scaled(-1.0), limit).map(|c| c.time);
-                let again = first_zero(&press.scaled(-1.0), limit).map(|c| c.time);
+                let apart = first_zero(&gap.scaled(-1.0), limit);
+                let again = first_zero(&press.scaled(-1.0), limit);
                 match (apart, again) {
                     (Some(a), Some(b)) if b < a => (Some(b), Phase::Pressed),
                     (None, Some(b)) => (Some(b), Phase::Pressed),

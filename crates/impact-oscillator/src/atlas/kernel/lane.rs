@@ -149,25 +149,10 @@ pub(super) fn load<V: Lanes>(
     );
 }
 
-/// A lane without a cell: far from the stop, never due.
+/// A lane without a cell goes on unseen; without a free vibration its numbers stay normal.
 pub(super) fn park<V: Lanes>(s: &mut Group<V>, lane: usize) {
-    let idle = empty_group::<V>();
-    let pairs = [
-        (&mut s.eta, idle.eta),
-        (&mut s.quarter_eta, idle.quarter_eta),
-        (&mut s.rho, idle.rho),
-        (&mut s.exit_rho, idle.exit_rho),
-        (&mut s.longest, idle.longest),
-        (&mut s.zr, idle.zr),
-        (&mut s.zi, idle.zi),
-        (&mut s.zm, idle.zm),
-        (&mut s.fr, idle.fr),
-        (&mut s.fi, idle.fi),
-        (&mut s.t_next, idle.t_next),
-        (&mut s.hm, idle.hm),
-    ];
-    for (vector, value) in pairs {
-        vector.set(lane, value.get(0));
+    for vector in [&mut s.zr, &mut s.zi, &mut s.zm] {
+        vector.set(lane, 0.0);
     }
 }
 
