@@ -46,7 +46,7 @@ impl Plan {
         let _lock = Lock::take(&self.out)?;
         interrupt::watch(self.out.clone());
         let bar = Progress::new(verbosity, "observe", campaign.records.len() as u64);
-        let step = |stage: &str, done, total| bar.step(stage, done, total);
+        let step = |stage: &'static str, done, total| bar.step(stage, done, total);
         let found = plan::plan(&campaign, self.settings, &self.out, &step)?;
         drop(bar);
         if self.json {
