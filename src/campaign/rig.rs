@@ -1,5 +1,9 @@
 //! `[rig]` as written to nominal values, their uncertainties and the effects that the fit allows.
 
+use std::str::FromStr;
+
+use strum::VariantNames;
+
 use super::context::ResolveContext;
 use super::diagnostic::Code;
 use super::resolved::{NominalValues, RecordEntry};
@@ -49,23 +53,9 @@ pub(super) fn resolve(rig: &written::Rig, context: &mut ResolveContext<'_>) -> N
 
 /// What the campaigns on the rig have in common, by its names.
 fn shared(placed: &Placed<Vec<String>>, context: &mut ResolveContext<'_>) -> Vec<Common> {
-    let Some(placed) = placed else {
-        return Vec::new();
-    };
-    let mut kinds = Vec::new();
-    for name in placed.get_ref() {
-        match name.parse() {
-            Ok(kind) => kinds.push(kind),
-            Err(_) => {
-                let known: Vec<&str> = Common::ALL.iter().map(|c| c.name()).collect();
-                let known = known.join(", ");
-                let what = format!("campaigns cannot share '{name}'");
-                let remedy = format!("choose among {known}, or remove the line");
-                context.fault(Code::OutOfRange, placed, "rig.shared", what, &remedy);
-            }
-        }
-    }
-    kinds
+    let unknown = |name: &str| format!("campaigns cannot share '{name}'");
+    let remedy = "remove the line";
+    named(placed, ("rig.shared", remedy), unknown, context).unwrap_or_default()
 }
 
 /// The effects that the fit allows, by their names.
@@ -73,21 +63,31 @@ fn effects(
     placed: &Placed<Vec<String>>,
     context: &mut ResolveContext<'_>,
 ) -> Option<Vec<EffectKind>> {
+    let unknown = |name: &str| format!("no effect is called '{name}'");
+    let remedy = "remove the line to allow all";
+    named(placed, ("rig.effects", remedy), unknown, context)
+}
+
+/// The variants that a list names; a name that is `unknown` is a fault, with what else may be done.
+fn named<T: FromStr + VariantNames>(
+    placed: &Placed<Vec<String>>,
+    (key, otherwise): (&str, &str),
+    unknown: impl Fn(&str) -> String,
+    context: &mut ResolveContext<'_>,
+) -> Option<Vec<T>> {
     let placed = placed.as_ref()?;
-    let mut kinds = Vec::new();
+    let mut found = Vec::new();
     for name in placed.get_ref() {
-        match EffectKind::named(name) {
-            Some(kind) => kinds.push(kind),
-            None => {
-                let known: Vec<&str> = EffectKind::ALL.iter().map(|kind| kind.name()).collect();
-                let known = known.join(", ");
-                let what = format!("no effect is called '{name}'");
-                let remedy = format!("choose among {known}, or remove the line to allow all");
-                context.fault(Code::OutOfRange, placed, "rig.effects", what, &remedy);
+        match name.parse() {
+            Ok(variant) => found.push(variant),
+            Err(_) => {
+                let known = T::VARIANTS.join(", ");
+                let remedy = format!("choose among {known}, or {otherwise}");
+                context.fault(Code::OutOfRange, placed, key, unknown(name), &remedy);
             }
         }
     }
-    Some(kinds)
+    Some(found)
 }
 
 /// The delay of a channel must be less than a period of the drive.

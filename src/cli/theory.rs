@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use clap::Args;
 
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
-use crate::pipeline::theory::block_cache::BlockCache;
+use crate::pipeline::block_cache::BlockCache;
 use crate::pipeline::theory::{Pictures, Study, StudyContext, run};
 use labfiles::output::{Lock, write_bytes};
 

@@ -19,6 +19,7 @@ use crate::identify::fit::effect::EffectKind;
     strum::IntoStaticStr,
     strum::EnumString,
     strum::VariantArray,
+    strum::VariantNames,
 )]
 #[strum(serialize_all = "snake_case")]
 #[serde(rename_all = "snake_case")]

@@ -21,7 +21,7 @@ pub enum ExploreError {
         /// The reader's message.
         reason: String,
     },
-    /// A value is outside its range.
+    /// A value is outside its range, or the model refuses it.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// A record has no place here, or no such thing exists.

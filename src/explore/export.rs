@@ -9,7 +9,7 @@ use super::answer::Stop;
 use super::jobs::Job;
 use super::state::State;
 use super::wire::ExportFile;
-use crate::pipeline::theory::block_cache::BlockCache;
+use crate::pipeline::block_cache::BlockCache;
 use crate::pipeline::theory::{Pictures, StudyContext, run};
 
 /// The files that `impactid study` would write of the state's study.

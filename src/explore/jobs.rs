@@ -1,6 +1,7 @@
 //! Requests become jobs: of each slot the newest counts, and a job that is no longer the newest stops
 //! where it next looks.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use tokio::sync::{mpsc, watch};
@@ -8,7 +9,7 @@ use tokio::sync::{mpsc, watch};
 use super::answer::answer;
 use super::first_tiles::{FirstTiles, Underway};
 use super::frame::Frame;
-use super::wire::{Ask, Request, SLOTS};
+use super::wire::{Ask, Request, Slot};
 use super::{ExploreError, Session, maps};
 
 /// Requests of the queue that wait at most.
@@ -16,7 +17,7 @@ const QUEUE: usize = 16;
 
 /// The jobs of one page.
 pub(super) struct Jobs {
-    newest: Vec<watch::Sender<Option<Request>>>,
+    newest: BTreeMap<Slot, watch::Sender<Option<Request>>>,
     queue: mpsc::Sender<Request>,
     outbox: mpsc::Sender<Frame>,
     first_tiles: Arc<FirstTiles>,
@@ -84,10 +85,10 @@ impl Jobs {
     /// Start the slots of a page; frames go to the outbox.
     pub(super) fn start(session: &Arc<Session>, outbox: &mpsc::Sender<Frame>) -> Self {
         let first_tiles = Arc::<FirstTiles>::default();
-        let mut newest = Vec::new();
-        for _ in 0..SLOTS {
+        let mut newest = BTreeMap::new();
+        for slot in Slot::NEWEST {
             let (sender, receiver) = watch::channel(None);
-            newest.push(sender);
+            newest.insert(slot, sender);
             let shared = (outbox.clone(), Arc::clone(&first_tiles));
             tokio::spawn(newest_of(Arc::clone(session), receiver, shared));
         }
@@ -120,8 +121,8 @@ impl Jobs {
                 Err(error) => return self.refuse(id, &error).await,
             }
         }
-        if let Some(slot) = request.ask.slot() {
-            self.newest[slot].send_replace(Some(request));
+        if let Some(slot) = self.newest.get(&request.ask.slot()) {
+            slot.send_replace(Some(request));
         } else if self.queue.try_send(request).is_err() {
             let busy = ExploreError::Absent("too many requests wait; ask again".into());
             self.refuse(id, &busy).await;

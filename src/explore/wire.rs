@@ -108,23 +108,49 @@ pub(super) enum ExportFile {
     Svg,
 }
 
-/// Slots whose newest job counts.
-pub(super) const SLOTS: usize = 8;
+/// Jobs of one slot replace each other: the newest counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Slot {
+    Map,
+    Boundaries,
+    Motion,
+    Line,
+    Basins,
+    Coexisting,
+    Record,
+    Residuals,
+    /// All others, one after the other.
+    Queue,
+}
+
+impl Slot {
+    /// The slots whose newest job counts.
+    pub(super) const NEWEST: [Self; 8] = [
+        Self::Map,
+        Self::Boundaries,
+        Self::Motion,
+        Self::Line,
+        Self::Basins,
+        Self::Coexisting,
+        Self::Record,
+        Self::Residuals,
+    ];
+}
 
 impl Ask {
-    /// The slot in which it is answered: jobs of one slot replace each other. `None`: one after the other.
-    pub(super) fn slot(&self) -> Option<usize> {
-        Some(match self {
-            Self::Map {} => 0,
-            Self::Boundaries { .. } => 1,
-            Self::Motion { .. } | Self::Run { .. } => 2,
-            Self::Line {} => 3,
-            Self::Basins {} => 4,
-            Self::Coexisting {} => 5,
-            Self::Record {} => 6,
-            Self::Residuals {} => 7,
-            _ => return None,
-        })
+    /// The slot in which it is answered.
+    pub(super) fn slot(&self) -> Slot {
+        match self {
+            Self::Map {} => Slot::Map,
+            Self::Boundaries { .. } => Slot::Boundaries,
+            Self::Motion { .. } | Self::Run { .. } => Slot::Motion,
+            Self::Line {} => Slot::Line,
+            Self::Basins {} => Slot::Basins,
+            Self::Coexisting {} => Slot::Coexisting,
+            Self::Record {} => Slot::Record,
+            Self::Residuals {} => Slot::Residuals,
+            _ => Slot::Queue,
+        }
     }
 }
 

@@ -11,8 +11,8 @@ use std::time::UNIX_EPOCH;
 use sha2::{Digest, Sha256};
 
 use crate::campaign::resolved::ResolvedCampaign;
+use crate::pipeline::block_cache::BlockCache;
 use crate::pipeline::inputs::hexadecimal;
-use crate::pipeline::theory::block_cache::BlockCache;
 use labfiles::output::OutputError;
 
 /// Folder of the chunks in the output folder; it is removed when the run is done.

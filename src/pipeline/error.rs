@@ -97,7 +97,7 @@ pub enum PipelineError {
 
 impl PipelineError {
     /// A model's refusal of a named study.
-    pub(super) fn of(name: &str) -> impl Fn(ModelError) -> Self + use<'_> {
+    pub(super) fn in_study(name: &str) -> impl Fn(ModelError) -> Self + use<'_> {
         move |source| Self::Study {
             name: name.to_owned(),
             source,

@@ -3,6 +3,7 @@
 //! `run` = [`observe`] every record → brackets → [`identify`] → [`report`]; the stages alone
 //! use [`store`].
 
+pub mod block_cache;
 pub mod campaign_folders;
 pub mod campaigns;
 pub mod checkpoint;

@@ -8,7 +8,7 @@ use crate::campaign::check::by_file;
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
 use crate::motion::{Observation, observe};
 use crate::pipeline::Progress;
-use crate::pipeline::theory::block_cache::BlockCache;
+use crate::pipeline::block_cache::BlockCache;
 use crate::record::calibrate::{calibrate, unreadable};
 use crate::record::{Flag, FlagCode, Record};
 use labfiles::Source;

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use super::block_cache::BlockCache;
 use super::checkpoint;
 use super::error::{PipelineError, Progress, RefusedRecord};
 use super::observe;
-use super::theory::block_cache::BlockCache;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::motion::{Bracket, Observation, brackets, scale_drives};
 

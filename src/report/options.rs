@@ -36,6 +36,7 @@ impl Paper {
     serde::Deserialize,
     strum::IntoStaticStr,
     strum::VariantArray,
+    strum::VariantNames,
 )]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]
@@ -71,8 +72,7 @@ impl std::str::FromStr for Format {
 
     fn from_str(name: &str) -> Result<Self, String> {
         let found = Self::ALL.iter().find(|f| f.name() == name).copied();
-        let known: Vec<&str> = Self::ALL.iter().map(|f| f.name()).collect();
-        let known = known.join(", ");
+        let known = <Self as strum::VariantNames>::VARIANTS.join(", ");
         found.ok_or_else(|| format!("unknown format '{name}'; known are {known}"))
     }
 }

@@ -55,6 +55,7 @@ use super::truth::Truth;
     strum::EnumString,
     strum::IntoStaticStr,
     strum::VariantArray,
+    strum::VariantNames,
 )]
 #[strum(serialize_all = "kebab-case")]
 #[serde(rename_all = "kebab-case")]
@@ -179,8 +180,7 @@ pub enum RigError {
 }
 
 fn names() -> String {
-    let names: Vec<&str> = Effect::VARIANTS.iter().map(|e| e.name()).collect();
-    names.join(", ")
+    <Effect as strum::VariantNames>::VARIANTS.join(", ")
 }
 
 /// One effect of a rig and its strength.

@@ -155,6 +155,7 @@ fn shift(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64, gap: f64)
     let mut seen = 0;
     // an error of the zero of all clearances is in one record the error of its gap
     let coordinates = [&fit.free[..], &[Coordinate::ScrewZero]].concat();
+    // from a slope over millimetres to that over the logarithm of the clearance
     let relative = 1e3 * gap;
     for (item, record) in block.records.iter().enumerate() {
         if record.clearance_m != gap {
@@ -164,13 +165,14 @@ fn shift(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64, gap: f64)
         else {
             continue;
         };
-        let Some(slope) = columns.pop() else {
+        let Some(mut slope) = columns.pop() else {
             continue;
         };
-        own += weight * relative.powi(2) * dot(&slope, &slope);
-        score += weight * relative * dot(&slope, &residuals);
+        slope.iter_mut().for_each(|s| *s *= relative);
+        own += weight * dot(&slope, &slope);
+        score += weight * dot(&slope, &residuals);
         for (sum, column) in cross.iter_mut().zip(&columns) {
-            *sum += weight * relative * dot(column, &slope);
+            *sum += weight * dot(column, &slope);
         }
         seen += 1;
     }

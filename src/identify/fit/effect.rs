@@ -86,7 +86,9 @@ pub enum Effect {
     Serialize,
     Deserialize,
     strum::IntoStaticStr,
+    strum::EnumString,
     strum::VariantArray,
+    strum::VariantNames,
 )]
 #[strum(serialize_all = "snake_case")]
 #[serde(rename_all = "snake_case")]
@@ -113,22 +115,17 @@ pub enum EffectKind {
 
 impl EffectKind {
     /// All of them.
-    pub const ALL: &'static [Self] = Self::VARIANTS;
+    pub const ALL: &'static [Self] = <Self as VariantArray>::VARIANTS;
 
     /// Name in `campaign.toml`.
     pub fn name(self) -> &'static str {
         self.into()
     }
-
-    /// The kind of a name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|kind| kind.name() == name)
-    }
 }
 
 impl Effect {
     /// All of them, in the order of their places.
-    pub const ALL: &'static [Self] = Self::VARIANTS;
+    pub const ALL: &'static [Self] = <Self as VariantArray>::VARIANTS;
 
     /// Number of effects.
     pub const COUNT: usize = Self::ALL.len();
@@ -248,9 +245,9 @@ mod tests {
             assert_eq!(effect.place(), i);
         }
         for kind in EffectKind::ALL {
-            assert_eq!(EffectKind::named(kind.name()), Some(*kind));
+            assert_eq!(kind.name().parse(), Ok(*kind));
         }
-        assert_eq!(EffectKind::named("gravity"), None);
+        assert!("gravity".parse::<EffectKind>().is_err());
         assert_eq!(Effects::all().iter().count(), Effect::COUNT);
         let one = Effects::of(&[EffectKind::Friction]);
         assert_eq!(one.iter().collect::<Vec<_>>(), vec![Effect::Friction]);

@@ -377,6 +377,29 @@ mod tests {
         has_cost: true,
     };
 
+    /// The valley with its iterations counted.
+    struct Counted(FitProgress);
+
+    impl LeastSquares for Counted {
+        type Point = [f64; 2];
+
+        fn factor(&self, at: &[f64; 2]) -> Result<Factor, Error> {
+            VALLEY.factor(at)
+        }
+
+        fn cost(&self, at: &[f64; 2]) -> Option<f64> {
+            VALLEY.cost(at)
+        }
+
+        fn moved(&self, from: &[f64; 2], step: &[f64]) -> [f64; 2] {
+            VALLEY.moved(from, step)
+        }
+
+        fn progress(&self) -> FitProgress {
+            self.0.clone()
+        }
+    }
+
     const LIMITS: Limits = Limits {
         negligible: 1e-9,
         variance: Variance::AtLeastUnit,
@@ -392,6 +415,23 @@ mod tests {
         let valley = minimise(&VALLEY, [-1.2, 1.0], &LIMITS).unwrap();
         assert!((valley.point[0] - 1.0).abs() < 1e-9 && (valley.point[1] - 1.0).abs() < 1e-9);
         assert!(valley.report.converged() && valley.report.cost == valley.factor.cost());
+    }
+
+    #[test]
+    fn the_cost_falls_with_every_iteration_and_each_is_counted() {
+        let counted = Counted(FitProgress::default());
+        let whole = minimise(&counted, [-1.2, 1.0], &LIMITS).unwrap().report;
+        assert_eq!(counted.0.iterations(), whole.iterations);
+        let cost_after = |iterations| {
+            let limits = Limits {
+                iterations,
+                ..LIMITS
+            };
+            minimise(&VALLEY, [-1.2, 1.0], &limits).unwrap().report.cost
+        };
+        let costs: Vec<f64> = (1..=whole.iterations).map(cost_after).collect();
+        assert!(costs.windows(2).all(|w| w[1] <= w[0]));
+        assert_eq!(costs.last(), Some(&whole.cost));
     }
 
     #[test]

@@ -227,21 +227,26 @@ mod tests {
     use super::*;
     use crate::identify::{Finding, Method};
 
+    /// The clearance as stated and as it fits of a gap that alone is named, m.
+    fn named_gap(seen: &Seen) -> (f64, f64) {
+        match seen.outcome.suspicions[..] {
+            [
+                Finding::WrongClearance {
+                    stated_m,
+                    fitting_m,
+                    ..
+                },
+            ] => (stated_m, fitting_m),
+            _ => panic!("{:?}", seen.outcome.suspicions),
+        }
+    }
+
     #[test]
     fn valid_a_gap_that_is_a_seventh_of_the_deflection_off_is_named_alone_with_its_true_value() {
         let rig = "exact".parse().expect("a rig");
         let draw = draw(0x00FA_0175 ^ 14_001, 11, Reach::Full, &rig);
         let seen = campaign(&draw, Some(Mistake::WrongClearance)).expect("a campaign");
-        let [
-            Finding::WrongClearance {
-                stated_m,
-                fitting_m,
-                ..
-            },
-        ] = seen.outcome.suspicions[..]
-        else {
-            panic!("{:?}", seen.outcome.suspicions);
-        };
+        let (stated_m, fitting_m) = named_gap(&seen);
         assert!(draw.truth.static_deflection_m < 7.0 * 0.05e-3);
         assert!((stated_m - 0.05e-3 - fitting_m).abs() < 1e-7, "{fitting_m}");
     }
@@ -252,16 +257,7 @@ mod tests {
         let draw = draw(0x00FA_0175 ^ 14_001, 11, Reach::Full, &rig);
         assert_eq!(draw.clearance_uncertainty_m, None);
         let seen = spoilt(&draw, |records| widen_one_gap(records, 4e-6)).expect("a campaign");
-        let [
-            Finding::WrongClearance {
-                stated_m,
-                fitting_m,
-                ..
-            },
-        ] = seen.outcome.suspicions[..]
-        else {
-            panic!("{:?}", seen.outcome.suspicions);
-        };
+        let (stated_m, fitting_m) = named_gap(&seen);
         assert!(
             (stated_m - 4e-6 - fitting_m).abs() < 2e-7,
             "{stated_m} {fitting_m}"

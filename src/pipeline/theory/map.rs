@@ -31,7 +31,7 @@ pub fn run(
             rho: rho[rows].to_vec(),
         };
         let map = region_map(machine, &grid, &plan.map);
-        map.map(|m| m.cells).map_err(PipelineError::of(name))
+        map.map(|m| m.cells).map_err(PipelineError::in_study(name))
     })?;
     let grid = MapGrid { eta, rho };
     context.table(name, &table(&grid, &cells))?;

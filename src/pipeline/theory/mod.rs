@@ -2,7 +2,6 @@
 //! and Parquet, and a figure as SVG, PNG and PDF.
 
 pub mod basins;
-pub mod block_cache;
 pub mod map;
 pub mod plan;
 pub mod regions;
@@ -15,10 +14,10 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::pipeline::PipelineError;
+use crate::pipeline::block_cache::BlockCache;
 use crate::pipeline::table::{self, Table};
 use crate::report::figures::Figure;
 use crate::report::picture::pictures;
-use block_cache::BlockCache;
 use labfiles::output::OutputError;
 pub use plan::Study;
 
@@ -107,7 +106,9 @@ impl StudyContext<'_> {
 /// [`PipelineError`] with the first piece of work that could not be done.
 pub fn run(study: &Study, context: &StudyContext<'_>) -> Result<(), PipelineError> {
     let machine = study.machine();
-    machine.check().map_err(PipelineError::of("machine"))?;
+    machine
+        .check()
+        .map_err(PipelineError::in_study("machine"))?;
     for (name, plan) in &study.time_series {
         time_series::run(&machine, name, plan, context)?;
     }

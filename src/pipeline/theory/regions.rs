@@ -34,7 +34,7 @@ pub fn run(
     let request = AtlasRequest::new(machine.clone(), plan.settings());
     let maps: Maps = context.blocks.block(&format!("{name} maps"), || {
         brute_maps(machine, &request.settings.grid, &request.settings.map)
-            .map_err(PipelineError::of(name))
+            .map_err(PipelineError::in_study(name))
     })?;
     write_atlas(&request, &maps, name, context)
 }

@@ -96,7 +96,7 @@ impl Walk<'_> {
         tick: &(dyn Fn(u64) + Sync),
     ) -> Result<Vec<SweepPoint>, PipelineError> {
         let block = format!("{} {way}", self.name);
-        let refused = PipelineError::of(self.name);
+        let refused = PipelineError::in_study(self.name);
         let mut walked: Walked = self.context.blocks.load(&block).unwrap_or_default();
         tick(walked.points.len() as u64);
         let Some(&first) = steps.first() else {

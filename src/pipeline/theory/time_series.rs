@@ -18,7 +18,7 @@ pub fn run(
     context: &StudyContext<'_>,
 ) -> Result<(), PipelineError> {
     (context.progress)(0, 2);
-    let portrait = portrait(machine, plan).map_err(PipelineError::of(name))?;
+    let portrait = portrait(machine, plan).map_err(PipelineError::in_study(name))?;
     (context.progress)(1, 2);
     context.table(name, &series(&portrait))?;
     context.table(&format!("{name}-impacts"), &impacts(&portrait))?;

@@ -34,8 +34,7 @@ impl Initial {
     /// [`ModelError`] where it is not finite or lies beyond the contact.
     pub(super) fn state(self, machine: &Machine, clearance: f64) -> Result<State, ModelError> {
         self.check()?;
-        let second = machine.y.is_some();
-        let (y, vy) = if second {
+        let (y, vy) = if machine.y.is_some() {
             (self.y, self.vy)
         } else {
             (0.0, 0.0)
@@ -44,14 +43,12 @@ impl Initial {
         if depth > 1e-12 * (1.0 + self.x.abs() + y.abs()) {
             return Err(ModelError::StartsInContact { depth });
         }
-        let Self { x, vx, .. } = self;
-        let still = State::default();
         Ok(State {
-            x,
-            vx,
+            x: self.x,
+            vx: self.vx,
             y,
             vy,
-            ..still
+            ..State::default()
         })
     }
 }

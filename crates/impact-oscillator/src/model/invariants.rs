@@ -127,6 +127,7 @@ fn valid_two_crossings_within_a_short_time_are_not_stepped_over() {
     p.force = C64::new(1.0, 0.0);
     let hit = first_zero(&p, 6.0).expect("found");
     assert!((std::f64::consts::PI - hit - 1e-5).abs() < 1e-7);
+    assert!((-p.at(hit)[1] - 1e-5).abs() < 1e-7);
 }
 
 #[test]
@@ -136,6 +137,7 @@ fn valid_an_impact_right_after_an_impact() {
         let path = Path::parabola(0.0, v, -1.0);
         let hit = first_zero(&path, 1.0).expect("comes back");
         assert!((hit - 2.0 * v).abs() < 1e-9 * v, "{v}: {hit}");
+        assert!((-path.at(hit)[1] - v).abs() < 1e-9 * v);
     }
 }
 

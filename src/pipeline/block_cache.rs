@@ -54,7 +54,7 @@ impl BlockCache {
     }
 
     /// The blocks in a folder of their own, of work with a key; see [`open`](Self::open).
-    pub(in crate::pipeline) fn in_folder(
+    pub(super) fn in_folder(
         folder: PathBuf,
         key: String,
         resume: bool,
