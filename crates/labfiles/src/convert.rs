@@ -60,14 +60,6 @@ impl Target {
             _ => None,
         }
     }
-
-    /// How a universal file of this target holds numbers.
-    fn numbers(self) -> uff::Numbers {
-        match self {
-            Self::UffText => uff::Numbers::Text,
-            _ => uff::Numbers::Binary,
-        }
-    }
 }
 
 /// The result of a conversion.
@@ -98,7 +90,7 @@ pub fn convert(
             let single = options.single_precision;
             let rounded = items
                 .iter()
-                .flat_map(|i| uff::notes(i, target.numbers(), single));
+                .flat_map(|i| uff::notes(i, target == Target::UffText, single));
             left_out.chain(rounded).collect()
         }
         Target::Parquet | Target::Csv => items.iter().filter_map(filled_up).collect(),
@@ -113,7 +105,9 @@ pub fn convert(
         Target::Hdf5 => hdf5::write(&items, out, options)?,
         Target::Parquet => parquet::write(&items, out, options)?,
         Target::Csv => csv::write(&items, out)?,
-        Target::Uff | Target::UffText => uff::write(&items, out, options, target.numbers())?,
+        Target::Uff | Target::UffText => {
+            uff::write(&items, out, options, target == Target::UffText)?;
+        }
     }
     Ok(Converted {
         records: items.len(),

@@ -17,7 +17,7 @@ pub(crate) use crate::csv::front::TEXTS_KEY;
 use crate::csv::header::Header;
 use crate::csv::time_axis::TimeAxis;
 use crate::source::{
-    ChannelInfo, DatasetInfo, Opened, ReadError, Reader, Samples, Source, StoredType,
+    ChannelInfo, DatasetInfo, ReadError, Reader, Samples, Source, StoredType, opened,
 };
 use crate::text::TextFile;
 use crate::text::cells::{Cells, Lines};
@@ -45,13 +45,7 @@ pub(crate) struct OpenedTable {
 /// If the file cannot be read, is empty, or no separator makes a table of numbers of it.
 pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let table = open_text(TextFile::open(path)?, "")?;
-    Ok(Box::new(Opened {
-        format: "csv",
-        path: path.to_path_buf(),
-        datasets: vec![table.dataset],
-        notes: table.notes,
-        reader: table.reader,
-    }))
+    opened("csv", path, vec![table.dataset], table.notes, table.reader)
 }
 
 /// Open the table in a text, as a dataset of a name.
@@ -65,7 +59,7 @@ pub(crate) fn open_text(text: TextFile, name: &str) -> Result<OpenedTable, ReadE
     let rows = front.rows(&head, quotes);
     let mut layout = front.layout(&text, &rows, quotes);
     let (count, last) = table::count_rows(&text, &layout)?;
-    refuse_ragged(&text, count, layout.kinds.len())?;
+    table::refuse_ragged(&text, count, layout.kinds.len(), text.length())?;
     let mut notes = Vec::new();
     let last_row = last_row(&text, &layout, last, &mut notes)?;
     let axis = time_axis::find(&front.header, &layout, &rows, last_row.as_deref(), count);
@@ -84,20 +78,6 @@ pub(crate) fn open_text(text: TextFile, name: &str) -> Result<OpenedTable, ReadE
             rows: to_usize(count),
         },
     })
-}
-
-/// Refuse a table whose rows are so much shorter than its header that filling them up would
-/// take far more memory than the file.
-fn refuse_ragged(text: &TextFile, rows: u64, columns: usize) -> Result<(), ReadError> {
-    if rows.saturating_mul(columns as u64) <= 2 * text.length() + 1024 {
-        return Ok(());
-    }
-    Err(ReadError::new(
-        text.path(),
-        format!("rows of {columns} cells as in the first ones"),
-        format!("{rows} rows, most of them much shorter"),
-        "Split the file where its number of columns changes.",
-    ))
 }
 
 /// The cells of the last row; a last line without all its cells is noted as cut off.

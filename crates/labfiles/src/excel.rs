@@ -16,7 +16,7 @@ use crate::csv::{self, CsvReader};
 use crate::excel::cells::SheetCells;
 use crate::excel::compound::Compound;
 use crate::parquet::guard::caught;
-use crate::source::{DatasetInfo, Opened, ReadError, Reader, Samples, Source};
+use crate::source::{DatasetInfo, ReadError, Reader, Samples, Source, opened};
 use crate::text::TextFile;
 
 /// First bytes of a ZIP archive, as `.xlsx` is one.
@@ -91,13 +91,7 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
             "Write the record into a sheet of its own, beginning with its heading.",
         ));
     }
-    Ok(Box::new(Opened {
-        format: "excel",
-        path: path.to_path_buf(),
-        datasets,
-        notes,
-        reader: Workbook { tables },
-    }))
+    opened("excel", path, datasets, notes, Workbook { tables })
 }
 
 fn whole(path: &Path) -> Result<Vec<u8>, ReadError> {

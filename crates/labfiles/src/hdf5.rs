@@ -5,7 +5,6 @@
 mod chunked;
 mod datatype;
 mod element;
-mod guard;
 mod legacy;
 mod library;
 mod matlab;
@@ -23,11 +22,11 @@ use rayon::prelude::*;
 use crate::bytes::to_usize;
 use crate::hdf5::element::Element;
 use crate::hdf5::library::Store;
-use crate::hdf5::plan::{Locator, Part, Plan, Plans};
+use crate::hdf5::plan::{Locator, Plan, Plans};
 use crate::hdf5::store::{Array, StoreError, Tree};
 use crate::numbers::Spacing;
 use crate::rate;
-use crate::source::{ChannelInfo, DatasetInfo, Opened, ReadError, Reader, Samples, Source};
+use crate::source::{ChannelInfo, DatasetInfo, ReadError, Reader, Samples, Source, opened};
 use crate::units::parse_unit;
 
 /// The first bytes of an HDF5 file.
@@ -69,13 +68,7 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         plans,
     };
     reader.measure_rates(&mut datasets);
-    Ok(Box::new(Opened {
-        format: "hdf5",
-        path,
-        datasets,
-        notes,
-        reader,
-    }))
+    opened("hdf5", &path, datasets, notes, reader)
 }
 
 /// Open a file and walk its tree.
@@ -145,7 +138,7 @@ impl Hdf5Reader {
         }
         let raw = self.bytes(plan, array)?;
         for (slot, locator) in slots(plan, number, wanted) {
-            let samples = extract(&raw, array, locator, plan.slab.is_some());
+            let samples = extract(&raw, locator, locator.spacing);
             out[slot] = Some(samples.ok_or_else(|| {
                 self.error(
                     array,
@@ -172,16 +165,14 @@ impl Hdf5Reader {
     fn axis_rate(&self, info: &ChannelInfo, plan: &Plan, axis: usize) -> Option<f64> {
         let locator = &plan.channels[axis];
         let array = &plan.arrays[locator.array];
-        let long = *array.shape.first()? == info.samples;
-        if plan.slab.is_some() || !long || matches!(locator.part, Part::Row(_)) {
+        let (&length, inner) = array.shape.split_first()?;
+        let row = array.element.bytes() as u64;
+        let row = inner.iter().fold(row, |n, &d| n.saturating_mul(d));
+        if plan.slab.is_some() || length != info.samples || locator.spacing.stride as u64 != row {
             return None;
         }
-        let head = self.axis_values(
-            array,
-            locator,
-            0,
-            info.samples.min(rate::HEAD_SAMPLES as u64),
-        )?;
+        let head = info.samples.min(rate::HEAD_SAMPLES as u64);
+        let head = self.axis_values(array, locator, 0, head)?;
         let end = self.axis_values(array, locator, info.samples.checked_sub(1)?, 1)?;
         let seconds = info
             .unit
@@ -198,14 +189,13 @@ impl Hdf5Reader {
         from: u64,
         count: u64,
     ) -> Option<Vec<f64>> {
-        let mut shape = array.shape.clone();
-        *shape.first_mut()? = count;
-        let window = Array {
-            shape,
-            ..array.clone()
-        };
         let raw = self.store.rows(array, from, count).ok()?;
-        extract(&raw, &window, locator, false)?.into_real()
+        let count = to_usize(count);
+        let spacing = Spacing {
+            count,
+            ..locator.spacing
+        };
+        extract(&raw, locator, spacing)?.into_real()
     }
 }
 
@@ -223,42 +213,8 @@ fn slots<'a>(
 }
 
 /// The samples of one channel from its array's bytes.
-fn extract(raw: &[u8], array: &Array, locator: &Locator, slab: bool) -> Option<Samples> {
-    let shape: Vec<u64> = array
-        .shape
-        .iter()
-        .copied()
-        .skip(usize::from(slab))
-        .collect();
-    let dims: Vec<usize> = shape
-        .iter()
-        .filter(|&&d| d != 1)
-        .map(|&d| to_usize(d))
-        .collect();
-    let (rows, columns) = match dims[..] {
-        [rows, columns] => (rows, columns),
-        _ => match shape[..] {
-            [rows, columns] => (to_usize(rows), to_usize(columns)),
-            _ => (to_usize(shape.iter().product::<u64>()), 1),
-        },
-    };
-    let size = array.element.bytes();
-    let spacing = |offset, stride, count| Spacing {
-        offset,
-        stride,
-        count,
-    };
-    let (element, spacing) = match (&locator.part, &array.element) {
-        (Part::Whole, e) => (e, spacing(0, size, rows * columns)),
-        (Part::Column(c), e) => (e, spacing(to_usize(*c) * size, columns * size, rows)),
-        (Part::Row(r), e) => (e, spacing(to_usize(*r) * columns * size, size, columns)),
-        (Part::Field(i), Element::Fields { fields, .. }) => {
-            let (_, offset, element) = fields.get(*i)?;
-            (element, spacing(*offset, size, rows * columns))
-        }
-        (Part::Field(_), _) => return None,
-    };
-    let mut samples = element.decode(raw, spacing)?;
+fn extract(raw: &[u8], locator: &Locator, spacing: Spacing) -> Option<Samples> {
+    let mut samples = locator.element.decode(raw, spacing)?;
     if let Samples::Real(values) = &mut samples
         && (locator.scale != 1.0 || locator.offset != 0.0)
     {

@@ -10,7 +10,7 @@ use crate::bytes::to_usize;
 use crate::lvm::scan::{Keys, Scan, Segment};
 use crate::rate;
 use crate::source::{
-    ChannelInfo, DatasetInfo, Opened, ReadError, Reader, Samples, Source, StoredType,
+    ChannelInfo, DatasetInfo, ReadError, Reader, Samples, Source, StoredType, opened,
 };
 use crate::text::cells::{Cells, Lines, Separator};
 use crate::text::table::{self, Kind, Layout};
@@ -18,13 +18,6 @@ use crate::text::{TextFile, number};
 
 /// Bytes of a table's head from which its rate is found.
 const HEAD_BYTES: usize = 1 << 15;
-
-/// The tables of a file, as far as they are described.
-struct Builder {
-    text: TextFile,
-    tables: Vec<Table>,
-    datasets: Vec<DatasetInfo>,
-}
 
 struct LvmReader {
     text: TextFile,
@@ -36,14 +29,6 @@ struct Table {
     layout: Layout,
     columns: Vec<usize>,
     rows: usize,
-}
-
-/// A table as it was recognised: its layout, its columns, those shown, and its first rows.
-struct Made<'a> {
-    layout: &'a Layout,
-    columns: &'a [Column],
-    shown: &'a [usize],
-    head: &'a [u8],
 }
 
 /// What a column of a table holds.
@@ -63,149 +48,103 @@ enum Column {
 /// If the file cannot be read, a header does not end, or there are no rows.
 pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let text = TextFile::open(path)?;
-    let Scan {
-        keys,
-        separator,
-        segments,
-        notes,
-    } = scan::scan(&text)?;
-    let many = segments.len() > 1;
-    let mut source = Builder {
-        text,
-        tables: Vec::new(),
-        datasets: Vec::new(),
-    };
-    for (i, segment) in segments.iter().enumerate() {
-        let name = if many {
-            format!("segment_{}", i + 1)
-        } else {
-            String::new()
+    let scan = scan::scan(&text)?;
+    let (mut datasets, mut tables) = (Vec::new(), Vec::new());
+    for (i, segment) in scan.segments.iter().enumerate() {
+        let name = match scan.segments.len() {
+            1 => String::new(),
+            _ => format!("segment_{}", i + 1),
         };
-        source.add(name, &keys, separator, segment)?;
+        let (dataset, table) = read_segment(&text, &scan, segment, name)?;
+        datasets.push(dataset);
+        tables.push(table);
     }
-    Ok(Box::new(Opened {
-        format: "lvm",
-        path: path.to_path_buf(),
-        datasets: source.datasets,
-        notes,
-        reader: LvmReader {
-            text: source.text,
-            tables: source.tables,
-        },
-    }))
+    opened(
+        "lvm",
+        path,
+        datasets,
+        scan.notes,
+        LvmReader { text, tables },
+    )
 }
 
-impl Builder {
-    fn add(
-        &mut self,
-        name: String,
-        keys: &Keys,
-        separator: Separator,
-        segment: &Segment,
-    ) -> Result<(), ReadError> {
-        let head = self.text.range(
-            segment.start,
-            HEAD_BYTES.min(to_usize(segment.end - segment.start)),
-        )?;
-        let columns = columns(keys, segment, &head, separator);
-        self.refuse_ragged(segment, columns.len())?;
-        let layout = layout(keys, separator, segment, &columns, &head);
-        let remarks = has_remarks(&layout, &columns, &head);
-        let shown: Vec<usize> = (0..columns.len())
-            .filter(|&i| match columns[i] {
-                Column::X(_) => keys
-                    .get("X_Columns")
-                    .and_then(|v| v.first())
-                    .is_none_or(|v| v != "No"),
-                Column::Y(_) => true,
-                Column::Comment => remarks,
+fn read_segment(
+    text: &TextFile,
+    scan: &Scan,
+    segment: &Segment,
+    name: String,
+) -> Result<(DatasetInfo, Table), ReadError> {
+    let (keys, separator) = (&scan.keys, scan.separator);
+    let bytes = segment.end - segment.start;
+    let head = text.range(segment.start, HEAD_BYTES.min(to_usize(bytes)))?;
+    let columns = columns(keys, segment, &head, separator);
+    table::refuse_ragged(text, segment.rows, columns.len(), bytes)
+        .map_err(|e| e.at(segment.start))?;
+    let layout = layout(keys, separator, segment, &columns, &head);
+    let remarks = has_remarks(&layout, &columns, &head);
+    let x_columns = keys.get("X_Columns").and_then(|v| v.first());
+    let shown: Vec<(usize, Column)> = columns
+        .into_iter()
+        .enumerate()
+        .filter(|(_, column)| match column {
+            Column::X(_) => x_columns.is_none_or(|v| v != "No"),
+            Column::Y(_) => true,
+            Column::Comment => remarks,
+        })
+        .collect();
+    let rates = rates(text, segment, &layout, &shown, &head)?;
+    let is_time = |(_, c): &(usize, Column)| *c == Column::X(0) && header::x_is_time(segment, 0);
+    let dataset = DatasetInfo {
+        name,
+        time_axis: shown.iter().position(is_time),
+        channels: shown
+            .iter()
+            .zip(rates)
+            .map(|(&(i, column), rate)| ChannelInfo {
+                sample_rate_hz: rate,
+                ..channel(keys, segment, &layout, column, i)
             })
-            .collect();
-        let mut info = DatasetInfo {
-            name,
-            time_axis: shown
-                .iter()
-                .position(|&i| columns[i] == Column::X(0) && header::x_is_time(segment, 0)),
-            channels: shown
-                .iter()
-                .map(|&i| channel(keys, segment, &layout, columns[i], i))
-                .collect(),
-            attributes: header::attributes(keys, segment),
-        };
-        let made = Made {
-            layout: &layout,
-            columns: &columns,
-            shown: &shown,
-            head: &head,
-        };
-        self.rates(&mut info, segment, &made)?;
-        self.datasets.push(info);
-        self.tables.push(Table {
-            layout,
-            columns: shown,
-            rows: to_usize(segment.rows),
-        });
-        Ok(())
-    }
+            .collect(),
+        attributes: header::attributes(keys, segment),
+    };
+    let table = Table {
+        layout,
+        columns: shown.into_iter().map(|(i, _)| i).collect(),
+        rows: to_usize(segment.rows),
+    };
+    Ok((dataset, table))
+}
 
-    fn refuse_ragged(&self, segment: &Segment, columns: usize) -> Result<(), ReadError> {
-        if segment.rows.saturating_mul(columns as u64) <= 2 * (segment.end - segment.start) + 1024 {
-            return Ok(());
+/// The rate of each channel: of the X column before it, else of the step that the header states.
+fn rates(
+    text: &TextFile,
+    segment: &Segment,
+    layout: &Layout,
+    shown: &[(usize, Column)],
+    head: &[u8],
+) -> Result<Vec<Option<f64>>, ReadError> {
+    let tail = text.range(segment.last, HEAD_BYTES)?;
+    let end = Lines::new(&tail, false).next();
+    let end = |i: usize| Cells::new(end?.1, layout.separator).nth(i);
+    let mut measured = BTreeMap::new();
+    for &(i, column) in shown {
+        if let Column::X(first) = column {
+            let values = x_values(layout, head, i);
+            let last = end(i).and_then(|c| number::parse_cell(c, layout.decimal));
+            measured.insert(first, rate::from_axis(&values, last, segment.rows));
         }
-        let found = format!("{} rows that are much shorter", segment.rows);
-        let remedy = "Split the file where its number of columns changes.";
-        Err(ReadError::new(
-            self.text.path(),
-            format!("rows of {columns} cells"),
-            found,
-            remedy,
-        )
-        .at(segment.start))
     }
-
-    /// Rates from the X columns, which are more exact than the printed step; else from the step.
-    fn rates(
-        &self,
-        info: &mut DatasetInfo,
-        segment: &Segment,
-        made: &Made<'_>,
-    ) -> Result<(), ReadError> {
-        let Made {
-            layout,
-            columns,
-            shown,
-            head,
-        } = made;
-        let tail = self.text.range(segment.last, HEAD_BYTES)?;
-        let end: Vec<&[u8]> = Lines::new(&tail, false)
-            .next()
-            .map_or(Vec::new(), |(_, l)| {
-                Cells::new(l, layout.separator).collect()
-            });
-        let mut measured = BTreeMap::new();
-        for &i in *shown {
-            if let Column::X(first) = columns[i] {
-                let values = x_values(layout, head, i);
-                let last = end
-                    .get(i)
-                    .and_then(|c| number::parse_cell(c, layout.decimal));
-                measured.insert(first, rate::from_axis(&values, last, segment.rows));
-            }
-        }
-        for (channel, &i) in info.channels.iter_mut().zip(shown.iter()) {
-            let (Column::X(n) | Column::Y(n)) = columns[i] else {
-                continue;
-            };
-            let own = measured.range(..=n).next_back().and_then(|(_, r)| *r);
-            let step = header::value_for(&segment.keys, "Delta_X", n)
-                .and_then(|s| header::decimal_any(&s));
-            let rate = own
-                .or(step.map(|s| 1.0 / s))
-                .filter(|r| r.is_finite() && *r > 0.0);
-            channel.sample_rate_hz = rate.filter(|_| header::x_is_time(segment, n));
-        }
-        Ok(())
-    }
+    let rate = |&(_, column): &(usize, Column)| {
+        let (Column::X(n) | Column::Y(n)) = column else {
+            return None;
+        };
+        let own = measured.range(..=n).next_back().and_then(|(_, r)| *r);
+        let step =
+            header::value_for(&segment.keys, "Delta_X", n).and_then(|s| header::decimal_any(&s));
+        own.or(step.map(|s| 1.0 / s))
+            .filter(|r| r.is_finite() && *r > 0.0 && header::x_is_time(segment, n))
+    };
+    Ok(shown.iter().map(rate).collect())
 }
 
 /// The columns that the headings, or else the number of channels, make.

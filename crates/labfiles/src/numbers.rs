@@ -1,6 +1,9 @@
 //! Numbers as binary files store them: kind, width, byte order, and their way to f64.
 
+use half::f16;
+
 use super::source::StoredType;
+use crate::bytes::to_usize;
 
 /// The order of the bytes of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,6 +34,8 @@ pub(crate) enum Number {
     /// Unsigned, 64 bits.
     U64,
     /// IEEE 754, 32 bits.
+    /// 16-bit floating point.
+    F16,
     F32,
     /// IEEE 754, 64 bits.
     F64,
@@ -46,7 +51,7 @@ impl Number {
     pub(crate) fn bits(self) -> u8 {
         match self {
             Self::I8 | Self::U8 => 8,
-            Self::I16 | Self::U16 => 16,
+            Self::I16 | Self::U16 | Self::F16 => 16,
             Self::I32 | Self::U32 | Self::F32 => 32,
             Self::I64 | Self::U64 | Self::F64 => 64,
         }
@@ -58,7 +63,7 @@ impl Number {
         match self {
             Self::I8 | Self::I16 | Self::I32 | Self::I64 => StoredType::Int(bits),
             Self::U8 | Self::U16 | Self::U32 | Self::U64 => StoredType::UInt(bits),
-            Self::F32 | Self::F64 => StoredType::Float(bits),
+            Self::F16 | Self::F32 | Self::F64 => StoredType::Float(bits),
         }
     }
 
@@ -73,6 +78,7 @@ impl Number {
             Self::U16 => "uint16",
             Self::U32 => "uint32",
             Self::U64 => "uint64",
+            Self::F16 => "float16",
             Self::F32 => "float32",
             Self::F64 => "float64",
         }
@@ -88,31 +94,6 @@ pub(crate) struct Spacing {
     pub stride: usize,
     /// Number of samples.
     pub count: usize,
-}
-
-macro_rules! by_kind {
-    ($number:expr, $order:expr, $go:ident, $($arg:expr),*) => {
-        match ($number, $order) {
-            (Number::I8, _) => $go!(i8, from_le_bytes, $($arg),*),
-            (Number::U8, _) => $go!(u8, from_le_bytes, $($arg),*),
-            (Number::I16, ByteOrder::Little) => $go!(i16, from_le_bytes, $($arg),*),
-            (Number::I16, ByteOrder::Big) => $go!(i16, from_be_bytes, $($arg),*),
-            (Number::U16, ByteOrder::Little) => $go!(u16, from_le_bytes, $($arg),*),
-            (Number::U16, ByteOrder::Big) => $go!(u16, from_be_bytes, $($arg),*),
-            (Number::I32, ByteOrder::Little) => $go!(i32, from_le_bytes, $($arg),*),
-            (Number::I32, ByteOrder::Big) => $go!(i32, from_be_bytes, $($arg),*),
-            (Number::U32, ByteOrder::Little) => $go!(u32, from_le_bytes, $($arg),*),
-            (Number::U32, ByteOrder::Big) => $go!(u32, from_be_bytes, $($arg),*),
-            (Number::I64, ByteOrder::Little) => $go!(i64, from_le_bytes, $($arg),*),
-            (Number::I64, ByteOrder::Big) => $go!(i64, from_be_bytes, $($arg),*),
-            (Number::U64, ByteOrder::Little) => $go!(u64, from_le_bytes, $($arg),*),
-            (Number::U64, ByteOrder::Big) => $go!(u64, from_be_bytes, $($arg),*),
-            (Number::F32, ByteOrder::Little) => $go!(f32, from_le_bytes, $($arg),*),
-            (Number::F32, ByteOrder::Big) => $go!(f32, from_be_bytes, $($arg),*),
-            (Number::F64, ByteOrder::Little) => $go!(f64, from_le_bytes, $($arg),*),
-            (Number::F64, ByteOrder::Big) => $go!(f64, from_be_bytes, $($arg),*),
-        }
-    };
 }
 
 impl ByteOrder {
@@ -134,20 +115,18 @@ pub(crate) fn to_f32(value: f64) -> f32 {
     value as f32
 }
 
-/// Append the numbers that fill `bytes` (an incomplete last one is left out).
-#[expect(clippy::cast_lossless, reason = "the macro is for 64-bit integers too")]
+/// Numbers one after the other.
 pub(crate) fn decode(number: Number, order: ByteOrder, bytes: &[u8], out: &mut Vec<f64>) {
-    macro_rules! go {
-        ($kind:ty, $from:ident, $bytes:expr, $out:expr) => {{
-            let (whole, _) = $bytes.as_chunks::<{ size_of::<$kind>() }>();
-            $out.extend(whole.iter().map(|&chunk| <$kind>::$from(chunk) as f64));
-        }};
-    }
-    by_kind!(number, order, go, bytes, out);
+    let stride = to_usize(number.bytes());
+    let spacing = Spacing {
+        offset: 0,
+        stride,
+        count: bytes.len() / stride,
+    };
+    decode_spaced(number, order, bytes, spacing, out);
 }
 
-/// Append the numbers spaced in `bytes`; stops early where the bytes end.
-#[expect(clippy::cast_lossless, reason = "the macro is for 64-bit integers too")]
+/// Numbers at equal distances, as far as the bytes go.
 pub(crate) fn decode_spaced(
     number: Number,
     order: ByteOrder,
@@ -155,22 +134,39 @@ pub(crate) fn decode_spaced(
     spacing: Spacing,
     out: &mut Vec<f64>,
 ) {
-    macro_rules! go {
-        ($kind:ty, $from:ident, $bytes:expr, $out:expr) => {{
-            let rows = $bytes.get(spacing.offset..).unwrap_or(&[]);
-            let rows = rows.chunks(spacing.stride.max(1)).take(spacing.count);
-            $out.extend(
-                rows.map_while(|row| row.first_chunk())
-                    .map(|&c| <$kind>::$from(c) as f64),
-            );
+    let rows = bytes.get(spacing.offset..).unwrap_or(&[]);
+    macro_rules! extend {
+        ($kind:ty, $from:ident, $to:expr) => {{
+            let value = |chunk: &[u8; size_of::<$kind>()]| $to(<$kind>::$from(*chunk));
+            if spacing.stride == size_of::<$kind>() {
+                out.extend(rows.as_chunks().0.iter().take(spacing.count).map(value));
+            } else {
+                let rows = rows.chunks(spacing.stride.max(1)).take(spacing.count);
+                out.extend(rows.map_while(|row| row.first_chunk()).map(value));
+            }
         }};
     }
-    if spacing.stride as u64 == number.bytes() {
-        let bytes = bytes.get(spacing.offset..).unwrap_or(&[]);
-        let length = spacing.count.saturating_mul(spacing.stride);
-        return decode(number, order, &bytes[..length.min(bytes.len())], out);
+    macro_rules! go {
+        ($kind:ty, $to:expr) => {
+            match order {
+                ByteOrder::Little => extend!($kind, from_le_bytes, $to),
+                ByteOrder::Big => extend!($kind, from_be_bytes, $to),
+            }
+        };
     }
-    by_kind!(number, order, go, bytes, out);
+    match number {
+        Number::I8 => go!(i8, f64::from),
+        Number::U8 => go!(u8, f64::from),
+        Number::I16 => go!(i16, f64::from),
+        Number::U16 => go!(u16, f64::from),
+        Number::I32 => go!(i32, f64::from),
+        Number::U32 => go!(u32, f64::from),
+        Number::I64 => go!(i64, |v| v as f64),
+        Number::U64 => go!(u64, |v| v as f64),
+        Number::F16 => go!(f16, f16::to_f64),
+        Number::F32 => go!(f32, f64::from),
+        Number::F64 => go!(f64, f64::from),
+    }
 }
 
 /// Pair real and imaginary parts.
@@ -208,6 +204,7 @@ mod tests {
             &(1u64 << 63).to_le_bytes(),
             (1u64 << 63) as f64,
         );
+        check(Number::F16, &0x3C01u16.to_le_bytes(), 1.0009765625);
         check(Number::F32, &1.5f32.to_le_bytes(), 1.5);
         check(Number::F64, &(-0.1f64).to_le_bytes(), -0.1);
     }

@@ -28,7 +28,7 @@ type Test = fn(&[u8]) -> bool;
 const BY_BYTES: &[(Test, Reader)] = &[
     (is_hdf5, hdf5::open),
     (is_lvm, lvm::open),
-    (is_parquet, parquet::open),
+    (|front| front.starts_with(&parquet::SIGNATURE), parquet::open),
     (tdms::recognises, tdms::open),
     (uff::recognises, uff::open),
     (wav::recognises, wav::open),
@@ -36,11 +36,8 @@ const BY_BYTES: &[(Test, Reader)] = &[
     (excel::recognises, excel::open),
 ];
 
-/// Formats recognised by the file's extension if there is no signature, one line each.
-#[rustfmt::skip]
-const BY_EXTENSION: &[(&[&str], Reader)] = &[
-    (&["csv", "tsv", "txt", "dat", "asc", "prn"], csv::open),
-];
+/// Extensions of text tables, whatever their first bytes.
+const TABLES: [&str; 6] = ["csv", "tsv", "txt", "dat", "asc", "prn"];
 
 /// Open a file of any supported format, reading its metadata only.
 ///
@@ -69,18 +66,10 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     if let Some((_, reader)) = BY_BYTES.iter().find(|(is, _)| is(&front)) {
         return reader(path);
     }
-    let extension = path
-        .extension()
-        .and_then(|e| e.to_str())
-        .map(str::to_ascii_lowercase)
-        .unwrap_or_default();
-    match BY_EXTENSION
-        .iter()
-        .find(|(names, _)| names.contains(&extension.as_str()))
-    {
-        Some((_, reader)) => reader(path),
-        None if looks_like_text(&front) => csv::open(path),
-        None => Err(unknown(path, &front)),
+    let extension = path.extension().unwrap_or_default();
+    match TABLES.iter().any(|t| extension.eq_ignore_ascii_case(t)) || looks_like_text(&front) {
+        true => csv::open(path),
+        false => Err(unknown(path, &front)),
     }
 }
 
@@ -91,10 +80,6 @@ fn is_hdf5(front: &[u8]) -> bool {
             .get(at..)
             .is_some_and(|b| b.starts_with(&hdf5::SIGNATURE))
     })
-}
-
-fn is_parquet(front: &[u8]) -> bool {
-    front.starts_with(&parquet::SIGNATURE)
 }
 
 /// A `LabVIEW` measurement file begins with words of its own.

@@ -249,12 +249,29 @@ pub(crate) trait Reader: Send + Sync {
 }
 
 /// An open file: what was found when it was opened, and the reader of its samples.
-pub(crate) struct Opened<R> {
-    pub(crate) format: &'static str,
-    pub(crate) path: PathBuf,
-    pub(crate) datasets: Vec<DatasetInfo>,
-    pub(crate) notes: Vec<String>,
-    pub(crate) reader: R,
+struct Opened<R> {
+    format: &'static str,
+    path: PathBuf,
+    datasets: Vec<DatasetInfo>,
+    notes: Vec<String>,
+    reader: R,
+}
+
+/// An open file: what it holds, notes for the user, and who reads it.
+pub(crate) fn opened<R: Reader + 'static>(
+    format: &'static str,
+    path: &Path,
+    datasets: Vec<DatasetInfo>,
+    notes: Vec<String>,
+    reader: R,
+) -> Result<Box<dyn Source>, ReadError> {
+    Ok(Box::new(Opened {
+        format,
+        path: path.to_path_buf(),
+        datasets,
+        notes,
+        reader,
+    }))
 }
 
 impl<R> Opened<R> {

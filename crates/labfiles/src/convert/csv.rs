@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use crate::convert::item::{ConvertError, Item, io};
+use crate::convert::item::{Column, ConvertError, Item, io};
 use crate::csv::TEXTS_KEY;
 use crate::output::{write_folder_whole_or, write_whole_or};
 use crate::source::Samples;
@@ -30,12 +30,12 @@ fn file_name(item: &Item<'_>) -> String {
 
 /// Write a record to a file that has another name in an error.
 fn one(item: &Item<'_>, path: &Path, named: &Path) -> Result<(), ConvertError> {
-    let samples = item.read()?;
-    write_whole_or(path, |out| rows(item, &samples, out), |e| e).map_err(io(named))?;
+    let columns = item.columns()?;
+    write_whole_or(path, |out| rows(item, &columns, out), |e| e).map_err(io(named))?;
     Ok(())
 }
 
-fn rows(item: &Item<'_>, samples: &[Samples], mut out: impl Write) -> std::io::Result<()> {
+fn rows(item: &Item<'_>, columns: &[Column], mut out: impl Write) -> std::io::Result<()> {
     for (key, value) in item.described() {
         writeln!(out, "# {key} = {}", value.replace(['\n', '\r'], " "))?;
     }
@@ -45,22 +45,26 @@ fn rows(item: &Item<'_>, samples: &[Samples], mut out: impl Write) -> std::io::R
     if let Some(start) = item.start_time() {
         writeln!(out, "# start_time = {start}")?;
     }
-    let columns = columns(item, samples);
-    let texts = columns.iter().enumerate().filter(|(_, c)| c.text);
+    let text = |c: &Column| matches!(c.samples, Samples::Text(_));
+    let texts = columns.iter().enumerate().filter(|(_, c)| text(c));
     let texts: Vec<String> = texts.map(|(i, _)| (i + 1).to_string()).collect();
     if !texts.is_empty() {
         writeln!(out, "# {TEXTS_KEY} = {}", texts.join(" "))?;
     }
-    let headings: Vec<String> = columns.into_iter().map(|c| c.heading).collect();
+    // Headings of texts are quoted in any case: a reader learns early that there are quotes.
+    let heading = |c: &Column| match text(c) {
+        true => in_quotes(&c.heading()),
+        false => quoted(&c.heading()),
+    };
+    let headings: Vec<String> = columns.iter().map(heading).collect();
     writeln!(out, "{}", headings.join(","))?;
-    let longest = samples.iter().map(Samples::len).max().unwrap_or(0);
+    let longest = columns.iter().map(|c| c.samples.len()).max().unwrap_or(0);
     for row in 0..longest {
-        let mut first = true;
-        for samples in samples {
-            if !std::mem::replace(&mut first, false) {
+        for (i, column) in columns.iter().enumerate() {
+            if i > 0 {
                 out.write_all(b",")?;
             }
-            cell(&mut out, samples, row)?;
+            cell(&mut out, &column.samples, row)?;
         }
         out.write_all(b"\n")?;
     }
@@ -70,36 +74,11 @@ fn rows(item: &Item<'_>, samples: &[Samples], mut out: impl Write) -> std::io::R
 fn cell(out: &mut impl Write, samples: &Samples, row: usize) -> std::io::Result<()> {
     match samples {
         Samples::Real(values) => values.get(row).map_or(Ok(()), |v| write!(out, "{v}")),
-        Samples::Complex(values) => match values.get(row) {
-            Some((re, im)) => write!(out, "{re},{im}"),
-            None => out.write_all(b","),
-        },
         Samples::Text(values) => values
             .get(row)
             .map_or(Ok(()), |t| out.write_all(quoted(t).as_bytes())),
+        Samples::Complex(_) => Ok(()),
     }
-}
-
-/// A column of the table.
-struct Column {
-    heading: String,
-    text: bool,
-}
-
-/// The columns, two for complex numbers. Headings of texts are quoted in any case: a reader learns
-/// early that there are quotes.
-fn columns(item: &Item<'_>, samples: &[Samples]) -> Vec<Column> {
-    let mut all = Vec::new();
-    for (heading, samples) in item.headings().zip(samples) {
-        let text = matches!(samples, Samples::Text(_));
-        let headings = match samples {
-            Samples::Complex(_) => [".re", ".im"].map(|p| quoted(&heading.part(p))).to_vec(),
-            Samples::Text(_) => vec![in_quotes(&heading.whole())],
-            Samples::Real(_) => vec![quoted(&heading.whole())],
-        };
-        all.extend(headings.into_iter().map(|heading| Column { heading, text }));
-    }
-    all
 }
 
 /// A text as a cell: quoted if it holds a separator, a quote or a line end, begins or ends with

@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use crate::convert::item::{ConvertError, Item, Options};
+use crate::convert::item::{Column, ConvertError, Item, Options};
 use crate::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Value};
-use crate::source::Samples;
 
 /// Write all records; texts are left out, complex numbers become two channels.
 pub(super) fn write(items: &[Item<'_>], out: &Path, options: &Options) -> Result<(), ConvertError> {
@@ -22,26 +21,12 @@ pub(super) fn write(items: &[Item<'_>], out: &Path, options: &Options) -> Result
 }
 
 fn record(item: &Item<'_>) -> Result<RecordTable, ConvertError> {
-    let mut channels = Vec::new();
-    let named = item.names().into_iter().zip(item.channels());
-    for ((name, info), samples) in named.zip(item.read()?) {
-        let unit = info.unit.clone().unwrap_or_default();
-        match samples {
-            Samples::Real(values) => {
-                channels.push(ColumnToWrite::numbers(name, unit, values));
-            }
-            Samples::Complex(values) => {
-                let (re, im) = values.into_iter().unzip();
-                channels.push(ColumnToWrite::numbers(
-                    format!("{name}.re"),
-                    unit.clone(),
-                    re,
-                ));
-                channels.push(ColumnToWrite::numbers(format!("{name}.im"), unit, im));
-            }
-            Samples::Text(_) => {}
-        }
-    }
+    let numbers = |column: Column| {
+        let values = column.samples.into_real()?;
+        let unit = column.unit.unwrap_or_default();
+        Some(ColumnToWrite::numbers(column.name, unit, values))
+    };
+    let channels = item.columns()?.into_iter().filter_map(numbers).collect();
     let start = item
         .start_time()
         .map(|s| ("start_time".to_owned(), Value::from(s)));

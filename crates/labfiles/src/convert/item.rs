@@ -55,13 +55,29 @@ impl Item<'_> {
         channels.map(|c| once(&c.name, ' ', &mut taken)).collect()
     }
 
-    /// Headings of the channels in a table.
-    pub(super) fn headings(&self) -> impl Iterator<Item = Heading<'_>> {
+    /// The channels in columns of their own: real and imaginary parts apart.
+    pub(super) fn columns(&self) -> Result<Vec<Column>, ReadError> {
+        let mut all = Vec::new();
         let named = self.names().into_iter().zip(self.channels());
-        named.map(|(name, channel)| Heading {
-            name,
-            unit: channel.unit.as_deref(),
-        })
+        for ((name, info), samples) in named.zip(self.read()?) {
+            let mut push = |name, samples| {
+                let unit = info.unit.clone();
+                all.push(Column {
+                    name,
+                    unit,
+                    samples,
+                });
+            };
+            match samples {
+                Samples::Complex(values) => {
+                    let (re, im) = values.into_iter().unzip();
+                    push(format!("{name}.re"), Samples::Real(re));
+                    push(format!("{name}.im"), Samples::Real(im));
+                }
+                other => push(name, other),
+            }
+        }
+        Ok(all)
     }
 
     pub(super) fn read(&self) -> Result<Vec<Samples>, ReadError> {
@@ -100,29 +116,26 @@ impl Item<'_> {
     }
 }
 
-/// Heading of a channel in a table.
-pub(super) struct Heading<'a> {
-    name: String,
-    unit: Option<&'a str>,
+/// A column of real numbers or texts.
+pub(super) struct Column {
+    pub(super) name: String,
+    pub(super) unit: Option<String>,
+    pub(super) samples: Samples,
 }
 
-impl Heading<'_> {
-    /// The name with its unit: `velocity_x [mm/s]`.
-    pub(super) fn whole(&self) -> String {
-        self.part("")
+impl Column {
+    pub(super) fn heading(&self) -> String {
+        heading(&self.name, self.unit.as_deref())
     }
+}
 
-    /// The name of a part with its unit: `force.re [N]`.
-    pub(super) fn part(&self, part: &str) -> String {
-        let name = format!("{}{part}", self.name);
-        match self.unit {
-            Some(unit) => format!("{name} [{unit}]"),
-            // brackets in the name are no unit
-            None if name_and_unit(&name).1.is_some() || name.ends_with("[]") => {
-                format!("{name} []")
-            }
-            None => name,
-        }
+/// A name with its unit, as the heading of a column: `velocity_x [mm/s]`.
+pub(super) fn heading(name: &str, unit: Option<&str>) -> String {
+    match unit {
+        Some(unit) => format!("{name} [{unit}]"),
+        // brackets in the name are no unit
+        None if name_and_unit(name).1.is_some() || name.ends_with("[]") => format!("{name} []"),
+        None => name.to_owned(),
     }
 }
 

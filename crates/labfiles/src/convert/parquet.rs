@@ -1,6 +1,6 @@
 //! Records to one Parquet file: one row group per record.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
@@ -8,7 +8,7 @@ use std::path::Path;
 use polars::prelude::{Column, DataFrame, DataType, Schema};
 use polars_io::parquet::write::{KeyValueMetadata, ParquetCompression, ParquetWriter};
 
-use crate::convert::item::{ConvertError, Item, Options, io};
+use crate::convert::item::{ConvertError, Item, Options, heading, io};
 use crate::hdf5_write::WriteError;
 use crate::numbers::to_f32;
 use crate::output::write_whole_or;
@@ -62,16 +62,19 @@ fn kind(text: bool, single: bool) -> DataType {
 
 /// All columns in the order in which they come first, and whether they hold texts.
 fn columns(items: &[Item<'_>]) -> Vec<(String, bool)> {
-    let mut seen = BTreeMap::new();
+    let mut seen = BTreeSet::new();
     let mut all = Vec::new();
-    let headed = items.iter().flat_map(|i| i.headings().zip(i.channels()));
-    for (heading, channel) in headed {
-        let names = match channel.stored {
-            StoredType::Complex(_) => vec![heading.part(".re"), heading.part(".im")],
-            _ => vec![heading.whole()],
+    let named = items
+        .iter()
+        .flat_map(|i| i.names().into_iter().zip(i.channels()));
+    for (name, channel) in named {
+        let parts: &[&str] = match channel.stored {
+            StoredType::Complex(_) => &[".re", ".im"],
+            _ => &[""],
         };
-        for name in names {
-            if seen.insert(name.clone(), ()).is_none() {
+        for part in parts {
+            let name = heading(&format!("{name}{part}"), channel.unit.as_deref());
+            if seen.insert(name.clone()) {
                 all.push((name, channel.stored == StoredType::Text));
             }
         }
@@ -116,19 +119,8 @@ fn frame(
     several: bool,
     single: bool,
 ) -> Result<Framed, ConvertError> {
-    let mut own: BTreeMap<String, Samples> = BTreeMap::new();
-    for (heading, samples) in item.headings().zip(item.read()?) {
-        match samples {
-            Samples::Complex(values) => {
-                let (re, im) = values.into_iter().unzip();
-                own.insert(heading.part(".re"), Samples::Real(re));
-                own.insert(heading.part(".im"), Samples::Real(im));
-            }
-            other => {
-                own.insert(heading.whole(), other);
-            }
-        }
-    }
+    let own = item.columns()?.into_iter();
+    let mut own: BTreeMap<String, Samples> = own.map(|c| (c.heading(), c.samples)).collect();
     let rows = own.values().map(Samples::len).max().unwrap_or(0);
     let mut all: Vec<Column> = Vec::new();
     if several {
@@ -143,28 +135,19 @@ fn frame(
 /// A column of the given length; what is missing at its end, or altogether, is null.
 fn column(name: &str, samples: Option<Samples>, text: bool, rows: usize, single: bool) -> Column {
     match samples {
-        Some(Samples::Text(values)) if text => {
-            let padded = values
-                .into_iter()
-                .map(Some)
-                .chain(std::iter::repeat(None))
-                .take(rows);
-            Column::new(name.into(), padded.collect::<Vec<Option<String>>>())
+        Some(Samples::Text(values)) if text => Column::new(name.into(), padded(values, rows)),
+        Some(Samples::Real(values)) if !text && single => {
+            let values = values.into_iter().map(to_f32).collect();
+            Column::new(name.into(), padded(values, rows))
         }
-        Some(Samples::Real(values)) if !text => {
-            let padded = values
-                .into_iter()
-                .map(Some)
-                .chain(std::iter::repeat(None))
-                .take(rows);
-            match single {
-                true => Column::new(
-                    name.into(),
-                    padded.map(|v| v.map(to_f32)).collect::<Vec<_>>(),
-                ),
-                false => Column::new(name.into(), padded.collect::<Vec<_>>()),
-            }
-        }
+        Some(Samples::Real(values)) if !text => Column::new(name.into(), padded(values, rows)),
         _ => Column::full_null(name.into(), rows, &kind(text, single)),
     }
+}
+
+/// Values, followed by none up to a number of rows.
+fn padded<T>(values: Vec<T>, rows: usize) -> Vec<Option<T>> {
+    let mut all: Vec<Option<T>> = values.into_iter().map(Some).collect();
+    all.resize_with(rows, || None);
+    all
 }

@@ -8,19 +8,13 @@
 use std::io::Write;
 use std::path::Path;
 
+use chrono::{Datelike, NaiveDateTime};
+
 use crate::convert::item::{ConvertError, Item, Options, io};
+use crate::numbers::to_f32;
 use crate::output::write_whole_or;
 use crate::source::{ChannelInfo, Samples};
 use crate::units::{Dimension, parse_unit};
-
-/// How numbers are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Numbers {
-    /// IEEE 754, little-endian (58b).
-    Binary,
-    /// Decimal, in fields of 13 or 20 columns (58).
-    Text,
-}
 
 /// Columns of a line of identification.
 const LINE: usize = 80;
@@ -38,7 +32,7 @@ pub(super) fn write(
     items: &[Item<'_>],
     out: &Path,
     options: &Options,
-    numbers: Numbers,
+    text: bool,
 ) -> Result<(), ConvertError> {
     let read: Vec<_> = items
         .iter()
@@ -49,7 +43,7 @@ pub(super) fn write(
             let record = Record {
                 item,
                 number: number + 1,
-                numbers,
+                text,
                 single: options.single_precision,
             };
             record.write(samples, &mut file)?;
@@ -61,7 +55,7 @@ pub(super) fn write(
 }
 
 /// Notes on what the file cannot hold of a record.
-pub(super) fn notes(item: &Item<'_>, numbers: Numbers, single: bool) -> Vec<String> {
+pub(super) fn notes(item: &Item<'_>, text: bool, single: bool) -> Vec<String> {
     let mut notes = Vec::new();
     let name = &item.name;
     if let Some(rate) = item.sample_rate_hz() {
@@ -74,7 +68,7 @@ pub(super) fn notes(item: &Item<'_>, numbers: Numbers, single: bool) -> Vec<Stri
             ));
         }
     }
-    if numbers == Numbers::Text {
+    if text {
         let digits = if single { 6 } else { 13 };
         notes.push(format!(
             "record '{name}': numbers that need more than about {digits} digits are rounded, as text \
@@ -88,7 +82,8 @@ pub(super) fn notes(item: &Item<'_>, numbers: Numbers, single: bool) -> Vec<Stri
 struct Record<'a> {
     item: &'a Item<'a>,
     number: usize,
-    numbers: Numbers,
+    /// Numbers as text (58), or binary (58b).
+    text: bool,
     single: bool,
 }
 
@@ -118,10 +113,10 @@ impl Record<'_> {
     ) -> std::io::Result<()> {
         writeln!(out, "    -1")?;
         let width = if self.single { 4 } else { 8 };
-        match self.numbers {
-            Numbers::Text => writeln!(out, "    58")?,
+        match self.text {
+            true => writeln!(out, "    58")?,
             // byte order 1: little-endian, format 2: IEEE 754
-            Numbers::Binary => writeln!(
+            false => writeln!(
                 out,
                 "    58b{:6}{:6}{HEADER_LINES:12}{:12}{:6}{:6}{:12}{:12}",
                 1,
@@ -135,9 +130,9 @@ impl Record<'_> {
         }
         let points = values.len() / if complex { 2 } else { 1 };
         self.header(name, info, (points, complex), out)?;
-        match self.numbers {
-            Numbers::Text => self.text(values, out)?,
-            Numbers::Binary => self.binary(values, out)?,
+        match self.text {
+            true => self.text(values, out)?,
+            false => self.binary(values, out)?,
         }
         writeln!(out, "    -1")
     }
@@ -214,7 +209,7 @@ impl Record<'_> {
     fn binary(&self, values: &[f64], out: &mut dyn Write) -> std::io::Result<()> {
         for value in values {
             match self.single {
-                true => out.write_all(&single(*value).to_le_bytes())?,
+                true => out.write_all(&to_f32(*value).to_le_bytes())?,
                 false => out.write_all(&value.to_le_bytes())?,
             }
         }
@@ -234,11 +229,6 @@ impl Record<'_> {
 }
 
 /// A number in single precision.
-#[expect(clippy::cast_possible_truncation, reason = "it was asked for")]
-fn single(value: f64) -> f32 {
-    value as f32
-}
-
 /// A line of identification: blanks where a file would be read otherwise, NONE for nothing.
 fn line(text: &str) -> String {
     let clean: String = text
@@ -308,21 +298,11 @@ fn fitted(value: f64, width: usize) -> String {
 /// A time such as `2016-04-18T13:49:58` as `18-Apr-16 13:49:58`; `None` for another form or another
 /// century.
 fn date(iso: &str) -> Option<String> {
-    const MONTHS: [&str; 12] = [
-        "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
-    ];
-    let (date, clock) = iso.split_once(['T', ' '])?;
-    let mut parts = date.split('-');
-    let (year, month, day) = (parts.next()?, parts.next()?, parts.next()?);
-    let (year, month): (u32, usize) = (year.parse().ok()?, month.parse().ok()?);
-    let day: u32 = day.parse().ok()?;
-    let month = MONTHS.get(month.checked_sub(1)?)?;
-    let clock = clock
-        .get(..8)
-        .filter(|c| c.bytes().all(|b| b.is_ascii_digit() || b == b':'))?;
+    let iso = iso.replacen(' ', "T", 1);
+    let (time, _) = NaiveDateTime::parse_and_remainder(&iso, "%Y-%m-%dT%H:%M:%S").ok()?;
     (1970..2070)
-        .contains(&year)
-        .then(|| format!("{day:02}-{month}-{:02} {clock}", year % 100))
+        .contains(&time.year())
+        .then(|| time.format("%d-%b-%y %H:%M:%S").to_string())
 }
 
 #[cfg(test)]

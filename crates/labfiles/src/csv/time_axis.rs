@@ -9,7 +9,7 @@ use crate::text::{clock, decode, number};
 use crate::units::{Dimension, parse_unit};
 
 /// The time axis of a table.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct TimeAxis {
     /// The column.
     pub column: usize,
@@ -34,43 +34,26 @@ pub(crate) fn find(
 ) -> Option<TimeAxis> {
     let candidates = (0..layout.kinds.len()).filter_map(|i| candidate(header, layout, i));
     let mut found = candidates.filter(|c| climbs(&head_of(layout, rows, c.column)));
-    let Candidate { column, unit, note } =
-        found.next().or_else(|| unnamed(header, layout, rows))?;
-    let head = head_of(layout, rows, column);
-    let end = last.and_then(|cells| cell_value(layout, cells.get(column)?, column, rows));
-    let factor = unit
-        .as_deref()
-        .and_then(parse_unit)
-        .map_or(1.0, |u| u.to_si);
-    let rate_hz = rate::from_axis(&head, end, count).map(|r| r / factor);
-    let start = (layout.kinds[column] == Kind::Time)
-        .then(|| stamp(layout, rows.first(column)?).map(clock::Stamp::iso))
-        .flatten();
-    let unit = unit.or_else(|| (layout.kinds[column] == Kind::Time).then(|| "s".to_owned()));
-    Some(TimeAxis {
-        column,
-        unit,
-        rate_hz,
-        start,
-        note,
-    })
-}
-
-/// A column that may be the time axis.
-struct Candidate {
-    column: usize,
-    /// Its unit, if it is a number.
-    unit: Option<String>,
-    /// What was assumed.
-    note: Option<String>,
+    let mut axis = found.next().or_else(|| unnamed(header, layout, rows))?;
+    let head = head_of(layout, rows, axis.column);
+    let end = last.and_then(|cells| cell_value(layout, cells.get(axis.column)?, axis.column, rows));
+    let unit = axis.unit.as_deref().and_then(parse_unit);
+    let seconds = unit.map_or(1.0, |u| u.to_si);
+    axis.rate_hz = rate::from_axis(&head, end, count).map(|r| r / seconds);
+    if layout.kinds[axis.column] == Kind::Time {
+        let first = rows.first(axis.column);
+        axis.start = first.and_then(|c| stamp(layout, c)).map(clock::Stamp::iso);
+        axis.unit = axis.unit.or_else(|| Some("s".to_owned()));
+    }
+    Some(axis)
 }
 
 /// A column whose kind, name or unit is of time.
-fn candidate(header: &Header, layout: &Layout, column: usize) -> Option<Candidate> {
-    let sure = |unit| Candidate {
+fn candidate(header: &Header, layout: &Layout, column: usize) -> Option<TimeAxis> {
+    let sure = |unit| TimeAxis {
         column,
         unit,
-        note: None,
+        ..TimeAxis::default()
     };
     match layout.kinds[column] {
         Kind::Text => None,
@@ -82,10 +65,11 @@ fn candidate(header: &Header, layout: &Layout, column: usize) -> Option<Candidat
             if known.is_some_and(|u| u.dimension == Dimension::Time) {
                 return Some(sure(unit));
             }
-            (unit.is_none() && is_time_name(name)).then(|| Candidate {
+            (unit.is_none() && is_time_name(name)).then(|| TimeAxis {
                 column,
                 unit: Some("s".to_owned()),
                 note: Some(format!("time axis '{name}' has no unit: taken as seconds")),
+                ..TimeAxis::default()
             })
         }
     }
@@ -99,7 +83,7 @@ fn unit_in_name(name: &str) -> Option<String> {
 }
 
 /// A first column without a name that climbs evenly and is no mere count of rows.
-fn unnamed(header: &Header, layout: &Layout, rows: &HeadRows<'_>) -> Option<Candidate> {
+fn unnamed(header: &Header, layout: &Layout, rows: &HeadRows<'_>) -> Option<TimeAxis> {
     if header.names.first()? != "column_1"
         || layout.kinds[0] != Kind::Number
         || layout.kinds.len() < 2
@@ -114,10 +98,11 @@ fn unnamed(header: &Header, layout: &Layout, rows: &HeadRows<'_>) -> Option<Cand
     let counts = head.iter().all(|v| v.fract() == 0.0);
     (head.len() > 2 && even && !counts).then(|| {
         let note = "first column climbs evenly and has no name: taken as time in seconds";
-        Candidate {
+        TimeAxis {
             column: 0,
             unit: Some("s".to_owned()),
             note: Some(note.to_owned()),
+            ..TimeAxis::default()
         }
     })
 }

@@ -8,7 +8,7 @@ use crate::numbers::{ByteOrder, Number};
 
 /// A type as ours; [`Element::Other`] where no samples are of it.
 pub(super) fn element(datatype: &Datatype) -> Element {
-    let other = || Element::Other(kind(datatype).to_owned());
+    let other = || Element::Other(datatype.to_string());
     match datatype {
         Datatype::FixedPoint {
             size,
@@ -52,7 +52,7 @@ pub(super) fn element(datatype: &Datatype) -> Element {
                 _ => ByteOrder::Little,
             };
             match size {
-                2 if half => Element::Half(order),
+                2 if half => Element::Number(Number::F16, order),
                 4 if *layout == FloatingPointLayout::IEEE754_BINARY32 => {
                     Element::Number(Number::F32, order)
                 }
@@ -84,20 +84,5 @@ pub(super) fn element(datatype: &Datatype) -> Element {
             ..
         } => Element::Reference,
         _ => other(),
-    }
-}
-
-/// Name of a type, for messages.
-fn kind(datatype: &Datatype) -> &'static str {
-    match datatype {
-        Datatype::FixedPoint { .. } => "integer of unusual width",
-        Datatype::FloatingPoint { .. } => "floating point of unusual width",
-        Datatype::Time { .. } => "time",
-        Datatype::BitField { .. } => "bit field",
-        Datatype::Opaque { .. } => "opaque",
-        Datatype::VariableLength { .. } => "variable length",
-        Datatype::Array { .. } => "array",
-        Datatype::Reference { .. } => "region reference",
-        _ => "unknown",
     }
 }

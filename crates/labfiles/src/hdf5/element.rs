@@ -7,10 +7,8 @@ use crate::source::{Samples, StoredType};
 /// The type of an array's elements, as far as the program reads it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Element {
-    /// Integers, or IEEE 754 numbers of 4 or 8 bytes.
+    /// Integers, or IEEE 754 numbers.
     Number(Number, ByteOrder),
-    /// IEEE 754 numbers of 2 bytes.
-    Half(ByteOrder),
     /// Two numbers, real and imaginary part.
     Complex {
         /// The type of either part.
@@ -45,7 +43,6 @@ impl Element {
     pub(crate) fn stored(&self) -> StoredType {
         match self {
             Self::Number(number, _) => number.stored(),
-            Self::Half(_) => StoredType::Float(16),
             Self::Complex { part, .. } => match part.stored() {
                 StoredType::Int(bits) | StoredType::UInt(bits) | StoredType::Float(bits) => {
                     StoredType::Complex(bits)
@@ -61,7 +58,6 @@ impl Element {
     pub(crate) fn bytes(&self) -> usize {
         match self {
             Self::Number(number, _) => to_usize(number.bytes()),
-            Self::Half(_) => 2,
             Self::Complex { bytes, .. } | Self::Fields { bytes, .. } => *bytes,
             Self::Bool { base } => base.bytes(),
             Self::Reference => 8,
@@ -73,13 +69,13 @@ impl Element {
     pub(crate) fn is_number(&self) -> bool {
         matches!(
             self,
-            Self::Number(..) | Self::Half(_) | Self::Complex { .. } | Self::Bool { .. }
+            Self::Number(..) | Self::Complex { .. } | Self::Bool { .. }
         )
     }
 
     /// Whether it is an integer type, to which a scale applies.
     pub(crate) fn is_integer(&self) -> bool {
-        matches!(self, Self::Number(number, _) if !matches!(number, Number::F32 | Number::F64))
+        matches!(self, Self::Number(number, _) if !matches!(number, Number::F16 | Number::F32 | Number::F64))
     }
 
     /// Decode the numbers spaced in an array's bytes. `None`: the bytes are too few or the
@@ -108,16 +104,6 @@ impl Element {
             Self::Number(number, order) => {
                 numbers::decode_spaced(*number, *order, raw, spacing, &mut values);
             }
-            Self::Half(order) => {
-                let places = (0..spacing.count).map(|i| spacing.offset + i * spacing.stride);
-                values.extend(places.map(|at| {
-                    let bytes = [raw[at], raw[at + 1]];
-                    half(match order {
-                        ByteOrder::Little => u16::from_le_bytes(bytes),
-                        ByteOrder::Big => u16::from_be_bytes(bytes),
-                    })
-                }));
-            }
             _ => return None,
         }
         Some(values)
@@ -131,19 +117,6 @@ fn fits(spacing: Spacing, length: usize, bytes: usize) -> bool {
     spacing.count == 0 || end.is_some_and(|e| e <= length && bytes > 0)
 }
 
-/// An IEEE 754 half-precision number.
-fn half(bits: u16) -> f64 {
-    let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
-    let exponent = i32::from(bits >> 10 & 0x1F);
-    let fraction = f64::from(bits & 0x3FF) / 1024.0;
-    sign * match exponent {
-        0 => fraction * 2f64.powi(-14),
-        31 if fraction == 0.0 => f64::INFINITY,
-        31 => f64::NAN,
-        _ => (1.0 + fraction) * 2f64.powi(exponent - 15),
-    }
-}
-
 /// Fields, or a complex number where they are its two parts.
 pub(crate) fn compound(fields: Vec<(String, usize, Element)>, bytes: usize) -> Element {
     if let [(re, first, part), (im, imaginary, second)] = fields.as_slice() {
@@ -154,7 +127,7 @@ pub(crate) fn compound(fields: Vec<(String, usize, Element)>, bytes: usize) -> E
             ["real", "imag"],
             ["real", "imaginary"],
         ];
-        let plain = matches!(part, Element::Number(..) | Element::Half(_));
+        let plain = matches!(part, Element::Number(..));
         if named.iter().any(|n| pair[0] == n[0] && pair[1] == n[1])
             && part == second
             && plain
@@ -206,18 +179,5 @@ mod tests {
             ..spacing
         };
         assert_eq!(element.decode(&raw, wide), None);
-    }
-
-    #[test]
-    fn half_precision() {
-        for (bits, value) in [
-            (0x3C00, 1.0),
-            (0xC000, -2.0),
-            (0x7BFF, 65504.0),
-            (1, 2f64.powi(-24)),
-        ] {
-            assert_eq!(half(bits), value);
-        }
-        assert!(half(0x7E00).is_nan());
     }
 }

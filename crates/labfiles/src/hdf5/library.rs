@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
 use ::hdf5::{
     AttrValue, ChunkCacheConfig, Dataset, FileAccessProperties, FormatError, Group, Layout,
@@ -12,7 +12,6 @@ use ::hdf5::{
 use crate::bytes::{read_exact_at, to_usize};
 use crate::hdf5::chunked;
 use crate::hdf5::datatype::element;
-use crate::hdf5::guard::{self, Lengths};
 use crate::hdf5::legacy::{self, Patch};
 use crate::hdf5::second;
 use crate::hdf5::store::{
@@ -21,6 +20,12 @@ use crate::hdf5::store::{
 
 /// Bytes of metadata that the library may keep.
 const METADATA_CACHE_BYTES: usize = 4 << 20;
+
+/// How many times larger than its whole file an unpacked array may be: signals pack a few times,
+/// constant channels beside them far more.
+const GREATEST_RATIO: u64 = 128;
+/// Arrays and chunks up to this size are read whatever their packing.
+const HARMLESS_BYTES: u64 = 1 << 16;
 
 /// The registered number of h5py's LZF filter.
 const FILTER_LZF: u16 = 32000;
@@ -59,7 +64,6 @@ impl ::hdf5::Source for Positional {
 pub(crate) struct Store {
     path: PathBuf,
     file: Arc<File>,
-    datasets: Mutex<Vec<Dataset>>,
     length: u64,
 }
 
@@ -69,52 +73,29 @@ pub(crate) struct Store {
 /// The library's error if it cannot read the structure.
 pub(crate) fn open(path: &Path, file: File, length: u64) -> Result<(Store, Tree), StoreError> {
     let file = Arc::new(file);
-    let (store, tree, old) = walk(
-        path,
-        Positional {
-            file: Arc::clone(&file),
-            length,
-            patches: Vec::new(),
-        },
-    )?;
-    if !old {
-        return Ok((store, tree));
+    let source = |patches| Positional {
+        file: Arc::clone(&file),
+        length,
+        patches,
+    };
+    let (mut tree, old) = walk(source(Vec::new()))?;
+    if old {
+        let patches = legacy::patches(&file, length).map_err(::hdf5::Error::Io)?;
+        tree = walk(source(patches))?.0;
     }
-    let patches = legacy::patches(&file, length).map_err(::hdf5::Error::Io)?;
-    let (store, tree, _) = walk(
-        path,
-        Positional {
-            file,
-            length,
-            patches,
-        },
-    )?;
-    Ok((store, tree))
+    let path = path.to_path_buf();
+    Ok((Store { path, file, length }, tree))
 }
 
 /// Walk a file; gives also whether it has data layouts older than the library reads.
-fn walk(path: &Path, source: Positional) -> Result<(Store, Tree, bool), StoreError> {
+fn walk(source: Positional) -> Result<(Tree, bool), StoreError> {
     let access = FileAccessProperties::new()
         .with_metadata_cache(MetadataCacheConfig::new(METADATA_CACHE_BYTES))
         .with_chunk_cache(ChunkCacheConfig::disabled());
-    let (length, shared) = (source.length, Arc::clone(&source.file));
     let file = ::hdf5::File::from_source_with_options(source, access)?;
-    let mut walk = Walk {
-        datasets: Vec::new(),
-        objects: 0,
-    };
+    let mut walk = Walk::default();
     let tree = walk.group(&file.root(), String::new(), 0)?;
-    let old = walk.datasets.iter().any(has_old_layout);
-    Ok((
-        Store {
-            path: path.to_path_buf(),
-            file: shared,
-            datasets: Mutex::new(walk.datasets),
-            length,
-        },
-        tree,
-        old,
-    ))
+    Ok((tree, walk.old))
 }
 
 fn has_old_layout(dataset: &Dataset) -> bool {
@@ -126,9 +107,11 @@ fn has_old_layout(dataset: &Dataset) -> bool {
     )
 }
 
+#[derive(Default)]
 struct Walk {
-    datasets: Vec<Dataset>,
     objects: usize,
+    /// Whether a dataset has a layout older than the library reads.
+    old: bool,
 }
 
 impl Walk {
@@ -143,7 +126,8 @@ impl Walk {
         };
         for (name, dataset) in group.iter_datasets()? {
             self.count()?;
-            match self.array(dataset, join(&tree.path, &name), name) {
+            self.old |= has_old_layout(&dataset);
+            match describe(dataset, join(&tree.path, &name), name) {
                 Ok(array) => tree.arrays.push(array),
                 // One dataset that cannot be described does not hide the others.
                 Err(fault @ StoreError::Dataset { .. }) if !fault.is_cut_off() => {
@@ -167,21 +151,9 @@ impl Walk {
         }
         Ok(())
     }
-
-    fn array(&mut self, dataset: Dataset, path: String, name: String) -> Result<Array, StoreError> {
-        let handle = self.datasets.len();
-        let array = describe(&dataset, path, name, handle)?;
-        self.datasets.push(dataset);
-        Ok(array)
-    }
 }
 
-fn describe(
-    dataset: &Dataset,
-    path: String,
-    name: String,
-    handle: usize,
-) -> Result<Array, StoreError> {
+fn describe(dataset: Dataset, path: String, name: String) -> Result<Array, StoreError> {
     let described = dataset.shape().and_then(|s| Ok((s, dataset.datatype()?)));
     let (shape, datatype) = match described {
         Ok(described) => described,
@@ -193,8 +165,8 @@ fn describe(
         element,
         attributes: attributes(dataset.attrs()),
         name,
-        handle,
         path,
+        dataset,
     })
 }
 
@@ -221,49 +193,29 @@ fn attr(value: &AttrValue) -> Option<Attr> {
 }
 
 impl Store {
-    fn datasets(&self) -> MutexGuard<'_, Vec<Dataset>> {
-        self.datasets.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn dataset(&self, array: &Array) -> Result<Dataset, StoreError> {
-        let dataset = self.datasets().get(array.handle).cloned();
-        dataset.ok_or_else(|| StoreError::Absent(array.path.clone()))
-    }
-
-    /// An array's dataset, if the file can hold what it claims.
-    fn checked(&self, array: &Array) -> Result<Dataset, StoreError> {
-        let dataset = self.dataset(array)?;
-        let lengths = Lengths {
-            file: self.length,
-            chunk: chunk_bytes(&dataset, array),
-            stored: stored_bytes(&dataset).unwrap_or_else(|| array.claimed().min(self.length)),
-        };
-        guard::check(array, &lengths)?;
-        Ok(dataset)
-    }
-
-    fn keep(&self, dataset: Dataset) -> usize {
-        let mut datasets = self.datasets();
-        datasets.push(dataset);
-        datasets.len() - 1
-    }
-
-    /// Take over the arrays of a walk of its own.
-    fn adopt(&self, mut tree: Tree, datasets: Vec<Dataset>) -> Tree {
-        fn shift(tree: &mut Tree, by: usize) {
-            tree.arrays.iter_mut().for_each(|a| a.handle += by);
-            tree.groups.iter_mut().for_each(|g| shift(g, by));
+    /// An array's dataset, if the file can hold what it claims: no chunk and no shape far larger
+    /// than the file, and something stored of a large array.
+    fn checked<'a>(&self, array: &'a Array) -> Result<&'a Dataset, StoreError> {
+        let claimed = array.claimed();
+        let chunk = chunk_bytes(&array.dataset, array);
+        let stored = stored_bytes(&array.dataset).unwrap_or_else(|| claimed.min(self.length));
+        let within = |bytes: u64| bytes <= HARMLESS_BYTES || bytes / GREATEST_RATIO <= self.length;
+        if !within(chunk) {
+            Err(StoreError::Chunks(chunk))
+        } else if stored > self.length {
+            Err(StoreError::Stored(stored))
+        } else if claimed <= HARMLESS_BYTES || (within(claimed) && stored > 0) {
+            Ok(&array.dataset)
+        } else {
+            let shape = array.shape.clone();
+            Err(StoreError::Shape { shape, stored })
         }
-        let mut all = self.datasets();
-        shift(&mut tree, all.len());
-        all.extend(datasets);
-        tree
     }
 
     /// The unpacked bytes of an array, row by row.
     pub(super) fn raw(&self, array: &Array) -> Result<Vec<u8>, StoreError> {
         let dataset = self.checked(array)?;
-        match chunked::rows(&self.file, &dataset, array.element.bytes(), None) {
+        match chunked::rows(&self.file, dataset, array.element.bytes(), None) {
             Some(bytes) => Ok(bytes),
             None => self.either(dataset.read_raw(), |path| second::raw(path, array)),
         }
@@ -280,7 +232,7 @@ impl Store {
         let range = start..start.saturating_add(count);
         if let Some(bytes) = chunked::rows(
             &self.file,
-            &dataset,
+            dataset,
             array.element.bytes(),
             Some(range.clone()),
         ) {
@@ -326,17 +278,10 @@ impl Store {
             let name = format!("{}{{{}}}", array.path, i + 1);
             targets.push(match object {
                 Object::Dataset(dataset) => {
-                    let mut array = describe(&dataset, name.clone(), name, 0)?;
-                    array.handle = self.keep(*dataset);
-                    Some(Target::Array(array))
+                    Some(Target::Array(describe(*dataset, name.clone(), name)?))
                 }
                 Object::Group(group) => {
-                    let mut walk = Walk {
-                        datasets: Vec::new(),
-                        objects: 0,
-                    };
-                    let tree = walk.group(&group, name, 0)?;
-                    Some(Target::Group(self.adopt(tree, walk.datasets)))
+                    Some(Target::Group(Walk::default().group(&group, name, 0)?))
                 }
                 _ => None,
             });

@@ -8,11 +8,11 @@ pub(crate) mod values;
 
 use crate::hdf5::element::Element;
 use crate::hdf5::library::Store;
-use crate::hdf5::matlab::values::{content, little, static_class};
+use crate::hdf5::matlab::values::{content, little};
 use crate::hdf5::store::{Array, Attr, Attrs, DEEPEST, MOST_OBJECTS, StoreError, Target, Tree};
 use crate::mat::names::Path;
 use crate::mat::text;
-use crate::mat::tree::{Leaf, Place, Tree as Variables, Variable};
+use crate::mat::tree::{Leaf, Tree as Variables, Variable};
 use crate::numbers::ByteOrder;
 
 /// Groups at the root that are MATLAB's own.
@@ -75,14 +75,19 @@ impl Walk<'_> {
     fn variable(&mut self, name: &str) {
         self.found.variables.variables.push(Variable {
             name: name.to_owned(),
-            place: Place::Plain,
+            packed: None,
             order: ByteOrder::Little,
-            elements: 1,
         });
     }
 
     fn current(&self) -> usize {
         self.found.variables.variables.len().saturating_sub(1)
+    }
+
+    fn leave_out(&mut self, path: &Path, kind: &'static str) -> Result<(), StoreError> {
+        let refused = &mut self.found.variables.refused;
+        refused.push((path.name.clone(), kind));
+        Ok(())
     }
 
     fn visit(&mut self, path: &Path) -> Result<(), StoreError> {
@@ -97,11 +102,7 @@ impl Walk<'_> {
     fn group(&mut self, group: &Tree, path: &Path) -> Result<(), StoreError> {
         self.visit(path)?;
         if group.attributes.contains_key("MATLAB_sparse") {
-            self.found
-                .variables
-                .refused
-                .push((path.name.clone(), "sparse"));
-            return Ok(());
+            return self.leave_out(path, "sparse");
         }
         let references =
             |a: &&Array| a.element == Element::Reference && class(&a.attributes).is_empty();
@@ -134,10 +135,6 @@ impl Walk<'_> {
             columns.push((field.name.clone(), self.store.targets(field)?));
         }
         let count = columns.iter().map(|(_, t)| t.len()).max().unwrap_or(0);
-        if path.depth == 0 {
-            let current = self.current();
-            self.found.variables.variables[current].elements = count as u64;
-        }
         let mut columns: Vec<_> = columns
             .into_iter()
             .map(|(n, t)| (n, t.into_iter()))
@@ -163,11 +160,7 @@ impl Walk<'_> {
     fn array(&mut self, array: &Array, path: &Path) -> Result<(), StoreError> {
         self.visit(path)?;
         if array.attributes.contains_key("MATLAB_object_decode") {
-            self.found
-                .variables
-                .refused
-                .push((path.name.clone(), "opaque object"));
-            return Ok(());
+            return self.leave_out(path, "opaque object");
         }
         if array.element == Element::Reference && !array.attributes.contains_key("MATLAB_empty") {
             return self.cell(array, path);
@@ -179,10 +172,6 @@ impl Walk<'_> {
         let dims = reversed(&array.shape);
         let targets = self.store.targets(array)?;
         let count = targets.len();
-        if path.depth == 0 {
-            let current = self.current();
-            self.found.variables.variables[current].elements = count as u64;
-        }
         for (index, target) in targets.into_iter().enumerate() {
             if let Some(target) = target {
                 self.target(
@@ -210,8 +199,11 @@ impl Walk<'_> {
             tail: path.leaf_tail(),
             dims,
             content,
-            class: static_class(&name),
             logical: name == "logical",
+            class: match name.is_empty() {
+                true => "array".to_owned(),
+                false => name,
+            },
             value: None,
         };
         if leaf.count() == 1 || (!leaf.is_numeric() && leaf.count() > 0) {

@@ -7,8 +7,8 @@ use crate::hdf5::library::Store;
 use crate::hdf5::matlab::{self, Found};
 use crate::hdf5::store::{Array, Tree};
 use crate::mat::arrange::{self, Arranged, Origin};
-use crate::mat::tree::{Content, Leaf};
-use crate::source::{Opened, ReadError, Reader, Samples, Source};
+use crate::mat::tree::Leaf;
+use crate::source::{ReadError, Reader, Samples, Source, opened};
 
 struct MatlabReader {
     path: PathBuf,
@@ -30,18 +30,14 @@ pub(crate) fn open(path: &Path, store: Store, tree: &Tree) -> Result<Box<dyn Sou
             "Save the variables again.",
         )
     })?;
-    let refused = found.variables.refused.iter();
-    let left_out: Vec<String> = refused
-        .map(|(name, kind)| format!("{kind} '{name}' not read"))
-        .collect();
     if found.variables.leaves.is_empty() {
+        let left_out: Vec<String> = found.variables.left_out().collect();
         return Err(ReadError::new(
             path,
             "arrays of numbers",
-            if left_out.is_empty() {
-                "no variables".to_owned()
-            } else {
-                left_out.join(", ")
+            match left_out[..] {
+                [] => "no variables".to_owned(),
+                _ => left_out.join(", "),
             },
             "Save full arrays: full(x), or the object's numbers as a struct.",
         ));
@@ -51,27 +47,18 @@ pub(crate) fn open(path: &Path, store: Store, tree: &Tree) -> Result<Box<dyn Sou
         origins,
         notes,
     } = arrange::arrange(&found.variables);
-    let all = found.variables.notes.iter().cloned();
-    let notes = all.chain(left_out).chain(notes).collect();
-    Ok(Box::new(Opened {
-        format: "mat",
+    let reader = MatlabReader {
         path: path.to_path_buf(),
-        datasets,
-        notes,
-        reader: MatlabReader {
-            path: path.to_path_buf(),
-            store,
-            found,
-            origins,
-        },
-    }))
+        store,
+        found,
+        origins,
+    };
+    opened("mat", path, datasets, notes, reader)
 }
 
 impl MatlabReader {
     fn array(&self, leaf: &Leaf) -> &Array {
-        let (Content::Real(part) | Content::Complex(part, ..) | Content::Text(part, _)) =
-            leaf.content;
-        &self.found.arrays[to_usize(part.at)]
+        &self.found.arrays[to_usize(leaf.part().at)]
     }
 
     fn error(&self, leaf: &Leaf, found: impl Into<String>) -> ReadError {

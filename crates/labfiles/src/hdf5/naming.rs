@@ -1,6 +1,8 @@
 //! Names, scales and orientation of a table's channels, from its attributes.
 
+use crate::bytes::to_usize;
 use crate::hdf5::store::{Array, Attr, Attrs};
+use crate::numbers::Spacing;
 
 /// Attributes that name the channels, in order of precedence.
 pub(crate) const NAME_KEYS: [&str; 7] = [
@@ -53,6 +55,22 @@ impl Orientation {
     pub(crate) fn samples(self, table: &Array) -> u64 {
         let [rows, columns] = dimensions(&table.shape);
         if self == Self::Columns { rows } else { columns }
+    }
+
+    /// Which of a table's bytes are those of a channel.
+    pub(crate) fn spacing(self, table: &Array, channel: u64) -> Spacing {
+        let [columns, channel] = [dimensions(&table.shape)[1], channel].map(to_usize);
+        let size = table.element.bytes();
+        let row = columns.saturating_mul(size);
+        let (offset, stride) = match self {
+            Self::Columns => (channel.saturating_mul(size), row),
+            Self::Rows => (channel.saturating_mul(row), size),
+        };
+        Spacing {
+            offset,
+            stride,
+            count: to_usize(self.samples(table)),
+        }
     }
 }
 

@@ -17,7 +17,7 @@ use crate::hdf5::naming::{
 };
 use crate::hdf5::store::{Array, Attr, Attrs, StoreError, Tree};
 use crate::numbers::Spacing;
-use crate::source::{ChannelInfo, DatasetInfo, StoredType};
+use crate::source::{ChannelInfo, DatasetInfo};
 
 /// The spacing of a single element.
 const ONE: Spacing = Spacing {
@@ -27,33 +27,22 @@ const ONE: Spacing = Spacing {
 };
 
 /// Where the samples of a channel are.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(crate) struct Locator {
     /// Index into the plan's arrays.
     pub array: usize,
-    /// Which part of the array.
-    pub part: Part,
+    /// What they are.
+    pub element: Element,
+    /// Which of the array's bytes they are.
+    pub spacing: Spacing,
     /// value = stored · scale + offset.
     pub scale: f64,
     /// See `scale`.
     pub offset: f64,
 }
 
-/// A part of an array.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Part {
-    /// All of it.
-    Whole,
-    /// One column of a table.
-    Column(u64),
-    /// One row of a table.
-    Row(u64),
-    /// One field of a compound.
-    Field(usize),
-}
-
 /// How to read one dataset.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(crate) struct Plan {
     /// The arrays that it takes, each read once.
     pub arrays: Vec<Array>,
@@ -230,21 +219,19 @@ impl Plans {
         let units = units(&array.attributes, fields.len());
         let mut record = Record::new(array.path.clone(), &all);
         record.plan.arrays.push(array.clone());
-        for (i, (name, _, element)) in fields.iter().enumerate() {
+        for (i, (name, offset, element)) in fields.iter().enumerate() {
             if element.is_number() {
-                let unit = units.get(i).cloned().flatten();
-                record.channel(
-                    name.clone(),
-                    unit,
-                    element.stored(),
-                    array.count().unwrap_or(0),
-                );
-                record.plan.channels.push(Locator {
+                let locator = Locator {
                     array: 0,
-                    part: Part::Field(i),
+                    element: element.clone(),
+                    spacing: Spacing {
+                        offset: *offset,
+                        ..whole(array)
+                    },
                     scale: 1.0,
                     offset: 0.0,
-                });
+                };
+                record.channel(name.clone(), units.get(i).cloned().flatten(), locator);
             }
         }
         self.push(record);
@@ -298,16 +285,17 @@ impl Record {
         }
     }
 
-    fn channel(&mut self, name: String, unit: Option<String>, stored: StoredType, samples: u64) {
+    fn channel(&mut self, name: String, unit: Option<String>, locator: Locator) {
         self.info.channels.push(ChannelInfo {
             name,
             unit: unit.filter(|u| !u.is_empty()),
-            stored,
-            samples,
+            stored: locator.element.stored(),
+            samples: locator.spacing.count as u64,
             sample_rate_hz: None,
             start_time: None,
             properties: BTreeMap::new(),
         });
+        self.plan.channels.push(locator);
     }
 
     /// Add a one-dimensional array as a channel.
@@ -316,21 +304,16 @@ impl Record {
             .iter()
             .find_map(|k| array.attributes.get(*k))
             .map(Attr::text);
-        self.channel(
-            array.name.clone(),
-            unit,
-            array.element.stored(),
-            array.count().unwrap_or(0),
-        );
         let (scale, offset) = scaling(array, 1)[0];
-        let number = self.plan.arrays.len();
-        self.plan.arrays.push(array.clone());
-        self.plan.channels.push(Locator {
-            array: number,
-            part: Part::Whole,
+        let locator = Locator {
+            array: self.plan.arrays.len(),
+            element: array.element.clone(),
+            spacing: whole(array),
             scale,
             offset,
-        });
+        };
+        self.channel(array.name.clone(), unit, locator);
+        self.plan.arrays.push(array.clone());
         if let Some(channel) = self.info.channels.last_mut() {
             let texts: BTreeMap<String, String> = array
                 .attributes
@@ -357,24 +340,15 @@ impl Record {
             let name = names
                 .as_ref()
                 .map_or_else(|| format!("column_{}", i + 1), |n| n[to_usize(i)].clone());
-            let unit = units.get(to_usize(i)).cloned().flatten();
-            self.channel(
-                name,
-                unit,
-                table.element.stored(),
-                orientation.samples(table),
-            );
             let (scale, offset) = scaling[to_usize(i)];
-            let part = match orientation {
-                Orientation::Columns => Part::Column(i),
-                Orientation::Rows => Part::Row(i),
-            };
-            self.plan.channels.push(Locator {
+            let locator = Locator {
                 array: number,
-                part,
+                element: table.element.clone(),
+                spacing: orientation.spacing(table, i),
                 scale,
                 offset,
-            });
+            };
+            self.channel(name, units.get(to_usize(i)).cloned().flatten(), locator);
         }
         for (key, value) in &table.attributes {
             self.info
@@ -394,5 +368,14 @@ impl Record {
         }
         self.info.time_axis = self.info.channels.iter().position(attribute::is_time_axis);
         (self.info, self.plan)
+    }
+}
+
+/// All elements of an array, one after the other.
+fn whole(array: &Array) -> Spacing {
+    Spacing {
+        offset: 0,
+        stride: array.element.bytes(),
+        count: to_usize(array.count().unwrap_or(0)),
     }
 }

@@ -54,7 +54,7 @@ impl Attr {
 pub(crate) type Attrs = BTreeMap<String, Attr>;
 
 /// An array of the file.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(crate) struct Array {
     /// Path from the root, without the first slash.
     pub path: String,
@@ -66,8 +66,8 @@ pub(crate) struct Array {
     pub element: Element,
     /// Its attributes.
     pub attributes: Attrs,
-    /// The library's own number of it.
-    pub handle: usize,
+    /// The library's handle of it.
+    pub dataset: ::hdf5::Dataset,
 }
 
 impl Array {
@@ -85,7 +85,7 @@ impl Array {
 }
 
 /// A group of the file.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Tree {
     /// Path from the root, without the first slash; empty for the root.
     pub path: String,
@@ -125,8 +125,6 @@ pub(super) enum StoreError {
     TooMany,
     #[error("'{0}': more values, or deeper nested ones, than are accepted")]
     TooManyValues(String),
-    #[error("no dataset '{0}'")]
-    Absent(String),
     #[error("chunks of {0} bytes, far more than the file")]
     Chunks(u64),
     #[error("{0} stored bytes, more than the file has")]

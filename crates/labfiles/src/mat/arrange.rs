@@ -209,7 +209,10 @@ impl<'t> Builder<'t> {
             .collect();
         Self {
             tree,
-            arranged: Arranged::default(),
+            arranged: Arranged {
+                notes: tree.notes.iter().cloned().chain(tree.left_out()).collect(),
+                ..Arranged::default()
+            },
             texts,
             shared,
             times,
@@ -342,7 +345,7 @@ impl<'t> Builder<'t> {
 
     fn channel(&self, leaf: usize, name: String, samples: u64, rate: Option<f64>) -> ChannelInfo {
         let leaf = &self.tree.leaves[leaf];
-        let mut properties = BTreeMap::from([("class".to_owned(), leaf.class.to_owned())]);
+        let mut properties = BTreeMap::from([("class".to_owned(), leaf.class.clone())]);
         if leaf.logical {
             properties.insert("logical".into(), "true".into());
         }

@@ -16,27 +16,21 @@ impl Walker<'_, '_> {
         end: u64,
         path: &Path,
     ) -> Result<(), ReadError> {
-        let tag = match self.elements.tag(head.next, end, "characters") {
-            Err(_) if head.count == 0 => Tag {
-                kind: 2,
-                bytes: 0,
-                at: end,
-                next: end,
-            },
-            other => other?,
-        };
+        let tag = self.data_tag(head, head.next, end, 2)?;
         let (number, encoding) = match tag.kind {
             1 | 2 => (Number::U8, Encoding::Codes),
             3 | 4 | 17 => (Number::U16, Encoding::Utf16),
             16 => (Number::U8, Encoding::Utf8),
             5 | 6 | 18 => (Number::U32, Encoding::Utf32),
-            other => return Err(self.refuse(tag.at, "characters", kind_name(other))),
+            other => return Err(self.elements.refuse(tag.at, "characters", kind_name(other))),
         };
         // Some writers leave out the bytes of a blank text.
         let blank = tag.bytes == 0 && head.dims[0] == 1;
         if head.count > tag.bytes && !blank {
             let found = format!("{} bytes", tag.bytes);
-            return Err(self.refuse(tag.at, format!("{} characters", head.count), found));
+            return Err(self
+                .elements
+                .refuse(tag.at, format!("{} characters", head.count), found));
         }
         let part = Part {
             at: tag.at,
@@ -46,23 +40,30 @@ impl Walker<'_, '_> {
         self.leaf(head, path, Content::Text(part, encoding))
     }
 
-    /// One part (real or imaginary) of a numeric array, and where the next element begins.
-    fn part(&mut self, head: &Head, at: u64, end: u64) -> Result<(Part, u64), ReadError> {
-        let tag = match self.elements.tag(at, end, "numbers") {
-            Err(_) if head.count == 0 => Tag {
-                kind: 9,
+    /// The tag of an array's data, which an empty array may lack; it then is of a kind.
+    fn data_tag(&mut self, head: &Head, at: u64, end: u64, kind: u32) -> Result<Tag, ReadError> {
+        match self.elements.tag(at, end, "an array's data") {
+            Err(_) if head.count == 0 => Ok(Tag {
+                kind,
                 bytes: 0,
                 at: end,
                 next: end,
-            },
-            other => other?,
-        };
+            }),
+            other => other,
+        }
+    }
+
+    /// One part (real or imaginary) of a numeric array, and where the next element begins.
+    fn part(&mut self, head: &Head, at: u64, end: u64) -> Result<(Part, u64), ReadError> {
+        let tag = self.data_tag(head, at, end, 9)?;
         let Some(number) = number_of(tag.kind) else {
-            return Err(self.refuse(tag.at, "numbers", kind_name(tag.kind)));
+            return Err(self.elements.refuse(tag.at, "numbers", kind_name(tag.kind)));
         };
         if head.count.checked_mul(number.bytes()) != Some(tag.bytes) {
             let expected = format!("{} numbers of type {}", head.count, number.name());
-            return Err(self.refuse(tag.at, expected, format!("{} bytes", tag.bytes)));
+            return Err(self
+                .elements
+                .refuse(tag.at, expected, format!("{} bytes", tag.bytes)));
         }
         Ok((
             Part {
@@ -93,7 +94,7 @@ impl Walker<'_, '_> {
             name: path.name.clone(),
             dims: head.dims.clone(),
             content,
-            class: class_name(head.class),
+            class: class_name(head.class).to_owned(),
             logical: head.logical,
             value: None,
         };

@@ -1,7 +1,6 @@
 //! Elements of a level 5 file: tags, and the short lists before an array's data.
 
 use super::inflate::Stream;
-use super::tree::Place;
 use crate::bytes::{FileBytes, to_usize};
 use crate::numbers::{ByteOrder, Number};
 use crate::source::ReadError;
@@ -9,19 +8,11 @@ use crate::source::ReadError;
 /// Longest list of dimensions or of names that is accepted, bytes.
 const LONGEST_LIST: u64 = 1 << 20;
 
-/// The bytes of one variable: the file's own or inflated ones, read forward.
-pub(super) enum Input<'a> {
-    /// In the file.
-    Plain(&'a FileBytes),
-    /// In a zlib stream.
-    Packed(Box<Stream<'a>>),
-}
-
 /// Reads the elements of one variable, forward.
 pub(super) struct Elements<'a> {
     file: &'a FileBytes,
-    input: Input<'a>,
-    place: Place,
+    /// The stream that holds the variable, if it is compressed.
+    stream: Option<Box<Stream<'a>>>,
     order: ByteOrder,
     /// The last tag read and its offset: a small element's data are in it.
     last: (u64, [u8; 8]),
@@ -44,22 +35,15 @@ impl<'a> Elements<'a> {
     /// The elements of a variable.
     pub(super) fn new(
         file: &'a FileBytes,
-        input: Input<'a>,
-        place: Place,
+        stream: Option<Box<Stream<'a>>>,
         order: ByteOrder,
     ) -> Self {
         Self {
             file,
-            input,
-            place,
+            stream,
             order,
             last: (0, [0; 8]),
         }
-    }
-
-    /// Place of the variable's bytes.
-    pub(super) fn place(&self) -> Place {
-        self.place
     }
 
     /// The byte order of the numbers.
@@ -74,19 +58,19 @@ impl<'a> Elements<'a> {
         expected: impl Into<String>,
         found: impl Into<String>,
     ) -> ReadError {
-        match self.place {
-            Place::Plain => self.file.refuse(at, expected, found),
-            Place::Packed { at: stream, .. } => {
+        match &self.stream {
+            None => self.file.refuse(at, expected, found),
+            Some(stream) => {
                 let found = format!("{} (byte {at} of the inflated variable)", found.into());
-                self.file.refuse(stream, expected, found)
+                self.file.refuse(stream.at, expected, found)
             }
         }
     }
 
     fn fetch(&mut self, at: u64, length: u64, what: &str) -> Result<Vec<u8>, ReadError> {
-        match &mut self.input {
-            Input::Plain(file) => Ok(file.slice(at, length, what)?.to_vec()),
-            Input::Packed(stream) => {
+        match &mut self.stream {
+            None => Ok(self.file.slice(at, length, what)?.to_vec()),
+            Some(stream) => {
                 let mut buffer = vec![0; to_usize(length)];
                 stream.read_at(at, &mut buffer, what)?;
                 Ok(buffer)

@@ -4,7 +4,7 @@ use std::io::{BufReader, Read};
 
 use flate2::bufread::ZlibDecoder;
 
-use super::tree::Place;
+use super::tree::Packed;
 use crate::bytes::{FileBytes, to_usize};
 use crate::inflate::zlib_into;
 use crate::source::ReadError;
@@ -19,7 +19,7 @@ const LARGE: u64 = 64 << 20;
 /// A zlib stream of the file, read forward.
 pub(super) struct Stream<'a> {
     file: &'a FileBytes,
-    at: u64,
+    pub(super) at: u64,
     packed: u64,
     decoder: BufReader<ZlibDecoder<&'a [u8]>>,
     position: u64,
@@ -115,15 +115,12 @@ impl<'a> Stream<'a> {
 }
 
 /// Inflate a whole variable and check its length and checksum.
-pub(super) fn inflate(file: &FileBytes, place: Place) -> Result<Vec<u8>, ReadError> {
-    let Place::Packed {
+pub(super) fn inflate(file: &FileBytes, place: Packed) -> Result<Vec<u8>, ReadError> {
+    let Packed {
         at,
         packed,
         inflated,
-    } = place
-    else {
-        return Ok(Vec::new());
-    };
+    } = place;
     let mut stream = Stream::open(file, at, packed)?;
     stream.check_claim(inflated)?;
     let mut bytes = vec![0; to_usize(inflated)];

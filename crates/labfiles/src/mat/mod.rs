@@ -38,63 +38,30 @@ use arrange::Arranged;
 use tree::Tree;
 
 use super::bytes::FileBytes;
-use super::source::{Opened, ReadError, Reader, Samples, Source};
+use super::numbers::ByteOrder;
+use super::source::{ReadError, Source, opened};
 
 /// Whether a file's first bytes (128 or more) are those of a MATLAB file of level 4 or 5.
 pub(crate) fn recognises(head: &[u8]) -> bool {
-    v5::byte_order(head).is_some() || (!v5::is_hdf5(head) && v4::byte_order(head).is_some())
+    v5::byte_order(head).or(v4::byte_order(head)).is_some()
 }
 
 /// Open a MATLAB file of level 4 or 5: its variables are found, no samples are read.
 pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let file = FileBytes::open(path)?;
-    let tree = scan(&file)?;
+    let head = file.all();
+    let tree = match v5::byte_order(head) {
+        Some(order) => v5::scan(&file, order)?,
+        None => v4::scan(&file, v4::byte_order(head).unwrap_or(ByteOrder::Little))?,
+    };
     refuse_if_nothing_left(&file, &tree)?;
     let Arranged {
         datasets,
         origins,
         notes,
     } = arrange::arrange(&tree);
-    let left_out = tree
-        .refused
-        .iter()
-        .map(|(name, kind)| format!("{kind} '{name}' not read"));
-    let notes = tree
-        .notes
-        .iter()
-        .cloned()
-        .chain(left_out)
-        .chain(notes)
-        .collect();
-    Ok(Box::new(Opened {
-        format: "mat",
-        path: path.to_path_buf(),
-        datasets,
-        notes,
-        reader: MatFile {
-            store: samples::Store::new(file, tree),
-            origins,
-        },
-    }))
-}
-
-fn scan(file: &FileBytes) -> Result<Tree, ReadError> {
-    let head = file.all();
-    if let Some(order) = v5::byte_order(head) {
-        return v5::scan(file, order);
-    }
-    if v5::is_hdf5(head) {
-        let remedy = "Open it as HDF5.";
-        return Err(file.unsupported(124, "a v7.3 file", "a MATLAB file before v7.3", remedy));
-    }
-    match v4::byte_order(head) {
-        Some(order) => v4::scan(file, order),
-        None => {
-            let found = format!("{} bytes that are neither", head.len());
-            let expected = "the header of a MATLAB file of level 4 or 5";
-            Err(file.refuse(0, expected, found))
-        }
-    }
+    let reader = samples::MatFile::new(file, tree, origins);
+    opened("mat", path, datasets, notes, reader)
 }
 
 fn refuse_if_nothing_left(file: &FileBytes, tree: &Tree) -> Result<(), ReadError> {
@@ -106,17 +73,5 @@ fn refuse_if_nothing_left(file: &FileBytes, tree: &Tree) -> Result<(), ReadError
             "Save full arrays: full(x), or the object's numbers as a struct.",
         )),
         _ => Ok(()),
-    }
-}
-
-struct MatFile {
-    store: samples::Store,
-    origins: Vec<Vec<arrange::Origin>>,
-}
-
-impl Reader for MatFile {
-    fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
-        let wanted: Vec<_> = channels.iter().map(|&c| self.origins[dataset][c]).collect();
-        self.store.read(&wanted)
     }
 }

@@ -1,3 +1,4 @@
+use crate::source::Samples;
 use std::collections::BTreeMap;
 use std::io::Write;
 

@@ -3,20 +3,15 @@
 use crate::numbers::{ByteOrder, Number};
 use crate::source::StoredType;
 
-/// Place of the bytes of a variable.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Place {
-    /// As they are in the file; offsets count from the file's start.
-    Plain,
-    /// In a zlib stream; offsets count from the start of the inflated bytes.
-    Packed {
-        /// Offset of the zlib stream in the file.
-        at: u64,
-        /// Its length, bytes.
-        packed: u64,
-        /// Length it must inflate to, bytes.
-        inflated: u64,
-    },
+/// A zlib stream that holds a variable.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Packed {
+    /// Its offset in the file.
+    pub at: u64,
+    /// Its length, bytes.
+    pub packed: u64,
+    /// Length it must inflate to, bytes.
+    pub inflated: u64,
 }
 
 /// A variable at the top of the file.
@@ -24,18 +19,17 @@ pub(crate) enum Place {
 pub(crate) struct Variable {
     /// Its name.
     pub name: String,
-    /// Place of its bytes.
-    pub place: Place,
+    /// The stream that holds it; offsets count from the start of the inflated bytes. `None`: its
+    /// bytes are in the file as they are.
+    pub packed: Option<Packed>,
     /// Byte order of its numbers.
     pub order: ByteOrder,
-    /// Number of elements if it is a struct array or a cell array, else 1.
-    pub elements: u64,
 }
 
 /// A run of numbers of one kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Part {
-    /// Offset of the first byte (see [`Place`]).
+    /// Offset of the first byte (see [`Variable::packed`]).
     pub at: u64,
     /// Length, bytes.
     pub bytes: u64,
@@ -83,7 +77,7 @@ pub(crate) struct Leaf {
     /// What it holds.
     pub content: Content,
     /// MATLAB class, e.g. `double`.
-    pub class: &'static str,
+    pub class: String,
     /// Whether it holds true and false.
     pub logical: bool,
     /// Its value as text if it is one number or one short string.
@@ -129,4 +123,12 @@ pub(crate) struct Tree {
     pub notes: Vec<String>,
     /// Names of variables that were left out because their kind is not read, with the kind.
     pub refused: Vec<(String, &'static str)>,
+}
+
+impl Tree {
+    /// What of the file is not read.
+    pub(crate) fn left_out(&self) -> impl Iterator<Item = String> {
+        let refused = self.refused.iter();
+        refused.map(|(name, kind)| format!("{kind} '{name}' not read"))
+    }
 }

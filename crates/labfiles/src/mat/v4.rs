@@ -4,7 +4,7 @@
 //! and kind (T: 0 full, 1 text, 2 sparse).
 
 use super::text;
-use super::tree::{Content, Encoding, Leaf, Part, Place, Tree, Variable};
+use super::tree::{Content, Encoding, Leaf, Part, Tree, Variable};
 use crate::bytes::{Cursor, FileBytes};
 use crate::numbers::{ByteOrder, Number};
 use crate::source::ReadError;
@@ -139,7 +139,7 @@ fn variable(
         name: header.name.clone(),
         dims: vec![header.rows, header.columns],
         content,
-        class,
+        class: class.to_owned(),
         logical: false,
         value: None,
     };
@@ -147,12 +147,10 @@ fn variable(
         file.slice(part.at, part.bytes, &what).map(<[u8]>::to_vec)
     })?;
     tree.leaves.push(leaf);
-    let place = Place::Plain;
     tree.variables.push(Variable {
         name: header.name,
-        place,
+        packed: None,
         order,
-        elements: 1,
     });
     Ok(())
 }

@@ -3,10 +3,10 @@
 //! Every element has a tag of 8 bytes (kind, length) or, where its data fit in 4 bytes, one that
 //! holds them. A variable is a matrix element, plain or inside a zlib stream.
 
-use super::element::{Elements, Input, Tag, kind_name};
+use super::element::{Elements, Tag, kind_name};
 use super::inflate::Stream;
 use super::names::{Path, field_names};
-use super::tree::{Place, Tree, Variable};
+use super::tree::{Packed, Tree, Variable};
 use crate::bytes::{FileBytes, to_usize};
 use crate::numbers::ByteOrder;
 use crate::source::ReadError;
@@ -27,14 +27,6 @@ pub(super) fn byte_order(head: &[u8]) -> Option<ByteOrder> {
     }
 }
 
-/// Whether the header is that of v7.3, which is an HDF5 file.
-pub(super) fn is_hdf5(head: &[u8]) -> bool {
-    matches!(
-        head.get(124..128),
-        Some([_, 2, b'I', b'M'] | [2, _, b'M', b'I'])
-    )
-}
-
 /// Walks through the arrays of one variable.
 pub(super) struct Walker<'a, 't> {
     /// Its elements.
@@ -46,6 +38,7 @@ pub(super) struct Walker<'a, 't> {
 }
 
 /// What precedes the data of an array.
+#[derive(Default)]
 pub(super) struct Head {
     /// Its class.
     pub class: u8,
@@ -103,8 +96,7 @@ fn variable(
                 at: data,
                 next: data + bytes.next_multiple_of(8),
             };
-            let elements = Elements::new(file, Input::Plain(file), Place::Plain, order);
-            walk(elements, tag, tree)?;
+            walk(Elements::new(file, None, order), tag, None, tree)?;
             Ok(tag.next.min(file.size()))
         }
         COMPRESSED => {
@@ -143,26 +135,30 @@ fn packed(
         at: 8,
         next: inflated,
     };
-    let place = Place::Packed {
+    let place = Packed {
         at,
         packed: bytes,
         inflated,
     };
-    let elements = Elements::new(file, Input::Packed(stream), place, order);
-    walk(elements, tag, tree)
+    let elements = Elements::new(file, Some(stream), order);
+    walk(elements, tag, Some(place), tree)
 }
 
 /// Walk through the variable whose matrix element was found.
-fn walk(elements: Elements<'_>, tag: Tag, tree: &mut Tree) -> Result<(), ReadError> {
+fn walk(
+    elements: Elements<'_>,
+    tag: Tag,
+    packed: Option<Packed>,
+    tree: &mut Tree,
+) -> Result<(), ReadError> {
     if tag.bytes == 0 {
         return Ok(());
     }
     let variable = tree.variables.len();
     tree.variables.push(Variable {
         name: String::new(),
-        place: elements.place(),
+        packed,
         order: elements.order(),
-        elements: 1,
     });
     let mut walker = Walker {
         elements,
@@ -173,48 +169,37 @@ fn walk(elements: Elements<'_>, tag: Tag, tree: &mut Tree) -> Result<(), ReadErr
 }
 
 impl Walker<'_, '_> {
-    pub(crate) fn refuse(
-        &self,
-        at: u64,
-        expected: impl Into<String>,
-        found: impl Into<String>,
-    ) -> ReadError {
-        self.elements.refuse(at, expected, found)
-    }
-
     fn head(&mut self, tag: Tag) -> Result<Head, ReadError> {
         let end = tag.at + tag.bytes;
         let flags_tag = self.elements.tag(tag.at, end, "array flags")?;
         if flags_tag.kind != 6 || flags_tag.bytes != 8 {
             let found = format!("{} of {} bytes", kind_name(flags_tag.kind), flags_tag.bytes);
-            return Err(self.refuse(tag.at, "array flags (uint32, 8 bytes)", found));
+            return Err(self
+                .elements
+                .refuse(tag.at, "array flags (uint32, 8 bytes)", found));
         }
         let flags = self.elements.list(flags_tag, "array flags")?;
         let flags = self.elements.word(&flags[..4]);
         let class = (flags & 0xff) as u8;
         let (logical, complex) = (flags & 0x200 != 0, flags & 0x800 != 0);
         if class == 17 {
-            let (dims, name) = (Vec::new(), self.opaque_name(flags_tag.next, end)?);
-            let (at, next) = (end, end);
             return Ok(Head {
                 class,
-                logical,
-                complex,
-                dims,
-                count: 0,
-                name,
-                at,
-                next,
+                name: self.name(flags_tag.next, end)?.0,
+                ..Head::default()
             });
         }
         let dims_tag = self.elements.tag(flags_tag.next, end, "dimensions")?;
         let dims = self.elements.integers(dims_tag, "dimensions")?;
         let count = dims.iter().try_fold(1u64, |all, &d| all.checked_mul(d));
         let Some(count) = count.filter(|_| dims.len() >= 2) else {
-            return Err(self.refuse(dims_tag.at, "two or more dimensions", format!("{dims:?}")));
+            return Err(self.elements.refuse(
+                dims_tag.at,
+                "two or more dimensions",
+                format!("{dims:?}"),
+            ));
         };
-        let name_tag = self.elements.tag(dims_tag.next, end, "a name")?;
-        let name = self.elements.ascii(name_tag, "a name")?;
+        let (name, next) = self.name(dims_tag.next, end)?;
         Ok(Head {
             class,
             logical,
@@ -223,22 +208,29 @@ impl Walker<'_, '_> {
             count,
             name,
             at: tag.at,
-            next: name_tag.next,
+            next,
         })
     }
 
-    fn opaque_name(&mut self, at: u64, end: u64) -> Result<String, ReadError> {
+    /// A name, and where the next element begins.
+    fn name(&mut self, at: u64, end: u64) -> Result<(String, u64), ReadError> {
         let tag = self.elements.tag(at, end, "a name")?;
-        self.elements.ascii(tag, "a name")
+        Ok((self.elements.ascii(tag, "a name")?, tag.next))
     }
 
     /// One array: a leaf, or a container whose arrays follow.
     fn array(&mut self, tag: Tag, path: &Path) -> Result<(), ReadError> {
         if tag.kind != MATRIX {
-            return Err(self.refuse(tag.at, "a matrix element (14)", kind_name(tag.kind)));
+            return Err(self
+                .elements
+                .refuse(tag.at, "a matrix element (14)", kind_name(tag.kind)));
         }
         if path.depth > DEEPEST {
-            return Err(self.refuse(tag.at, format!("at most {DEEPEST} nested arrays"), "more"));
+            return Err(self.elements.refuse(
+                tag.at,
+                format!("at most {DEEPEST} nested arrays"),
+                "more",
+            ));
         }
         if tag.bytes == 0 {
             return Ok(());
@@ -265,7 +257,11 @@ impl Walker<'_, '_> {
             6..=15 => self.numeric(&head, end, &path),
             16 => self.function(&head, end, &path),
             17 => self.leave_out(path.name, "opaque object"),
-            other => Err(self.refuse(head.at, "an array class from 1 to 17", other.to_string())),
+            other => {
+                Err(self
+                    .elements
+                    .refuse(head.at, "an array class from 1 to 17", other.to_string()))
+            }
         }
     }
 
@@ -280,23 +276,19 @@ impl Walker<'_, '_> {
         let room = end.saturating_sub(at);
         match children.saturating_mul(8) <= room {
             true => Ok(children),
-            false => Err(self.refuse(at, format!("{children} arrays"), format!("{room} bytes"))),
+            false => {
+                Err(self
+                    .elements
+                    .refuse(at, format!("{children} arrays"), format!("{room} bytes")))
+            }
         }
-    }
-
-    /// The path of an element of a container, with its index if it has several.
-    fn element(&mut self, head: &Head, path: &Path, index: u64, brackets: [char; 2]) -> Path {
-        if path.depth == 0 && head.count != 1 {
-            self.tree.variables[self.variable].elements = head.count;
-        }
-        path.element(index, head.count, &head.dims, brackets)
     }
 
     fn cell(&mut self, head: &Head, end: u64, path: &Path) -> Result<(), ReadError> {
         let mut at = head.next;
         for index in 0..self.check_children(head, 1, at, end)? {
             let tag = self.elements.tag(at, end, "a cell")?;
-            let element = self.element(head, path, index, ['{', '}']);
+            let element = path.element(index, head.count, &head.dims, ['{', '}']);
             self.array(tag, &element)?;
             at = tag.next;
         }
@@ -318,7 +310,7 @@ impl Walker<'_, '_> {
         }
         self.check_children(head, names.len() as u64, at, end)?;
         for index in 0..head.count {
-            let element = self.element(head, path, index, ['(', ')']);
+            let element = path.element(index, head.count, &head.dims, ['(', ')']);
             for name in &names {
                 let tag = self.elements.tag(at, end, "a field")?;
                 let mut field = element.child(&format!(".{name}"));

@@ -36,9 +36,9 @@ pub(crate) struct Columns {
     file: File,
     length: u64,
     metadata: Arc<FileMetadata>,
-    fields: Vec<Field>,
-    rows: u64,
-    attributes: BTreeMap<String, String>,
+    pub(crate) fields: Vec<Field>,
+    pub(crate) rows: u64,
+    pub(crate) attributes: BTreeMap<String, String>,
     kept: Vec<OnceLock<Arc<Samples>>>,
 }
 
@@ -98,16 +98,6 @@ impl Columns {
         })
     }
 
-    /// The columns, in file order.
-    pub(crate) fn fields(&self) -> &[Field] {
-        &self.fields
-    }
-
-    /// Number of rows.
-    pub(crate) fn rows(&self) -> u64 {
-        self.rows
-    }
-
     /// The first point in time of a column as ISO 8601, if it holds dates.
     #[expect(
         clippy::cast_possible_truncation,
@@ -135,11 +125,6 @@ impl Columns {
             }
             .iso(),
         )
-    }
-
-    /// What the footer states besides.
-    pub(crate) fn attributes(&self) -> &BTreeMap<String, String> {
-        &self.attributes
     }
 
     /// A note for each column that is not read.
@@ -205,8 +190,7 @@ impl Columns {
     /// One column of one row group.
     fn group(&self, field: &Field, number: usize) -> Result<Samples, ReadError> {
         let group = &self.metadata.row_groups[number];
-        let damaged =
-            |found: String| ReadError::new(&self.path, "a complete Parquet file", found, REMEDY);
+        let damaged = |found: String| damaged(&self.path, found);
         let chunks: Vec<_> = group
             .columns_under_root_iter(&field.name)
             .into_iter()
@@ -302,9 +286,7 @@ fn joined(parts: Vec<Samples>, field: &Field) -> Samples {
 
 /// Refuse a footer whose lengths exceed it.
 fn check_footer(path: &Path, file: &File, length: u64) -> Result<(), ReadError> {
-    let damaged = |found: String, at: u64| {
-        ReadError::new(path, "a complete Parquet file", found, REMEDY).at(at)
-    };
+    let damaged = |found: String, at: u64| damaged(path, found).at(at);
     let mut tail = [0u8; 8];
     let end = length
         .checked_sub(12)
@@ -319,17 +301,19 @@ fn check_footer(path: &Path, file: &File, length: u64) -> Result<(), ReadError> 
     let start = start.ok_or_else(|| damaged(format!("a footer of {size} bytes"), end))?;
     let mut bytes = vec![0; to_usize(size)];
     read_exact_at(file, &mut bytes, start).map_err(|e| ReadError::io(path, &e))?;
-    footer::check(&bytes).map_err(|fault| damaged(fault.found, start + fault.at as u64))
+    footer::check(&bytes).map_err(|fault| damaged(fault.to_string(), start))
 }
 
-const REMEDY: &str = "Copy the file again, or write it again with the program that made it.";
+fn damaged(path: &Path, found: String) -> ReadError {
+    let remedy = "Copy the file again, or write it again with the program that made it.";
+    ReadError::new(path, "a complete Parquet file", found, remedy)
+}
 
 /// Run the library; its errors, and its panics on damaged files, become a [`ReadError`].
 fn guarded<T>(path: &Path, run: impl FnOnce() -> PolarsResult<T>) -> Result<T, ReadError> {
-    let damaged = |found: String| ReadError::new(path, "a complete Parquet file", found, REMEDY);
     match guard::caught(run) {
-        Some(result) => result.map_err(|e| damaged(e.to_string())),
-        None => Err(damaged("pages that contradict each other".to_owned())),
+        Some(result) => result.map_err(|e| damaged(path, e.to_string())),
+        None => Err(damaged(path, "pages that contradict each other".to_owned())),
     }
 }
 

@@ -4,10 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::attribute;
 use crate::parquet::columns::{Columns, Range};
+use crate::parquet::field::Field;
 use crate::source::{ReadError, StoredType};
-
-/// Labels with the rows that have them.
-pub(crate) type Labelled = Vec<(String, Vec<Range>)>;
 
 /// Names of columns that name the record, lower case.
 const RECORD_NAMES: [&str; 9] = [
@@ -26,48 +24,30 @@ const CHANNEL_NAMES: [&str; 4] = ["channel", "variable", "signal", "quantity"];
 /// Names of columns that hold the values of a tidy table, lower case.
 const VALUE_NAMES: [&str; 4] = ["value", "values", "sample", "y"];
 
-/// How a table is laid out.
-pub(crate) enum Shape {
-    /// Every column is a channel, the table is one record.
-    Wide,
-    /// A column names the record, the others are channels.
-    ByRecord {
-        /// That column.
-        key: usize,
-        /// The records with their rows.
-        records: Labelled,
-    },
-    /// One column holds all values, others name record, channel and time.
-    Tidy {
-        /// Which columns they are.
-        tidy: Tidy,
-        /// The records with their channels and their rows.
-        records: Vec<(String, Labelled)>,
-    },
-}
-
-/// The columns of a tidy table.
-pub(crate) struct Tidy {
-    /// The column of values.
-    pub value: usize,
-    /// The time axis.
-    pub time: Option<usize>,
-    /// Units by channel.
-    pub unit: Option<BTreeMap<String, String>>,
+/// Where a channel's samples are: a column and its rows.
+pub(crate) struct Origin {
+    /// Heading of the channel.
+    pub heading: String,
+    /// Unit, if a column of units states it.
+    pub unit: Option<String>,
+    /// The column.
+    pub column: usize,
+    /// Its rows.
+    pub rows: Vec<Range>,
 }
 
 /// Find the layout of a table.
 ///
 /// # Errors
 /// If the columns that name record and channel cannot be read.
-pub(crate) fn find(columns: &Columns) -> Result<Shape, ReadError> {
+pub(crate) fn find(columns: &Columns) -> Result<Vec<(String, Vec<Origin>)>, ReadError> {
     let named = |names: &[&str]| {
         columns
-            .fields()
+            .fields
             .iter()
             .position(|f| names.contains(&f.name.trim().to_lowercase().as_str()))
     };
-    let kind = |i: usize| columns.fields()[i].stored;
+    let kind = |i: usize| columns.fields[i].stored;
     let number = |i: usize| kind(i).is_some_and(|s| s != StoredType::Text);
     let key = named(&RECORD_NAMES).filter(|&i| {
         matches!(
@@ -81,63 +61,86 @@ pub(crate) fn find(columns: &Columns) -> Result<Shape, ReadError> {
         (Some((channel, value)), key) => tidy(columns, key, channel, value),
         (None, Some(key)) => {
             let labels = columns.texts(key)?;
-            Ok(Shape::ByRecord {
-                key,
-                records: ranges(labels.iter().map(String::as_str)),
-            })
+            let records = ranges(labels.iter()).into_iter();
+            Ok(records
+                .map(|(name, rows)| (name.clone(), wide(columns, &rows, Some(key))))
+                .collect())
         }
-        (None, None) => Ok(Shape::Wide),
+        (None, None) => {
+            let all = wide(columns, &[(0, columns.rows)], None);
+            Ok(vec![(String::new(), all)])
+        }
     }
 }
 
+/// A record whose channels are columns.
+fn wide(columns: &Columns, rows: &[Range], without: Option<usize>) -> Vec<Origin> {
+    let fields = columns.fields.iter().enumerate();
+    fields
+        .filter(|(i, f)| f.stored.is_some() && Some(*i) != without)
+        .map(|(column, field)| Origin {
+            heading: field.name.clone(),
+            unit: None,
+            column,
+            rows: rows.to_vec(),
+        })
+        .collect()
+}
+
+/// Records with one row per sample and channel.
 fn tidy(
     columns: &Columns,
     key: Option<usize>,
     channel: usize,
     value: usize,
-) -> Result<Shape, ReadError> {
+) -> Result<Vec<(String, Vec<Origin>)>, ReadError> {
     let labels = columns.texts(channel)?;
     let records = match key {
         Some(key) => columns.texts(key)?,
         None => vec![String::new(); labels.len()],
     };
-    let mut sorted: Vec<(String, Labelled)> = Vec::new();
-    let mut places: BTreeMap<&str, (usize, BTreeMap<&str, usize>)> = BTreeMap::new();
-    for (row, (record, label)) in records.iter().zip(&labels).enumerate() {
-        let (r, channels) = places.entry(record).or_insert_with(|| {
-            sorted.push((record.clone(), Vec::new()));
-            (sorted.len() - 1, BTreeMap::new())
-        });
-        let own = &mut sorted[*r].1;
-        let c = *channels.entry(label).or_insert_with(|| {
-            own.push((label.clone(), Vec::new()));
-            own.len() - 1
-        });
-        extend(&mut own[c].1, row as u64);
-    }
-    let time = columns
-        .fields()
-        .iter()
+    let named = |f: &Field, names: &[&str]| names.contains(&f.name.to_lowercase().as_str());
+    let mut fields = columns.fields.iter();
+    let time = fields
+        .clone()
         .position(|f| attribute::is_time_name(&f.name));
-    let unit = columns.fields().iter().position(|f| {
-        matches!(f.name.to_lowercase().as_str(), "unit" | "units")
-            && f.stored == Some(StoredType::Text)
-    });
-    let unit = unit.map(|u| columns.texts(u)).transpose()?;
-    let unit = unit.map(|units| labels.iter().cloned().zip(units).collect());
-    Ok(Shape::Tidy {
-        tidy: Tidy { value, time, unit },
-        records: sorted,
-    })
+    let unit =
+        fields.position(|f| named(f, &["unit", "units"]) && f.stored == Some(StoredType::Text));
+    let units = unit
+        .map(|u| columns.texts(u))
+        .transpose()?
+        .unwrap_or_default();
+    let units: BTreeMap<&String, String> = labels.iter().zip(units).collect();
+    let mut all: Vec<(String, Vec<Origin>)> = Vec::new();
+    let mut places: BTreeMap<&String, usize> = BTreeMap::new();
+    for ((record, label), rows) in ranges(records.iter().zip(&labels)) {
+        let place = *places.entry(record).or_insert_with(|| {
+            let axis = time.map(|column| Origin {
+                heading: columns.fields[column].name.clone(),
+                unit: None,
+                column,
+                rows: rows.clone(),
+            });
+            all.push((record.clone(), axis.into_iter().collect()));
+            all.len() - 1
+        });
+        all[place].1.push(Origin {
+            heading: label.clone(),
+            unit: units.get(label).cloned(),
+            column: value,
+            rows,
+        });
+    }
+    Ok(all)
 }
 
-/// The rows of each label, labels in the order in which they come first.
-fn ranges<'a>(labels: impl Iterator<Item = &'a str>) -> Labelled {
-    let mut all: Labelled = Vec::new();
-    let mut places: BTreeMap<&str, usize> = BTreeMap::new();
+/// Rows of each label, in the order of first appearance.
+fn ranges<L: Ord + Copy>(labels: impl Iterator<Item = L>) -> Vec<(L, Vec<Range>)> {
+    let mut all: Vec<(L, Vec<Range>)> = Vec::new();
+    let mut places: BTreeMap<L, usize> = BTreeMap::new();
     for (row, label) in labels.enumerate() {
         let place = *places.entry(label).or_insert_with(|| {
-            all.push((label.to_owned(), Vec::new()));
+            all.push((label, Vec::new()));
             all.len() - 1
         });
         extend(&mut all[place].1, row as u64);

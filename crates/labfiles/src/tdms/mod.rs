@@ -31,16 +31,16 @@ use std::sync::Arc;
 
 use content::{Content, Object};
 use samples::Chunks;
-use scale::{Scaling, ScalingFault};
+use scale::Scaling;
 use value::{Kind, Value};
 
 use super::bytes::FileBytes;
 use super::source::{
-    ChannelInfo, DatasetInfo, Opened, ReadError, Reader, Samples, Source, StoredType,
+    ChannelInfo, DatasetInfo, ReadError, Reader, Samples, Source, StoredType, opened,
 };
 
 /// The scaling of a channel, or what of it is not done; shared by channels that inherit it.
-type Scale = Arc<Result<Scaling, ScalingFault>>;
+type Scale = Arc<Result<Scaling, String>>;
 
 /// Whether a file's first bytes are those of a TDMS file, or of its index, which [`open`] refuses
 /// with the remedy.
@@ -56,23 +56,18 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         return Err(file.unsupported(0, "a TDMS index (.tdms_index)", "a TDMS file", remedy));
     }
     let content = segment::scan(&file)?;
-    let mut builder = Builder::new(&file, &content);
-    builder.build()?;
-    let Builder {
-        datasets, channels, ..
-    } = builder;
-    Ok(Box::new(Opened {
-        format: "tdms",
-        path: path.to_path_buf(),
-        datasets,
-        notes: content.notes.clone(),
-        reader: TdmsFile {
-            file,
-            content,
-            channels,
-        },
-    }))
+    let (datasets, channels) = records(&file, &content)?;
+    let notes = content.notes.clone();
+    let reader = TdmsFile {
+        file,
+        content,
+        channels,
+    };
+    opened("tdms", path, datasets, notes, reader)
 }
+
+/// Records, and for each of their channels its object and its scaling.
+type Records = (Vec<DatasetInfo>, Vec<Vec<(usize, Scale)>>);
 
 struct TdmsFile {
     file: FileBytes,
@@ -92,7 +87,7 @@ impl TdmsFile {
             byte: None,
             ..self.file.unsupported(
                 0,
-                fault.to_string(),
+                fault.clone(),
                 "linear, polynomial or table scaling",
                 "Save the channel scaled, or scale it in campaign.toml from its raw values.",
             )
@@ -118,163 +113,113 @@ impl Reader for TdmsFile {
     }
 }
 
-/// Builds datasets from groups.
-struct Builder<'a> {
-    file: &'a FileBytes,
-    content: &'a Content,
-    datasets: Vec<DatasetInfo>,
-    channels: Vec<Vec<(usize, Scale)>>,
-    groups: HashMap<&'a str, usize>,
-    /// Objects of groups by name, and the scaling each describes for its channels.
-    inherited: HashMap<&'a str, (usize, Option<Scale>)>,
-    root: Option<&'a Object>,
-    root_scale: Option<Scale>,
+/// The groups of a file as records, and for each channel its object and scaling: its own, its
+/// group's or the file's.
+fn records(file: &FileBytes, content: &Content) -> Result<Records, ReadError> {
+    let own = |object: &Object| Scaling::of(&object.properties).map(Arc::new);
+    let owners = content.objects.iter().filter(|o| o.path.len() < 2);
+    let owners: HashMap<&[String], (&Object, Option<Scale>)> =
+        owners.map(|o| (&o.path[..], (o, own(o)))).collect();
+    let mut groups: HashMap<&str, usize> = HashMap::new();
+    let (mut datasets, mut channels): Records = Default::default();
+    for (index, object) in content.objects.iter().enumerate() {
+        let [group, name] = object.path.as_slice() else {
+            continue;
+        };
+        let owner = owners.get(&object.path[..1]);
+        let dataset = *groups.entry(group).or_insert_with(|| {
+            datasets.push(DatasetInfo {
+                name: group.clone(),
+                channels: Vec::new(),
+                time_axis: None,
+                attributes: owner.map_or(BTreeMap::new(), |(o, _)| texts(&o.properties)),
+            });
+            channels.push(Vec::new());
+            datasets.len() - 1
+        });
+        let scale = own(object)
+            .or_else(|| owner?.1.clone())
+            .or_else(|| owners.get(&[][..])?.1.clone())
+            .unwrap_or_else(|| Arc::new(Ok(Scaling::default())));
+        let reader = Chunks { file, content };
+        let info = info(&reader, object, name, &scale)?;
+        let target = &mut datasets[dataset];
+        if info.stored == StoredType::Time && target.time_axis.is_none() {
+            target.time_axis = Some(target.channels.len());
+        }
+        target.channels.push(info);
+        channels[dataset].push((index, scale));
+    }
+    if let Some((root, _)) = owners.get(&[][..]) {
+        share_root(root, &mut datasets, file.size());
+    }
+    Ok((datasets, channels))
 }
 
-impl<'a> Builder<'a> {
-    fn new(file: &'a FileBytes, content: &'a Content) -> Self {
-        let own = |object: &Object| Scaling::of(&object.properties).map(Arc::new);
-        let root = content.objects.iter().find(|object| object.path.is_empty());
-        let groups = content
-            .objects
-            .iter()
-            .enumerate()
-            .filter(|(_, o)| o.path.len() == 1);
-        Self {
-            file,
-            content,
-            datasets: Vec::new(),
-            channels: Vec::new(),
-            groups: HashMap::new(),
-            inherited: groups
-                .map(|(i, o)| (o.path[0].as_str(), (i, own(o))))
-                .collect(),
-            root,
-            root_scale: root.and_then(own),
+/// Repeat the file's properties with every group, or with the first only where that would
+/// take more memory than the file.
+fn share_root(root: &Object, datasets: &mut [DatasetInfo], size_of_file: u64) {
+    let all = texts(&root.properties);
+    let size: usize = all
+        .iter()
+        .map(|(name, value)| name.len() + value.len() + 64)
+        .sum();
+    let affordable = (size * datasets.len()) as u64 <= size_of_file.max(1 << 16);
+    let reach = if affordable { datasets.len() } else { 1 };
+    for dataset in datasets.iter_mut().take(reach) {
+        for (name, value) in &all {
+            dataset
+                .attributes
+                .entry(name.clone())
+                .or_insert_with(|| value.clone());
         }
     }
+}
 
-    fn build(&mut self) -> Result<(), ReadError> {
-        for (index, object) in self.content.objects.iter().enumerate() {
-            let [group, name] = object.path.as_slice() else {
-                continue;
-            };
-            let dataset = self.dataset(group);
-            let scale = self.scale(group, object);
-            let info = self.info(object, name, &scale)?;
-            let target = &mut self.datasets[dataset];
-            if info.stored == StoredType::Time && target.time_axis.is_none() {
-                target.time_axis = Some(target.channels.len());
-            }
-            target.channels.push(info);
-            self.channels[dataset].push((index, scale));
-        }
-        self.share_root();
-        Ok(())
+fn info(
+    reader: &Chunks<'_>,
+    object: &Object,
+    name: &str,
+    scale: &Scale,
+) -> Result<ChannelInfo, ReadError> {
+    let kind = object
+        .kind
+        .unwrap_or(Kind::Number(super::numbers::Number::F64));
+    let mut properties = texts(&object.properties);
+    let raw = match reader.first_device(object) {
+        Some(device) => device.scalers[0].number.stored(),
+        None => kind.stored(),
+    };
+    use StoredType::{Bool, Complex, Text, Time};
+    let number = !matches!(raw, Text | Time | Bool | Complex(_));
+    let scaled = number && scale.as_ref().as_ref().map_or(true, Scaling::changes);
+    if scaled {
+        properties.insert("raw_type".into(), format!("{raw:?}"));
     }
-
-    fn dataset(&mut self, group: &'a str) -> usize {
-        if let Some(&index) = self.groups.get(group) {
-            return index;
-        }
-        let index = self.datasets.len();
-        self.groups.insert(group, index);
-        let own = self
-            .inherited
-            .get(group)
-            .map(|&(object, _)| &self.content.objects[object]);
-        let attributes = own
-            .map(|object| texts(&object.properties))
-            .unwrap_or_default();
-        let name = group.to_owned();
-        self.datasets.push(DatasetInfo {
-            name,
-            channels: Vec::new(),
-            time_axis: None,
-            attributes,
-        });
-        self.channels.push(Vec::new());
-        index
-    }
-
-    /// Repeat the file's properties with every group, or with the first only where that would
-    /// take more memory than the file.
-    fn share_root(&mut self) {
-        let Some(root) = self.root else { return };
-        let all = texts(&root.properties);
-        let size: usize = all
-            .iter()
-            .map(|(name, value)| name.len() + value.len() + 64)
-            .sum();
-        let affordable = (size * self.datasets.len()) as u64 <= self.file.size().max(1 << 16);
-        let reach = if affordable { self.datasets.len() } else { 1 };
-        for dataset in self.datasets.iter_mut().take(reach) {
-            for (name, value) in &all {
-                dataset
-                    .attributes
-                    .entry(name.clone())
-                    .or_insert_with(|| value.clone());
-            }
-        }
-    }
-
-    /// The scaling of a channel: its own, else its group's, else the file's, else none.
-    fn scale(&self, group: &str, object: &Object) -> Scale {
-        let own = Scaling::of(&object.properties).map(Arc::new);
-        let group = || {
-            self.inherited
-                .get(group)
-                .and_then(|(_, scale)| scale.clone())
-        };
-        own.or_else(group)
-            .or_else(|| self.root_scale.clone())
-            .unwrap_or_else(|| Arc::new(Ok(Scaling::default())))
-    }
-
-    fn info(&self, object: &Object, name: &str, scale: &Scale) -> Result<ChannelInfo, ReadError> {
-        let reader = Chunks {
-            file: self.file,
-            content: self.content,
-        };
-        let kind = object
-            .kind
-            .unwrap_or(Kind::Number(super::numbers::Number::F64));
-        let mut properties = texts(&object.properties);
-        let raw = match reader.first_device(object) {
-            Some(device) => device.scalers[0].number.stored(),
-            None => kind.stored(),
-        };
-        use StoredType::{Bool, Complex, Text, Time};
-        let number = !matches!(raw, Text | Time | Bool | Complex(_));
-        let scaled = number && scale.as_ref().as_ref().map_or(true, Scaling::changes);
-        if scaled {
-            properties.insert("raw_type".into(), format!("{raw:?}"));
-        }
-        let is_time = kind == Kind::Time;
-        let first = if is_time {
-            reader.first_stamp(object)?
-        } else {
-            None
-        };
-        let property = |key: &str| object.properties.get(key);
-        let stated = ["unit_string", "NI_UnitDescription"]
-            .into_iter()
-            .filter_map(property);
-        let unit = stated.map(Value::text).find(|unit| !unit.is_empty());
-        let start = match property("wf_start_time") {
-            Some(Value::Time(stamp)) => stamp.iso8601(),
-            _ => None,
-        };
-        Ok(ChannelInfo {
-            name: name.to_owned(),
-            unit: if is_time { Some("s".into()) } else { unit },
-            stored: if scaled { StoredType::Float(64) } else { raw },
-            samples: object.samples,
-            sample_rate_hz: sample_rate(&object.properties),
-            start_time: first.and_then(value::Stamp::iso8601).or(start),
-            properties,
-        })
-    }
+    let is_time = kind == Kind::Time;
+    let first = if is_time {
+        reader.first_stamp(object)?
+    } else {
+        None
+    };
+    let property = |key: &str| object.properties.get(key);
+    let stated = ["unit_string", "NI_UnitDescription"]
+        .into_iter()
+        .filter_map(property);
+    let unit = stated.map(Value::text).find(|unit| !unit.is_empty());
+    let start = match property("wf_start_time") {
+        Some(Value::Time(stamp)) => stamp.iso8601(),
+        _ => None,
+    };
+    Ok(ChannelInfo {
+        name: name.to_owned(),
+        unit: if is_time { Some("s".into()) } else { unit },
+        stored: if scaled { StoredType::Float(64) } else { raw },
+        samples: object.samples,
+        sample_rate_hz: sample_rate(&object.properties),
+        start_time: first.and_then(value::Stamp::iso8601).or(start),
+        properties,
+    })
 }
 
 fn texts(properties: &BTreeMap<String, Value>) -> BTreeMap<String, String> {

@@ -54,48 +54,26 @@ impl<'a> Chunks<'a> {
             let layout = &self.content.layouts[piece.layout];
             let count = entry.share.count;
             let size = entry.share.kind.bytes().unwrap_or(0);
-            let mut step = layout.chunk;
-            let run = match &entry.share.device {
+            let (offset, stride, count, step) = match &entry.share.device {
                 Some(device) => {
-                    let run = layout.run(&device.scalers[scaler.min(device.scalers.len() - 1)]);
-                    Run {
-                        at: piece.at + run.offset,
-                        stride: run.stride,
-                        count,
-                    }
+                    let scaler = &device.scalers[scaler.min(device.scalers.len() - 1)];
+                    let (offset, stride) = layout.run(scaler);
+                    (offset, stride, count, layout.chunk)
                 }
-                None if piece.interleaved => {
-                    step = 0;
-                    let count = count * piece.chunks;
-                    Run {
-                        at: piece.at + entry.column,
-                        stride: layout.row,
-                        count,
-                    }
-                }
+                None if piece.interleaved => (entry.column, layout.row, count * piece.chunks, 0),
+                // chunks of one channel follow each other without a gap
                 None if entry.share.bytes == layout.chunk && entry.share.kind != Kind::Text => {
-                    step = 0;
-                    Run {
-                        at: piece.at,
-                        stride: size,
-                        count: count * piece.chunks,
-                    }
+                    (0, size, count * piece.chunks, 0)
                 }
-                None => Run {
-                    at: piece.at + entry.offset,
-                    stride: size,
-                    count,
-                },
+                None => (entry.offset, size, count, layout.chunk),
             };
-            let chunks = if step == 0 { 1 } else { piece.chunks };
-            for chunk in 0..chunks {
-                visit(
-                    Run {
-                        at: run.at + chunk * step,
-                        ..run
-                    },
-                    piece.order,
-                )?;
+            for chunk in 0..if step == 0 { 1 } else { piece.chunks } {
+                let run = Run {
+                    at: piece.at + offset + chunk * step,
+                    stride,
+                    count,
+                };
+                visit(run, piece.order)?;
             }
         }
         Ok(())
@@ -226,7 +204,7 @@ impl<'a> Chunks<'a> {
             for sample in 0..run.count.min((most - all.len()) as u64) {
                 let at = run.at + sample * run.stride;
                 let bytes = self.file.slice(at, 16, "a time stamp")?;
-                all.push(stamp(bytes, order));
+                all.push(Stamp::of(bytes, order));
             }
             Ok(())
         })?;
@@ -288,21 +266,4 @@ impl<'a> Chunks<'a> {
 #[expect(clippy::cast_possible_truncation, reason = "the samples are integers")]
 fn has_bit(sample: f64, bit: u32) -> bool {
     (sample as i64).cast_unsigned() & (1 << bit) != 0
-}
-
-fn stamp(bytes: &[u8], order: ByteOrder) -> Stamp {
-    let mut words = [[0; 8]; 2];
-    for (word, half) in words.iter_mut().zip(bytes.chunks_exact(8)) {
-        word.copy_from_slice(half);
-    }
-    match order {
-        ByteOrder::Little => Stamp {
-            fraction: u64::from_le_bytes(words[0]),
-            seconds: i64::from_le_bytes(words[1]),
-        },
-        ByteOrder::Big => Stamp {
-            seconds: i64::from_be_bytes(words[0]),
-            fraction: u64::from_be_bytes(words[1]),
-        },
-    }
 }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::content::{Content, Object, Piece};
 use super::index;
-use super::layout::{Layout, LayoutFault};
+use super::layout::Layout;
 use super::value::{self, Value};
 use crate::bytes::{Cursor, FileBytes};
 use crate::numbers::ByteOrder;
@@ -29,13 +29,10 @@ struct LeadIn {
     cut_short: bool,
 }
 
-impl LeadIn {
-    fn order(&self) -> ByteOrder {
-        if self.flags & BIG_ENDIAN != 0 {
-            ByteOrder::Big
-        } else {
-            ByteOrder::Little
-        }
+fn order(flags: u32) -> ByteOrder {
+    match flags & BIG_ENDIAN {
+        0 => ByteOrder::Little,
+        _ => ByteOrder::Big,
     }
 }
 
@@ -74,10 +71,6 @@ struct Scanner<'a> {
 }
 
 impl Scanner<'_> {
-    fn refuse(&self, at: u64, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
-        self.file.refuse(at, expected, found)
-    }
-
     fn lead_in(&mut self, at: u64) -> Result<Option<LeadIn>, ReadError> {
         let left = self.file.size() - at;
         if left < LEAD_IN && at > 0 {
@@ -91,18 +84,17 @@ impl Scanner<'_> {
         let tag = cursor.take(4, "a segment's tag")?;
         if tag != b"TDSm" {
             let found = String::from_utf8_lossy(tag).into_owned();
-            return Err(self.refuse(at, "the tag TDSm of a segment", format!("{found:?}")));
+            return Err(self
+                .file
+                .refuse(at, "the tag TDSm of a segment", format!("{found:?}")));
         }
         let flags = cursor.u32("a segment's flags")?;
-        let order = if flags & BIG_ENDIAN != 0 {
-            ByteOrder::Big
-        } else {
-            ByteOrder::Little
-        };
-        cursor.set_order(order);
+        cursor.set_order(order(flags));
         let version = cursor.u32("a version")?;
         if !matches!(version, 4712 | 4713) {
-            return Err(self.refuse(at + 8, "version 4712 or 4713", version.to_string()));
+            return Err(self
+                .file
+                .refuse(at + 8, "version 4712 or 4713", version.to_string()));
         }
         let next = cursor.u64("the length of a segment")?;
         let raw = cursor.u64("the length of the metadata")?;
@@ -127,7 +119,7 @@ impl Scanner<'_> {
                 cut_short,
             })),
             None if cut_short && at > 0 => Ok(None),
-            None => Err(self.refuse(
+            None => Err(self.file.refuse(
                 at + 20,
                 format!("metadata within {} bytes", end - start),
                 raw.to_string(),
@@ -139,7 +131,11 @@ impl Scanner<'_> {
         if lead.flags & META_DATA != 0 {
             self.metadata(lead)?;
         } else if self.current.is_none() && lead.flags & RAW_DATA != 0 && lead.data < lead.end {
-            return Err(self.refuse(lead.at, "metadata in the first segment with data", "none"));
+            return Err(self.file.refuse(
+                lead.at,
+                "metadata in the first segment with data",
+                "none",
+            ));
         }
         if lead.flags & RAW_DATA != 0 {
             self.raw_data(lead)?;
@@ -157,7 +153,7 @@ impl Scanner<'_> {
         }
         let mut cursor = self
             .file
-            .cursor(lead.order())
+            .cursor(order(lead.flags))
             .part(lead.at + LEAD_IN, lead.data);
         let count = cursor.u32("the number of objects")?;
         let mut changed = fresh;
@@ -178,7 +174,8 @@ impl Scanner<'_> {
             Some(&index) => index,
             None => {
                 let parts = split_path(&path).ok_or_else(|| {
-                    self.refuse(at, "a path such as /'group'/'channel'", format!("{path:?}"))
+                    self.file
+                        .refuse(at, "a path such as /'group'/'channel'", format!("{path:?}"))
                 })?;
                 let index = self.content.objects.len();
                 self.content.objects.push(Object {
@@ -191,11 +188,10 @@ impl Scanner<'_> {
         };
         let changed = self.raw_index(cursor, index)?;
         let properties = cursor.u32("the number of properties")?;
-        let big = lead.order() == ByteOrder::Big;
         for _ in 0..properties {
             let name = value::text(cursor, "a property's name")?;
             let code = cursor.u32("a property's type")?;
-            let value = Value::read(cursor, code, big)?;
+            let value = Value::read(cursor, code, order(lead.flags))?;
             self.content.objects[index].properties.insert(name, value);
         }
         Ok(changed)
@@ -215,18 +211,22 @@ impl Scanner<'_> {
             NO_DATA => return Ok(was_active),
             AS_BEFORE if object.share.is_some() => return Ok(!was_active),
             AS_BEFORE => {
-                return Err(self.refuse(at, "a raw data index", "a reference to none before"));
+                return Err(self
+                    .file
+                    .refuse(at, "a raw data index", "a reference to none before"));
             }
             _ => {}
         }
         if object.path.len() != 2 {
-            return Err(self.refuse(at, "raw data of a channel", "raw data of a group"));
+            return Err(self
+                .file
+                .refuse(at, "raw data of a channel", "raw data of a group"));
         }
         let share = index::share(self.file, cursor, header)?;
         let object = &mut self.content.objects[index];
         if share.count > 0 && *object.kind.get_or_insert(share.kind) != share.kind {
             let found = format!("channel {:?} that changes its type", object.path);
-            return Err(self.refuse(at, "one type per channel", found));
+            return Err(self.file.refuse(at, "one type per channel", found));
         }
         object.share = Some(share);
         Ok(true)
@@ -242,7 +242,10 @@ impl Scanner<'_> {
         if !fresh {
             self.spend(lead.at, shares.len())?;
         }
-        let layout = Layout::new(shares).map_err(|found| self.layout_fault(lead, found))?;
+        let layout = Layout::new(shares).map_err(|found| {
+            self.file
+                .refuse(lead.at, "channels whose data fit together", found)
+        })?;
         let same = self
             .current
             .is_some_and(|c| self.content.layouts[c] == layout);
@@ -258,17 +261,14 @@ impl Scanner<'_> {
         self.content.pieces_of.push(Vec::new());
     }
 
-    fn layout_fault(&self, lead: &LeadIn, fault: LayoutFault) -> ReadError {
-        let expected = "channels whose data fit together";
-        self.refuse(lead.at, expected, fault.to_string())
-    }
-
     /// Count entries of layouts that a few bytes of metadata can call forth.
     fn spend(&mut self, at: u64, entries: usize) -> Result<(), ReadError> {
         self.built += entries as u64;
         match self.built <= self.file.size() / 4 + 4096 {
             true => Ok(()),
-            false => Err(self.refuse(at, "layouts in proportion to the file", "far too many")),
+            false => Err(self
+                .file
+                .refuse(at, "layouts in proportion to the file", "far too many")),
         }
     }
 
@@ -280,7 +280,9 @@ impl Scanner<'_> {
         let layout = &self.content.layouts[current];
         if layout.chunk == 0 {
             let found = format!("{total} bytes of data");
-            return Err(self.refuse(lead.data, "no data, as no channel has any", found));
+            return Err(self
+                .file
+                .refuse(lead.data, "no data, as no channel has any", found));
         }
         let device = layout
             .entries
@@ -289,11 +291,11 @@ impl Scanner<'_> {
         let interleaved = lead.flags & INTERLEAVED != 0 && !device;
         if interleaved && !layout.can_interleave() {
             let expected = "interleaved channels of equal lengths and fixed types";
-            return Err(self.refuse(lead.at, expected, "others"));
+            return Err(self.file.refuse(lead.at, expected, "others"));
         }
         let (chunks, rest) = (total / layout.chunk, total % layout.chunk);
         let cut = layout.cut(rest, lead.cut_short, interleaved);
-        let order = lead.order();
+        let order = order(lead.flags);
         let piece = Piece {
             at: lead.data,
             chunks,

@@ -1,9 +1,10 @@
 //! Types and property values of TDMS files.
 
+use chrono::{DateTime, Datelike};
+
 use crate::bytes::{Cursor, decode_text};
-use crate::numbers::Number;
+use crate::numbers::{ByteOrder, Number};
 use crate::source::{ReadError, StoredType};
-use crate::text::clock::civil_of_days;
 
 /// What a channel's samples or a property are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,22 +23,9 @@ pub(super) enum Kind {
     Device,
 }
 
-/// A type of samples or properties that is not read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub(super) enum UnreadType {
-    #[error("void")]
-    Void,
-    #[error("extended float")]
-    ExtendedFloat,
-    #[error("fixed point")]
-    FixedPoint,
-    #[error("unknown type {0:#x}")]
-    Unknown(u32),
-}
-
 impl Kind {
     /// The kind of a type code.
-    pub(super) fn of(code: u32) -> Result<Self, UnreadType> {
+    pub(super) fn of(code: u32) -> Result<Self, String> {
         Ok(match code {
             1 => Self::Number(Number::I8),
             2 => Self::Number(Number::I16),
@@ -55,10 +43,10 @@ impl Kind {
             0x08_000c => Self::Complex(Number::F32),
             0x10_000d => Self::Complex(Number::F64),
             0xffff_ffff => Self::Device,
-            0 => return Err(UnreadType::Void),
-            11 | 0x1b => return Err(UnreadType::ExtendedFloat),
-            0x4f => return Err(UnreadType::FixedPoint),
-            other => return Err(UnreadType::Unknown(other)),
+            11 | 0x1b => return Err("extended float".to_owned()),
+            0x4f => return Err("fixed point".to_owned()),
+            VOID => return Err("void".to_owned()),
+            other => return Err(format!("unknown type {other:#x}")),
         })
     }
 
@@ -96,14 +84,18 @@ pub(super) struct Stamp {
 }
 
 impl Stamp {
-    /// From the two words in the order of the file.
-    pub(super) fn read(cursor: &mut Cursor<'_>, big: bool) -> Result<Self, ReadError> {
-        let words = [cursor.u64("a time stamp")?, cursor.u64("a time stamp")?];
-        let [fraction, seconds] = if big { [words[1], words[0]] } else { words };
-        Ok(Self {
-            seconds: seconds.cast_signed(),
-            fraction,
-        })
+    /// The stamp of sixteen bytes.
+    pub(super) fn of(bytes: &[u8], order: ByteOrder) -> Self {
+        let bytes = bytes.first_chunk().copied().unwrap_or_default();
+        let word = match order {
+            ByteOrder::Little => u128::from_le_bytes(bytes),
+            ByteOrder::Big => u128::from_be_bytes(bytes),
+        };
+        let low = |word: u128| u64::try_from(word & u128::from(u64::MAX)).unwrap_or(u64::MAX);
+        Self {
+            seconds: low(word >> 64).cast_signed(),
+            fraction: low(word),
+        }
     }
 
     /// Seconds since another stamp.
@@ -120,27 +112,21 @@ impl Stamp {
         if self.seconds == 0 && self.fraction == 0 {
             return None;
         }
-        let nanoseconds = ((u128::from(self.fraction) * 1_000_000_000) >> 64) as u64;
-        let (days, second) = (
-            self.seconds.div_euclid(86_400),
-            self.seconds.rem_euclid(86_400),
-        );
-        let days = days.checked_sub(DAYS_TO_1970)?;
-        if !YEARS_OF_FOUR_DIGITS.contains(&days) {
-            return None;
-        }
-        let (year, month, day) = civil_of_days(days);
-        let (hour, minute, second) = (second / 3600, second / 60 % 60, second % 60);
-        let date = format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}");
-        Some(format!("{date}.{nanoseconds:09}Z"))
+        let nanoseconds = (u128::from(self.fraction) * 1_000_000_000) >> 64;
+        let nanoseconds = u32::try_from(nanoseconds).ok()?;
+        let time = DateTime::from_timestamp(self.seconds.checked_sub(TO_1970_S)?, nanoseconds)?;
+        let form = "%Y-%m-%dT%H:%M:%S%.9fZ";
+        (0..10_000)
+            .contains(&time.year())
+            .then(|| time.format(form).to_string())
     }
 }
 
-/// Days from 1904-01-01 to 1970-01-01.
-const DAYS_TO_1970: i64 = 24_107;
+/// The type code of what has no value.
+const VOID: u32 = 0;
 
-/// Days since 1970-01-01 of the years 0000 (from March on) to 9999.
-const YEARS_OF_FOUR_DIGITS: std::ops::Range<i64> = -719_468..2_932_897;
+/// Seconds from 1904-01-01 to 1970-01-01.
+const TO_1970_S: i64 = 24_107 * 86_400;
 
 /// The value of a property.
 #[derive(Debug, Clone, PartialEq)]
@@ -157,16 +143,19 @@ pub(super) enum Value {
 
 impl Value {
     /// Read a property's value of a type.
-    pub(super) fn read(cursor: &mut Cursor<'_>, code: u32, big: bool) -> Result<Self, ReadError> {
-        let kind = match Kind::of(code) {
-            Ok(kind) => kind,
-            Err(UnreadType::Void) => return Ok(Self::Text(String::new())),
-            Err(other) => return Err(cursor.refuse("a property's type", other.to_string())),
-        };
+    pub(super) fn read(
+        cursor: &mut Cursor<'_>,
+        code: u32,
+        order: ByteOrder,
+    ) -> Result<Self, ReadError> {
+        if code == VOID {
+            return Ok(Self::Text(String::new()));
+        }
+        let kind = Kind::of(code).map_err(|unread| cursor.refuse("a property's type", unread))?;
         Ok(match kind {
             Kind::Text => Self::Text(text(cursor, "a property")?),
             Kind::Bool => Self::Bool(cursor.u8("a property")? != 0),
-            Kind::Time => Self::Time(Stamp::read(cursor, big)?),
+            Kind::Time => Self::Time(Stamp::of(cursor.take(16, "a time stamp")?, order)),
             Kind::Number(number) => self::number(cursor, number)?,
             Kind::Complex(part) => {
                 let (re, im) = (self::number(cursor, part)?, self::number(cursor, part)?);
@@ -211,6 +200,7 @@ fn number(cursor: &mut Cursor<'_>, number: Number) -> Result<Value, ReadError> {
         Number::U32 => as_is!(cursor.u32("a property")?),
         Number::I64 => as_is!(cursor.u64("a property")?.cast_signed()),
         Number::U64 => as_is!(cursor.u64("a property")?),
+        Number::F16 => as_is!(half::f16::from_bits(cursor.u16("a property")?).to_f64()),
         Number::F32 => as_is!(f32::from_bits(cursor.u32("a property")?)),
         Number::F64 => as_is!(f64::from_bits(cursor.u64("a property")?)),
     })

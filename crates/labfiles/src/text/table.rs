@@ -334,6 +334,25 @@ impl Times {
     }
 }
 
+/// Refuse a table whose rows are so much shorter than its header that filling them up would
+/// take far more memory than the file.
+pub(crate) fn refuse_ragged(
+    text: &TextFile,
+    rows: u64,
+    columns: usize,
+    bytes: u64,
+) -> Result<(), ReadError> {
+    if rows.saturating_mul(columns as u64) <= 2 * bytes + 1024 {
+        return Ok(());
+    }
+    Err(ReadError::new(
+        text.path(),
+        format!("rows of {columns} cells as in the first ones"),
+        format!("{rows} rows, most of them much shorter"),
+        "Split the file where its number of columns changes.",
+    ))
+}
+
 /// Count the rows of a table and find where the last begins.
 pub(crate) fn count_rows(
     text: &TextFile,

@@ -3,14 +3,13 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::header::Header;
-use super::origin::{Origin, Side};
-use super::samples;
+use super::samples::{self, Side};
 use super::sets::{Function, Sets};
 use crate::bytes::FileBytes;
 use crate::source::{ChannelInfo, DatasetInfo, StoredType};
 
 /// The datasets of a file and the origins of their channels.
-pub(super) type Arranged = (Vec<DatasetInfo>, Vec<Vec<Origin>>);
+pub(super) type Arranged = (Vec<DatasetInfo>, Vec<Vec<(usize, Side)>>);
 
 /// What distinguishes one channel of a record from another, and one record from the next.
 type Identity<'a> = (
@@ -38,47 +37,31 @@ fn identity(header: &Header) -> Identity<'_> {
     )
 }
 
-/// Compares the abscissae of functions: even ones by their headers, uneven ones value by value.
-struct Comparison<'a> {
-    file: &'a FileBytes,
-    functions: &'a [Function],
-    /// Abscissa of the uneven function that others were compared with last.
-    known: Option<(usize, Vec<f64>)>,
-}
-
-impl Comparison<'_> {
-    fn same(&mut self, first: usize, other: usize) -> bool {
-        let (a, b) = (&self.functions[first], &self.functions[other]);
-        let (x, y) = (&a.header, &b.header);
-        if x.even != y.even || a.samples != b.samples || x.axes[0] != y.axes[0] {
-            return false;
-        }
-        if x.even {
-            return x.start == y.start && x.increment == y.increment;
-        }
-        self.same_values(first, other)
+/// Whether two functions have the same abscissa: even ones by their headers, uneven ones value by
+/// value. `known` is the first one's, once it was read.
+fn same_abscissa(
+    file: &FileBytes,
+    first: &Function,
+    other: &Function,
+    known: &mut Option<Vec<f64>>,
+) -> bool {
+    let (x, y) = (&first.header, &other.header);
+    let alike = x.even == y.even && first.samples == other.samples && x.axes[0] == y.axes[0];
+    if x.even || !alike {
+        return alike && x.start == y.start && x.increment == y.increment;
     }
-
-    /// Whether two uneven abscissae hold the same; not where one cannot be read.
-    fn same_values(&mut self, first: usize, other: usize) -> bool {
-        let read = |index: usize| samples::abscissa(self.file, &self.functions[index]).ok();
-        if self.known.as_ref().is_none_or(|(index, _)| *index != first) {
-            self.known = read(first).map(|values| (first, values));
-        }
-        let known = self.known.as_ref().map(|(_, values)| values);
-        known.is_some_and(|values| read(other).is_some_and(|others| *values == others))
+    let read = |f: &Function| samples::read(file, f, Side::Abscissa).ok()?.into_real();
+    if known.is_none() {
+        *known = read(first);
     }
+    known.is_some() && *known == read(other)
 }
 
 /// Group functions that follow each other with the same abscissa; a channel that comes again with
 /// the same names, or at another time or load case, begins the next record.
 fn group(file: &FileBytes, functions: &[Function]) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
-    let mut abscissae = Comparison {
-        file,
-        functions,
-        known: None,
-    };
+    let mut known = None;
     let mut seen: HashMap<Identity<'_>, Vec<usize>> = HashMap::new();
     for (index, function) in functions.iter().enumerate() {
         let header = &function.header;
@@ -89,9 +72,10 @@ fn group(file: &FileBytes, functions: &[Function]) -> Vec<Vec<usize>> {
             moved || other.lines == header.lines
         });
         let last = groups.last().filter(|_| !again);
-        if !last.is_some_and(|group| abscissae.same(group[0], index)) {
+        if !last.is_some_and(|g| same_abscissa(file, &functions[g[0]], function, &mut known)) {
             groups.push(Vec::new());
             seen.clear();
+            known = None;
         }
         if let Some(group) = groups.last_mut() {
             group.push(index);
@@ -136,17 +120,11 @@ pub(super) fn arrange(file: &FileBytes, sets: &Sets) -> Arranged {
         let (mut channels, mut origins) = (Vec::new(), Vec::new());
         if !(first.header.even && first.header.over_time()) {
             channels.push(abscissa(first));
-            origins.push(Origin {
-                function: members[0],
-                side: Side::Abscissa,
-            });
+            origins.push((members[0], Side::Abscissa));
         }
         for (&member, name) in members.iter().zip(names(&headers)) {
             channels.push(ordinate(sets, &sets.functions[member], name));
-            origins.push(Origin {
-                function: member,
-                side: Side::Ordinate,
-            });
+            origins.push((member, Side::Ordinate));
         }
         let time_axis = (first.header.over_time() && !first.header.even).then_some(0);
         let name = if single {

@@ -122,26 +122,6 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// Place of the first line feed, eight bytes at a time.
-pub(super) fn line_feed(text: &[u8]) -> Option<usize> {
-    const ONES: u64 = 0x0101_0101_0101_0101;
-    const FEEDS: u64 = ONES * b'\n' as u64;
-    let (words, _) = text.as_chunks::<8>();
-    let mut at = 0;
-    for &word in words {
-        // A byte that equals the line feed becomes 0, and a 0 borrows into its top bit.
-        let zero = u64::from_le_bytes(word) ^ FEEDS;
-        if zero.wrapping_sub(ONES) & !zero & (ONES << 7) != 0 {
-            break;
-        }
-        at += 8;
-    }
-    text[at..]
-        .iter()
-        .position(|&b| b == b'\n')
-        .map(|found| at + found)
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -185,19 +165,6 @@ mod tests {
         assert_eq!(all("1.00000E+001.5"), Err(NoNumber { at: 12 }));
         assert_eq!(all("1,5"), Err(NoNumber { at: 1 }));
         assert_eq!(all("- 5"), Err(NoNumber { at: 0 }));
-    }
-
-    #[test]
-    fn line_feeds() {
-        for length in 0..40 {
-            let mut text = vec![b'x'; length];
-            assert_eq!(line_feed(&text), None);
-            for at in 0..length {
-                text[at] = b'\n';
-                assert_eq!(line_feed(&text), Some(at));
-                text[at] = 0x0b;
-            }
-        }
     }
 
     proptest! {

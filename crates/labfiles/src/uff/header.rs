@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use chrono::NaiveDateTime;
+
 use crate::bytes::{decode_text, to_usize};
 use crate::units::{Dimension, parse_unit};
 
@@ -261,30 +263,10 @@ fn freedom(line: &[u8], at: usize) -> Freedom {
 
 /// `18-Apr-16 13:49:58` as `2016-04-18T13:49:58`; years below 70 are of this century.
 fn iso8601(text: &str) -> Option<String> {
-    const MONTHS: [&str; 12] = [
-        "jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec",
-    ];
-    let (date, time) = text.split_once(' ')?;
-    let mut parts = date.split('-');
-    let (day, month, year) = (parts.next()?, parts.next()?, parts.next()?);
-    let month = MONTHS.iter().position(|m| *m == month.to_lowercase())? + 1;
-    let (day, year): (u32, u32) = (day.parse().ok()?, year.parse().ok()?);
-    let year = match year {
-        0..70 => 2000 + year,
-        70..100 => 1900 + year,
-        other => other,
-    };
-    let clock: Vec<u32> = time
-        .trim()
-        .split(':')
-        .map_while(|part| part.parse().ok())
-        .collect();
-    match clock.as_slice() {
-        &[hour, minute, second] if day <= 31 && hour < 24 && minute < 60 && second < 61 => Some(
-            format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}"),
-        ),
-        _ => None,
-    }
+    let forms = ["%d-%b-%y %H:%M:%S", "%d-%b-%Y %H:%M:%S"];
+    let read = |form| NaiveDateTime::parse_from_str(text.trim(), form).ok();
+    let time = forms.into_iter().find_map(read)?;
+    Some(time.format("%Y-%m-%dT%H:%M:%S").to_string())
 }
 
 /// The unit system of a file (set 164).

@@ -20,7 +20,6 @@
 mod arrange;
 mod ascii;
 mod header;
-mod origin;
 mod samples;
 mod sets;
 #[cfg(test)]
@@ -28,11 +27,11 @@ mod tests;
 
 use std::path::Path;
 
-use origin::Origin;
+use samples::Side;
 use sets::Sets;
 
 use super::bytes::FileBytes;
-use super::source::{Opened, ReadError, Reader, Samples, Source};
+use super::source::{ReadError, Reader, Samples, Source, opened};
 
 /// Whether a file's first line is the mark that begins a set: `    -1`.
 pub(crate) fn recognises(head: &[u8]) -> bool {
@@ -44,10 +43,6 @@ pub(crate) fn recognises(head: &[u8]) -> bool {
 /// abscissae are read, which state what belongs to one record.
 pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let file = FileBytes::open(path)?;
-    if !recognises(file.all()) {
-        let found = format!("{:?}", sets::snippet(file.all(), 0));
-        return Err(file.refuse(0, "the line '    -1' that begins a set", found));
-    }
     let sets = sets::scan(&file)?;
     let (datasets, origins) = arrange::arrange(&file, &sets);
     let mut notes = sets.notes.clone();
@@ -61,29 +56,30 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
             each.collect::<Vec<_>>().join(", ")
         ));
     }
-    Ok(Box::new(Opened {
-        format: "uff",
-        path: path.to_path_buf(),
-        datasets,
-        notes,
-        reader: UniversalFile {
-            file,
-            sets,
-            origins,
-        },
-    }))
+    let reader = UniversalFile {
+        file,
+        sets,
+        origins,
+    };
+    opened("uff", path, datasets, notes, reader)
 }
 
 struct UniversalFile {
     file: FileBytes,
     sets: Sets,
-    origins: Vec<Vec<Origin>>,
+    /// Function and side of each channel.
+    origins: Vec<Vec<(usize, Side)>>,
 }
 
 impl Reader for UniversalFile {
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
         self.file.still_whole()?;
-        let wanted: Vec<_> = channels.iter().map(|&c| self.origins[dataset][c]).collect();
-        samples::read(&self.file, &self.sets.functions, &wanted)
+        let read = |&channel: &usize| {
+            let (function, side) = self.origins[dataset][channel];
+            let function = &self.sets.functions[function];
+            samples::read(&self.file, function, side)
+                .map_err(|e| e.channel(&function.header.lines[0]))
+        };
+        channels.iter().map(read).collect()
     }
 }

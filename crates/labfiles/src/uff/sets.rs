@@ -1,6 +1,6 @@
 //! The sets of a universal file: where each begins and ends, and the functions among them.
 
-use super::ascii::{Numbers, line_feed};
+use super::ascii::Numbers;
 use super::header::{Fault, Header, System};
 use crate::bytes::{FileBytes, decode_text, to_usize};
 use crate::numbers::{ByteOrder, Number};
@@ -94,17 +94,13 @@ pub(super) fn scan(file: &FileBytes) -> Result<Sets, ReadError> {
 }
 
 impl<'a> Scanner<'a> {
-    fn refuse(&self, at: u64, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
-        self.file.refuse(at, expected, found)
-    }
-
     /// The next line without its end, and its offset.
     fn line(&mut self) -> Option<(usize, &'a [u8])> {
         let (at, rest) = (self.at, &self.file.all()[self.at..]);
         if rest.is_empty() {
             return None;
         }
-        let end = line_feed(rest);
+        let end = memchr::memchr(b'\n', rest);
         self.at = end.map_or(self.file.all().len(), |end| at + end + 1);
         Some((at, &rest[..end.unwrap_or(rest.len())]))
     }
@@ -183,7 +179,7 @@ impl<'a> Scanner<'a> {
         for (line, start) in lines.iter_mut().zip(&mut starts) {
             let Some((at, found)) = self.line() else {
                 let expected = format!("{HEADER_LINES} lines of header");
-                return Err(self.refuse(at as u64, expected, "the end of the file"));
+                return Err(self.file.refuse(at as u64, expected, "the end of the file"));
             };
             (*line, *start) = (found.strip_suffix(b"\r").unwrap_or(found), at);
         }
@@ -252,7 +248,8 @@ impl<'a> Scanner<'a> {
         }
         let counted = Numbers::new(body).count().map_err(|fault| {
             let found = format!("{:?}", snippet(body, fault.at));
-            self.refuse((start + fault.at) as u64, "a number", found)
+            self.file
+                .refuse((start + fault.at) as u64, "a number", found)
         })?;
         Ok(header.points.min(counted / header.per_point()))
     }
@@ -267,7 +264,9 @@ impl<'a> Scanner<'a> {
             Some(1) => ByteOrder::Little,
             Some(2) => ByteOrder::Big,
             _ => {
-                return Err(self.refuse(at as u64, "byte order 1 or 2", format!("{text:?}")));
+                return Err(self
+                    .file
+                    .refuse(at as u64, "byte order 1 or 2", format!("{text:?}")));
             }
         };
         if words.get(1) != Some(&2) {
@@ -300,24 +299,17 @@ impl<'a> Scanner<'a> {
         at: u64,
         stated: u64,
     ) -> Result<Function, ReadError> {
-        let ordinate = if header.double() {
-            Number::F64
-        } else {
-            Number::F32
+        let ordinate = match header.double() {
+            true => Number::F64,
+            false => Number::F32,
         };
         let parts = (1 + u64::from(header.complex())) * ordinate.bytes();
-        // The format's description has abscissae in single precision, programs write them as
-        // wide as the ordinate; and the number of bytes stated is not always true.
-        let widths = if header.even {
-            vec![]
-        } else {
-            vec![Number::F32, ordinate]
+        // An uneven abscissa is single precision, or that of the ordinate.
+        let uneven = [Number::F32, ordinate].map(|w| (w, parts + w.bytes()));
+        let forms: &[(Number, u64)] = match header.even {
+            true => &[(ordinate, parts)],
+            false => &uneven,
         };
-        let mut forms: Vec<(Number, u64)> =
-            widths.iter().map(|w| (*w, parts + w.bytes())).collect();
-        if header.even {
-            forms.push((ordinate, parts));
-        }
         let length = |per_point: u64| header.points.checked_mul(per_point);
         let fits = |&&(_, per_point): &&(Number, u64)| {
             length(per_point).is_some_and(|bytes| self.mark_at(at.saturating_add(bytes)))
@@ -334,7 +326,7 @@ impl<'a> Scanner<'a> {
                     .unwrap_or((ordinate, parts));
                 if length(form.1).is_some_and(|bytes| bytes <= left) {
                     let expected = format!("the end of a set after {} points", header.points);
-                    return Err(self.refuse(at, expected, "other bytes"));
+                    return Err(self.file.refuse(at, expected, "other bytes"));
                 }
                 form
             }
@@ -375,7 +367,7 @@ impl<'a> Scanner<'a> {
         let rest = &rest[..rest.len().min(96)];
         let rest = rest.strip_prefix(b"\r").unwrap_or(rest);
         let rest = rest.strip_prefix(b"\n").unwrap_or(rest);
-        is_mark(&rest[..line_feed(rest).unwrap_or(rest.len())])
+        is_mark(&rest[..memchr::memchr(b'\n', rest).unwrap_or(rest.len())])
     }
 
     /// Go past the mark that ends a binary set.

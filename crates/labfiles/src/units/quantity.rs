@@ -1,5 +1,6 @@
 //! Quantities written as text: a number and a unit.
 
+use crate::text::number;
 use crate::units::table::{Dimension, parse_unit};
 
 /// A number with its unit, in SI.
@@ -88,35 +89,14 @@ pub fn parse_quantity_of(text: &str, dimension: Dimension) -> Result<f64, Quanti
 /// The number at the beginning of a text and what follows it.
 pub(super) fn split_number(text: &str) -> Result<(f64, &str), QuantityError> {
     let text = text.trim();
-    let end = number_end(text.as_bytes());
-    let (number, rest) = text.split_at(end);
+    let read = number::parse_prefix(text.as_bytes(), b'.');
+    let rest = &text[read.map_or(0, |(_, end)| end)..];
     if rest.starts_with(',') {
         return Err(QuantityError::Comma(text.to_owned()));
     }
-    let value: f64 = number
-        .parse()
-        .map_err(|_| QuantityError::NoNumber(text.to_owned()))?;
+    let (value, _) = read.ok_or_else(|| QuantityError::NoNumber(text.to_owned()))?;
     if !value.is_finite() {
         return Err(QuantityError::NotFinite(text.to_owned()));
     }
     Ok((value, rest.trim()))
-}
-
-/// Length of the decimal number, with its exponent, at the beginning of a text.
-fn number_end(text: &[u8]) -> usize {
-    let digits = |from: usize| {
-        from + text[from..]
-            .iter()
-            .take_while(|b| b.is_ascii_digit() || **b == b'.')
-            .count()
-    };
-    let signed = |at: usize| at + usize::from(matches!(text.get(at), Some(b'+' | b'-')));
-    let end = digits(signed(0));
-    if matches!(text.get(end), Some(b'e' | b'E')) {
-        let exponent = signed(end + 1);
-        if digits(exponent) > exponent {
-            return digits(exponent);
-        }
-    }
-    end
 }

@@ -104,10 +104,6 @@ pub(super) fn scan(file: &FileBytes) -> Result<Wave, ReadError> {
 }
 
 impl Scanner<'_> {
-    fn refuse(&self, at: u64, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
-        self.file.refuse(at, expected, found)
-    }
-
     fn chunk(&mut self, cursor: &mut Cursor<'_>) -> Result<(), ReadError> {
         let at = cursor.at();
         let name: [u8; 4] = cursor
@@ -128,7 +124,11 @@ impl Scanner<'_> {
             _ if length > left && self.data.is_none() => {
                 let found = format!("only {left} bytes left");
                 let name = decode_text(&name).into_owned();
-                return Err(self.refuse(at, format!("{length} bytes of chunk {name:?}"), found));
+                return Err(self.file.refuse(
+                    at,
+                    format!("{length} bytes of chunk {name:?}"),
+                    found,
+                ));
             }
             _ if length > left => self
                 .notes
@@ -175,7 +175,7 @@ impl Scanner<'_> {
         if tag == EXTENSIBLE {
             tag = self.extension(cursor)?;
         }
-        let fault = |expected: &str, found: String| Err(self.refuse(at, expected, found));
+        let fault = |expected: &str, found: String| Err(self.file.refuse(at, expected, found));
         if !matches!(tag, PCM | FLOAT) {
             let remedy = "Save the file as PCM or floating point.";
             let found = format!("{} samples", codec(tag));
@@ -223,7 +223,9 @@ impl Scanner<'_> {
             Ok(tag) if middle == [0, 0x10] && rest == WAVE_GUID => Ok(tag),
             _ => {
                 let found = format!("{tag:#x} {middle:?} {rest:02x?}");
-                Err(self.refuse(at, "the identifier of a wave format", found))
+                Err(self
+                    .file
+                    .refuse(at, "the identifier of a wave format", found))
             }
         }
     }
@@ -267,10 +269,12 @@ impl Scanner<'_> {
     fn finish(mut self) -> Result<Wave, ReadError> {
         let end = self.file.size();
         let Some(format) = self.format else {
-            return Err(self.refuse(end, "a format chunk (fmt)", "the end of the file"));
+            return Err(self
+                .file
+                .refuse(end, "a format chunk (fmt)", "the end of the file"));
         };
         let Some((at, length)) = self.data else {
-            return Err(self.refuse(end, "a data chunk", "the end of the file"));
+            return Err(self.file.refuse(end, "a data chunk", "the end of the file"));
         };
         let block = u64::from(format.bytes) * u64::from(format.channels);
         if length % block != 0 {

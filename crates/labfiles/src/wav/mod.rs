@@ -21,9 +21,7 @@ use chunks::{Format, Wave};
 
 use super::bytes::FileBytes;
 use super::numbers::{self, ByteOrder, Number, Spacing};
-use super::source::{
-    ChannelInfo, DatasetInfo, Opened, ReadError, Reader, Samples, Source, StoredType,
-};
+use super::source::{ChannelInfo, DatasetInfo, ReadError, Reader, Samples, Source, opened};
 use crate::bytes::to_usize;
 
 /// Whether a file's first bytes are those of a WAV file.
@@ -45,38 +43,33 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         time_axis: None,
         attributes,
     };
-    Ok(Box::new(Opened {
-        format: "wav",
-        path: path.to_path_buf(),
-        datasets: vec![dataset],
-        notes: wave.notes.clone(),
-        reader: WaveFile { file, wave },
-    }))
+    opened(
+        "wav",
+        path,
+        vec![dataset],
+        wave.notes.clone(),
+        WaveFile { file, wave },
+    )
 }
 
-fn channel(wave: &Wave, number: u16) -> ChannelInfo {
+fn channel(wave: &Wave, k: u16) -> ChannelInfo {
     let format = &wave.format;
-    let stored = match (format.float, format.bytes) {
-        (true, 4) => StoredType::Float(32),
-        (true, _) => StoredType::Float(64),
-        (false, 1) => StoredType::UInt(8),
-        (false, _) => StoredType::Int(native_bits(format)),
+    let number = native(format);
+    let full_scale = match format.float {
+        true => 1.0,
+        false => 2f64.powi(i32::from(number.bits()) - 1),
     };
-    let mut properties = BTreeMap::new();
-    properties.insert("bits_per_sample".to_owned(), format.bits.to_string());
-    let full_scale = match (format.float, format.bytes) {
-        (true, _) => 1.0,
-        (false, 1) => 128.0,
-        (false, _) => 2f64.powi(i32::from(native_bits(format)) - 1),
-    };
-    properties.insert("full_scale".to_owned(), full_scale.to_string());
-    if !format.float && format.bytes == 1 {
+    let mut properties = BTreeMap::from([
+        ("bits_per_sample".to_owned(), format.bits.to_string()),
+        ("full_scale".to_owned(), full_scale.to_string()),
+    ]);
+    if number == Number::U8 {
         properties.insert("zero_level".to_owned(), "128".to_owned());
     }
     ChannelInfo {
-        name: format!("channel {number}"),
+        name: format!("channel {k}"),
         unit: None,
-        stored,
+        stored: number.stored(),
         samples: wave.samples,
         sample_rate_hz: Some(f64::from(format.rate)),
         start_time: wave.start_time.clone(),
@@ -84,13 +77,15 @@ fn channel(wave: &Wave, number: u16) -> ChannelInfo {
     }
 }
 
-/// Bits of the native integer that holds a sample of PCM.
-fn native_bits(format: &Format) -> u8 {
-    match format.bytes {
-        1 => 8,
-        2 => 16,
-        3 | 4 => 32,
-        _ => 64,
+/// The type of the samples: the next wider one of integers of odd widths, left-justified.
+fn native(format: &Format) -> Number {
+    match (format.float, format.bytes) {
+        (true, 4) => Number::F32,
+        (true, _) => Number::F64,
+        (false, 1) => Number::U8,
+        (false, 2) => Number::I16,
+        (false, 3 | 4) => Number::I32,
+        (false, _) => Number::I64,
     }
 }
 
@@ -117,15 +112,11 @@ impl WaveFile {
             stride,
             count,
         };
-        let number = match (format.float, bytes) {
-            (true, 4) => Number::F32,
-            (true, _) => Number::F64,
-            (false, 1) => Number::U8,
-            (false, 2) => Number::I16,
-            (false, 4) => Number::I32,
-            (false, 8) => Number::I64,
-            _ => return Ok(Samples::Real(odd(data, spacing, bytes, *order))),
-        };
+        let number = native(format);
+        if to_usize(number.bytes()) != bytes {
+            let odd = odd(data, spacing, (bytes, number.bits()), *order);
+            return Ok(Samples::Real(odd));
+        }
         let mut out = Vec::with_capacity(count);
         numbers::decode_spaced(number, *order, data, spacing, &mut out);
         Ok(Samples::Real(out))
@@ -133,8 +124,7 @@ impl WaveFile {
 }
 
 /// Integers of 3, 5, 6 or 7 bytes, left-justified in 32 or 64 bits.
-fn odd(data: &[u8], spacing: Spacing, bytes: usize, order: ByteOrder) -> Vec<f64> {
-    let unused = if bytes == 3 { 4 } else { 8 } - bytes;
+fn odd(data: &[u8], spacing: Spacing, (bytes, bits): (usize, u8), order: ByteOrder) -> Vec<f64> {
     let sample = |row: &[u8]| {
         let mut word = [0; 8];
         let (low, field) = (8 - bytes, &row[spacing.offset..spacing.offset + bytes]);
@@ -143,8 +133,7 @@ fn odd(data: &[u8], spacing: Spacing, bytes: usize, order: ByteOrder) -> Vec<f64
             word[low..].reverse();
         }
         // The sample's sign is the word's; what is beyond the native integer is shifted out.
-        let shift = 8 * (8 - bytes - unused);
-        (i64::from_le_bytes(word) >> shift) as f64
+        (i64::from_le_bytes(word) >> (64 - bits)) as f64
     };
     data.chunks_exact(spacing.stride).map(sample).collect()
 }

@@ -2,6 +2,7 @@ use serde_json::Value;
 
 use super::*;
 use crate::conformance::{self, Statistics};
+use crate::source::StoredType;
 
 // ---- writing small files ----
 

@@ -6,56 +6,29 @@ use crate::hdf5::store::Array;
 use crate::mat::arrange::Origin;
 use crate::mat::text;
 use crate::mat::tree::{Content, Encoding, Leaf, Part};
-use crate::numbers::{ByteOrder, Number};
+use crate::numbers::ByteOrder;
 use crate::source::Samples;
 
 /// What an array holds: numbers, or characters of 16 bits.
 pub(crate) fn content(array: &Array, class: &str, at: u64) -> Option<Content> {
     let bytes = array.count()?.checked_mul(array.element.bytes() as u64)?;
-    match (&array.element, class) {
-        (element, "char") => {
-            let part = Part {
-                at,
-                bytes,
-                number: number(element)?,
-            };
-            Some(Content::Text(part, Encoding::Utf16))
-        }
-        (Element::Complex { part, .. }, _) => {
-            let bits = u8::try_from(8 * part.bytes()).ok()?;
-            let part = Part {
-                at,
-                bytes,
-                number: number(part)?,
-            };
-            Some(Content::Complex(part, part, bits))
-        }
-        (element, _) => Some(Content::Real(Part {
-            at,
-            bytes,
-            number: number(element)?,
-        })),
+    let (Element::Number(number, _), complex) = (match &array.element {
+        Element::Complex { part, .. } => (&**part, true),
+        element => (element, false),
+    }) else {
+        return None;
+    };
+    let part = Part {
+        at,
+        bytes,
+        number: *number,
+    };
+    match (complex, class) {
+        (false, "char") => Some(Content::Text(part, Encoding::Utf16)),
+        (true, "char") => None,
+        (true, _) => Some(Content::Complex(part, part, number.bits())),
+        (false, _) => Some(Content::Real(part)),
     }
-}
-
-fn number(element: &Element) -> Option<Number> {
-    match element {
-        Element::Number(number, _) => Some(*number),
-        _ => None,
-    }
-}
-
-/// MATLAB's name of a class; "array" for classes of its own objects.
-pub(crate) fn static_class(name: &str) -> &'static str {
-    const CLASSES: [&str; 12] = [
-        "char", "double", "single", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64",
-        "uint64", "logical",
-    ];
-    CLASSES
-        .iter()
-        .find(|c| **c == name)
-        .copied()
-        .unwrap_or("array")
 }
 
 /// An array's bytes with the least significant byte of each number first.
