@@ -4,7 +4,7 @@ use super::input::{Input, thinned};
 use crate::identify::diagnostics::contact_law::Law;
 use crate::identify::evidence::impacts::SpeedPair;
 use crate::identify::evidence::resonance::predicted;
-use crate::identify::evidence::{Blocks, Evidence, Nominal};
+use crate::identify::evidence::{Evidence, Nominal, impacts_of_bulk};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::residuals::{MethodResiduals, residuals as residuals_of_methods};
 use crate::identify::{Method, MethodResult, SpecimenResult};
@@ -192,7 +192,7 @@ fn evidence<'a>(input: &Input<'a>) -> Evidence<'a> {
 
 /// Speeds before and after impact; each specimen by itself if there are several.
 pub(super) fn impacts(input: &Input<'_>) -> Vec<ImpactScatter> {
-    let block = Blocks::new(&evidence(input)).impact;
+    let block = impacts_of_bulk(input.observations);
     let specimens = &input.identification.specimens;
     if specimens.is_empty() {
         let method = input.identification.methods.get(&Method::Impacts);

@@ -57,17 +57,32 @@ pub struct Compared {
 /// Compare a campaign with its fitted model.
 pub fn compare(input: &Input<'_>) -> Compared {
     let chosen = replays::chosen_records(input);
+    // the map's cells and the records that are replayed keep all threads busy, the rest few
+    let ((region_map, comparisons), ((residuals, curves), (impacts, records))) = rayon::join(
+        || {
+            (
+                plane::region_map(input),
+                replays::comparisons(input, &chosen),
+            )
+        },
+        || {
+            rayon::join(
+                || (evidence::residuals(input), plane::curves(input)),
+                || (evidence::impacts(input), records::records(input, &chosen)),
+            )
+        },
+    );
     Compared {
         overview: records::overview(input),
-        records: records::records(input, &chosen),
+        records,
         brackets: records::brackets(input),
-        curves: plane::curves(input),
-        region_map: plane::region_map(input),
-        comparisons: replays::comparisons(input, &chosen),
+        curves,
+        region_map,
+        comparisons,
         resonance: evidence::resonance(input),
-        impacts: evidence::impacts(input),
+        impacts,
         free_decays: decays::free_decays(input),
-        residuals: evidence::residuals(input),
+        residuals,
         correlation: evidence::correlation(input),
         unusable: left_out::unusable(input.observations),
     }

@@ -29,7 +29,10 @@ pub fn residuals(
     fitted: &Parameters,
     left_out: impl Fn(usize) -> bool,
 ) -> Vec<MethodResiduals> {
-    let mut blocks = Blocks::new(evidence);
+    let mut evidence = *evidence;
+    // effects of no strength change no residual
+    evidence.nominal.effects = fitted.effects_present();
+    let mut blocks = Blocks::new(&evidence);
     blocks.weigh(fitted);
     let resonance = blocks.resonance.points.iter().map(|p| p.observation);
     let trajectory = blocks.trajectory.records.iter().map(|r| r.observation);

@@ -160,6 +160,12 @@ pub struct Blocks {
     pub progress: FitProgress,
 }
 
+/// The pairs of speeds at impacts that [`Blocks::new`] has: those without outliers.
+pub fn impacts_of_bulk(observations: &[Observation]) -> ImpactBlock {
+    let block = ImpactBlock::new(observations, IMPACT_SCATTER);
+    block.without_outliers(OUTLYING_IMPACT).0
+}
+
 impl Blocks {
     /// Sort the evidence.
     pub fn new(evidence: &Evidence<'_>) -> Self {

@@ -61,6 +61,10 @@ pub fn saltation(machine: &Machine, before: &State, after: &State) -> Matrix4<f6
 pub fn eigenvalues(machine: &Machine, map: &Matrix4<f64>) -> Vec<C64> {
     let mut values = if !map.iter().all(|v| v.is_finite()) {
         vec![C64::new(f64::NAN, f64::NAN); if machine.y.is_some() { 4 } else { 2 }]
+    } else if machine.is_symmetric() {
+        [1.0, -1.0]
+            .map(|sign| of_two(&like_masses(map, sign)))
+            .concat()
     } else if machine.y.is_some() {
         of_four(map)
     } else {
@@ -68,6 +72,13 @@ pub fn eigenvalues(machine: &Machine, map: &Matrix4<f64>) -> Vec<C64> {
     };
     values.sort_by(|a, b| b.norm_sqr().total_cmp(&a.norm_sqr()));
     values
+}
+
+/// What the map of two like masses makes of their common (sign 1) or opposite (sign −1) variation:
+/// an impact changes the sum of their displacements alone, so that the two do not mix.
+fn like_masses(map: &Matrix4<f64>, sign: f64) -> Matrix2<f64> {
+    let block = |row, column| map.fixed_view::<2, 2>(row, column);
+    0.5 * (block(0, 0) + block(2, 2) + sign * (block(0, 2) + block(2, 0)))
 }
 
 /// Steps after which the QR iteration of a matrix of four rows is given up; it needs about ten.
