@@ -1,7 +1,7 @@
 //! Samples of the velocities that were taken while a contact lasted.
 
 use crate::event::kinematics::{Body, Series};
-use crate::event::refine::{ArcFit, Candidate, Instant, arcs};
+use crate::event::refine::{Candidate, DEGREE, Instant, arcs};
 use crate::record::Role;
 
 /// Least height of a jump, in noise deviations, from which its samples are used.
@@ -39,7 +39,7 @@ pub(super) fn samples(
     candidates: &[Candidate],
     index: usize,
     instant: Instant,
-    arc: ArcFit,
+    arc_samples: usize,
 ) -> Option<Samples> {
     if candidates[index].dead_samples > 0.0 || instant.error > LEAST_PLACED {
         return None;
@@ -50,13 +50,13 @@ pub(super) fn samples(
     };
     for (body, velocity) in bodies.into_iter().enumerate() {
         let Some(velocity) = velocity else { continue };
-        let [before, after] = arcs(velocity, candidates, index, arc)?;
+        let [before, after] = arcs(velocity, candidates, index, arc_samples)?;
         let height = before.value(instant.time) - after.value(instant.time);
-        let full = before.samples.min(after.samples) > arc.degree + 1;
+        let full = before.samples.min(after.samples) > DEGREE + 1;
         if !full || height < CLEAR_JUMP * velocity.noise {
             return None;
         }
-        let found = beside(velocity, candidates, index, instant, arc);
+        let found = beside(velocity, candidates, index, instant, arc_samples);
         out.passages.extend(found.into_iter().map(|p| (p, body)));
     }
     (!out.passages.is_empty()).then_some(out)
@@ -68,10 +68,10 @@ pub(super) fn beside(
     candidates: &[Candidate],
     index: usize,
     instant: Instant,
-    arc: ArcFit,
+    arc_samples: usize,
 ) -> Vec<Passage> {
     let jump = candidates[index].jump;
-    let Some([before, after]) = arcs(velocity, candidates, index, arc) else {
+    let Some([before, after]) = arcs(velocity, candidates, index, arc_samples) else {
         return Vec::new();
     };
     let height = before.value(instant.time) - after.value(instant.time);

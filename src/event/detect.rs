@@ -6,7 +6,7 @@ use crate::event::finite_contact::{self, FiniteContact};
 use crate::event::impact::{DetectionSource, Impact};
 use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
 use crate::event::kinematics::{Kinematics, RigKind, Series};
-use crate::event::refine::{self, ArcFit, Candidate, Instant};
+use crate::event::refine::{self, Candidate, Instant};
 use crate::event::{drift, free_flight, impact_speeds};
 use crate::record::{Flag, FlagCode, Record, Role};
 use crate::signal::whole;
@@ -128,13 +128,11 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
     }
     let dead_from = samples_of(settings.dead_zone_s, rate_hz).max(4);
     let width = window_samples(drive.as_ref(), rate_hz, settings.window_periods);
-    let arc = ArcFit {
-        degree: 3,
-        displacement_degree: 3,
-        width: (4 * width / 3).max(6),
-    };
+    let arc_samples = (4 * width / 3).max(6);
     let found = match &kinematics.relative.velocity {
-        Some(velocity) => fuse(velocity, &closed, width, dead_from).confirmed(velocity, arc),
+        Some(velocity) => {
+            fuse(velocity, &closed, width, dead_from).confirmed(velocity, arc_samples)
+        }
         None => from_contact_alone(&closed, dead_from),
     };
     if let Some(flag) = wrong_way(&found, record) {
@@ -144,7 +142,7 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
         &mut kinematics,
         &found.candidates,
         drive.as_ref(),
-        (rig, arc),
+        (rig, arc_samples),
     );
     let closed_samples: usize = closed.iter().map(Closed::samples).sum();
     Detection {
@@ -234,27 +232,27 @@ fn refined(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
     drive: Option<&DriveTone>,
-    (rig, arc): (RigKind, ArcFit),
+    (rig, arc_samples): (RigKind, usize),
 ) -> Vec<Impact> {
     if kinematics.relative.velocity.is_none() {
         return without_speeds(candidates, drive, kinematics.rate_hz);
     }
-    let Some(contact) = finite_contact::measure(kinematics, candidates, arc) else {
-        return undrifted(kinematics, candidates, drive, (rig, arc, None));
+    let Some(contact) = finite_contact::measure(kinematics, candidates, arc_samples) else {
+        return undrifted(kinematics, candidates, drive, (rig, arc_samples, None));
     };
     let wide = finite_contact::widened(candidates);
-    let instants = refine::instants(kinematics, &wide, arc);
+    let instants = refine::instants(kinematics, &wide, arc_samples);
     let spanned = contact.spanned(candidates, &instants);
-    let instants = refine::instants(kinematics, &spanned, arc);
-    let instants = contact.placed(kinematics, &spanned, &instants, arc);
+    let instants = refine::instants(kinematics, &spanned, arc_samples);
+    let instants = contact.placed(kinematics, &spanned, &instants, arc_samples);
     let spanned = contact.spanned(candidates, &instants);
-    finite_contact::bridge(kinematics, &spanned, &instants, &contact, arc);
+    finite_contact::bridge(kinematics, &spanned, &instants, &contact, arc_samples);
     kinematics.update_relative(rig);
     undrifted(
         kinematics,
         &spanned,
         drive,
-        (rig, arc, Some((&contact, &instants))),
+        (rig, arc_samples, Some((&contact, &instants))),
     )
 }
 
@@ -263,18 +261,18 @@ fn undrifted(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
     drive: Option<&DriveTone>,
-    (rig, arc, contact): (RigKind, ArcFit, Option<(&FiniteContact, &[Instant])>),
+    (rig, arc_samples, contact): (RigKind, usize, Option<(&FiniteContact, &[Instant])>),
 ) -> Vec<Impact> {
     // The times of a contact that lasts are known from its samples.
     let instants = |kinematics: &Kinematics| match contact {
         Some((_, placed)) => placed.to_vec(),
-        None => refine::instants(kinematics, candidates, arc),
+        None => refine::instants(kinematics, candidates, arc_samples),
     };
     let first = instants(kinematics);
     let (delay, delays) = contact.map_or((0.0, [0.0; 2]), |(c, _)| (c.delay(), c.delays));
     let jumps: Vec<Instant> = first.iter().map(|i| i.later(delay)).collect();
     let later = delays.map(|own| own - delay);
-    refine::correct_jumps(kinematics, candidates, (&jumps, later), arc);
+    refine::correct_jumps(kinematics, candidates, (&jumps, later), arc_samples);
     kinematics.update_relative(rig);
     let times: Vec<f64> = jumps.iter().map(|i| i.time).collect();
     let rate_hz = kinematics.rate_hz;
@@ -290,7 +288,13 @@ fn undrifted(
     }
     let instants = instants(kinematics);
     let contact = contact.map(|(contact, _)| contact);
-    impact_speeds::impacts(kinematics, candidates, &instants, drive, (arc, contact))
+    impact_speeds::impacts(
+        kinematics,
+        candidates,
+        &instants,
+        drive,
+        (arc_samples, contact),
+    )
 }
 
 /// Candidates for impacts, and counts of what supports and contradicts them.
@@ -346,11 +350,11 @@ const SHOWN: f64 = 0.5;
 impl Fused {
     /// Without the jumps that no contact pulse and no difference of the flights beside them confirm:
     /// extrapolated across an impact nearby, a velocity seems to jump.
-    fn confirmed(self, velocity: &Series, arc: ArcFit) -> Self {
+    fn confirmed(self, velocity: &Series, arc_samples: usize) -> Self {
         let without_pulse = |c: &Candidate| c.source == DetectionSource::Velocity;
         let all = &self.candidates;
         let shows = |i: usize| {
-            let Some([before, after]) = refine::arcs(velocity, all, i, arc) else {
+            let Some([before, after]) = refine::arcs(velocity, all, i, arc_samples) else {
                 return true;
             };
             let middle = all[i].jump.middle();
@@ -514,7 +518,7 @@ mod tests {
     fn a_pulse_belongs_to_the_jump_within_its_reach() {
         let velocity = Series::clean(sawtooth(400));
         let closed = [pulse(100, 102), pulse(245, 247)];
-        let found = fuse(&velocity, &closed, 8, 10).confirmed(&velocity, ARC);
+        let found = fuse(&velocity, &closed, 8, 10).confirmed(&velocity, ARC_SAMPLES);
         let sources: Vec<_> = found.candidates.iter().map(|c| c.source).collect();
         use DetectionSource::{Both, Velocity};
         assert_eq!(sources, [Both, Velocity, Velocity]);
@@ -524,11 +528,7 @@ mod tests {
         assert!(found.candidates.iter().all(|c| c.dead_samples == 0.0));
     }
 
-    const ARC: ArcFit = ArcFit {
-        degree: 3,
-        displacement_degree: 3,
-        width: 10,
-    };
+    const ARC_SAMPLES: usize = 10;
 
     #[test]
     fn a_jump_that_the_flights_do_not_show_needs_a_pulse() {
@@ -540,11 +540,11 @@ mod tests {
         seeming.jump.left = 150;
         found.candidates.insert(1, seeming);
         found.candidates[1].source = DetectionSource::Both;
-        let with_pulse = found.confirmed(&velocity, ARC);
+        let with_pulse = found.confirmed(&velocity, ARC_SAMPLES);
         assert_eq!(with_pulse.candidates.len(), 4);
         let mut without = with_pulse;
         without.candidates[1].source = DetectionSource::Velocity;
-        let kept = without.confirmed(&velocity, ARC);
+        let kept = without.confirmed(&velocity, ARC_SAMPLES);
         let places: Vec<usize> = kept.candidates.iter().map(|c| c.jump.left).collect();
         assert_eq!((places, kept.missed), (vec![99, 199, 299], 3));
     }

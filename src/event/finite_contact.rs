@@ -14,7 +14,7 @@ use crate::event::contact_profile::{ContactProfile, TabulatedProfile};
 use crate::event::contact_samples::{Passage, Samples, beside, measured_velocity, samples};
 use crate::event::jumps::Jump;
 use crate::event::kinematics::{Body, Kinematics};
-use crate::event::refine::{self, ArcFit, Candidate, Instant, arcs, instants};
+use crate::event::refine::{self, Candidate, Instant, arcs, instants};
 use crate::signal::robust;
 use crate::signal::whole;
 
@@ -73,7 +73,7 @@ impl FiniteContact {
         kinematics: &Kinematics,
         candidates: &[Candidate],
         instants: &[Instant],
-        arc: ArcFit,
+        arc_samples: usize,
     ) -> Vec<Instant> {
         let mut out = instants.to_vec();
         if self.duration == 0.0 {
@@ -91,7 +91,7 @@ impl FiniteContact {
                 .iter()
                 .filter_map(|(body, delay)| Some((measured_velocity(body)?, *delay)))
                 .flat_map(|(velocity, delay)| {
-                    let samples = beside(velocity, candidates, i, *instant, arc);
+                    let samples = beside(velocity, candidates, i, *instant, arc_samples);
                     samples.into_iter().map(move |p| (p, delay))
                 })
                 .collect();
@@ -162,19 +162,19 @@ impl FiniteContact {
 pub(super) fn measure(
     kinematics: &Kinematics,
     candidates: &[Candidate],
-    arc: ArcFit,
+    arc_samples: usize,
 ) -> Option<FiniteContact> {
     kinematics.relative.displacement.as_ref()?;
     let wide = widened(candidates);
-    let instants = instants(kinematics, &wide, arc);
+    let instants = instants(kinematics, &wide, arc_samples);
     let bodies = [&kinematics.x, &kinematics.y].map(measured_velocity);
     let impacts: Vec<Samples> = (0..wide.len())
-        .filter_map(|i| samples(bodies, &wide, i, instants[i], arc))
+        .filter_map(|i| samples(bodies, &wide, i, instants[i], arc_samples))
         .collect();
     if impacts.len() < FEWEST {
         return None;
     }
-    let profile = ContactProfile::new(typical_ratio(kinematics, &wide, &instants, arc)?);
+    let profile = ContactProfile::new(typical_ratio(kinematics, &wide, &instants, arc_samples)?);
     let tabulated = TabulatedProfile::new(&profile);
     let search = Search {
         profile,
@@ -182,7 +182,7 @@ pub(super) fn measure(
         impacts,
     };
     let mut found = search.best()?;
-    found.kinks_apart = kinks_apart(kinematics, &wide, arc);
+    found.kinks_apart = kinks_apart(kinematics, &wide, arc_samples);
     match bodies {
         [Some(_), None] => found.delays[1] = found.delays[0],
         [None, Some(_)] => found.delays[0] = found.delays[1],
@@ -195,11 +195,11 @@ pub(super) fn measure(
 const KINKS: usize = 20;
 
 /// Half the time between the kinks of both bodies' displacements, samples; 0 of a single one.
-fn kinks_apart(kinematics: &Kinematics, candidates: &[Candidate], arc: ArcFit) -> f64 {
+fn kinks_apart(kinematics: &Kinematics, candidates: &[Candidate], arc_samples: usize) -> f64 {
     let rate_hz = kinematics.rate_hz;
     let kink = |body: &Body, i: usize| {
         let both = (body.displacement.as_ref()?, body.velocity.as_ref()?);
-        Some(refine::kink(both, candidates, i, arc, rate_hz)?.time)
+        Some(refine::kink(both, candidates, i, arc_samples, rate_hz)?.time)
     };
     let few = 0..candidates.len().min(KINKS);
     let apart: Vec<f64> = few
@@ -225,14 +225,14 @@ fn typical_ratio(
     kinematics: &Kinematics,
     candidates: &[Candidate],
     instants: &[Instant],
-    arc: ArcFit,
+    arc_samples: usize,
 ) -> Option<f64> {
     let velocity = kinematics.relative.velocity.as_ref()?;
     let offset = robust::mean(&velocity.values);
     let ratios: Vec<f64> = (0..candidates.len())
         .filter(|i| candidates[*i].dead_samples == 0.0)
         .filter_map(|i| {
-            let [before, after] = arcs(velocity, candidates, i, arc)?;
+            let [before, after] = arcs(velocity, candidates, i, arc_samples)?;
             let time = instants[i].time;
             Some((offset - after.value(time)) / (before.value(time) - offset))
         })
@@ -370,7 +370,7 @@ pub(super) fn bridge(
     candidates: &[Candidate],
     instants: &[Instant],
     contact: &FiniteContact,
-    arc: ArcFit,
+    arc_samples: usize,
 ) {
     let rate_hz = kinematics.rate_hz;
     for body in [&mut kinematics.x, &mut kinematics.y] {
@@ -378,7 +378,7 @@ pub(super) fn bridge(
             continue;
         };
         let flights: Vec<_> = (0..candidates.len())
-            .map(|i| arcs(velocity, candidates, i, arc))
+            .map(|i| arcs(velocity, candidates, i, arc_samples))
             .collect();
         for ((candidate, instant), flights) in candidates.iter().zip(instants).zip(flights) {
             let Some([before, after]) = flights else {

@@ -9,7 +9,7 @@ use crate::event::contact_samples::measured_velocity;
 use crate::event::finite_contact::FiniteContact;
 use crate::event::impact::Lag;
 use crate::event::kinematics::{Body, Kinematics, RelativeSource};
-use crate::event::refine::{ArcFit, Candidate, Instant, arcs};
+use crate::event::refine::{Candidate, Instant, arcs};
 use crate::record::Role;
 use crate::signal::local_fit::LocalFit;
 
@@ -20,7 +20,7 @@ pub(super) fn lags(
     candidates: &[Candidate],
     instants: &[Instant],
     contact: Option<&FiniteContact>,
-    arc: ArcFit,
+    arc_samples: usize,
 ) -> Vec<[Option<Lag>; 2]> {
     let lasting = contact.is_some_and(|c| c.duration > 0.0);
     if lasting || kinematics.relative.displacement.is_none() {
@@ -30,7 +30,7 @@ pub(super) fn lags(
     let of = |(i, candidate): (usize, &Candidate)| {
         let placed = candidate.dead_samples == 0.0 && instants[i].error < candidate.middle_error();
         let read = |body: &Body, delay: f64| {
-            let fits = arcs(measured_velocity(body)?, candidates, i, arc)?;
+            let fits = arcs(measured_velocity(body)?, candidates, i, arc_samples)?;
             Read::of(body, fits, (instants[i].time, delay), kinematics)
         };
         match placed {

@@ -9,16 +9,9 @@ use crate::event::kinematics::{Kinematics, Series};
 use crate::signal::local_fit::{LocalFit, crossing};
 use crate::signal::whole;
 
-/// How the arcs beside an impact are fitted to extrapolate velocity and displacement to it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ArcFit {
-    /// Degree of the polynomials of velocity.
-    pub degree: usize,
-    /// Degree of the polynomials of displacement.
-    pub displacement_degree: usize,
-    /// Most samples on either side.
-    pub width: usize,
-}
+/// Degree of the polynomials by which velocity and displacement are extrapolated from the arcs beside
+/// an impact to it.
+pub(super) const DEGREE: usize = 3;
 
 /// An impact's time in samples with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,15 +50,15 @@ impl Candidate {
     }
 }
 
-/// Windows before and after one candidate: sample ranges that contain no other impact.
-#[derive(Debug, Clone, Copy)]
-struct Windows {
-    before: (usize, usize),
-    after: (usize, usize),
-}
-
-fn windows(velocity: &Series, candidates: &[Candidate], index: usize, arc: ArcFit) -> Windows {
-    let (width, samples) = (arc.width, velocity.values.len());
+/// Windows before and after one candidate, of so many samples at most: ranges that contain no other
+/// impact.
+fn windows(
+    velocity: &Series,
+    candidates: &[Candidate],
+    index: usize,
+    width: usize,
+) -> [(usize, usize); 2] {
+    let samples = velocity.values.len();
     let jump = candidates[index].jump;
     let low = match index.checked_sub(1).map(|i| &candidates[i]) {
         Some(c) => c.jump.left + c.jump.gap + whole::index(c.dead_samples.ceil()),
@@ -82,14 +75,20 @@ fn windows(velocity: &Series, candidates: &[Candidate], index: usize, arc: ArcFi
     } else {
         begin + width
     };
-    Windows {
-        before: (
+    [
+        (
             low.max((jump.left + 1).saturating_sub(width))
                 .min(jump.left),
             jump.left + 1,
         ),
-        after: (begin, end.min(high).min(begin + width).max(begin + 1)),
-    }
+        (begin, end.min(high).min(begin + width).max(begin + 1)),
+    ]
+}
+
+/// Polynomials through values in two windows.
+fn fits(values: &[f64], windows: [(usize, usize); 2]) -> Option<[LocalFit; 2]> {
+    let [before, after] = windows.map(|(first, end)| LocalFit::new(values, first, end, DEGREE));
+    Some([before?, after?])
 }
 
 /// Times of all candidates: from the kink of the displacement if it is measured, else from the
@@ -98,7 +97,7 @@ fn windows(velocity: &Series, candidates: &[Candidate], index: usize, arc: ArcFi
 pub(super) fn instants(
     kinematics: &Kinematics,
     candidates: &[Candidate],
-    arc: ArcFit,
+    arc_samples: usize,
 ) -> Vec<Instant> {
     let middle = |c: &Candidate| Instant {
         time: c.jump.middle(),
@@ -115,14 +114,14 @@ pub(super) fn instants(
                     (displacement, velocity),
                     candidates,
                     i,
-                    arc,
+                    arc_samples,
                     kinematics.rate_hz,
                 )
                 .filter(|k| k.error < plain[i].error)
                 .unwrap_or(plain[i])
             })
             .collect(),
-        (None, Some(velocity)) => closed_arcs(velocity, candidates, &plain, arc),
+        (None, Some(velocity)) => closed_arcs(velocity, candidates, &plain, arc_samples),
         _ => plain,
     }
 }
@@ -132,23 +131,12 @@ pub(super) fn kink(
     (displacement, velocity): (&Series, &Series),
     candidates: &[Candidate],
     index: usize,
-    arc: ArcFit,
+    arc_samples: usize,
     rate_hz: f64,
 ) -> Option<Instant> {
     let jump = candidates[index].jump;
-    let w = windows(velocity, candidates, index, arc);
-    let before = LocalFit::new(
-        &displacement.values,
-        w.before.0,
-        w.before.1,
-        arc.displacement_degree,
-    )?;
-    let after = LocalFit::new(
-        &displacement.values,
-        w.after.0,
-        w.after.1,
-        arc.displacement_degree,
-    )?;
+    let windows = windows(velocity, candidates, index, arc_samples);
+    let [before, after] = fits(&displacement.values, windows)?;
     let (low, high) = (jump.left as f64, (jump.left + jump.gap) as f64);
     let time = crossing(&before, &after, low, high)?;
     let spread = before.error_factor(time).hypot(after.error_factor(time)) * displacement.noise;
@@ -164,14 +152,14 @@ fn closed_arcs(
     velocity: &Series,
     candidates: &[Candidate],
     plain: &[Instant],
-    arc: ArcFit,
+    arc_samples: usize,
 ) -> Vec<Instant> {
     let count = plain.len();
     if count < 3 {
         return plain.to_vec();
     }
     let speeds: Vec<Option<MassSpeeds>> = (0..count)
-        .map(|i| speeds(velocity, candidates, i, plain[i], arc).map(|s| s.0))
+        .map(|i| speeds(velocity, candidates, i, plain[i], arc_samples).map(|s| s.0))
         .collect();
     let mut normal = DMatrix::<f64>::zeros(count + 1, count + 1);
     let mut right = DVector::<f64>::zeros(count + 1);
@@ -221,13 +209,10 @@ pub(super) fn arcs(
     velocity: &Series,
     candidates: &[Candidate],
     index: usize,
-    arc: ArcFit,
+    arc_samples: usize,
 ) -> Option<[LocalFit; 2]> {
-    let w = windows(velocity, candidates, index, arc);
-    Some([
-        LocalFit::new(&velocity.values, w.before.0, w.before.1, arc.degree)?,
-        LocalFit::new(&velocity.values, w.after.0, w.after.1, arc.degree)?,
-    ])
+    let windows = windows(velocity, candidates, index, arc_samples);
+    fits(&velocity.values, windows)
 }
 
 /// Speeds of one signal before and after a candidate at a time, with their standard error.
@@ -236,9 +221,9 @@ pub(super) fn speeds(
     candidates: &[Candidate],
     index: usize,
     instant: Instant,
-    arc: ArcFit,
+    arc_samples: usize,
 ) -> Option<(MassSpeeds, f64)> {
-    let [before, after] = arcs(velocity, candidates, index, arc)?;
+    let [before, after] = arcs(velocity, candidates, index, arc_samples)?;
     let time = instant.time;
     let error = velocity.noise * before.error_factor(time).max(after.error_factor(time));
     let speeds = MassSpeeds {
@@ -254,7 +239,7 @@ pub(super) fn correct_jumps(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
     (instants, later): (&[Instant], [f64; 2]),
-    arc: ArcFit,
+    arc_samples: usize,
 ) {
     let rate_hz = kinematics.rate_hz;
     for (body, later) in [&mut kinematics.x, &mut kinematics.y]
@@ -265,7 +250,7 @@ pub(super) fn correct_jumps(
             continue;
         };
         let known: Vec<Option<MassSpeeds>> = (0..candidates.len())
-            .map(|i| speeds(velocity, candidates, i, instants[i], arc).map(|s| s.0))
+            .map(|i| speeds(velocity, candidates, i, instants[i], arc_samples).map(|s| s.0))
             .collect();
         for (instant, speeds) in instants.iter().zip(known) {
             if let Some(s) = speeds {
@@ -288,11 +273,7 @@ mod tests {
     const FLIGHT: f64 = 100.37;
     const SPEED: f64 = 0.5;
     const RESTITUTION: f64 = 0.8;
-    const ARC: ArcFit = ArcFit {
-        degree: 3,
-        displacement_degree: 3,
-        width: 16,
-    };
+    const ARC_SAMPLES: usize = 16;
 
     /// Velocity and displacement of flights v = V(−R + as + bs²), s = 0…1, whose displacement is
     /// the same at both ends: a = 4R − 2, b = 3(1 − R). The impacts are at (k + 0.4) flights.
@@ -351,8 +332,14 @@ mod tests {
         let kinematics = flights();
         let candidates = candidates(&kinematics);
         assert_eq!(candidates.len(), 10);
-        let instants = instants(&kinematics, &candidates, ARC);
-        let impacts = impacts(&kinematics, &candidates, &instants, None, (ARC, None));
+        let instants = instants(&kinematics, &candidates, ARC_SAMPLES);
+        let impacts = impacts(
+            &kinematics,
+            &candidates,
+            &instants,
+            None,
+            (ARC_SAMPLES, None),
+        );
         for (k, (instant, impact)) in instants.iter().zip(&impacts).enumerate() {
             assert!(
                 (instant.time - truth(k)).abs() < 1e-6,
@@ -373,7 +360,7 @@ mod tests {
         let mut kinematics = flights();
         kinematics.relative.displacement = None;
         let candidates = candidates(&kinematics);
-        let instants = instants(&kinematics, &candidates, ARC);
+        let instants = instants(&kinematics, &candidates, ARC_SAMPLES);
         // Time errors in samples and standard errors of the same least squares (trapezoids between
         // the middles, extrapolated speeds, prior of 1/√12) in 70 lines of Python.
         let script = [
@@ -400,13 +387,12 @@ mod tests {
         let velocity = kinematics.relative.velocity.as_ref().unwrap();
         let mut list = candidates(&kinematics);
         list[1].dead_samples = 5.0;
-        let wide = ArcFit { width: 200, ..ARC };
-        let found = windows(velocity, &list, 2, wide);
+        let found = windows(velocity, &list, 2, 200);
         let (before, own, next) = (list[1].jump, list[2].jump, list[3].jump);
-        assert_eq!(found.before, (before.left + before.gap + 5, own.left + 1));
-        assert_eq!(found.after, (own.left + own.gap, next.left + 1));
+        assert_eq!(found[0], (before.left + before.gap + 5, own.left + 1));
+        assert_eq!(found[1], (own.left + own.gap, next.left + 1));
         // After an impact with a dead zone only the samples inside it count.
-        let found = windows(velocity, &list, 1, wide);
-        assert_eq!(found.after.1 - found.after.0, 5);
+        let found = windows(velocity, &list, 1, 200);
+        assert_eq!(found[1].1 - found[1].0, 5);
     }
 }

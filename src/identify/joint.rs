@@ -84,13 +84,7 @@ pub fn problem<'b>(
         });
     }
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    Some(Problem {
-        blocks: list,
-        priors,
-        free,
-        progress: blocks.progress.clone(),
-        ..Problem::default()
-    })
+    Some(blocks.problem(list, free, priors))
 }
 
 /// Fit all blocks together from a start that each of them accepts.

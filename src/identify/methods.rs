@@ -49,7 +49,7 @@ pub fn fit_blocks(problem: Problem<'_>, start: Parameters) -> FitResult {
 }
 
 /// What the impactless records tell.
-const RESONANCE: [Coordinate; 3] = [
+pub(super) const RESONANCE: [Coordinate; 3] = [
     Coordinate::Frequency,
     Coordinate::Damping,
     Coordinate::Deflection,
@@ -82,17 +82,9 @@ fn resonance_curve(
     block: &ResonanceBlock,
     blocks: &Blocks,
     nominal: &Nominal,
-    (start, precision): (Parameters, Precision),
+    begin: (Parameters, Precision),
 ) -> Option<FitResult> {
-    let mut free = RESONANCE.to_vec();
-    let mut priors = wide_priors(&start, &free);
-    let list: [(&dyn Block, f64); 1] = [(block, 1.0)];
-    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    let problem = Problem {
-        precision,
-        ..blocks.problem(list.to_vec(), free, priors)
-    };
-    enough(blocks).then(|| fit_blocks(problem, start))
+    enough(blocks).then(|| alone(block, blocks, nominal, &RESONANCE, begin))
 }
 
 fn enough(blocks: &Blocks) -> bool {
@@ -191,18 +183,19 @@ pub fn trajectories(
     if blocks.trajectory.records.is_empty() {
         return None;
     }
-    let block = &blocks.trajectory;
-    Some(all_four(block, blocks, nominal, (start, precision)))
+    let (block, tells) = (&blocks.trajectory, &Coordinate::PHYSICAL);
+    Some(alone(block, blocks, nominal, tells, (start, precision)))
 }
 
-/// R, f0, β and `x_st` from one block alone, with the nuisances beside them.
-fn all_four(
+/// What one block tells alone, with the nuisances beside it.
+fn alone(
     block: &dyn Block,
     blocks: &Blocks,
     nominal: &Nominal,
+    tells: &[Coordinate],
     (start, precision): (Parameters, Precision),
 ) -> FitResult {
-    let mut free = Coordinate::PHYSICAL.to_vec();
+    let mut free = tells.to_vec();
     let mut priors = wide_priors(&start, &free);
     let list = vec![(block, 1.0)];
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
@@ -224,7 +217,8 @@ pub fn flights(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<
         return None;
     }
     let begin = (start, Precision::Result);
-    let found = all_four(&blocks.flight, blocks, nominal, begin);
+    let tells = &Coordinate::PHYSICAL;
+    let found = alone(&blocks.flight, blocks, nominal, tells, begin);
     Some(found.map(|found| MethodFit {
         factor: found.factor * SHARED_IN_FLIGHTS,
         ..found

@@ -14,14 +14,14 @@ use crate::identify::{Estimate, Item, Method, MethodResult, Remark, bracket_midp
 
 /// f0, β and `x_st` from the impactless records.
 pub fn resonance(blocks: &Blocks, fitted: &FitResult) -> MethodResult {
-    let tells = [
-        Coordinate::Frequency,
-        Coordinate::Damping,
-        Coordinate::Deflection,
-    ];
     let block = &blocks.resonance;
     let observations = block.points.iter().map(|p| 2 * p.responses.len()).sum();
-    let mut result = methods::result(fitted, &tells, observations, block.points.len());
+    let mut result = methods::result(
+        fitted,
+        &methods::RESONANCE,
+        observations,
+        block.points.len(),
+    );
     if let Ok(fit) = fitted {
         verdict::judge_resonance(&mut result, block, &fit.fit.parameters);
     }

@@ -4,29 +4,42 @@ use crate::signal::columns::{dot, sum};
 
 /// Median of the values; `None` for an empty slice. NaN must not be among them.
 pub fn median(values: &[f64]) -> Option<f64> {
-    let mut sorted = values.to_vec();
-    median_in_place(&mut sorted)
+    let mut ranks: Vec<i64> = values.iter().map(|v| rank(*v)).collect();
+    median_of_ranks(&mut ranks)
 }
 
-fn median_in_place(values: &mut [f64]) -> Option<f64> {
-    let middle = values.len() / 2;
-    if values.is_empty() {
+/// Median of values by their [`rank`], in any order.
+fn median_of_ranks(ranks: &mut [i64]) -> Option<f64> {
+    let middle = ranks.len() / 2;
+    if ranks.is_empty() {
         return None;
     }
-    let even = values.len().is_multiple_of(2);
-    let (below, &mut upper, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
-    if !even {
-        return Some(upper);
+    let even = ranks.len().is_multiple_of(2);
+    let (below, &mut upper, _) = ranks.select_nth_unstable(middle);
+    let upper = of_rank(upper);
+    match below.iter().max() {
+        Some(&lower) if even => Some(0.5 * (of_rank(lower) + upper)),
+        _ => Some(upper),
     }
-    let lower = below.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    Some(0.5 * (lower + upper))
+}
+
+/// A whole number in the order of the values, [`f64::total_cmp`]: it is compared in one step.
+fn rank(value: f64) -> i64 {
+    let bits = value.to_bits().cast_signed();
+    bits ^ ((bits >> 63) & i64::MAX)
+}
+
+/// The value of a rank.
+fn of_rank(rank: i64) -> f64 {
+    f64::from_bits((rank ^ ((rank >> 63) & i64::MAX)).cast_unsigned())
 }
 
 /// Standard deviation from the median absolute deviation, as if normal: 1.4826 · MAD.
 pub fn robust_deviation(values: &[f64]) -> Option<f64> {
     let centre = median(values)?;
-    let mut distances: Vec<f64> = values.iter().map(|v| (v - centre).abs()).collect();
-    median_in_place(&mut distances).map(|mad| 1.4826 * mad)
+    let distances = values.iter().map(|v| (v - centre).abs());
+    let mut ranks: Vec<i64> = distances.map(rank).collect();
+    median_of_ranks(&mut ranks).map(|mad| 1.4826 * mad)
 }
 
 /// Standard deviation of the white noise on a smooth signal with isolated jumps.
@@ -76,6 +89,26 @@ mod tests {
         assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
         assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), Some(2.5));
         assert_eq!(median(&[]), None);
+    }
+
+    #[test]
+    fn valid_ranks_are_in_the_order_of_their_values() {
+        let ordered = [
+            f64::NEG_INFINITY,
+            -2.5,
+            -f64::MIN_POSITIVE,
+            -0.0,
+            0.0,
+            1e-300,
+            1.0,
+            f64::INFINITY,
+        ];
+        assert!(ordered.is_sorted_by(|a, b| rank(*a) < rank(*b)));
+        assert!(
+            ordered
+                .iter()
+                .all(|v| of_rank(rank(*v)).to_bits() == v.to_bits())
+        );
     }
 
     #[test]

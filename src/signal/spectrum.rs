@@ -9,54 +9,70 @@ use rustfft::{Fft, FftDirection, Length};
 use super::turns::Turns;
 
 thread_local! {
-    /// The transform that was made last: records of a campaign are equally long.
-    static LAST: RefCell<Option<Radix4<f64>>> = const { RefCell::new(None) };
+    /// What was used last: records of a campaign are equally long.
+    static LAST: RefCell<Option<Plan>> = const { RefCell::new(None) };
 }
 
-/// Fourier transform in place of samples whose number is a power of two: no planner, whose every
-/// algorithm would be compiled here.
-fn transform(bins: &mut [Complex64]) {
-    LAST.with_borrow_mut(|last| {
-        let made = last.take().filter(|made| made.len() == bins.len());
-        let made = made.unwrap_or_else(|| Radix4::new(bins.len(), FftDirection::Forward));
-        made.process(bins);
-        *last = Some(made);
-    });
+/// What the spectrum of a number of samples takes: no planner of the library, whose every algorithm
+/// would be compiled here.
+struct Plan {
+    /// Hann's window.
+    window: Vec<f64>,
+    /// The transform of pairs of samples.
+    pairs: Radix4<f64>,
+    /// e^{2πik/N} of the bins.
+    turns: Turns,
+}
+
+impl Plan {
+    /// For samples that are padded to twice the next power of two.
+    fn new(samples: usize) -> Self {
+        let half = samples.max(2).next_power_of_two();
+        let once = 1.0 / samples.max(1) as f64;
+        let turn = Turns::new(once, std::f64::consts::PI * once, samples);
+        Self {
+            window: turn.cos.iter().map(|cosine| 0.5 - 0.5 * cosine).collect(),
+            pairs: Radix4::new(half, FftDirection::Forward),
+            turns: Turns::new(0.5 / half as f64, 0.0, half + 1),
+        }
+    }
+
+    /// Squares of the amplitudes of the samples' spectrum, mean removed.
+    fn squares(&self, samples: &[f64]) -> Vec<f64> {
+        let mean = super::robust::mean(samples);
+        let windowed = samples.iter().zip(&self.window);
+        let windowed: Vec<f64> = windowed.map(|(s, w)| (s - mean) * w).collect();
+        // Even samples are the real parts, odd ones the imaginary parts of half as many.
+        let mut bins = vec![Complex64::new(0.0, 0.0); self.pairs.len()];
+        for (bin, pair) in bins.iter_mut().zip(windowed.chunks(2)) {
+            *bin = Complex64::new(pair[0], pair.get(1).copied().unwrap_or(0.0));
+        }
+        self.pairs.process(&mut bins);
+        self.squares_of_pairs(&bins)
+    }
+
+    /// Squares of a real signal's transform from that of its pairs z = even + i odd: with Z* the conjugate
+    /// from the other end, X = (Z + Z*)/2 − i/2 e^{−2πik/N} (Z − Z*).
+    fn squares_of_pairs(&self, bins: &[Complex64]) -> Vec<f64> {
+        let half = bins.len();
+        let square = |k: usize| {
+            let (z, mirrored) = (bins[k % half], bins[(half - k) % half].conj());
+            let (even, odd) = (z + mirrored, z - mirrored);
+            let turned = Complex64::new(-self.turns.sin[k], -self.turns.cos[k]) * odd;
+            0.25 * (even + turned).norm_sqr()
+        };
+        (0..=half).map(square).collect()
+    }
 }
 
 /// One-sided power spectrum of the samples in no unit, mean removed, Hann window, zero-padded to twice
 /// the next power of two: (frequency step in units of the sample rate, squares of the amplitudes).
 fn power_spectrum(samples: &[f64]) -> (f64, Vec<f64>) {
-    let count = samples.len();
-    let padded = (2 * count.max(2)).next_power_of_two();
-    let mean = super::robust::mean(samples);
-    let once = 1.0 / count.max(1) as f64;
-    let turn = Turns::new(once, std::f64::consts::PI * once, count);
-    let windowed = samples.iter().zip(&turn.cos);
-    let windowed: Vec<f64> = windowed
-        .map(|(sample, cosine)| (sample - mean) * (0.5 - 0.5 * cosine))
-        .collect();
-    // Even samples are the real parts, odd ones the imaginary parts of half as many.
-    let mut bins = vec![Complex64::new(0.0, 0.0); padded / 2];
-    for (bin, pair) in bins.iter_mut().zip(windowed.chunks(2)) {
-        *bin = Complex64::new(pair[0], pair.get(1).copied().unwrap_or(0.0));
-    }
-    transform(&mut bins);
-    (1.0 / padded as f64, squares_of_pairs(&bins))
-}
-
-/// Squares of a real signal's transform from that of its pairs z = even + i odd: with Z* the conjugate from
-/// the other end, X = (Z + Z*)/2 − i/2 e^{−2πik/N} (Z − Z*).
-fn squares_of_pairs(bins: &[Complex64]) -> Vec<f64> {
-    let half = bins.len();
-    let turn = Turns::new(0.5 / half as f64, 0.0, half + 1);
-    let square = |k: usize| {
-        let (z, mirrored) = (bins[k % half], bins[(half - k) % half].conj());
-        let (even, odd) = (z + mirrored, z - mirrored);
-        let turned = Complex64::new(-turn.sin[k], -turn.cos[k]) * odd;
-        0.25 * (even + turned).norm_sqr()
-    };
-    (0..=half).map(square).collect()
+    LAST.with_borrow_mut(|last| {
+        let made = last.take().filter(|p| p.window.len() == samples.len());
+        let plan = last.insert(made.unwrap_or_else(|| Plan::new(samples.len())));
+        (0.5 / plan.pairs.len() as f64, plan.squares(samples))
+    })
 }
 
 /// Frequency of the greatest spectral peak, in units of the sample rate, refined by a parabola

@@ -11,10 +11,8 @@ use nalgebra::DMatrix;
 
 use crate::identify::evidence::{Blocks, Evidence, Nominal};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Block, Prior, Problem};
 use crate::identify::joint;
 use crate::identify::method::{Estimator, Method};
-use crate::identify::methods::wide_priors;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 
 /// Least standard errors of the coordinates.
@@ -80,24 +78,8 @@ pub fn bounds(evidence: &Evidence<'_>, at: &Parameters) -> BTreeMap<Estimator, B
 }
 
 fn bound(blocks: &Blocks, methods: &[Method], nominal: &Nominal, at: &Parameters) -> Option<Bound> {
-    let list: Vec<(&dyn Block, f64)> = methods
-        .iter()
-        .filter_map(|method| joint::block(*method, blocks))
-        .filter(|block| block.items() > 0)
-        .map(|block| (block, 1.0))
-        .collect();
-    let mut free: Vec<Coordinate> = Coordinate::PHYSICAL
-        .into_iter()
-        .filter(|c| list.iter().any(|(block, _)| block.touches(*c)))
-        .collect();
-    let mut priors: Vec<Prior> = wide_priors(at, &free);
-    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    let problem = Problem {
-        blocks: list,
-        priors,
-        free,
-        ..Problem::default()
-    };
+    let weights = methods.iter().map(|method| (*method, 1.0)).collect();
+    let problem = joint::problem(blocks, *at, &weights, nominal, None)?;
     let covariance = problem.covariance_at(at)?;
     Some(Bound {
         free: problem.free,
