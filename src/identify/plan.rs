@@ -201,7 +201,7 @@ impl UsualRecord {
         let folded: Vec<(&Observation, &Folded)> = observations
             .iter()
             .filter(|o| !o.excluded())
-            .filter_map(|o| Some((o, o.folded.as_ref()?)))
+            .filter_map(|o| Some((o, o.folded.as_deref()?)))
             .collect();
         let median = |of: &dyn Fn(&Observation) -> f64| {
             let values: Vec<f64> = folded.iter().map(|(o, _)| of(o)).collect();
@@ -267,8 +267,8 @@ impl UsualRecord {
             frequency_hz,
             clearance_m,
             drive_amplitude: 1.0,
-            phases: distinct_phases(&folded),
-            folded,
+            phases: distinct_phases(&folded).into(),
+            folded: folded.into(),
             closing_speed_m_s: orbit.approach_speed * speed,
             frequency_error: self.frequency_error,
             phase_error_rad: self.phase_error_rad,

@@ -1,6 +1,8 @@
 //! The summary of a record that is kept: its motion, its impacts and the numbers that the
 //! identification needs, without the samples.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::event::{DetectSettings, DriveTone, Impact, RigKind, detect};
@@ -52,7 +54,8 @@ pub struct Observation {
     /// Response at the drive's frequency; only of impactless records.
     pub response: Vec<Response>,
     /// The folded waveform; only of periodic records with one impact in n drive periods.
-    pub folded: Option<Folded>,
+    #[serde(default, with = "shared")]
+    pub folded: Option<Arc<Folded>>,
     /// The free decay; only of records without drive and impacts.
     pub decay: Option<Decay>,
     /// Problems found.
@@ -161,7 +164,7 @@ pub fn observe(
         if observation.has_no_impact() {
             observation.response = responses(record, drive);
         } else if let Some(n) = observation.one_impact_in() {
-            observation.folded = Some(fold(record, &detection, drive, n));
+            observation.folded = Some(Arc::new(fold(record, &detection, drive, n)));
         }
     }
     observation
@@ -314,6 +317,27 @@ impl Observation {
             decay: None,
             flags: Vec::new(),
         }
+    }
+}
+
+/// A shared waveform is stored as if its record alone had it.
+mod shared {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::{Arc, Folded};
+
+    #[expect(clippy::ref_option, reason = "serde passes a reference to the field")]
+    pub(super) fn serialize<S: Serializer>(
+        folded: &Option<Arc<Folded>>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        folded.as_deref().serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<Arc<Folded>>, D::Error> {
+        Ok(Option::<Folded>::deserialize(deserializer)?.map(Arc::new))
     }
 }
 

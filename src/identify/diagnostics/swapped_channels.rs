@@ -1,6 +1,8 @@
 //! Whether the velocities of both masses were interchanged: all data are fitted once more as if
 //! they were.
 
+use std::sync::Arc;
+
 use crate::identify::diagnostics::suspicion::SURE;
 use crate::identify::evidence::Blocks;
 use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
@@ -102,7 +104,7 @@ fn interchanged(blocks: &Blocks, filters: Filters) -> Option<Blocks> {
         (name, corner_hz)
     };
     for record in &mut other.trajectory.records {
-        let channels = &mut record.folded.channels;
+        let channels = &mut Arc::make_mut(&mut record.folded).channels;
         let stated: Vec<Passed> = channels.iter().map(|c| (c.role, c.high_pass_hz)).collect();
         for channel in channels {
             let now = (channel.role, channel.high_pass_hz);

@@ -78,7 +78,7 @@ impl ImpactBlock {
     /// Collect impacts without dead zone, faster than six standard errors (twelve where a contact
     /// lasts several samples, as slow ones are then swayed by where its middle is put).
     pub fn new(observations: &[Observation], relative_error: f64) -> Self {
-        let pairs: Vec<SpeedPair> = observations
+        let mut pairs: Vec<SpeedPair> = observations
             .iter()
             .enumerate()
             .filter(|(_, o)| !o.excluded())
@@ -108,6 +108,8 @@ impl ImpactBlock {
             })
             .filter(|p| p.after_m_s > -4.0 * p.error_m_s)
             .collect();
+        // of very many, collecting leaves room for as many more
+        pairs.shrink_to_fit();
         let free = pairs
             .iter()
             .all(|p: &SpeedPair| observations[p.observation].drive.is_none());
@@ -148,19 +150,18 @@ impl ImpactBlock {
         self.corners[index]
     }
 
-    /// Keep only pairs that lie within `limit` robust deviations of the bulk; gives those
-    /// left out too.
-    pub fn without_outliers(mut self, limit: f64) -> (Self, Vec<SpeedPair>) {
+    /// Leave out pairs that do not lie within `limit` robust deviations of the bulk, and give them.
+    pub fn extract_outliers(&mut self, limit: f64) -> Vec<SpeedPair> {
         let ratios: Vec<f64> = self
             .pairs
             .iter()
             .map(|p| p.after_m_s / p.before_m_s)
             .collect();
         let Some(centre) = crate::signal::robust::median(&ratios) else {
-            return (self, Vec::new());
+            return Vec::new();
         };
         if self.free && self.pairs.len() < ENOUGH_FOR_OUTLIERS {
-            return (self, Vec::new());
+            return Vec::new();
         }
         let scores: Vec<f64> = self
             .pairs
@@ -170,25 +171,21 @@ impl ImpactBlock {
         let spread = crate::signal::robust::robust_deviation(&scores)
             .unwrap_or(1.0)
             .max(0.5);
-        let scored = self.pairs.drain(..).zip(scores);
-        let (kept, odd): (Vec<_>, Vec<_>) = scored.partition(|(_, s)| s.abs() <= limit * spread);
-        self.pairs = kept.into_iter().map(|(pair, _)| pair).collect();
-        (self, odd.into_iter().map(|(pair, _)| pair).collect())
+        let mut is_odd = scores.iter().map(|s| !(s.abs() <= limit * spread));
+        let odd = self.pairs.extract_if(.., |_| is_odd.next() == Some(true));
+        odd.collect()
     }
 
-    /// All pairs, `others` among them, with the delays of the channels that waveforms tell.
-    #[must_use]
-    pub fn delayed(&self, others: &[SpeedPair], parameters: &Parameters) -> Self {
-        let mut pairs = [self.pairs.as_slice(), others].concat();
-        pairs.iter_mut().for_each(|pair| pair.delay(parameters));
-        pairs.sort_by(|a, b| {
+    /// Take pairs in, and read all with the delays of the channels that waveforms tell.
+    pub fn delay(&mut self, others: Vec<SpeedPair>, parameters: &Parameters) {
+        self.pairs.extend(others);
+        for pair in &mut self.pairs {
+            pair.delay(parameters);
+        }
+        self.pairs.sort_by(|a, b| {
             let by_time = a.time_s.total_cmp(&b.time_s);
             a.observation.cmp(&b.observation).then(by_time)
         });
-        Self {
-            pairs,
-            ..self.clone()
-        }
     }
 
     /// Whether delays of the channels change any speed.
@@ -328,15 +325,18 @@ mod tests {
         let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
         parameters.delays_s = [5e-4, 2e-4, 1e-4, 3e-4];
         // the kink is 0.2 ms late: x is read 0.3 − 0.1 ms later, y 0 − 0.1 ms
-        let block = ImpactBlock::of_pairs(vec![pair], 0.0);
-        let found = block.delayed(&[], &parameters).pairs[0];
+        let delayed = |pair: SpeedPair, parameters: &Parameters| {
+            let mut block = ImpactBlock::of_pairs(vec![pair], 0.0);
+            block.delay(Vec::new(), parameters);
+            block.pairs[0]
+        };
+        let found = delayed(pair, &parameters);
         assert!((found.before_m_s - (0.5 + 2e-4 * 10.0 - 1e-4 * 20.0)).abs() < 1e-12);
         assert!((found.after_m_s - (0.4 - 2e-4 * 4.0 + 1e-4 * 8.0)).abs() < 1e-12);
         // read once more with the same delays, nothing changes; without delays, all comes back
-        let block = ImpactBlock::of_pairs(vec![found], 0.0);
-        assert_eq!(block.delayed(&[], &parameters).pairs[0], found);
+        assert_eq!(delayed(found, &parameters), found);
         parameters.delays_s = [1e-4, 1e-4, 0.0, 0.0];
-        let back = block.delayed(&[], &parameters).pairs[0];
+        let back = delayed(found, &parameters);
         assert!((back.before_m_s - 0.5).abs() < 1e-12 && (back.after_m_s - 0.4).abs() < 1e-12);
     }
 }

@@ -162,8 +162,9 @@ pub struct Blocks {
 
 /// The pairs of speeds at impacts that [`Blocks::new`] has: those without outliers.
 pub fn impacts_of_bulk(observations: &[Observation]) -> ImpactBlock {
-    let block = ImpactBlock::new(observations, IMPACT_SCATTER);
-    block.without_outliers(OUTLYING_IMPACT).0
+    let mut block = ImpactBlock::new(observations, IMPACT_SCATTER);
+    block.extract_outliers(OUTLYING_IMPACT);
+    block
 }
 
 impl Blocks {
@@ -184,8 +185,8 @@ impl Blocks {
             brackets,
             ..
         } = *evidence;
-        let (impact, impact_outliers) =
-            ImpactBlock::new(observations, impact_scatter).without_outliers(OUTLYING_IMPACT);
+        let mut impact = ImpactBlock::new(observations, impact_scatter);
+        let impact_outliers = impact.extract_outliers(OUTLYING_IMPACT);
         let mut blocks = Self {
             resonance: ResonanceBlock::new(rig, observations, relative_error),
             trajectory: TrajectoryBlock::new(rig, observations, relative_error),
@@ -216,8 +217,9 @@ impl Blocks {
         if !self.impact.has_lags() {
             return false;
         }
-        let delayed = self.impact.delayed(&self.impact_outliers, waveforms);
-        (self.impact, self.impact_outliers) = delayed.without_outliers(OUTLYING_IMPACT);
+        let outliers = std::mem::take(&mut self.impact_outliers);
+        self.impact.delay(outliers, waveforms);
+        self.impact_outliers = self.impact.extract_outliers(OUTLYING_IMPACT);
         true
     }
 

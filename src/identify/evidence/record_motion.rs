@@ -484,6 +484,8 @@ fn measured(role: Role) -> Measured {
 
 #[cfg(test)]
 pub(super) mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::identify::evidence::trajectory::distinct_phases;
     use crate::identify::evidence::trajectory_record::Weighing;
@@ -548,8 +550,8 @@ pub(super) mod tests {
             frequency_hz,
             clearance_m: 0.4e-3,
             drive_amplitude: 1.1,
-            phases: distinct_phases(&folded),
-            folded,
+            phases: distinct_phases(&folded).into(),
+            folded: folded.into(),
             closing_speed_m_s: 1.0,
             frequency_error: 1e-5,
             phase_error_rad: 1e-3,
@@ -621,10 +623,14 @@ pub(super) mod tests {
             // A drive that is ahead by a phase shows the points at phases that lie before theirs.
             let turned = |by: f64| {
                 let mut moved = record.clone();
-                for point in moved.folded.channels.iter_mut().flat_map(|c| &mut c.points) {
+                for point in Arc::make_mut(&mut moved.folded)
+                    .channels
+                    .iter_mut()
+                    .flat_map(|c| &mut c.points)
+                {
                     point.phase_rad -= by;
                 }
-                moved.phases = distinct_phases(&moved.folded);
+                moved.phases = distinct_phases(&moved.folded).into();
                 values(&moved, &p)
             };
             let exact = points.values(&motion.over_phase(&here));

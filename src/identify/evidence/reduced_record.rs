@@ -331,6 +331,8 @@ impl Projection {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -352,7 +354,7 @@ mod tests {
         let measured = [record(1, 15.0), record(2, 31.0)].map(|mut record| {
             let motion = RecordMotion::new(RIG, &record, at).expect("an orbit");
             let values = motion.values();
-            let channels = record.folded.channels.iter_mut();
+            let channels = Arc::make_mut(&mut record.folded).channels.iter_mut();
             let points = channels.flat_map(|channel| {
                 channel.noise = 1e-3;
                 &mut channel.points

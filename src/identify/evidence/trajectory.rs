@@ -230,7 +230,7 @@ fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> 
         reduced: None,
         clearance_m: o.setting.clearance_m?,
         drive_amplitude: o.setting.drive_amplitude,
-        phases: distinct_phases(&folded),
+        phases: distinct_phases(&folded).into(),
         folded,
         closing_speed_m_s: crate::signal::robust::median(&speeds)?,
     })

@@ -1,5 +1,7 @@
 //! A periodic record as the fits use it.
 
+use std::sync::Arc;
+
 use crate::event::RigKind;
 use crate::identify::evidence::reduced_record::{ReducedRecord, Weighted};
 use crate::identify::evidence::shared_error::Whitening;
@@ -24,9 +26,9 @@ pub struct TrajectoryRecord {
     /// Drive amplitude relative to the nominal one.
     pub drive_amplitude: f64,
     /// The folded waveform.
-    pub folded: Folded,
+    pub folded: Arc<Folded>,
     /// Phases of the points: usually one set that all channels share.
-    pub phases: Vec<Phases>,
+    pub phases: Arc<[Phases]>,
     /// Median closing speed before impacts as measured, m/s.
     pub closing_speed_m_s: f64,
     /// Standard error of the drive's frequency, relative.
