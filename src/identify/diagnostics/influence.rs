@@ -36,7 +36,7 @@ pub fn influences(records: &[PlacedRows], others: &Normal) -> Option<Vec<Influen
     });
     let lower = scaled.cholesky()?.l();
     let influence = |record: &PlacedRows| {
-        let mut turned = record.slopes.transpose();
+        let mut turned = record.transposed(scale.len());
         for (mut row, scale) in turned.row_iter_mut().zip(scale.iter()) {
             row *= *scale;
         }
@@ -66,7 +66,7 @@ pub fn without_gradient(records: &mut [PlacedRows], others: &mut Normal) -> Opti
     let all = together(records, others);
     let step = -(inverse(&all.matrix)? * &all.gradient);
     for record in records {
-        record.residuals += &record.slopes * &step;
+        record.residuals += record.change(&step);
     }
     others.gradient += &others.matrix * &step;
     Some(())
@@ -130,6 +130,7 @@ mod tests {
     /// One residual and its slopes.
     fn record(slopes: &[f64], residual: f64) -> PlacedRows {
         PlacedRows {
+            places: (0..slopes.len()).collect(),
             slopes: DMatrix::from_row_slice(1, slopes.len(), slopes),
             residuals: DVector::from_element(1, residual),
         }

@@ -217,7 +217,7 @@ mod tests {
         let (want, found) = (whole.normal(&places, 4), combined.normal(&places, 4));
         assert!((found.matrix - want.matrix).amax() < 1e-11);
         assert!((found.gradient - want.gradient).amax() < 1e-11);
-        assert_eq!(combined.placed(&places, 4).slopes.nrows(), 3);
+        assert_eq!(combined.placed(&places).slopes.nrows(), 3);
     }
 
     #[test]

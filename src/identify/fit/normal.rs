@@ -38,9 +38,14 @@ impl Normal {
 
     /// Add the information of some rows: matrix and gradient.
     pub fn inform(&mut self, rows: &PlacedRows) {
-        self.matrix.gemm_tr(1.0, &rows.slopes, &rows.slopes, 1.0);
-        self.gradient
-            .gemv_tr(1.0, &rows.slopes, &rows.residuals, 1.0);
+        let matrix = rows.slopes.tr_mul(&rows.slopes);
+        let gradient = rows.slopes.tr_mul(&rows.residuals);
+        for (k, to) in rows.places.iter().enumerate() {
+            self.gradient[*to] += gradient[k];
+            for (i, from) in rows.places.iter().enumerate() {
+                self.matrix[(*from, *to)] += matrix[(i, k)];
+            }
+        }
     }
 }
 

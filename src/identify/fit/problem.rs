@@ -150,10 +150,7 @@ impl Problem<'_> {
 
     /// Few rows item by item of a block with its weight; items without a model are left out.
     pub fn rows_of(&self, block: &dyn Block, weight: f64, at: &Parameters) -> Vec<PlacedRows> {
-        let unknowns = self.free.len();
-        self.items(block, weight, at, |rows, places| {
-            rows.placed(places, unknowns)
-        })
+        self.items(block, weight, at, |rows, places| rows.placed(places))
     }
 
     /// What the rows of each item of a block with its weight, and the places of its coordinates among

@@ -121,19 +121,17 @@ impl Rows {
         normal
     }
 
-    /// The rows that have slopes, over all unknowns, of which these are at the given places.
-    pub fn placed(&self, places: &[usize], unknowns: usize) -> PlacedRows {
+    /// The rows that have slopes, over the unknowns at the given places of a fit that they depend on.
+    pub fn placed(&self, places: &[usize]) -> PlacedRows {
         let has_slopes = |row: &usize| (0..self.unknowns).any(|i| self.column(i)[*row] != 0.0);
         let present: Vec<usize> = (0..self.height).filter(has_slopes).collect();
-        let mut slopes = DMatrix::zeros(present.len(), unknowns);
-        for (i, to) in places.iter().enumerate() {
-            let column = self.column(i);
-            let entries = slopes.column_mut(*to).into_iter().zip(&present);
-            entries.for_each(|(entry, row)| *entry = column[*row]);
-        }
+        let depends = |i: &usize| present.iter().any(|row| self.column(*i)[*row] != 0.0);
+        let columns: Vec<usize> = (0..self.unknowns).filter(depends).collect();
+        let entry = |row: usize, i: usize| self.column(columns[i])[present[row]];
         let residuals = present.iter().map(|row| self.column(self.unknowns)[*row]);
         PlacedRows {
-            slopes,
+            places: columns.iter().map(|i| places[*i]).collect(),
+            slopes: DMatrix::from_fn(present.len(), columns.len(), entry),
             residuals: DVector::from_iterator(present.len(), residuals),
         }
     }
