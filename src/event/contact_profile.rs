@@ -1,5 +1,9 @@
 //! How a linear contact, a spring and a damper that only press, changes the velocity in time.
 
+use std::iter::successors;
+
+use rustfft::num_complex::Complex64;
+
 use crate::signal::whole;
 
 /// A linear contact of a given restitution, in shares of its duration.
@@ -42,17 +46,26 @@ impl ContactProfile {
         if share >= 1.0 {
             return 1.0;
         }
-        let (sin, cos) = (self.angle * share).sin_cos();
-        let speed = (-self.decay * share).exp() * (cos - self.decay / self.angle * sin);
+        self.done_at(self.vibration(share))
+    }
+
+    /// e^{(−κ + iφ)s} at a share s of the duration.
+    fn vibration(&self, share: f64) -> Complex64 {
+        Complex64::from_polar((-self.decay * share).exp(), self.angle * share)
+    }
+
+    /// What is done where the vibration is at a value.
+    fn done_at(&self, vibration: Complex64) -> f64 {
+        let speed = vibration.re - self.decay / self.angle * vibration.im;
         (1.0 - speed) / (1.0 + self.restitution)
     }
 
-    /// Slope of what is done at a share of the duration within it.
-    fn slope(&self, share: f64) -> f64 {
-        let (sin, cos) = (self.angle * share).sin_cos();
+    /// Slope of what is done, over the share of the duration, where the vibration is at a value.
+    fn slope_at(&self, vibration: Complex64) -> f64 {
         let (damping, rate) = (self.decay, self.angle);
-        let fall = 2.0 * damping * cos + (rate - damping * damping / rate) * sin;
-        (-damping * share).exp() * fall / (1.0 + self.restitution)
+        let across = rate - damping * damping / rate;
+        let fall = 2.0 * damping * vibration.re + across * vibration.im;
+        fall / (1.0 + self.restitution)
     }
 
     /// Share of the duration by which the mean instant of the impulse follows first touch.
@@ -74,17 +87,16 @@ pub(super) struct TabulatedProfile {
 }
 
 /// Cubics that a tabulated profile consists of.
-const CUBICS: u32 = 512;
+const CUBICS: usize = 512;
 
 impl TabulatedProfile {
     /// Of a profile.
     pub(super) fn new(profile: &ContactProfile) -> Self {
-        let width = f64::from(CUBICS).recip();
-        let place = |i: u32| {
-            let share = width * f64::from(i);
-            [profile.done(share), width * profile.slope(share)]
-        };
-        let places: Vec<[f64; 2]> = (0..=CUBICS).map(place).collect();
+        let width = (CUBICS as f64).recip();
+        let turn = profile.vibration(width);
+        let vibration = successors(Some(Complex64::new(1.0, 0.0)), |v| Some(v * turn));
+        let ends = vibration.map(|v| [profile.done_at(v), width * profile.slope_at(v)]);
+        let ends: Vec<[f64; 2]> = ends.take(CUBICS + 1).collect();
         // Hermite's, by the values and slopes at both ends
         let cubic = |ends: &[[f64; 2]]| {
             let [[a, slope_a], [b, slope_b]] = [ends[0], ends[1]];
@@ -96,7 +108,7 @@ impl TabulatedProfile {
             [a, slope_a, square, cube]
         };
         Self {
-            cubics: places.windows(2).map(cubic).collect(),
+            cubics: ends.windows(2).map(cubic).collect(),
         }
     }
 
@@ -108,7 +120,7 @@ impl TabulatedProfile {
         if share >= 1.0 {
             return 1.0;
         }
-        let place = f64::from(CUBICS) * share;
+        let place = (CUBICS as f64) * share;
         let i = whole::index(place);
         let [a, slope, square, cube] = self.cubics[i];
         let t = place - i as f64;

@@ -18,10 +18,8 @@ impl Turns {
     /// Of a frequency over the sampling rate, and the phase at i = 0, rad; as exact as the angle itself.
     pub(crate) fn new(ratio: f64, phase_rad: f64, count: usize) -> Self {
         let angle = |step: u32| std::f64::consts::TAU * (ratio * f64::from(step)).fract();
-        let table = Self {
-            cos: (0..BLOCK).map(|j| angle(j).cos()).collect(),
-            sin: (0..BLOCK).map(|j| angle(j).sin()).collect(),
-        };
+        let (sin, cos) = (0..BLOCK).map(|j| angle(j).sin_cos()).unzip();
+        let table = Self { cos, sin };
         let (mut cos, mut sin) = (vec![0.0; count], vec![0.0; count]);
         let blocks = cos.chunks_mut(BLOCK as usize);
         let blocks = blocks.zip(sin.chunks_mut(BLOCK as usize));
