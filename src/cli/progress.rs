@@ -144,9 +144,9 @@ impl Later {
 /// Time of fitting, report and writing, measured on campaigns of 846 to 100,000 records
 /// (docs/validation.md): of very long campaigns not all waveforms are fitted and not all rows printed.
 pub(super) const LATER: Later = Later {
-    part: 0.3,
-    bounded: (1.6, 4_000),
-    fixed: Duration::from_millis(1_400),
+    part: 0.7,
+    bounded: (2.9, 2_000),
+    fixed: Duration::from_millis(600),
 };
 
 /// The clock of a bar, shared by threads.
@@ -238,13 +238,13 @@ mod tests {
         // Records, seconds of observing, seconds of all that follows: idle, on one thread, and under
         // a load (docs/validation.md).
         for (records, observing, following) in [
-            (846, 0.56, 2.4),
-            (4_000, 4.1, 8.6),
-            (10_000, 9.1, 9.0),
-            (100_000, 98.4, 39.7),
-            (846, 1.32, 4.25),
-            (4_000, 6.42, 14.8),
-            (4_000, 15.9, 29.9),
+            (846, 0.27, 1.35),
+            (4_000, 1.92, 4.93),
+            (10_000, 4.39, 7.51),
+            (100_000, 40.1, 28.5),
+            (846, 0.52, 3.05),
+            (4_000, 3.83, 8.73),
+            (4_000, 7.51, 19.0),
         ] {
             let (pace, begin) = (Pace::default(), Instant::now());
             pace.clock().later = Some(LATER);

@@ -2,7 +2,7 @@
 
 use std::iter::successors;
 
-use rustfft::num_complex::Complex64;
+use impact_oscillator::model::path::C64;
 
 use crate::signal::whole;
 
@@ -50,18 +50,18 @@ impl ContactProfile {
     }
 
     /// e^{(−κ + iφ)s} at a share s of the duration.
-    fn vibration(&self, share: f64) -> Complex64 {
-        Complex64::from_polar((-self.decay * share).exp(), self.angle * share)
+    fn vibration(&self, share: f64) -> C64 {
+        C64::from_polar((-self.decay * share).exp(), self.angle * share)
     }
 
     /// What is done where the vibration is at a value.
-    fn done_at(&self, vibration: Complex64) -> f64 {
+    fn done_at(&self, vibration: C64) -> f64 {
         let speed = vibration.re - self.decay / self.angle * vibration.im;
         (1.0 - speed) / (1.0 + self.restitution)
     }
 
     /// Slope of what is done, over the share of the duration, where the vibration is at a value.
-    fn slope_at(&self, vibration: Complex64) -> f64 {
+    fn slope_at(&self, vibration: C64) -> f64 {
         let (damping, rate) = (self.decay, self.angle);
         let across = rate - damping * damping / rate;
         let fall = 2.0 * damping * vibration.re + across * vibration.im;
@@ -94,7 +94,7 @@ impl TabulatedProfile {
     pub(super) fn new(profile: &ContactProfile) -> Self {
         let width = (CUBICS as f64).recip();
         let turn = profile.vibration(width);
-        let vibration = successors(Some(Complex64::new(1.0, 0.0)), |v| Some(v * turn));
+        let vibration = successors(Some(C64::new(1.0, 0.0)), |v| Some(v * turn));
         let ends = vibration.map(|v| [profile.done_at(v), width * profile.slope_at(v)]);
         let ends: Vec<[f64; 2]> = ends.take(CUBICS + 1).collect();
         // Hermite's, by the values and slopes at both ends
