@@ -57,24 +57,20 @@ pub struct Compared {
 /// Compare a campaign with its fitted model.
 pub fn compare(input: &Input<'_>) -> Compared {
     let chosen = replays::chosen_records(input);
-    // the map's cells and the records that are replayed keep all threads busy, the rest few
-    let ((region_map, comparisons), ((residuals, curves), (impacts, records))) = rayon::join(
+    // the map's cells keep all threads busy, what rests on the blocks of the identification few
+    let ((region_map, curves, comparisons), (residuals, impacts)) = rayon::join(
         || {
             (
                 plane::region_map(input),
+                plane::curves(input),
                 replays::comparisons(input, &chosen),
             )
         },
-        || {
-            rayon::join(
-                || (evidence::residuals(input), plane::curves(input)),
-                || (evidence::impacts(input), records::records(input, &chosen)),
-            )
-        },
+        || (evidence::residuals(input), evidence::impacts(input)),
     );
     Compared {
         overview: records::overview(input),
-        records,
+        records: records::records(input, &chosen),
         brackets: records::brackets(input),
         curves,
         region_map,

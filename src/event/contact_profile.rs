@@ -120,7 +120,7 @@ impl TabulatedProfile {
         if share >= 1.0 {
             return 1.0;
         }
-        let place = (CUBICS as f64) * share;
+        let place = CUBICS as f64 * share;
         let i = whole::index(place);
         let [a, slope, square, cube] = self.cubics[i];
         let t = place - i as f64;

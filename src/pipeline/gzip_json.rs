@@ -1,11 +1,12 @@
 //! Values as gzip-compressed JSON.
 
-use std::io::{self, BufWriter, IntoInnerError};
+use std::fs::File;
+use std::io::{self, BufWriter, IntoInnerError, Read};
 use std::path::Path;
 
 use flate2::Compression;
+use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
-use libdeflater::Decompressor;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -32,29 +33,12 @@ pub(super) fn write<T: Serialize>(path: &Path, value: &T) -> Result<(), OutputEr
     })
 }
 
-/// Most that gzip packs into one byte.
-const GREATEST_RATIO: usize = 1032;
-
 /// Read a value that [`write`] wrote.
 ///
 /// # Errors
 /// If the file is missing, damaged or of another type.
 pub(super) fn read<T: DeserializeOwned>(path: &Path) -> io::Result<T> {
-    Ok(serde_json::from_slice(&unpacked(&std::fs::read(path)?)?)?)
-}
-
-/// The one member of a gzip file, which ends with its length.
-fn unpacked(packed: &[u8]) -> io::Result<Vec<u8>> {
-    let damaged = |why: &str| io::Error::new(io::ErrorKind::InvalidData, why.to_owned());
-    let length = packed.last_chunk().map_or(0, |b| u32::from_le_bytes(*b));
-    let length = usize::try_from(length).unwrap_or(usize::MAX);
-    if length > GREATEST_RATIO * packed.len() {
-        return Err(damaged("the length at its end is not that of its content"));
-    }
-    let mut text = vec![0; length];
-    let used = Decompressor::new()
-        .gzip_decompress(packed, &mut text)
-        .map_err(|e| damaged(&e.to_string()))?;
-    text.truncate(used);
-    Ok(text)
+    let mut text = String::new();
+    GzDecoder::new(File::open(path)?).read_to_string(&mut text)?;
+    Ok(serde_json::from_str(&text)?)
 }

@@ -125,12 +125,15 @@ fn rates(
 ) -> Result<Vec<Option<f64>>, ReadError> {
     let tail = text.range(segment.last, HEAD_BYTES)?;
     let end = Lines::new(&tail, false).next();
-    let end = |i: usize| Cells::new(end?.1, layout.separator).nth(i);
+    let end: Vec<&[u8]> = end.map_or_else(Vec::new, |(_, line)| {
+        Cells::new(line, layout.separator).collect()
+    });
     let mut measured = BTreeMap::new();
     for &(i, column) in shown {
         if let Column::X(first) = column {
             let values = x_values(layout, head, i);
-            let last = end(i).and_then(|c| number::parse_cell(c, layout.decimal));
+            let last = end.get(i);
+            let last = last.and_then(|c| number::parse_cell(c, layout.decimal));
             measured.insert(first, rate::from_axis(&values, last, segment.rows));
         }
     }

@@ -33,9 +33,9 @@ pub(crate) enum Number {
     U32,
     /// Unsigned, 64 bits.
     U64,
-    /// IEEE 754, 32 bits.
-    /// 16-bit floating point.
+    /// IEEE 754, 16 bits.
     F16,
+    /// IEEE 754, 32 bits.
     F32,
     /// IEEE 754, 64 bits.
     F64,
@@ -204,7 +204,24 @@ mod tests {
             &(1u64 << 63).to_le_bytes(),
             (1u64 << 63) as f64,
         );
-        check(Number::F16, &0x3C01u16.to_le_bytes(), 1.0009765625);
+        for (bits, value) in [
+            (0x3C00_u16, 1.0),
+            (0x3C01, 1.000_976_562_5),
+            (0xC000, -2.0),
+            (0x7BFF, 65_504.0),
+            (1, 2f64.powi(-24)),
+            (0x7C00, f64::INFINITY),
+        ] {
+            check(Number::F16, &bits.to_le_bytes(), value);
+        }
+        let mut nan = Vec::new();
+        decode(
+            Number::F16,
+            ByteOrder::Little,
+            &0x7E00_u16.to_le_bytes(),
+            &mut nan,
+        );
+        assert!(nan[0].is_nan());
         check(Number::F32, &1.5f32.to_le_bytes(), 1.5);
         check(Number::F64, &(-0.1f64).to_le_bytes(), -0.1);
     }

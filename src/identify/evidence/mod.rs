@@ -160,11 +160,16 @@ pub struct Blocks {
     pub progress: FitProgress,
 }
 
-/// The pairs of speeds at impacts that [`Blocks::new`] has: those without outliers.
+/// The pairs of speeds at impacts, and apart from them those that lie far from the bulk.
+fn impacts(observations: &[Observation], scatter: f64) -> (ImpactBlock, Vec<SpeedPair>) {
+    let mut block = ImpactBlock::new(observations, scatter);
+    let outliers = block.extract_outliers(OUTLYING_IMPACT);
+    (block, outliers)
+}
+
+/// The pairs of speeds at impacts that [`Blocks::new`] has.
 pub fn impacts_of_bulk(observations: &[Observation]) -> ImpactBlock {
-    let mut block = ImpactBlock::new(observations, IMPACT_SCATTER);
-    block.extract_outliers(OUTLYING_IMPACT);
-    block
+    impacts(observations, IMPACT_SCATTER).0
 }
 
 impl Blocks {
@@ -185,8 +190,7 @@ impl Blocks {
             brackets,
             ..
         } = *evidence;
-        let mut impact = ImpactBlock::new(observations, impact_scatter);
-        let impact_outliers = impact.extract_outliers(OUTLYING_IMPACT);
+        let (impact, impact_outliers) = impacts(observations, impact_scatter);
         let mut blocks = Self {
             resonance: ResonanceBlock::new(rig, observations, relative_error),
             trajectory: TrajectoryBlock::new(rig, observations, relative_error),

@@ -228,7 +228,6 @@ impl Record<'_> {
     }
 }
 
-/// A number in single precision.
 /// A line of identification: blanks where a file would be read otherwise, NONE for nothing.
 fn line(text: &str) -> String {
     let clean: String = text

@@ -38,7 +38,6 @@ use arrange::Arranged;
 use tree::Tree;
 
 use super::bytes::FileBytes;
-use super::numbers::ByteOrder;
 use super::source::{ReadError, Source, opened};
 
 /// Whether a file's first bytes (128 or more) are those of a MATLAB file of level 4 or 5.
@@ -50,9 +49,14 @@ pub(crate) fn recognises(head: &[u8]) -> bool {
 pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let file = FileBytes::open(path)?;
     let head = file.all();
-    let tree = match v5::byte_order(head) {
-        Some(order) => v5::scan(&file, order)?,
-        None => v4::scan(&file, v4::byte_order(head).unwrap_or(ByteOrder::Little))?,
+    let tree = match (v5::byte_order(head), v4::byte_order(head)) {
+        (Some(order), _) => v5::scan(&file, order)?,
+        (None, Some(order)) => v4::scan(&file, order)?,
+        (None, None) => {
+            let found = format!("{} bytes that are neither", head.len());
+            let expected = "the header of a MATLAB file of level 4 or 5";
+            return Err(file.refuse(0, expected, found));
+        }
     };
     refuse_if_nothing_left(&file, &tree)?;
     let Arranged {

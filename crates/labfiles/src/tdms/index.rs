@@ -27,7 +27,8 @@ pub(super) fn share(
     let code = cursor.u32("a data type")?;
     let kind = Kind::of(code).map_err(|unread| {
         let remedy = "Save the channel again, as double precision numbers (DBL).";
-        file.unsupported(at + 4, unread, "a data type that is read", remedy)
+        let found = unread.to_string();
+        file.unsupported(at + 4, found, "a data type that is read", remedy)
     })?;
     let dimension = cursor.u32("a dimension")?;
     if dimension != 1 {

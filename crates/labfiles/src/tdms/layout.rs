@@ -56,7 +56,22 @@ pub(super) struct Entry {
     pub column: u64,
 }
 
-const TOO_LONG: &str = "a chunk beyond 2^64 bytes";
+/// Why the data of channels do not fit together in a chunk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub(super) enum LayoutFault {
+    #[error("a chunk beyond 2^64 bytes")]
+    TooLong,
+    #[error("DAQmx channels beside channels of another kind")]
+    OtherKinds,
+    #[error("DAQmx channels with different raw data widths")]
+    Widths,
+    #[error("a DAQmx scaler in buffer {buffer} of {buffers}")]
+    NoBuffer { buffer: usize, buffers: usize },
+    #[error("a DAQmx scaler at byte {byte} of {width}")]
+    Outside { byte: u64, width: u64 },
+    #[error("DAQmx scalers that overlap in buffer {0}")]
+    Overlap(usize),
+}
 
 /// The layout of the chunks of a segment.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -73,7 +88,7 @@ pub(super) struct Layout {
 
 impl Layout {
     /// Lay out the shares of channels one after the other.
-    pub(super) fn new(shares: Vec<(usize, Share)>) -> Result<Self, String> {
+    pub(super) fn new(shares: Vec<(usize, Share)>) -> Result<Self, LayoutFault> {
         let mut layout = Self::default();
         let devices = shares
             .iter()
@@ -84,7 +99,10 @@ impl Layout {
         }
         for (object, share) in shares {
             let (offset, column) = (layout.chunk, layout.row);
-            layout.chunk = layout.chunk.checked_add(share.bytes).ok_or(TOO_LONG)?;
+            layout.chunk = layout
+                .chunk
+                .checked_add(share.bytes)
+                .ok_or(LayoutFault::TooLong)?;
             layout.row += share.kind.bytes().unwrap_or(0);
             layout.entries.push(Entry {
                 object,
@@ -96,9 +114,9 @@ impl Layout {
         Ok(layout)
     }
 
-    fn devices(mut self, shares: Vec<(usize, Share)>, devices: usize) -> Result<Self, String> {
+    fn devices(mut self, shares: Vec<(usize, Share)>, devices: usize) -> Result<Self, LayoutFault> {
         if devices != shares.len() {
-            return Err("DAQmx channels beside channels of another kind".to_owned());
+            return Err(LayoutFault::OtherKinds);
         }
         let mut used = Vec::new();
         for (object, share) in shares {
@@ -110,7 +128,7 @@ impl Layout {
                 used = vec![0u64; device.widths.len()];
             }
             if !self.buffers.iter().map(|b| &b.1).eq(&device.widths) {
-                return Err("DAQmx channels with different raw data widths".to_owned());
+                return Err(LayoutFault::Widths);
             }
             for scaler in &device.scalers {
                 self.place(scaler, share.count, &mut used)?;
@@ -129,20 +147,23 @@ impl Layout {
         let total = bytes
             .into_iter()
             .try_fold(0u64, |all, bytes| all.checked_add(bytes?));
-        self.chunk = total.ok_or(TOO_LONG)?;
+        self.chunk = total.ok_or(LayoutFault::TooLong)?;
         Ok(self)
     }
 
     /// Check that a scaler is inside its buffer and that channels do not claim the same bits again
     /// and again.
-    fn place(&mut self, scaler: &Scaler, rows: u64, used: &mut [u64]) -> Result<(), String> {
+    fn place(&mut self, scaler: &Scaler, rows: u64, used: &mut [u64]) -> Result<(), LayoutFault> {
         let index = scaler.buffer as usize;
-        let absent = format!("a DAQmx scaler in buffer {index} of {}", used.len());
+        let absent = LayoutFault::NoBuffer {
+            buffer: index,
+            buffers: used.len(),
+        };
         let buffer = self.buffers.get_mut(index).zip(used.get_mut(index));
         let (buffer, used) = buffer.ok_or(absent)?;
         let (byte, width) = (scaler.byte, buffer.1);
         if byte.saturating_add(scaler.number.bytes()) > width {
-            return Err(format!("a DAQmx scaler at byte {byte} of {width}"));
+            return Err(LayoutFault::Outside { byte, width });
         }
         *used += if scaler.bit.is_some() {
             1
@@ -150,7 +171,7 @@ impl Layout {
             8 * scaler.number.bytes()
         };
         if *used > 16 * buffer.1 {
-            return Err(format!("DAQmx scalers that overlap in buffer {index}"));
+            return Err(LayoutFault::Overlap(index));
         }
         buffer.0 = buffer.0.max(rows);
         Ok(())

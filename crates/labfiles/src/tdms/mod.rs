@@ -31,7 +31,7 @@ use std::sync::Arc;
 
 use content::{Content, Object};
 use samples::Chunks;
-use scale::Scaling;
+use scale::{Scaling, ScalingFault};
 use value::{Kind, Value};
 
 use super::bytes::FileBytes;
@@ -40,7 +40,7 @@ use super::source::{
 };
 
 /// The scaling of a channel, or what of it is not done; shared by channels that inherit it.
-type Scale = Arc<Result<Scaling, String>>;
+type Scale = Arc<Result<Scaling, ScalingFault>>;
 
 /// Whether a file's first bytes are those of a TDMS file, or of its index, which [`open`] refuses
 /// with the remedy.
@@ -87,7 +87,7 @@ impl TdmsFile {
             byte: None,
             ..self.file.unsupported(
                 0,
-                fault.clone(),
+                fault.to_string(),
                 "linear, polynomial or table scaling",
                 "Save the channel scaled, or scale it in campaign.toml from its raw values.",
             )

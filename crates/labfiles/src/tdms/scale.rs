@@ -61,6 +61,21 @@ fn interpolate(x: f64, inputs: &[f64], outputs: &[f64]) -> f64 {
     }
 }
 
+/// Why the scaling that properties describe is not done.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub(super) enum ScalingFault {
+    #[error("{0} scaling")]
+    Unread(String),
+    #[error("a scale without {0}")]
+    Missing(String),
+    #[error("scale {scale} that takes its input from scale {source_scale}")]
+    Input { scale: u32, source_scale: u32 },
+    #[error("a table of {0} and {1} values")]
+    TableLengths(usize, usize),
+    #[error("a table whose inputs neither rise nor fall throughout")]
+    TableOrder,
+}
+
 /// The scaling of a channel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Scaling {
@@ -81,7 +96,7 @@ impl Scaling {
     }
 
     /// The scaling that the properties of one object describe, where they describe one.
-    pub(super) fn of(properties: &BTreeMap<String, Value>) -> Option<Result<Self, String>> {
+    pub(super) fn of(properties: &BTreeMap<String, Value>) -> Option<Result<Self, ScalingFault>> {
         let count = number_of_scales(properties);
         let done = properties
             .get("NI_Scaling_Status")
@@ -121,7 +136,7 @@ fn number_of_scales(properties: &BTreeMap<String, Value>) -> u32 {
 }
 
 /// Follow the chain from the last scale back to the raw samples.
-fn chain(properties: &BTreeMap<String, Value>, count: u32) -> Result<Scaling, String> {
+fn chain(properties: &BTreeMap<String, Value>, count: u32) -> Result<Scaling, ScalingFault> {
     let mut steps = Vec::new();
     let (mut scale, mut scaler) = (count - 1, None);
     loop {
@@ -145,9 +160,10 @@ fn chain(properties: &BTreeMap<String, Value>, count: u32) -> Result<Scaling, St
             RAW => break,
             next if next < scale => scale = next,
             source_scale => {
-                return Err(format!(
-                    "scale {scale} that takes its input from scale {source_scale}"
-                ));
+                return Err(ScalingFault::Input {
+                    scale,
+                    source_scale,
+                });
             }
         }
     }
@@ -170,12 +186,12 @@ impl Reader<'_> {
         self.properties.get(&self.key(name)).and_then(Value::number)
     }
 
-    fn number(&self, name: &str) -> Result<f64, String> {
+    fn number(&self, name: &str) -> Result<f64, ScalingFault> {
         self.optional(name)
-            .ok_or_else(|| format!("a scale without {}", self.key(name)))
+            .ok_or_else(|| ScalingFault::Missing(self.key(name)))
     }
 
-    fn list(&self, name: &str, default: Option<f64>) -> Result<Vec<f64>, String> {
+    fn list(&self, name: &str, default: Option<f64>) -> Result<Vec<f64>, ScalingFault> {
         let size = format!("{name}_Size");
         let size = match default {
             Some(default) => self.optional(&size).unwrap_or(default),
@@ -186,7 +202,7 @@ impl Reader<'_> {
             .collect()
     }
 
-    fn step(&self) -> Result<Option<Step>, String> {
+    fn step(&self) -> Result<Option<Step>, ScalingFault> {
         Ok(Some(match self.kind.as_str() {
             "Linear" => Step::Linear {
                 slope: self.number("Slope")?,
@@ -195,19 +211,15 @@ impl Reader<'_> {
             "Polynomial" => Step::Polynomial(self.list("Coefficients", Some(4.0))?),
             "Table" => self.table()?,
             "AdvancedAPI" => return Ok(None),
-            other => return Err(format!("{other} scaling")),
+            other => return Err(ScalingFault::Unread(other.to_owned())),
         }))
     }
 
-    fn table(&self) -> Result<Step, String> {
+    fn table(&self) -> Result<Step, ScalingFault> {
         let mut inputs = self.list("Pre_Scaled_Values", None)?;
         let mut outputs = self.list("Scaled_Values", None)?;
         if inputs.len() != outputs.len() || inputs.is_empty() {
-            return Err(format!(
-                "a table of {} and {} values",
-                inputs.len(),
-                outputs.len()
-            ));
+            return Err(ScalingFault::TableLengths(inputs.len(), outputs.len()));
         }
         if inputs.windows(2).all(|pair| pair[0] > pair[1]) {
             inputs.reverse();
@@ -215,7 +227,7 @@ impl Reader<'_> {
         }
         match inputs.windows(2).all(|pair| pair[0] < pair[1]) {
             true => Ok(Step::Table { inputs, outputs }),
-            false => Err("a table whose inputs neither rise nor fall throughout".to_owned()),
+            false => Err(ScalingFault::TableOrder),
         }
     }
 }

@@ -243,8 +243,11 @@ impl Scanner<'_> {
             self.spend(lead.at, shares.len())?;
         }
         let layout = Layout::new(shares).map_err(|found| {
-            self.file
-                .refuse(lead.at, "channels whose data fit together", found)
+            self.file.refuse(
+                lead.at,
+                "channels whose data fit together",
+                found.to_string(),
+            )
         })?;
         let same = self
             .current

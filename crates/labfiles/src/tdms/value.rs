@@ -23,9 +23,22 @@ pub(super) enum Kind {
     Device,
 }
 
+/// A type of samples or properties that is not read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub(super) enum UnreadType {
+    #[error("void")]
+    Void,
+    #[error("extended float")]
+    ExtendedFloat,
+    #[error("fixed point")]
+    FixedPoint,
+    #[error("unknown type {0:#x}")]
+    Unknown(u32),
+}
+
 impl Kind {
     /// The kind of a type code.
-    pub(super) fn of(code: u32) -> Result<Self, String> {
+    pub(super) fn of(code: u32) -> Result<Self, UnreadType> {
         Ok(match code {
             1 => Self::Number(Number::I8),
             2 => Self::Number(Number::I16),
@@ -43,10 +56,10 @@ impl Kind {
             0x08_000c => Self::Complex(Number::F32),
             0x10_000d => Self::Complex(Number::F64),
             0xffff_ffff => Self::Device,
-            11 | 0x1b => return Err("extended float".to_owned()),
-            0x4f => return Err("fixed point".to_owned()),
-            VOID => return Err("void".to_owned()),
-            other => return Err(format!("unknown type {other:#x}")),
+            0 => return Err(UnreadType::Void),
+            11 | 0x1b => return Err(UnreadType::ExtendedFloat),
+            0x4f => return Err(UnreadType::FixedPoint),
+            other => return Err(UnreadType::Unknown(other)),
         })
     }
 
@@ -122,9 +135,6 @@ impl Stamp {
     }
 }
 
-/// The type code of what has no value.
-const VOID: u32 = 0;
-
 /// Seconds from 1904-01-01 to 1970-01-01.
 const TO_1970_S: i64 = 24_107 * 86_400;
 
@@ -148,10 +158,11 @@ impl Value {
         code: u32,
         order: ByteOrder,
     ) -> Result<Self, ReadError> {
-        if code == VOID {
-            return Ok(Self::Text(String::new()));
-        }
-        let kind = Kind::of(code).map_err(|unread| cursor.refuse("a property's type", unread))?;
+        let kind = match Kind::of(code) {
+            Ok(kind) => kind,
+            Err(UnreadType::Void) => return Ok(Self::Text(String::new())),
+            Err(other) => return Err(cursor.refuse("a property's type", other.to_string())),
+        };
         Ok(match kind {
             Kind::Text => Self::Text(text(cursor, "a property")?),
             Kind::Bool => Self::Bool(cursor.u8("a property")? != 0),

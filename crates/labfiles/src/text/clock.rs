@@ -174,6 +174,14 @@ mod tests {
 
     proptest! {
         #[test]
+        fn prop_dates_come_back(days in -700_000i32..700_000) {
+            let date = NaiveDate::from_epoch_days(days).unwrap().to_string();
+            let stamp = parse(&date, false).unwrap();
+            prop_assert_eq!(stamp.days, Some(days.into()));
+            prop_assert!(stamp.iso().starts_with(&date), "{} {}", stamp.iso(), date);
+        }
+
+        #[test]
         fn prop_no_text_panics(text in ".{0,40}") {
             let _ = parse(&text, false);
         }
