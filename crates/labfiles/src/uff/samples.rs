@@ -27,16 +27,15 @@ pub(super) fn read(
         return Ok(Samples::Real((0..function.samples).map(step).collect()));
     }
     let body = file.slice(function.at, function.bytes, "a function")?;
-    let all = match function.form {
+    let mut all = match function.form {
         Form::Ascii => ascii(file, function, body)?,
         Form::Binary { .. } => Vec::new(),
     };
     let first = usize::from(!header.even);
-    let column = |at: usize| match function.form {
-        Form::Ascii => {
-            let width = to_usize(header.per_point());
-            all.iter().skip(at).step_by(width).copied().collect()
-        }
+    let width = to_usize(header.per_point());
+    let mut column = |at: usize| match function.form {
+        Form::Ascii if width == 1 => std::mem::take(&mut all),
+        Form::Ascii => all.iter().skip(at).step_by(width).copied().collect(),
         Form::Binary { .. } => binary(function, body, at),
     };
     Ok(match side {
