@@ -42,7 +42,8 @@ class Boundary:
     """Points of a boundary in the plane of η and ρ.
 
     Attributes:
-        eta, rho: the points; ρ is NaN where the motion has no such boundary.
+        eta, rho: the points; the one that was sought is NaN where the motion has no such boundary. Of
+            several η at one ρ, or several ρ at one η, only the first is given.
         valid: whether a machine shows the boundary there.
     """
 
@@ -138,7 +139,7 @@ def simulate(
 def boundary(
     kind: str,
     *,
-    motion: str = "1/1",
+    motion: Optional[str] = None,
     eta: Union[None, float, Iterable[float]] = None,
     rho: Union[None, float, Iterable[float]] = None,
     restitution: float = 0.9,
@@ -150,7 +151,8 @@ def boundary(
 
     Args:
         kind: s2 (saddle-node), s1 (period doubling), grazing, further-impact, dead-zone or joined.
-        motion: the motion z = p/n that it bounds.
+        motion: the motion z = p/n that it bounds, 1/1 if it is not given. grazing (which bounds z = 0) and
+            joined take none.
         eta: one frequency ratio or several, or
         rho: one clearance or several.
         restitution, damping_ratio, single, machine: as for simulate.
@@ -163,7 +165,8 @@ def boundary(
         raise ValueError("give either eta or rho")
     name, given = ("eta", eta) if eta is not None else ("rho", rho)
     values = np.atleast_1d(np.asarray(given, dtype=np.float64))
-    arguments = ["--quiet", "boundary", f"--kind={kind}", f"--motion={motion}", "--json"]
+    arguments = ["--quiet", "boundary", f"--kind={kind}", "--json"]
+    arguments += [] if motion is None else [f"--motion={motion}"]
     arguments += _machine(restitution, damping_ratio, single, machine)
     found = [_point(arguments, name, value) for value in values]
     return Boundary(
@@ -176,7 +179,11 @@ def boundary(
 def _point(arguments: Sequence[str], name: str, value: float) -> Tuple[float, float, bool]:
     said = start([*arguments, f"--{name}={float(value)!r}"], accept=(0, 1)).strip()
     point = json.loads(said) if said.startswith("{") else {}
-    missing = {name: float(value)}
-    eta = point.get("eta", missing.get("eta", np.nan))
-    rho = point.get("rho", missing.get("rho", np.nan))
-    return float(eta), float(rho), bool(point.get("valid", False))
+    given = {name: float(value)}
+
+    def number(key: str) -> float:
+        found = point.get(key)
+        found = given.get(key) if found is None else found
+        return float("nan") if found is None else float(found)
+
+    return number("eta"), number("rho"), bool(point.get("valid", False))

@@ -34,6 +34,28 @@ def test_a_boundary_is_found_both_ways():
     assert back.eta[0] == pytest.approx(1.1, abs=1e-6)
 
 
+def test_a_boundary_that_does_not_exist_is_nan():
+    none = impactid.boundary("s1", motion="2/1", eta=[1.25, 4.0])
+    assert np.isfinite(none.rho[0]) and np.isnan(none.rho[1])
+    np.testing.assert_array_equal(none.eta, [1.25, 4.0])
+    assert not none.valid[1]
+    none = impactid.boundary("s2", rho=200.0)
+    assert np.isnan(none.eta[0]) and none.rho[0] == 200.0 and not none.valid[0]
+
+
+def test_several_points_of_a_boundary_give_the_first():
+    found = impactid.boundary("s1", motion="2/1", rho=-0.3)
+    assert found.eta.shape == (1,)
+    assert found.eta[0] == pytest.approx(1.25383, abs=1e-4)
+
+
+def test_boundaries_of_no_motion_take_none():
+    assert impactid.boundary("joined", eta=1.2).rho[0] == pytest.approx(-1)
+    assert impactid.boundary("grazing", eta=1.2).rho[0] == pytest.approx(2.12322, abs=1e-5)
+    with pytest.raises(impactid.ProgramError, match="motion"):
+        impactid.boundary("grazing", motion="1/3", eta=1.2)
+
+
 def test_wrong_arguments():
     with pytest.raises(ValueError, match="either eta or rho"):
         impactid.boundary("s2")

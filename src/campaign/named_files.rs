@@ -28,7 +28,7 @@ impl NamedFiles {
     pub fn read(campaign: &Path) -> Result<Self, Diagnostics> {
         let mut faults = FaultCollector::new(campaign);
         let text = read::text(campaign, &mut faults).unwrap_or_default();
-        let written = read::read(&text, &mut faults);
+        let written = read::read(&text, &mut faults).unwrap_or_default();
         if written.published.is_some() {
             faults.fault(
                 Code::Conflict,

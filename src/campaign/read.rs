@@ -54,26 +54,28 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
     None
 }
 
-/// Read the text; what cannot be read is noted in `faults` and left at its default.
-pub(super) fn read(text: &str, faults: &mut FaultCollector) -> WrittenCampaign {
+/// Read the text; an entry that cannot be read is noted in `faults` and left at its default. `None`,
+/// and the faults, if the text is not TOML or a fault has no entry: nothing can then be said of what is
+/// missing.
+pub(super) fn read(text: &str, faults: &mut FaultCollector) -> Option<WrittenCampaign> {
     let places = Text::new(text);
     let (mut document, syntax) = DeTable::parse_recoverable(text);
     for fault in &syntax {
         note_syntax(&places, fault, faults);
     }
     if !syntax.is_empty() {
-        return WrittenCampaign::default();
+        return None;
     }
     loop {
         match WrittenCampaign::deserialize(Deserializer::from(document.clone())) {
-            Ok(written) => return written,
+            Ok(written) => return Some(written),
             Err(fault) => {
                 let path = fault
                     .span()
                     .and_then(|span| take_out(document.get_mut(), &span));
                 note_form(&places, &fault, path.as_deref(), faults);
                 if path.is_none() {
-                    return WrittenCampaign::default();
+                    return None;
                 }
             }
         }
@@ -102,7 +104,7 @@ fn note_form(
     let message = one_line(fault.message());
     let remedy = match unknown_name(&message) {
         Some((name, expected)) => remedy_for_unknown(name, &expected),
-        None => "see the comments that `impactid init` writes for what the key takes".to_owned(),
+        None => "docs/campaign.md states what the key takes".to_owned(),
     };
     faults.fault(
         Code::UnknownEntry,
@@ -195,7 +197,7 @@ mod tests {
     fn faults_of(text: &str) -> (WrittenCampaign, Vec<Diagnostic>) {
         let mut faults = FaultCollector::new(Path::new("campaign.toml"));
         let written = read(text, &mut faults);
-        (written, faults.into_diagnostics().0)
+        (written.unwrap_or_default(), faults.into_diagnostics().0)
     }
 
     #[test]
@@ -229,6 +231,16 @@ mod tests {
     }
 
     #[test]
+    fn the_letter_size_has_two_names() {
+        for name in ["letter", "us-letter"] {
+            let (written, faults) = faults_of(&format!("[report]\npaper = \"{name}\"\n"));
+            assert!(faults.is_empty(), "{faults:?}");
+            let paper = written.report.paper.map(toml::Spanned::into_inner);
+            assert_eq!(paper, Some(crate::report::Paper::UsLetter));
+        }
+    }
+
+    #[test]
     fn an_unknown_key_names_the_nearest() {
         let (_, faults) = faults_of("[records]\nclearence = \"1 mm\"\n");
         assert!(faults[0].remedy.contains("'clearance'"), "{faults:?}");
@@ -239,6 +251,8 @@ mod tests {
         let (_, faults) = faults_of("[campaign]\nname = \"x\n");
         assert_eq!(faults[0].place.line, Some(2));
         assert!(faults[0].message.contains("TOML"));
+        let mut collector = FaultCollector::new(Path::new("campaign.toml"));
+        assert!(read("[campaign]\nname = \"x\n", &mut collector).is_none());
     }
 
     proptest::proptest! {

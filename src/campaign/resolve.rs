@@ -41,13 +41,18 @@ pub fn load_taken(path: &Path, open: Opener<'_>, taken: Taken<'_>) -> Outcome {
 
 fn load_listed(path: &Path, files: (Opener<'_>, Option<Taken<'_>>)) -> Outcome {
     let mut faults = FaultCollector::new(path);
-    let Some(text) = read::text(path, &mut faults) else {
+    let text = read::text(path, &mut faults);
+    let written = text
+        .as_deref()
+        .and_then(|text| read::read(text, &mut faults));
+    let (Some(text), Some(written)) = (text, written) else {
+        let mut diagnostics = faults.into_diagnostics();
+        diagnostics.sort();
         return Outcome {
             campaign: None,
-            diagnostics: faults.into_diagnostics(),
+            diagnostics,
         };
     };
-    let written = read::read(&text, &mut faults);
     let mut context = ResolveContext {
         text: Text::new(&text),
         faults,
@@ -297,5 +302,22 @@ fn exclude(
         if all && !found && !records.is_empty() {
             unknown_record(placed, "analysis.exclude", name, records, context);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn broken_syntax_is_reported_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let toml = folder.path().join("campaign.toml");
+        std::fs::write(&toml, "[campaign]\nname = \"x\nmachine = \"double\"\n").unwrap();
+        let outcome = load(&toml, &labfiles::open);
+        assert!(outcome.campaign.is_none());
+        let faults = &outcome.diagnostics.0;
+        assert!(!faults.is_empty());
+        assert!(faults.iter().all(|f| f.code == Code::Syntax), "{faults:?}");
     }
 }

@@ -40,15 +40,16 @@ fn head(text: &mut String, name: &str, found: &FolderContents) -> std::fmt::Resu
     };
     writeln!(
         text,
-        "# A campaign for impactid, inferred from {} files ({}); check every line.\n\
+        "# A campaign for impactid, inferred from {} {} ({}); check every line.\n\
          # Every quantity with a dimension is written with its unit in quotes: \"1.0 mm\".\n\
          # Then: impactid check campaign.toml; impactid run campaign.toml --out results\n\n\
          [campaign]\n\
          name = {}\n\
-         machine = \"{machine}\"            # \"double\": two masses; \"single\": one and a stop\n\
+         machine = \"{machine}\"            # \"double\": two masses; \"single\": one mass against a stop\n\
          flight = \"{flight}\"           # \"harmonic\": springs and a drive; \"constant_force\": free flights, \
          as of balls and carts\n",
         found.files,
+        if found.files == 1 { "file" } else { "files" },
         found.format,
         quoted(name)
     )
@@ -311,10 +312,10 @@ uncertainty = \"profile\"      # beside the covariance: profile, bootstrap or co
 seed = 1
 
 [report]
-paper = \"a4\"                 # or \"us-letter\"
-language = \"en\"              # en, cs or de
+paper = \"a4\"                 # or \"letter\"
+language = \"en\"              # en or de
 decimal_comma = false
-formats = [\"pdf\"]            # any of pdf, html, svg, png; the data of the figures are always written as CSV
+formats = [\"pdf\"]            # any of pdf, html, svg, png, figure-pdf, tex; the data of the figures are always written as CSV
 # points = [\"record_12\"]     # records to draw; chosen by the program if not given
 # logo = \"logo.svg\"          # an image for the first page (svg, png or jpg)
 # template = \"report.typ\"    # a typst template instead of the built-in one

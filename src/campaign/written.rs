@@ -45,7 +45,7 @@ pub struct WrittenCampaign {
     pub published: Option<Published>,
 }
 
-/// `[published]`: a table of published closing speeds, and values of β that it is tested against.
+/// `[published]`: a table of published approach speeds, and values of β that it is tested against.
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Published {
@@ -121,7 +121,7 @@ pub struct Attributes {
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rig {
-    /// Which rig it is, as text: campaigns on other rigs share nothing.
+    /// Which rig it is, as text: of what `shared` lists, campaigns on other rigs share nothing.
     pub name: Placed<String>,
     /// What stays the same in all campaigns on the rig.
     pub shared: Placed<Vec<String>>,
@@ -233,7 +233,7 @@ pub struct Report {
     pub language: Placed<Language>,
     /// Whether numbers are printed with a decimal comma.
     pub decimal_comma: Placed<bool>,
-    /// What it is written as: pdf, html, svg, png.
+    /// What it is written as: pdf, html, svg, png, figure-pdf, tex, csv.
     pub formats: Placed<Vec<Format>>,
     /// A typst template instead of the built-in one, relative to campaign.toml's folder.
     pub template: Placed<String>,

@@ -73,10 +73,10 @@ Example:
   impactid atlas --columns 2000 --rows 1500 --shard 3/16 --out parts/
   impactid merge parts/*.json --out atlas/
 
-It writes atlas-curves and atlas-map as CSV and Parquet, the figure atlas as SVG, PNG and PDF,
-atlas.json with how curves and brute force agree, and study.toml to replay it; with --shard only
-part-I-of-N.json. Rounding differs between instruction sets: parts for machines of several kinds
-need one --kernel.";
+It writes atlas-curves and atlas-map as CSV and Parquet, the figure atlas as SVG, PNG and PDF, \
+atlas.json with how curves and brute force agree, and study.toml to replay it; with --shard \
+only part-I-of-N.json. Rounding differs between instruction sets: parts for machines of \
+several kinds need one --kernel.";
 
 fn shard(text: &str) -> Result<(usize, usize), String> {
     let wrong = || format!("“{text}” is no part: write I/N with I from 0 to N−1, such as 3/16");

@@ -55,7 +55,8 @@ Example:
   impactid basins --eta 1.19 --rho 3 --restitution 0 --damping-ratio 0.005 \\
       --x -12..3 --vx -12..12 --settle-periods 600 --out fig5a/
 
-It writes basins.csv and .parquet, the figure as SVG, PNG and PDF, and study.toml to replay it.";
+It writes basins.csv and .parquet, the figure as SVG, PNG and PDF, and study.toml to replay \
+it.";
 
 impl Basins {
     /// Settle every start.

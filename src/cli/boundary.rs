@@ -16,9 +16,10 @@ pub(super) struct Boundary {
     /// Which boundary
     #[arg(long, value_enum)]
     kind: Kind,
-    /// The motion z = p/n that it bounds; with j behind it where it has a dead zone
-    #[arg(long, value_name = "P/N[j]", default_value = "1/1", value_parser = bounded)]
-    motion: (u32, u32, bool),
+    /// The motion z = p/n that it bounds, with j behind it if it has a dead zone [default: 1/1];
+    /// not for grazing, which bounds z = 0, and joined
+    #[arg(long, value_name = "P/N[j]", value_parser = bounded)]
+    motion: Option<(u32, u32, bool)>,
     #[command(flatten)]
     machine: MachineArgs,
     /// Frequency ratio η at which the clearance ρ is sought
@@ -68,9 +69,9 @@ Example:
   impactid boundary --kind dead-zone --motion 1j --restitution 0 --damping-ratio 0.002 --eta 0.8
   impactid boundary --kind s1 --motion 2/1 --restitution 0.9 --damping-ratio 0.07 --rho=-0.3
 
-`valid` states whether the boundary is one that a machine shows: the marginal orbit closes, meets no
-further contact, opens no dead zone, and no other multiplier has left the unit circle. Exit code 1:
-the motion has no such boundary there.";
+`valid` states whether the boundary is one that a machine shows: the marginal orbit closes, \
+meets no further contact, opens no dead zone, and no other multiplier has left the unit \
+circle. Exit code 1: the motion has no such boundary there.";
 
 impl Kind {
     fn boundary(self) -> Sought {
@@ -92,7 +93,14 @@ impl Boundary {
     /// [`Failure`] where a parameter is out of range.
     pub(super) fn run(self, _verbosity: Verbosity) -> Result<Exit, Failure> {
         let machine = self.machine.machine()?;
-        let (p, n, dead_zone) = self.motion;
+        if self.motion.is_some() && matches!(self.kind, Kind::Grazing | Kind::Sticking) {
+            return Err(Failure::new(
+                "--motion is not for the kinds grazing and joined: ρ' bounds the impactless motion \
+                 z = 0, ρp the motion in which the masses never separate",
+                "leave --motion out, or name another kind",
+            ));
+        }
+        let (p, n, dead_zone) = self.motion.unwrap_or((1, 1, false));
         let query = BoundaryQuery {
             boundary: self.kind.boundary(),
             p,
@@ -192,33 +200,50 @@ impl Answer<'_> {
             } else {
                 "  (no motion there)"
             };
-            let (name, z) = (self.name, self.motion());
-            let (eta, rho) = (number(point.eta()), number(point.rho()));
-            format!("{name} of z = {z}: η = {eta}  ρ = {rho}{valid}\n")
+            let (boundary, eta, rho) = (self.boundary(), point.eta(), point.rho());
+            format!("{boundary}: η = {eta}  ρ = {rho}{valid}\n")
         };
         self.points.iter().map(line).collect()
     }
 
-    /// The motion as p/n, with j where it has a dead zone.
+    /// The boundary with the motion that it bounds.
+    fn boundary(&self) -> String {
+        match self.query.boundary {
+            Sought::Sticking => "ρp".to_owned(),
+            _ => format!("{} of z = {}", self.name, self.motion()),
+        }
+    }
+
+    /// The motion that it bounds: p/n with j if it has a dead zone, `0` without impacts, `joined`
+    /// without separation.
     fn motion(&self) -> String {
-        let j = if self.query.dead_zone { "j" } else { "" };
-        format!("{}/{}{j}", self.query.p, self.query.n)
+        match self.query.boundary {
+            Sought::ImpactlessGrazing => "0".to_owned(),
+            Sought::Sticking => "joined".to_owned(),
+            _ => {
+                let j = if self.query.dead_zone { "j" } else { "" };
+                format!("{}/{}{j}", self.query.p, self.query.n)
+            }
+        }
     }
 
     /// That the motion has no such boundary there.
     fn none(&self) -> String {
-        let (name, z) = (self.name, self.motion());
+        let boundary = self.boundary();
         let none = match (self.query.at, self.query.boundary) {
-            (At::FrequencyRatio(eta), _) => format!("{name} of z = {z}: none at η = {eta}"),
+            (At::FrequencyRatio(eta), _) => format!("{boundary}: none at η = {eta}"),
             (At::Clearance(rho), Sought::Sticking) => {
-                format!("{name}: no single η at ρ = {rho}; with equal masses ρp is −1 at every η")
+                format!(
+                    "{boundary}: no single η at ρ = {rho}; with equal forces on both masses, or masses \
+                     of equal f0 and β, ρp is the same at every η"
+                )
             }
             (At::Clearance(rho), Sought::ImpactlessGrazing) => {
-                format!("{name}: none at ρ = {rho} up to η = 2.5")
+                format!("{boundary}: none at ρ = {rho} up to η = 2.5")
             }
             (At::Clearance(rho), _) => {
                 let top = self.query.greatest_eta();
-                format!("{name} of z = {z}: none at ρ = {rho} up to η = {top}")
+                format!("{boundary}: none at ρ = {rho} up to η = {top}")
             }
         };
         match self.never_rests() {
@@ -240,9 +265,4 @@ impl Answer<'_> {
             None
         }
     }
-}
-
-/// A number as JSON has it.
-fn number(value: f64) -> String {
-    json!(value).to_string()
 }

@@ -24,7 +24,8 @@ const EXAMPLE: &str = "\
 Example:
   impactid check data-samples/double-oscillator/campaign.toml
 
-Exit codes: 0 no error; 2 an error that stops the campaign or leaves records out.";
+Exit codes: 0 nothing but notes; 2 an error that stops the campaign, or a warning: a record is \
+left out.";
 
 impl Check {
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {

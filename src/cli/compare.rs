@@ -41,7 +41,7 @@ pub(super) struct Compare {
     /// Language of the report
     #[arg(long, value_name = "LANGUAGE", value_enum, default_value = "en")]
     language: Language,
-    /// Paper size
+    /// Paper size; us-letter is the same as letter
     #[arg(long, value_name = "PAPER", value_enum)]
     paper: Option<Paper>,
     /// Print numbers with a decimal comma
@@ -66,9 +66,10 @@ Example:
   impactid compare results-before/ results-after/ --out comparison/
   impactid compare 2023/ 2024/ 2025/campaign.toml --out trend/ --format pdf,html
 
-Each campaign is compared with the first. Errors that campaigns have in common cancel: those of channels
-with the same instrument (a serial number in the channel's key `instrument`), and what both campaigns state
-in campaign.toml as `[rig] shared = [...]`. A campaign with several specimens gives one entry for each.
+Each campaign is compared with the first. Errors that campaigns have in common cancel: those \
+of channels with the same instrument (a serial number in the channel's key `instrument`), and \
+what both campaigns state in campaign.toml as `[rig] shared = [...]`. A campaign with several \
+specimens gives one entry for each.
 Outputs: comparison.json, comparison.csv, comparison.pdf, comparison.html, figures/trend.csv.
 Exit codes: 0 success, whether anything changed or not; 2 bad input.";
 
@@ -195,6 +196,17 @@ fn of_path(path: &Path, number: usize, verbosity: Verbosity) -> Result<Vec<Campa
     ))
 }
 
+/// The least p-value that is printed.
+const LEAST_P: f64 = 1e-4;
+
+/// A p-value to four decimals.
+fn p_value(p: f64) -> String {
+    match p < LEAST_P {
+        true => format!("< {LEAST_P}"),
+        false => format!("{p:.4}"),
+    }
+}
+
 /// The differences as lines.
 fn table(comparison: &Comparison) -> String {
     let mut text = String::new();
@@ -209,20 +221,21 @@ fn table(comparison: &Comparison) -> String {
         let [low, high] = d.interval95;
         let [least, most] = d.independent_interval95;
         text += &format!(
-            "{:>8} {:>21} {:>12.4e} {:>27} {:>12} {:>8.4}\n",
+            "{:>8} {:>21} {:>12.4e} {:>27} {:>12} {:>8}\n",
             d.campaign + 1,
             d.parameter.name(),
             d.value,
             format!("{low:.4e} to {high:.4e}"),
             format!("± {:.2e}", 0.5 * (most - least)),
-            d.p_value
+            p_value(d.p_value)
         );
     }
     text += &format!("\n{}", comparison.outcome());
     if let Some(test) = &comparison.unchanged {
-        let (f, p) = (test.statistic, test.p_value);
+        let (f, p) = (test.statistic, p_value(test.p_value));
+        let equals = if test.p_value < LEAST_P { "" } else { "= " };
         text += &format!(
-            " ({} differences: F = {f:.3}, p = {p:.4})",
+            " ({} differences: F = {f:.3}, p {equals}{p})",
             test.differences
         );
     }
@@ -234,4 +247,16 @@ fn table(comparison: &Comparison) -> String {
         text += &format!("note: {remark}\n");
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_p_value_is_never_printed_as_zero() {
+        assert_eq!(p_value(0.0), "< 0.0001");
+        assert_eq!(p_value(0.000_12), "0.0001");
+        assert_eq!(p_value(0.25), "0.2500");
+    }
 }

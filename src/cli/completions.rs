@@ -1,5 +1,6 @@
 //! `impactid completions` and `impactid man`.
 
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::{Args, CommandFactory};
@@ -58,12 +59,67 @@ impl Man {
     fn write(&self, command: &clap::Command, name: &str, pages: &mut usize) -> Result<(), Failure> {
         let path = self.out.join(format!("{name}.1"));
         output::write_whole(&path, |file| {
-            clap_mangen::Man::new(command.clone()).render(file)
+            file.write_all(page(command, name)?.as_bytes())
         })?;
         *pages += 1;
         for below in command.get_subcommands().filter(|c| c.get_name() != "help") {
             self.write(below, &format!("{name}-{}", below.get_name()), pages)?;
         }
         Ok(())
+    }
+}
+
+/// The manual page of a command; its help's examples are under a heading of their own.
+fn page(command: &clap::Command, name: &str) -> io::Result<String> {
+    let mut page = Vec::new();
+    clap_mangen::Man::new(command.clone())
+        .title(name)
+        .source(concat!("impactid ", env!("CARGO_PKG_VERSION")))
+        .manual("User Commands")
+        .render(&mut page)?;
+    let text = String::from_utf8_lossy(&page).into_owned();
+    let Some((before, extra)) = text.split_once("\n.SH EXTRA\n") else {
+        return Ok(text);
+    };
+    let end = extra.find("\n.SH ").map_or(extra.len(), |at| at + 1);
+    let (examples, after) = extra.split_at(end);
+    Ok(format!("{before}\n.SH EXAMPLES\n{}{after}", set(examples)))
+}
+
+/// Lines of a help text for troff: those that are indented stay lines, each other one is a paragraph.
+fn set(help: &str) -> String {
+    let mut text = String::new();
+    for lines in help.lines().collect::<Vec<_>>().chunk_by(|a, b| {
+        let indented = |line: &str| line.starts_with(' ');
+        indented(a) && indented(b)
+    }) {
+        let block = lines.join("\n");
+        text += &match block.chars().next() {
+            None => String::new(),
+            Some(' ') => format!(".nf\n{block}\n.fi\n"),
+            Some(_) => format!(".PP\n{block}\n"),
+        };
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_has_its_name_and_its_examples_line_by_line() {
+        let mut command = Cli::command();
+        command.build();
+        let run = command.find_subcommand("run").unwrap();
+        let page = page(run, "impactid-run").unwrap();
+        assert!(page.contains(".TH impactid-run 1"), "{page}");
+        let (_, examples) = page.split_once("\n.SH EXAMPLES\n").unwrap();
+        assert!(
+            examples.starts_with(".PP\nExample:\n.nf\n  impactid run "),
+            "{examples}"
+        );
+        assert!(examples.contains("\n.fi\n.PP\nOutputs: "), "{examples}");
+        assert!(!page.contains(".SH EXTRA"));
     }
 }

@@ -41,7 +41,7 @@ Example:
   impactid study coverage --campaigns 100 --rig realistic
   impactid study coverage --campaigns 100 --rig friction=0.015,contact=0.3
 
-Each campaign has a truth, noise and faults of its own. Errors of R are absolute, those of the
+Each campaign has a truth, noise and faults of its own. Errors of R are absolute, those of the \
 other parameters relative. `bound` is the Cramér–Rao bound: no unbiased estimator errs less.";
 
 impl Coverage {
@@ -97,7 +97,10 @@ fn table(found: &coverage::Coverage) -> String {
 
 fn tallies(found: &Tallies) -> String {
     let mut text = tally_line("false alarms", found.false_alarms);
-    text += &tally_line("  of them a gap accused", found.gaps_accused);
+    text += &tally_line(
+        "  of them a correct gap reported as wrong",
+        found.gaps_accused,
+    );
     text += &tally_line("methods do not agree", found.methods_disagree);
     for (kind, count) in &found.verdicts {
         text += &format!("verdict {}: {count}\n", kind.name().replace('_', " "));
@@ -116,8 +119,8 @@ fn tallies(found: &Tallies) -> String {
     } = found.motions;
     text += &format!(
         "motion types of {periodic} periodic records: {right} right, {undetermined} undetermined, \
-         {doubtful} wrong but not sure, {wrong} surely wrong; of {not_periodic} others \
-         {called_periodic} surely called periodic\n"
+         {doubtful} wrong with a confidence below 0.9, {wrong} with 0.9 or more; of {not_periodic} \
+         others {called_periodic} called periodic with 0.9 or more\n"
     );
     text
 }

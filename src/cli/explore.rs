@@ -51,8 +51,8 @@ Example:
   impactid explore data-samples/studies/fig5-basins.toml
   impactid explore --port 8080 --no-browser        for a tunnel: ssh -L 8080:127.0.0.1:8080 HOST
 
-The page is served on 127.0.0.1 alone, to whoever has the token in its address. Press ? there for its
-keys. Ctrl-C ends it. Nothing is written but the files that you export.";
+The page is served on 127.0.0.1 alone, to whoever has the token in its address. Press ? there \
+for its keys. Ctrl-C ends it. Nothing is written but the files that you export.";
 
 impl From<ExploreError> for Failure {
     fn from(error: ExploreError) -> Self {

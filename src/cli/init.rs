@@ -78,10 +78,11 @@ fn print_summary(path: &Path, found: &FolderContents, verbosity: Verbosity) {
     }
     let assigned = found.channels.iter().filter(|c| c.role.is_some()).count();
     verbosity.info(&format!(
-        "{}: {} files ({}), {assigned} of {} channels assigned to a role. Complete it, then run: impactid \
+        "{}: {} {} ({}), {assigned} of {} channels assigned to a role. Complete it, then run: impactid \
          check {}",
         path.display(),
         found.files,
+        if found.files == 1 { "file" } else { "files" },
         found.format,
         found.channels.len(),
         path.display()

@@ -40,7 +40,8 @@ Example:
   impactid inspect record.lvm --plot
   impactid inspect campaign.h5 --dataset run0001 --json
 
-Formats: HDF5, CSV and other text tables, Excel, LVM, TDMS, UFF 58, MATLAB 4 to 7.3, WAV, Parquet.
+Formats: HDF5, CSV and other text tables, Excel, LVM, TDMS, UFF 58, MATLAB 4 to 7.3, WAV, \
+Parquet.
 Exit codes: 0 success; 2 a file could not be read.";
 
 /// A file of more datasets is listed with one line per dataset.
@@ -208,13 +209,25 @@ fn one_line(info: &DatasetInfo, text: &mut String) {
     let samples = info.channels.iter().map(|c| c.samples).max().unwrap_or(0);
     let rate = info
         .sample_rate_hz()
-        .map_or(String::new(), |r| format!(", {r} Hz"));
-    let _ = writeln!(
-        text,
-        "  {}: {} channels, {samples} samples{rate}",
-        info.name,
-        info.channels.len()
-    );
+        .map_or(String::new(), |r| format!(", {} Hz", rounded(r)));
+    let channels = counted(info.channels.len(), "channel");
+    let samples = counted(samples, "sample");
+    let _ = writeln!(text, "  {}: {channels}, {samples}{rate}", info.name);
+}
+
+/// A number of things, with their noun.
+fn counted<N: std::fmt::Display + From<u8> + PartialEq>(count: N, noun: &str) -> String {
+    let plural = if count == N::from(1) { "" } else { "s" };
+    format!("{count} {noun}{plural}")
+}
+
+/// A rate to a thousandth, below 1 Hz to a millionth, without trailing zeros.
+fn rounded(rate_hz: f64) -> String {
+    let text = match rate_hz < 1.0 {
+        true => format!("{rate_hz:.6}"),
+        false => format!("{rate_hz:.3}"),
+    };
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 fn describe(info: &DatasetInfo, summaries: &[Summary], text: &mut String) {
@@ -241,15 +254,7 @@ fn describe(info: &DatasetInfo, summaries: &[Summary], text: &mut String) {
             s.unit.clone().unwrap_or_else(|| "-".to_owned()),
             s.stored.clone(),
             s.samples.to_string(),
-            s.sample_rate_hz.map_or_else(
-                || "-".to_owned(),
-                |r| {
-                    format!("{r:.3}")
-                        .trim_end_matches('0')
-                        .trim_end_matches('.')
-                        .to_owned()
-                },
-            ),
+            s.sample_rate_hz.map_or_else(|| "-".to_owned(), rounded),
             s.texts
                 .as_ref()
                 .map_or_else(|| s.first.to_string(), |t| t[0].clone()),
@@ -307,5 +312,19 @@ fn draw(summaries: &[Summary], samples: &[Samples], text: &mut String) {
             };
             let _ = writeln!(text, "  {mark:>11} {line}");
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_are_rounded() {
+        let rounded: Vec<String> = [2000.0, 9.448_598_374_562_737, 0.012_345_678, 0.5]
+            .into_iter()
+            .map(rounded)
+            .collect();
+        assert_eq!(rounded, ["2000", "9.449", "0.012346", "0.5"]);
     }
 }

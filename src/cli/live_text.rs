@@ -45,7 +45,7 @@ pub(super) fn news(what: Happened, files: &[(&Path, Option<&str>)]) -> String {
             format!("{names} {is} no longer named by the campaign: {its} records are left out.")
         }
         Happened::Replaced => {
-            format!("{names} {is} written anew: {its} records are observed again.")
+            format!("{names} {is} rewritten: {its} records are observed again.")
         }
         Happened::HalfWritten => format!(
             "{names} {is} not whole after an hour, and not used: finish or remove {}.",
@@ -300,10 +300,7 @@ mod tests {
             "r1.csv is gone: its records are left out."
         );
         let many = news(Happened::Replaced, &all);
-        assert!(
-            many.contains("r1.csv and 2 more are written anew"),
-            "{many}"
-        );
+        assert!(many.contains("r1.csv and 2 more are rewritten"), "{many}");
         let torn = news(Happened::HalfWritten, &[(path, Some("no signature"))]);
         assert!(
             torn.starts_with("r1.csv (no signature) is not whole after an hour"),

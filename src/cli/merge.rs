@@ -28,8 +28,8 @@ Example:
   impactid atlas --shard 1/2 --out parts/
   impactid merge parts/part-*.json --out atlas/
 
-A part that is missing, there twice, damaged or of another atlas is refused. The result is bit for
-bit that of `impactid atlas` without --shard, with the study.toml that replays it.";
+A part that is missing, there twice, damaged or of another atlas is refused. The result is bit \
+for bit that of `impactid atlas` without --shard, with the study.toml that replays it.";
 
 impl Merge {
     /// Put the parts together and write the atlas.

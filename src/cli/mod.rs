@@ -71,21 +71,31 @@ Example:
   impactid check records/campaign.toml
   impactid run   records/campaign.toml --out results/
 
-Exit codes: 0 success; 1 the model does not fit or a parameter is not identifiable;
-2 bad input or output.";
+Exit codes: 0 success; 1 the model does not fit or a parameter is not identifiable; 2 bad \
+input or output; 130 interrupted.";
+
+/// Heading of the options of every command.
+const GENERAL: &str = "General";
 
 /// Options of every command.
 #[derive(Debug, Clone, Args)]
 pub struct Common {
     /// Print errors only
-    #[arg(long, short, global = true)]
+    #[arg(long, short, global = true, help_heading = GENERAL)]
     quiet: bool,
     /// Print versions, files, stage times and how each fit ended; -vv also every record and the notes
     /// of the readers
-    #[arg(long, short, global = true, action = clap::ArgAction::Count, conflicts_with = "quiet")]
+    #[arg(
+        long,
+        short,
+        global = true,
+        help_heading = GENERAL,
+        action = clap::ArgAction::Count,
+        conflicts_with = "quiet"
+    )]
     verbose: u8,
     /// Number of threads [default: all processors]
-    #[arg(long, short = 'j', global = true, value_name = "N")]
+    #[arg(long, short = 'j', global = true, help_heading = GENERAL, value_name = "N")]
     threads: Option<std::num::NonZeroUsize>,
 }
 
@@ -145,7 +155,7 @@ commands! {
     Sweep(sweep::Sweep),
     /// Compute basins of attraction in the plane of initial states
     Basins(basins::Basins),
-    /// Run studies from TOML files: time series, sweeps, basins, regions, coverage
+    /// Run studies from TOML files (time series, sweeps, basins, maps, regions), or measure coverage
     Study(study::Study),
     /// Simulate a motion, or a campaign with known parameters
     Simulate(simulate::Simulate),

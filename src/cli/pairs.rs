@@ -40,9 +40,10 @@ Example:
   impactid study pairs --pairs 200 --noise-v 1e-5 --gain-deviation 0.03    gains dominate
   impactid study pairs --pairs 50 --records 120 --rig realistic --json
 
-Each pair is one rig with its own errors of gains, corners and gaps, measured twice and compared as
-`impactid compare` does; in every second pair R, f0, beta and x_st change between. `narrower` is how many
-times wider the interval of the difference would be if nothing were shared.";
+Each pair is one rig with its own errors of gains, corners and gaps, measured twice and \
+compared as `impactid compare` does; in every second pair R, f0, beta and x_st change between. \
+`width ratio` is the width of the interval of the difference if nothing were shared over its \
+width with sharing (median).";
 
 impl Pairs {
     /// Simulate, identify, compare, count.
@@ -74,22 +75,28 @@ impl Pairs {
 
 fn table(found: &pairs::Pairs) -> String {
     let mut text = format!(
-        "{:21} {:>5} {:>10} {:>10} {:>9} {:>9} {:>16}\n",
-        "parameter", "pairs", "rms error", "half width", "coverage", "narrower", "alone: coverage"
+        "{:21} {:>5} {:>10} {:>10} {:>9} {:>11} {:>16}\n",
+        "parameter",
+        "pairs",
+        "rms error",
+        "half width",
+        "coverage",
+        "width ratio",
+        "alone: coverage"
     );
     for (parameter, s) in &found.parameters {
         text += &format!(
-            "{parameter:21} {:>5} {:>10.2e} {:>10.2e} {:>7.1} % {:>9.2} {:>14.1} %\n",
+            "{parameter:21} {:>5} {:>10.2e} {:>10.2e} {:>7.1} % {:>11.2} {:>14.1} %\n",
             s.pairs,
             s.rms_error,
             s.half_width,
             100.0 * s.coverage95,
-            s.narrower,
+            s.width_ratio,
             100.0 * s.independent_coverage95
         );
     }
     text += &format!(
-        "change said although nothing changed: {} of {}\nchange found: {} of {}\nnot comparable: {}\n",
+        "changes reported where nothing changed: {} of {}\nchanges found: {} of {}\nnot comparable: {}\n",
         found.false_alarms.found,
         found.false_alarms.of,
         found.changes_found.found,

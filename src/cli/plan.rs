@@ -32,8 +32,9 @@ const EXAMPLE: &str = "\
 Example:
   impactid plan data-samples/double-oscillator/campaign.toml --out plan/
 
-The settings are within the frequencies and gaps of the campaign. Each assumes that those above it
-are measured, with records as long and as noisy as those of the campaign.
+The settings are within the frequencies and gaps of the campaign. Each assumes that those \
+above it are measured, with records as long and as noisy as those of the campaign. What the \
+interval allows for beyond noise stays in the errors: more records do not reduce it.
 Exit codes: 0 success; 1 nothing can be proposed; 2 bad input.";
 
 impl Plan {

@@ -16,8 +16,8 @@ use crate::report::Format;
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Report")]
 pub(super) struct ReportArgs {
-    /// Formats of the report: pdf, html; of its figures: svg, png, figure-pdf; of its tables: tex
-    /// (several: pdf,html)
+    /// Formats of the report: pdf, html; of its figures: svg, png, figure-pdf; of its tables: tex; csv:
+    /// the figures' data alone (several: pdf,html)
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     format: Vec<Format>,
     /// Typst template instead of the built-in one
@@ -29,7 +29,7 @@ pub(super) struct ReportArgs {
     /// Image for the first page: svg, png or jpg
     #[arg(long, value_name = "FILE")]
     logo: Option<PathBuf>,
-    /// Paper size
+    /// Paper size; us-letter is the same as letter
     #[arg(long, value_name = "PAPER", value_enum)]
     paper: Option<Paper>,
     /// Print numbers with a decimal comma

@@ -18,7 +18,7 @@ pub(super) struct Run {
     /// Folder for the results; created if it does not exist. Of several campaigns each has a folder in it
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
-    /// Resume an interrupted run in DIR
+    /// Resume an interrupted run in DIR (from 2,000 records on; a shorter one starts again)
     #[arg(long)]
     resume: bool,
     #[command(flatten)]
@@ -31,11 +31,15 @@ Example:
   impactid run campaign.toml --out results/ --format pdf,html,svg,png --paper letter
   impactid run */campaign.toml --out results/
 
-Outputs: report.pdf, the data of the figures in figures/, identification.json, records.parquet, impacts.parquet, boundaries.csv.
-Outputs are written atomically.
-Several campaigns: each has the folder in DIR that is named after its own, as if it had been run alone with that folder as
---out; summary.csv and summary.json in DIR list the answers. One that fails does not stop the others.
-Exit codes: 0 success; 1 the model does not fit or a parameter is not identifiable; 2 bad input; of several campaigns the greatest.";
+Outputs: report.pdf (report.html, tables/ if the formats include them), the data of the \
+figures in figures/, identification.json, uncertainty_budget.csv, records.parquet, \
+impacts.parquet, boundaries.csv, campaign.resolved.json. Outputs are written atomically.
+Several campaigns: each has the folder in DIR that is named after its own, as if it had been \
+run alone with that folder as --out; summary.csv and summary.json in DIR list the answers. One \
+that fails does not stop the others.
+Exit codes: 0 success (also with a parameter that is only weak); 1 the model does not fit or a \
+parameter is not identifiable; 2 bad input or output; 130 interrupted; of several campaigns \
+the greatest.";
 
 impl Run {
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {

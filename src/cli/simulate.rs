@@ -35,9 +35,9 @@ Example:
   impactid simulate --eta 2 --rho 0.2 --skip-periods 300 --periods 12 --out chaos/
   impactid simulate campaign --seed 1 --restitution 0.9 --damping-ratio 0.07 --out synthetic/
 
-A motion writes its time series (motion), motion-impacts, motion-poincare and
-motion-autocorrelation as CSV and Parquet, a figure with phase trajectories and Poincaré map as
-SVG, PNG and PDF, and study.toml to replay it.";
+A motion writes its time series (motion), motion-impacts, motion-poincare and \
+motion-autocorrelation as CSV and Parquet, a figure with phase trajectories and Poincaré map \
+as SVG, PNG and PDF, and study.toml to replay it.";
 
 #[derive(Debug, Subcommand)]
 enum What {
@@ -165,7 +165,7 @@ pub(super) struct Campaign {
     /// Coefficient of restitution R, 0 to 1
     #[arg(long, value_name = "R", default_value_t = 0.9, value_parser = restitution)]
     pub restitution: f64,
-    /// Damping ratio β, 0 to 0.5
+    /// Damping ratio β, above 0, up to 0.5
     #[arg(long, value_name = "B", default_value_t = 0.07, value_parser = damping_ratio)]
     pub damping_ratio: f64,
     /// Natural frequency f0, Hz
@@ -174,14 +174,14 @@ pub(super) struct Campaign {
     /// Static deflection `x_st` = F0/k, m
     #[arg(long, value_name = "X", default_value_t = 1e-3, value_parser = deflection)]
     pub static_deflection_m: f64,
-    /// Number of records; the usual grid of frequencies and gaps where it is not given
+    /// Number of records [default: 200]
     #[arg(long, value_name = "N")]
     pub records: Option<std::num::NonZeroUsize>,
     /// Folder for the campaign
     #[arg(long, short, value_name = "DIR")]
     pub out: PathBuf,
-    /// Effects beyond the model: exact (none), realistic (all that the fit models, at sizes drawn at random), or
-    /// EFFECT[=STRENGTH],… as listed below
+    /// Effects beyond the model: exact (none), realistic (what the fit models but gap-drift, and 1/f noise
+    /// and hum, at half to one and a half times the strengths below), or EFFECT[=STRENGTH],… as listed below
     #[arg(long, value_name = "RIG", default_value = "exact")]
     pub rig: RigSpec,
     /// A rig without faults: no noise, no rounding, no filter, no asymmetry

@@ -75,7 +75,7 @@ const CLASSIFY: &str = "\
 Example:
   impactid classify results/
 
-It reads the output of `impactid ingest` there and writes records.parquet, impacts.parquet and
+It reads the output of `impactid ingest` there and writes records.parquet, impacts.parquet and \
 boundaries.csv. With -vv it lists the classification of each record.";
 
 /// Arguments of `impactid identify`.
@@ -91,7 +91,8 @@ Example:
   impactid identify results/
 
 It reads the output of `impactid classify` there and writes identification.json.
-Exit codes: 0 success; 1 the model does not fit or a parameter is not identifiable; 2 bad input.";
+Exit codes: 0 success; 1 the model does not fit or a parameter is not identifiable; 2 bad \
+input.";
 
 /// Arguments of `impactid report`.
 #[derive(Debug, Args)]
@@ -113,7 +114,8 @@ Example:
   impactid report --list-words > words.toml
   impactid report results/ --words words.toml
 
-It reads the output of `impactid identify` there and writes report.pdf and the data of the figures.";
+It reads the output of `impactid identify` there (not that of `impactid run`) and writes \
+report.pdf and the data of the figures.";
 
 /// The commands that make a report in stages.
 fn commands(campaign: &Path, folder: &Path, options: &ReportArgs) -> String {

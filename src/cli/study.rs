@@ -42,9 +42,10 @@ const EXAMPLE: &str = "\
 Example:
   impactid study data-samples/studies --out studies/
 
-replays the studies of the paper's Figs. 2 to 8. Each writes its tables (CSV, Parquet) and figures
-(SVG, PNG, PDF) in a folder of its own. `impactid simulate`, `sweep`, `basins` and `atlas` write
-the study.toml of what they did, to be replayed in the same way.";
+replays the studies of the paper's Figs. 2 to 6, 8 and 11, and of soft contact. Each writes \
+its tables (CSV, Parquet) and figures (SVG, PNG, PDF) in a folder of its own. `impactid \
+simulate`, `sweep`, `basins` and `atlas` write the study.toml of what they did, to be replayed \
+in the same way.";
 
 impl Study {
     /// Run all studies.

@@ -35,9 +35,9 @@ Example:
   impactid sweep --eta 0.78..1.4 --rho 3 --restitution 0 --damping-ratio 0.002 --out fig4/
   impactid sweep --eta 1.2 --rho 0.1..5 --out over-rho/
 
-It writes sweep.csv and .parquet (amplitudes, approach speeds, Lyapunov exponents, autocorrelation,
-amplitude and phase of the impactless motion), sweep-impacts (every impact's speeds), the figure
-as SVG, PNG and PDF, and study.toml to replay it.";
+It writes sweep.csv and .parquet (amplitudes, approach speeds, Lyapunov exponents, \
+autocorrelation, amplitude and phase of the impactless motion), sweep-impacts (every impact's \
+speeds), the figure as SVG, PNG and PDF, and study.toml to replay it.";
 
 /// `from..to`, or one number for both.
 fn ends(text: &str) -> Result<(f64, f64), String> {

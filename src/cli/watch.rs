@@ -38,14 +38,17 @@ Example:
   impactid watch campaign.toml --out results/
   impactid watch campaign.toml --out results/ --poll 10 --settle 60      a slow network drive
 
-While records arrive: a file is taken once it has stopped growing and can be opened; its records are observed once. From time
-to time the parameters are fitted again, and report.html and identification.json are replaced; the page reloads itself. The
-terminal shows the map of the motions with the brackets that have closed, R with what its uncertainty is made of, and the setting
-to measure next. New lines of the run table and changes of campaign.toml are picked up. A file that was taken and is removed or
-replaced is named, and one that is not whole after an hour.
-Fits are so rare that all of it takes at most three times the processor time of one run.
-Ctrl-C ends it with all files as `impactid run` with the same options would leave them, and report.html. A second Ctrl-C
-ends it at once.
+While records arrive: a file is taken once it has stopped growing and can be opened; its \
+records are observed once. From time to time the parameters are fitted again, and report.html \
+and identification.json are replaced; the page reloads itself. The terminal shows the map of \
+the motions with the brackets that have closed, R with what its uncertainty is made of, and \
+the setting to measure next. New lines of the run table and changes of campaign.toml are \
+picked up. A file that was taken and is removed or replaced is named, and one that is not \
+whole after an hour.
+Fits are so rare that all of it takes at most three times the processor time of one run; a fit \
+whose records were removed or rewritten is made again in any case.
+Ctrl-C ends it with all files as `impactid run` with the same options would leave them, and \
+report.html. A second Ctrl-C ends it at once.
 Exit codes: those of `impactid run`.";
 
 /// How patiently files are waited for.

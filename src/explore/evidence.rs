@@ -14,7 +14,7 @@ use crate::identify::evidence::boundary::predicted_hz;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::joint;
-use crate::identify::plan::{Reach, propose};
+use crate::identify::plan::propose;
 use crate::motion::{BoundaryKind, Motion, Observation};
 use crate::pipeline::identify::evidence;
 use crate::report::style::MotionStyle;
@@ -196,16 +196,7 @@ pub(super) fn residuals(campaign: &Campaign, state: &State, job: &Job) -> Result
 /// The settings to measure next.
 pub(super) fn proposals(campaign: &Campaign, job: &Job) -> Result<(), Stop> {
     let evidence = evidence(&campaign.resolved, &campaign.observed);
-    let reach = Reach::of(&campaign.observed.observations);
-    let found = match (&campaign.identification.joint_fit, reach) {
-        (Some(joint), Some(reach)) => propose(
-            &evidence,
-            &joint.fit,
-            joint.variance_factor,
-            reach,
-            PROPOSALS,
-        ),
-        _ => Vec::new(),
-    };
+    let joint = campaign.identification.joint_fit.as_ref();
+    let found = propose(&evidence, joint, PROPOSALS);
     Ok(job.send(job.frame("proposals").with("proposals", found))?)
 }

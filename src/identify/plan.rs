@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::identify::JointFit;
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::trajectory::{TrajectoryBlock, distinct_phases};
 use crate::identify::evidence::trajectory_record::{TrajectoryRecord, Weighing};
@@ -33,22 +34,23 @@ pub struct Proposal {
     pub clearance_ratio: f64,
     /// The motion to expect, z = 1/n.
     pub periods_n: u32,
-    /// Standard error of R once this setting and those before it in the list are measured.
+    /// Standard error of R, by all that its interval allows for, once this setting and those before it in
+    /// the list are measured.
     pub restitution_error_after: f64,
 }
 
 /// The settings that a rig can reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reach {
+struct Reach {
     /// Lowest and highest drive frequency, Hz.
-    pub frequency_hz: [f64; 2],
+    frequency_hz: [f64; 2],
     /// Least and greatest clearance, m.
-    pub clearance_m: [f64; 2],
+    clearance_m: [f64; 2],
 }
 
 impl Reach {
     /// Where the campaign has been; `None` where no record states both.
-    pub fn of(observations: &[Observation]) -> Option<Self> {
+    fn of(observations: &[Observation]) -> Option<Self> {
         let range = |values: Vec<f64>| {
             let low = values.iter().copied().fold(f64::INFINITY, f64::min);
             let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -76,23 +78,28 @@ const GRID: [usize; 2] = [40, 24];
 /// Longest motion z = 1/n considered.
 const MOST_PERIODS: u32 = 3;
 
-/// Propose so many settings, the best first; each takes those before it as measured. Empty where
-/// R was not fitted or no velocity or displacement was recorded.
-pub fn propose(
-    evidence: &Evidence<'_>,
-    fit: &Fit,
-    factor: f64,
-    reach: Reach,
-    count: usize,
-) -> Vec<Proposal> {
-    let (Some(at), Some(usual)) = (
-        fit.free.iter().position(|c| *c == Coordinate::Restitution),
+/// Propose so many settings, the best first; each takes those before it as measured. Empty without a
+/// joint fit, or where R was not fitted or no velocity or displacement was recorded.
+///
+/// What R's interval allows for beyond the covariance (scatter between groups, first order of the
+/// effects, disagreement of methods) stays in the errors stated: one more record takes none of it away.
+pub fn propose(evidence: &Evidence<'_>, joint: Option<&JointFit>, count: usize) -> Vec<Proposal> {
+    let restitution = |c: &Coordinate| *c == Coordinate::Restitution;
+    let place = |fit: &JointFit| fit.fit.free.iter().position(restitution);
+    let (Some((joint, at)), Some(reach), Some(usual)) = (
+        joint.and_then(|fit| Some((fit, place(fit)?))),
+        Reach::of(evidence.observations),
         UsualRecord::of(evidence.observations),
     ) else {
         return Vec::new();
     };
-    let candidates = candidates(evidence, fit, reach, &usual);
-    let mut covariance = &fit.covariance * factor;
+    let candidates = candidates(evidence, &joint.fit, reach, &usual);
+    let variance_of = |covariance: &DMatrix<f64>| covariance[(at, at)] * joint.variance_factor;
+    let mut covariance = joint.fit.covariance.clone();
+    let allowed = joint.allowed.iter().find(|a| restitution(&a.parameter));
+    let beyond = allowed.map_or(0.0, |a| {
+        (a.standard_uncertainty.powi(2) - variance_of(&covariance)).max(0.0)
+    });
     let mut chosen: Vec<Proposal> = Vec::new();
     while chosen.len() < count {
         let best = candidates
@@ -100,14 +107,14 @@ pub fn propose(
             .filter(|(place, _)| !chosen.iter().any(|c| near(c, place, reach)))
             .filter_map(|(place, information)| {
                 let after = with(&covariance, information)?;
-                Some((place, after[(at, at)], after))
+                Some((place, variance_of(&after), after))
             })
             .min_by(|a, b| a.1.total_cmp(&b.1));
         let Some((place, variance, after)) = best else {
             break;
         };
         chosen.push(Proposal {
-            restitution_error_after: variance.max(0.0).sqrt(),
+            restitution_error_after: (variance.max(0.0) + beyond).sqrt(),
             ..place.clone()
         });
         covariance = after;

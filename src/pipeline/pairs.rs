@@ -69,8 +69,8 @@ pub struct PairScore {
     pub independent_coverage95: f64,
     /// Median of half the interval: of R absolute, of the others relative.
     pub half_width: f64,
-    /// Median of how many times wider the interval is if nothing is shared.
-    pub narrower: f64,
+    /// Median ratio of the interval's width if nothing were shared to that with sharing.
+    pub width_ratio: f64,
 }
 
 /// What a study of pairs finds.
@@ -241,7 +241,7 @@ fn score(pairs: &[Pair], parameter: Coordinate) -> PairScore {
         coverage95: covered as f64 / count,
         independent_coverage95: covered_alone as f64 / count,
         half_width: robust::median(&halves).unwrap_or(0.0),
-        narrower: robust::median(&ratios).unwrap_or(0.0),
+        width_ratio: robust::median(&ratios).unwrap_or(0.0),
     }
 }
 

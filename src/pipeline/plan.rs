@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::identify::plan::{Proposal, Reach, propose};
+use crate::identify::plan::{Proposal, propose};
 use crate::motion::Motion;
 use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, report};
@@ -40,13 +40,7 @@ pub fn plan(
     progress("identify", 0, 1);
     let found = identify::identify(campaign, &observed, None)?;
     let evidence = identify::evidence(campaign, &observed);
-    let reach = Reach::of(&observed.observations);
-    let proposals = match (&found.identification.joint_fit, reach) {
-        (Some(joint), Some(reach)) => {
-            propose(&evidence, &joint.fit, joint.variance_factor, reach, count)
-        }
-        _ => Vec::new(),
-    };
+    let proposals = propose(&evidence, found.identification.joint_fit.as_ref(), count);
     let now = found.identification.joint.parameters.restitution.as_ref();
     let plan = Plan {
         restitution: now.and_then(|r| r.value),

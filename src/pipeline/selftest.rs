@@ -79,7 +79,7 @@ fn figure_2() -> Result<Vec<Check>, ModelError> {
             6e-5,
         ));
         all.push(Check::new(
-            format!("Fig. 2: closing speed of impact {n}"),
+            format!("Fig. 2: approach speed of impact {n}"),
             *speed,
             impact.approach_speed,
             6e-5,
@@ -131,7 +131,7 @@ fn root(function: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Fig. 5: greatest closing speed of z = 1 at ρ = 3; β = 0.005, which follows from the speeds.
+/// Fig. 5: greatest approach speed of z = 1 at ρ = 3; β = 0.005, which follows from the speeds.
 fn figure_5() -> Result<Vec<Check>, ModelError> {
     let mut all = Vec::new();
     for (restitution, published) in [(0.0, 9.26), (0.3, 9.53), (0.6, 11.9), (0.9, 28.16)] {
@@ -143,7 +143,7 @@ fn figure_5() -> Result<Vec<Check>, ModelError> {
             greatest = orbit.map_or(greatest, |o| greatest.max(o.approach_speed));
         }
         all.push(Check::new(
-            format!("Fig. 5: greatest closing speed, R = {restitution}"),
+            format!("Fig. 5: greatest approach speed, R = {restitution}"),
             published,
             greatest,
             2e-3 * published,
@@ -152,7 +152,7 @@ fn figure_5() -> Result<Vec<Check>, ModelError> {
     let orbit = stable_orbit(&Machine::symmetric(0.005, 0.9), Setting::new(1.5, 3.0), 1)?;
     let speed = orbit.map_or(f64::NAN, |o| o.approach_speed);
     all.push(Check::new(
-        "Fig. 5: closing speed at η = 1.5, R = 0.9",
+        "Fig. 5: approach speed at η = 1.5, R = 0.9",
         13.65,
         speed,
         0.01,

@@ -1,7 +1,7 @@
 //! The files that the stages exchange: the resolved campaign, the calibrated records, the
 //! observations.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
 use crate::motion::{Observation, brackets};
@@ -208,7 +208,7 @@ fn note_roles(roles: &mut Vec<ChannelSetup>, record: &Record) {
 /// # Errors
 /// If the files of stage 1 are missing or the outputs cannot be written.
 pub fn classify(out: &Path, progress: Progress<'_>) -> Result<Observed, PipelineError> {
-    let ingested: Ingested = read_json(&out.join(INGESTED_CAMPAIGN))?;
+    let ingested: Ingested = read_json(&of_stage(out, INGESTED_CAMPAIGN, "calibrated records")?)?;
     let mut observed = Observed::of(&ingested.campaign, progress)?;
     for (observation, flags) in observed.observations.iter_mut().zip(ingested.flags) {
         for flag in flags {
@@ -221,6 +221,25 @@ pub fn classify(out: &Path, progress: Progress<'_>) -> Result<Observed, Pipeline
     super::tables::write(&super::tables::files(&observed)?, out)?;
     gzip_json::write(&out.join(OBSERVATIONS), &observed.observations)?;
     Ok(observed)
+}
+
+/// A file of a previous stage.
+///
+/// # Errors
+/// [`PipelineError::NoResults`] if it is missing from results of `impactid run`, which writes none.
+fn of_stage(out: &Path, name: &str, what: &str) -> Result<PathBuf, PipelineError> {
+    let path = out.join(name);
+    if !path.exists() && out.join(super::identify::FILE).exists() {
+        return Err(PipelineError::NoResults {
+            path: out.display().to_string(),
+            reason: format!("there are no {what}: `impactid run` does not keep them"),
+            remedy:
+                "run the stages ingest, classify, identify, report, or give `impactid run` the \
+                     options of the report"
+                    .to_owned(),
+        });
+    }
+    Ok(path)
 }
 
 /// What stage three left.
@@ -236,7 +255,7 @@ pub fn read_identification(out: &Path) -> Result<IdentificationFile, PipelineErr
 /// # Errors
 /// If they are missing or unreadable.
 pub fn read_observed(out: &Path) -> Result<Observed, PipelineError> {
-    let path = out.join(OBSERVATIONS);
+    let path = of_stage(out, OBSERVATIONS, "observations")?;
     let observations: Vec<Observation> =
         gzip_json::read(&path).map_err(|e| store_error(&path, e))?;
     let brackets = brackets(&observations);
@@ -244,4 +263,24 @@ pub fn read_observed(out: &Path) -> Result<Observed, PipelineError> {
         observations,
         brackets,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_of_a_run_are_refused_with_the_remedy() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = |e: PipelineError| matches!(e, PipelineError::Store { .. });
+        assert!(read_observed(folder.path()).is_err_and(store));
+        std::fs::write(folder.path().join(super::super::identify::FILE), "{}").unwrap();
+        let error = read_observed(folder.path()).err().unwrap();
+        assert!(error.to_string().ends_with("does not keep them"), "{error}");
+        assert!(
+            error
+                .remedy()
+                .contains("ingest, classify, identify, report")
+        );
+    }
 }

@@ -252,7 +252,7 @@ fn truth_file<'a>(
 fn campaign_toml(recipe: &Recipe) -> String {
     let mut text = String::from(
         "# A SYNTHETIC campaign: simulated by `impactid simulate campaign`, not measured.\n\
-         # The truth behind it is in truth.json; nothing here tells it.\n\n\
+         # The truth behind it is in truth.json; it is not stated here.\n\n\
          [campaign]\n\
          name = \"Synthetic double impact oscillator\"\n\
          synthetic = true\n\

@@ -11,6 +11,7 @@ pub enum Paper {
     #[default]
     A4,
     /// 8.5 in × 11 in.
+    #[serde(alias = "letter")]
     UsLetter,
 }
 

@@ -156,3 +156,35 @@ fn results_that_were_copied_are_refused_as_the_same_measurement() {
         ran.said
     );
 }
+
+#[test]
+fn proposed_settings_lower_the_error_of_r_from_what_the_campaign_states() {
+    let rig = rig();
+    let ran = impactid(
+        rig,
+        &[
+            "-q",
+            "plan",
+            "before/campaign.toml",
+            "--out",
+            "plan",
+            "--settings",
+            "4",
+        ],
+    );
+    assert_eq!(ran.code, 0, "{}", ran.said);
+    let plan = json(&rig.join("plan/plan.json"));
+    let joint = &json(&rig.join("results/identification.json"))["joint"];
+    let now = plan["restitution_error_now"].as_f64().expect("an error");
+    assert_eq!(Some(now), joint["restitution"]["standard_error"].as_f64());
+    let after = |p: &Value| p["restitution_error_after"].as_f64().expect("an error");
+    let proposals = plan["proposals"].as_array().expect("proposals");
+    let errors: Vec<f64> = proposals.iter().map(after).collect();
+    assert_eq!(errors.len(), 4);
+    assert!(
+        errors[0] < now && errors.is_sorted_by(|a, b| a >= b),
+        "{now} {errors:?}"
+    );
+    // a record more of 60 alike cannot halve the error
+    assert!(errors[0] > 0.5 * now, "{now} {errors:?}");
+}

@@ -185,6 +185,18 @@ fn folders() -> Vec<Case> {
             &["nowhere is not a folder with results", "impactid ingest"],
         ),
         case(
+            "a stage on results of run",
+            |lab| {
+                std::fs::create_dir(lab.path("out")).expect("a folder");
+                lab.write("out/identification.json", "{}");
+            },
+            &["classify", "out"],
+            &[
+                "out: there are no calibrated records: `impactid run` does not keep them",
+                "ingest, classify, identify, report",
+            ],
+        ),
+        case(
             "a comparison with a folder that is not there",
             |_| {},
             &["compare", "before", "after", "--out", "out"],

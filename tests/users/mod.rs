@@ -120,8 +120,8 @@ fn every_command_has_a_page_and_completions() {
     let verbs = verbs.split("Options:").next().expect("verbs");
     let verbs: Vec<&str> = verbs
         .lines()
-        .filter_map(|l| l.strip_prefix("  ")?.split_whitespace().next())
-        .filter(|v| *v != "help" && v.chars().all(|c| c.is_ascii_lowercase()))
+        .filter_map(|l| l.strip_prefix("  ")?.split(' ').next())
+        .filter(|v| !v.is_empty() && *v != "help" && v.chars().all(|c| c.is_ascii_lowercase()))
         .collect();
     assert!(verbs.len() >= 15, "{verbs:?}");
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {

@@ -176,7 +176,7 @@ fn a_file_that_grows_is_taken_again_and_what_happens_to_files_is_named() {
     let written = || fs::read_to_string(lab.path("out/report.live.js")).unwrap_or_default();
     wait_until("a first page", || !written().is_empty());
     let before = written();
-    // written anew, removed, and no longer named
+    // rewritten, removed, and no longer named
     lab.lines("r2.csv", |line, text| {
         (line < 1900).then(|| text.to_owned())
     });
@@ -187,7 +187,7 @@ fn a_file_that_grows_is_taken_again_and_what_happens_to_files_is_named() {
     assert!(is_running);
     let (_, said) = end(watch);
     for words in [
-        "r2.csv is written anew",
+        "r2.csv is rewritten",
         "grows.h5 is gone",
         "r3.csv is no longer named",
     ] {

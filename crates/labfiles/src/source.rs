@@ -193,7 +193,7 @@ impl ReadError {
     pub fn io(path: &Path, error: &std::io::Error) -> Self {
         let remedy = match error.kind() {
             std::io::ErrorKind::NotFound => {
-                "Check the path; a pattern that matches no file is a path too."
+                "Check the path, or the row of the run table that names the file."
             }
             std::io::ErrorKind::PermissionDenied => "Allow reading the file.",
             _ => "Check the disk and copy the file again.",

@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 
 use super::processor_time::Meter;
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::identify::plan::{Proposal, Reach, propose};
+use crate::identify::plan::{Proposal, propose};
 use crate::pipeline::identify::{self, IdentificationFile};
 use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs, report};
@@ -40,11 +40,7 @@ impl Live {
         let found = identify::identify(&campaign, &observed, None)?;
         let identified = meter.read();
         let evidence = identify::evidence(&campaign, &observed);
-        let reach = Reach::of(&observed.observations);
-        let joint = found.identification.joint_fit.as_ref();
-        let next = joint.zip(reach).and_then(|(joint, reach)| {
-            propose(&evidence, &joint.fit, joint.variance_factor, reach, 1).pop()
-        });
+        let next = propose(&evidence, found.identification.joint_fit.as_ref(), 1).pop();
         let live = Self {
             campaign,
             observed,

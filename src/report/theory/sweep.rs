@@ -1,4 +1,4 @@
-//! Quasi-stationary characteristics: amplitude, closing speed, Lyapunov exponent,
+//! Quasi-stationary characteristics: amplitude, approach speed, Lyapunov exponent,
 //! autocorrelation, and amplitude and phase of the impactless motion.
 
 use super::ENGLISH;
@@ -66,7 +66,7 @@ const ROWS: [Row; 4] = [
         ticks: 4,
     },
     Row {
-        title: "closing speed\n$X$′₋ + $Y$′₋ (1)",
+        title: "approach speed\n$X$′₋ + $Y$′₋ (1)",
         height: 110.0,
         values: |p| p.approach_speeds.clone(),
         zero: true,

@@ -41,7 +41,7 @@ fn clearance(machine: &Machine, gap: f64) -> f64 {
 }
 
 /// ρ'(η): clearance at which the impactless motion X + Y grazes the contact (or the stop),
-/// ρ' = |F|/2 of eq. (10). Infinite at an undamped resonance.
+/// ρ' = |F|/2 (below eq. (10)). Infinite at an undamped resonance.
 ///
 /// ```
 /// use impact_oscillator::{Machine, rho_grazing};
@@ -285,10 +285,23 @@ pub fn etas_grazing(machine: &Machine, rho: f64) -> Vec<f64> {
     roots(2.5, |eta| rho_grazing(machine, eta) - rho)
 }
 
-/// All η at which ρp passes a clearance, rising; none where ρp does not depend on η, as with equal
-/// masses.
+/// All η at which ρp passes a clearance, rising; none where ρp does not depend on η: one mass, equal
+/// forces on both, or masses of equal natural frequency and damping ratio.
+///
+/// ```
+/// use impact_oscillator::model::boundary::etas_sticking;
+/// use impact_oscillator::model::params::{Asymmetry, Machine};
+///
+/// assert!(etas_sticking(&Machine::symmetric(0.07, 0.9), -1.0).is_empty());
+/// let differing = Asymmetry { mass: 1.2, drive_amplitude: 0.9, ..Asymmetry::default() };
+/// let machine = Machine::asymmetric(0.07, 0.9, differing);
+/// let etas = etas_sticking(&machine, -0.95);
+/// assert!((etas[0] - 0.952_324).abs() < 1e-6 && etas.len() == 1);
+/// ```
 pub fn etas_sticking(machine: &Machine, rho: f64) -> Vec<f64> {
-    if machine.y.is_none() || machine.is_symmetric() {
+    let level = rho_sticking(machine, 1.0);
+    let same = |eta: f64| (rho_sticking(machine, eta) - level).abs() < 1e-12 * level.abs();
+    if [0.5, 1.5, 2.0].into_iter().all(same) {
         return Vec::new();
     }
     roots(2.5, |eta| rho_sticking(machine, eta) - rho)

@@ -245,7 +245,7 @@ fn fictive_acceleration(o: &Oscillator, drive: Drive, path: &Path) -> Path {
 }
 
 /// The press force's measure along the paths of sticking masses: the fictive relative acceleration X'' + Y''
-/// that the masses would have without the contact (eq. 6); pressed while it is positive.
+/// that the masses would have without the contact (the paper's eq. 6); pressed while it is positive.
 pub(crate) fn press(machine: &Machine, drive: Drive, sticking: &FlightPaths) -> Path {
     if let Flight::ConstantForce {
         acceleration,
