@@ -1,9 +1,10 @@
 //! Messages: what a module states, as a kind with values instead of a sentence.
 //!
 //! A type whose variants are messages implements [`Message`]: a template for each variant in each
-//! [`Language`], with names in braces for its values and symbols between dollars. The matches over
-//! the variants have no wildcard, so a message without a translation does not compile. The
-//! macro [`messages!`](crate::messages) adds `Display` (English) and the JSON form: the variant as
+//! [`Language`], with names in braces for its values and symbols between dollars. The macro
+//! [`message_table!`](crate::message_table) lists each variant with its templates and values; a
+//! variant that is missing, or has no translation, does not compile. The macro
+//! [`messages!`](crate::messages) adds `Display` (English) and the JSON form: the variant as
 //! `kind`, its numbers in SI, and the English sentence as `text`.
 
 use std::fmt::Display;
@@ -65,6 +66,13 @@ pub enum Value<'a> {
     List(Vec<Self>),
     /// Several sentences.
     Sentences(Vec<Self>),
+}
+
+impl<'a> Value<'a> {
+    /// Messages, separated by commas.
+    pub fn list(messages: &'a [impl Message]) -> Self {
+        Self::List(messages.iter().map(|m| Self::Message(m)).collect())
+    }
 }
 
 /// How the values of a message are printed.
@@ -180,6 +188,61 @@ pub fn boxed<M: Message + 'static>(
 pub fn plain_all(messages: &[impl Display]) -> String {
     let each: Vec<String> = messages.iter().map(ToString::to_string).collect();
     each.join(" ")
+}
+
+/// Implements [`Message`](crate::message::Message) for an enum that derives `strum::IntoStaticStr`,
+/// whose names are the kinds.
+///
+/// Each variant is listed once: its pattern, its English text, its German text, and the values by
+/// the names that the texts use, as in `format!`. `key = function` after the type gives the key
+/// where it is not the kind.
+///
+/// ```
+/// use impactid::message::{Value, plain};
+/// use impactid::message_table;
+///
+/// #[derive(strum::IntoStaticStr)]
+/// enum Doubt {
+///     NoDrive,
+///     Drift { count: usize, share: f64 },
+/// }
+///
+/// message_table! { Doubt;
+///     Self::NoDrive => "no drive was measured", "keine Erregung wurde gemessen";
+///     Self::Drift { count, share } =>
+///         "in {count} decays the frequency drifts by {share}",
+///         "in {count} Ausschwingversuchen wandert die Frequenz um {share}",
+///         count = Value::Count(*count), share = Value::Percent(*share, 1);
+/// }
+///
+/// let drift = Doubt::Drift { count: 2, share: 0.03 };
+/// assert_eq!(plain(&drift), "in 2 decays the frequency drifts by 3.0 %");
+/// ```
+#[macro_export]
+macro_rules! message_table {
+    ($message:ty $(, key = $key:path)?;
+     $($variant:pat => $english:expr, $german:expr $(, $name:ident = $value:expr)*;)+) => {
+        #[allow(unused_variables, reason = "texts and values use different fields")]
+        impl $crate::message::Message for $message {
+            fn kind(&self) -> &'static str {
+                self.into()
+            }
+
+            $(fn key(&self) -> String {
+                $key(self)
+            })?
+
+            fn texts(&self) -> [&'static str; 2] {
+                $crate::texts! { self; $($variant => $english, $german;)+ }
+            }
+
+            fn values(&self) -> Vec<(&'static str, $crate::message::Value<'_>)> {
+                match self {
+                    $($variant => vec![$((stringify!($name), $value)),*],)+
+                }
+            }
+        }
+    };
 }
 
 /// The English and the German text of the first pattern that matches; a value without a text does

@@ -6,7 +6,7 @@ use strum::IntoEnumIterator;
 use crate::identify::VerdictKind;
 use crate::identify::fit::coordinate::Coordinate;
 use crate::message::{Message, Value, boxed};
-use crate::{messages, texts};
+use crate::{message_table, messages};
 
 /// Why a nuisance is one unknown of several campaigns.
 #[derive(
@@ -99,123 +99,62 @@ pub enum Outcome {
 
 messages!(WhyShared, NotShared, Remark, Outcome);
 
-impl Message for Outcome {
-    fn kind(&self) -> &'static str {
-        self.into()
-    }
-
-    fn texts(&self) -> [&'static str; 2] {
-        texts! { self;
-            Self::NothingChanged => "No change found", "Keine Änderung gefunden";
-            Self::Changed { .. } => "Changed: {parameters}", "Geändert: {parameters}";
-            Self::ChangedTogether =>
-                "Something changed, though no parameter alone shows it",
-                "Etwas hat sich geändert, auch wenn es kein Parameter allein zeigt";
-            Self::Undetermined =>
-                "Whether anything changed cannot be determined",
-                "Ob sich etwas geändert hat, ist nicht zu entscheiden";
-        }
-    }
-
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        match self {
-            Self::Changed { parameters } => {
-                let each = parameters.iter().map(|p| Value::Message(p));
-                vec![("parameters", Value::List(each.collect()))]
-            }
-            Self::NothingChanged | Self::ChangedTogether | Self::Undetermined => Vec::new(),
-        }
-    }
+message_table! { Outcome;
+    Self::NothingChanged => "No change found", "Keine Änderung gefunden";
+    Self::Changed { parameters } =>
+        "Changed: {parameters}",
+        "Geändert: {parameters}",
+        parameters = Value::list(parameters);
+    Self::ChangedTogether =>
+        "Something changed, though no parameter alone shows it",
+        "Etwas hat sich geändert, auch wenn es kein Parameter allein zeigt";
+    Self::Undetermined =>
+        "Whether anything changed cannot be determined",
+        "Ob sich etwas geändert hat, ist nicht zu entscheiden";
 }
 
-impl Message for WhyShared {
-    fn kind(&self) -> &'static str {
-        self.into()
-    }
-
-    fn texts(&self) -> [&'static str; 2] {
-        texts! { self;
-            Self::StatedAsShared => "stated under shared", "unter shared angegeben";
-            Self::SameInstrument { .. } =>
-                "the same instrument: {instrument}",
-                "dasselbe Gerät: {instrument}";
-            Self::OneCampaign => "measured in one campaign", "in einer Messreihe gemessen";
-        }
-    }
-
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        match self {
-            Self::SameInstrument { instrument } => vec![("instrument", Value::Name(instrument))],
-            Self::StatedAsShared | Self::OneCampaign => Vec::new(),
-        }
-    }
+message_table! { WhyShared;
+    Self::StatedAsShared => "stated under shared", "unter shared angegeben";
+    Self::SameInstrument { instrument } =>
+        "the same instrument: {instrument}",
+        "dasselbe Gerät: {instrument}",
+        instrument = Value::Name(instrument);
+    Self::OneCampaign => "measured in one campaign", "in einer Messreihe gemessen";
 }
 
-impl Message for NotShared {
-    fn kind(&self) -> &'static str {
-        self.into()
-    }
-
-    fn texts(&self) -> [&'static str; 2] {
-        texts! { self;
-            Self::OtherInstrument { .. } =>
-                "the instruments differ: {first}, {second}",
-                "verschiedene Geräte: {first}, {second}";
-            Self::OtherRig { .. } =>
-                "the rigs differ: {first}, {second}",
-                "verschiedene Prüfstände: {first}, {second}";
-            Self::StatedOtherwise =>
-                "the value that it is an error of is stated otherwise",
-                "der Wert, dessen Fehler es ist, ist verschieden angegeben";
-            Self::StatedByOne =>
-                "stated under shared by one of the campaigns alone",
-                "nur von einer der Messreihen unter shared angegeben";
-        }
-    }
-
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        match self {
-            Self::OtherInstrument { first, second } | Self::OtherRig { first, second } => vec![
-                ("first", Value::Name(first)),
-                ("second", Value::Name(second)),
-            ],
-            Self::StatedOtherwise | Self::StatedByOne => Vec::new(),
-        }
-    }
+message_table! { NotShared;
+    Self::OtherInstrument { first, second } =>
+        "the instruments differ: {first}, {second}",
+        "verschiedene Geräte: {first}, {second}",
+        first = Value::Name(first), second = Value::Name(second);
+    Self::OtherRig { first, second } =>
+        "the rigs differ: {first}, {second}",
+        "verschiedene Prüfstände: {first}, {second}",
+        first = Value::Name(first), second = Value::Name(second);
+    Self::StatedOtherwise =>
+        "the value that it is an error of is stated otherwise",
+        "der Wert, dessen Fehler es ist, ist verschieden angegeben";
+    Self::StatedByOne =>
+        "stated under shared by one of the campaigns alone",
+        "nur von einer der Messreihen unter shared angegeben";
 }
 
-impl Message for Remark {
-    fn kind(&self) -> &'static str {
-        self.into()
-    }
-
-    fn texts(&self) -> [&'static str; 2] {
-        texts! { self;
-            Self::CampaignDoesNotFit { .. } =>
-                "the model does not describe the data of {campaign}: its differences may be off \
-                 by more than their intervals; read its own report first",
-                "das Modell beschreibt die Daten von {campaign} nicht: die Unterschiede können um \
-                 mehr als ihre Intervalle falsch sein; zuerst den Bericht dazu lesen";
-            Self::NoJointFit { .. } =>
-                "{campaign} rests on no joint fit: its errors are taken as independent",
-                "{campaign} beruht auf keiner gemeinsamen Anpassung: die Fehler gelten als \
-                 unabhängig";
-            Self::NothingShared =>
-                "nothing is shared, so the campaigns' errors add: state shared under [rig] what \
-                 stayed the same, or the instruments' serial numbers",
-                "nichts ist gemeinsam, daher addieren sich die Fehler der Messreihen: unter [rig] \
-                 mit shared angeben, was gleich geblieben ist, oder die Seriennummern der Geräte";
-        }
-    }
-
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        match self {
-            Self::CampaignDoesNotFit { campaign, .. } | Self::NoJointFit { campaign } => {
-                vec![("campaign", Value::Name(campaign))]
-            }
-            Self::NothingShared => Vec::new(),
-        }
-    }
+message_table! { Remark;
+    Self::CampaignDoesNotFit { campaign, .. } =>
+        "the model does not describe the data of {campaign}: its differences may be off by more \
+         than their intervals; read its own report first",
+        "das Modell beschreibt die Daten von {campaign} nicht: die Unterschiede können um mehr als \
+         ihre Intervalle falsch sein; zuerst den Bericht dazu lesen",
+        campaign = Value::Name(campaign);
+    Self::NoJointFit { campaign } =>
+        "{campaign} rests on no joint fit: its errors are taken as independent",
+        "{campaign} beruht auf keiner gemeinsamen Anpassung: die Fehler gelten als unabhängig",
+        campaign = Value::Name(campaign);
+    Self::NothingShared =>
+        "nothing is shared, so the campaigns' errors add: state shared under [rig] what stayed the \
+         same, or the instruments' serial numbers",
+        "nichts ist gemeinsam, daher addieren sich die Fehler der Messreihen: unter [rig] mit \
+         shared angeben, was gleich geblieben ist, oder die Seriennummern der Geräte";
 }
 
 /// One message of each kind of a comparison, its values at their defaults.

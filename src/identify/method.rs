@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize, Serializer};
 
 use crate::message::Message;
-use crate::texts;
+use crate::message_table;
 
 /// A method of identification.
 #[derive(
@@ -84,23 +84,15 @@ impl Serialize for Estimator {
     }
 }
 
-impl Message for Method {
-    fn kind(&self) -> &'static str {
-        self.into()
-    }
-
-    fn texts(&self) -> [&'static str; 2] {
-        texts! { self;
-            Self::Boundaries => "Boundaries", "Grenzen";
-            Self::Flights => "Multiple shooting", "Mehrfachschießen";
-            Self::FlightTimes => "Flight times", "Flugzeiten";
-            Self::FreeDecay => "Free decay", "Ausschwingen";
-            Self::Impacts => "Speeds at impact", "Einzelne Stöße";
-            Self::PublishedSpeeds => "Published speeds", "Veröffentlichte Geschwindigkeiten";
-            Self::Resonance => "Resonance curve", "Resonanzkurve";
-            Self::Trajectories => "Trajectories", "Verläufe";
-        }
-    }
+message_table! { Method;
+    Self::Boundaries => "Boundaries", "Grenzen";
+    Self::Flights => "Multiple shooting", "Mehrfachschießen";
+    Self::FlightTimes => "Flight times", "Flugzeiten";
+    Self::FreeDecay => "Free decay", "Ausschwingen";
+    Self::Impacts => "Speeds at impact", "Einzelne Stöße";
+    Self::PublishedSpeeds => "Published speeds", "Veröffentlichte Geschwindigkeiten";
+    Self::Resonance => "Resonance curve", "Resonanzkurve";
+    Self::Trajectories => "Trajectories", "Verläufe";
 }
 
 impl std::fmt::Display for Method {

@@ -1,7 +1,7 @@
 //! Whether a deviation is high or low, as a word.
 
-use crate::message::{Message, Value};
-use crate::texts;
+use crate::message::Value;
+use crate::message_table;
 
 /// Whether something is too high or too low.
 #[derive(Debug, Clone, Copy, strum::IntoStaticStr)]
@@ -19,15 +19,7 @@ pub(super) fn direction(deviation: f64) -> Value<'static> {
     }
 }
 
-impl Message for Direction {
-    fn kind(&self) -> &'static str {
-        self.into()
-    }
-
-    fn texts(&self) -> [&'static str; 2] {
-        texts! { self;
-            Self::High => "high", "hoch";
-            Self::Low => "low", "tief";
-        }
-    }
+message_table! { Direction;
+    Self::High => "high", "hoch";
+    Self::Low => "low", "tief";
 }

@@ -10,7 +10,7 @@ use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
 use crate::message::{Message, Value};
 use crate::record::Role;
-use crate::{messages, texts};
+use crate::{message_table, messages};
 
 /// Something that the data give away. Deviations are relative (0.01 is 1 %); a z-score is a deviation
 /// over its standard error.
@@ -137,163 +137,105 @@ pub enum Finding {
 
 messages!(Finding);
 
-impl Message for Finding {
-    fn kind(&self) -> &'static str {
-        self.into()
-    }
+message_table! { Finding, key = template_key;
+    Self::WrongClearance { stated_m, fitting_m, .. } =>
+        "the gap stated with a clearance of {stated_mm} mm moves like one of {fitting_mm} mm: \
+         measure it again and correct the run table; its records stay out of the fit",
+        "der mit einem Spiel von {stated_mm} mm angegebene Abstand bewegt sich wie einer von \
+         {fitting_mm} mm: nachmessen und die Versuchstabelle richtigstellen; seine Aufzeichnungen \
+         bleiben außerhalb der Anpassung",
+        stated_mm = millimetres(*stated_m), fitting_mm = millimetres(*fitting_m);
+    Self::WrongGain { channel, deviation, .. } =>
+        "{channel} reads {share} too {direction}: correct scale in [channels.{channel}], or state \
+         a larger gain_uncertainty in [rig]",
+        "{channel} zeigt {share} zu {direction}: scale in [channels.{channel}] richtigstellen, \
+         oder eine größere gain_uncertainty in [rig] angeben",
+        channel = Value::Name(channel.name()),
+        share = Value::Percent(deviation.abs(), 1),
+        direction = direction(*deviation);
+    Self::WrongCorner { channel, deviation, .. } =>
+        "the corner of the high-pass of {channel} is {share} too {direction} for the stated one: \
+         correct high_pass in [channels.{channel}], or state a larger corner_uncertainty in [rig]",
+        "die Grenzfrequenz des Hochpasses von {channel} liegt {share} zu {direction} gegen die \
+         angegebene: high_pass in [channels.{channel}] richtigstellen, oder eine größere \
+         corner_uncertainty in [rig] angeben",
+        channel = Value::Name(channel.name()),
+        share = Value::Percent(deviation.abs(), 0),
+        direction = direction(*deviation);
+    Self::SwappedChannels { .. } =>
+        "all data fit far better with the velocities of both masses swapped: swap \
+         [channels.velocity_x] and [channels.velocity_y], or the displacements",
+        "alle Daten passen weit besser, wenn die Geschwindigkeiten beider Massen vertauscht sind: \
+         [channels.velocity_x] und [channels.velocity_y] tauschen, oder die Wege";
+    Self::MomentumNotConserved { measured, stated, .. } =>
+        "the speeds of both masses change as if $m_y$/$m_x$ were {measured}, the stated masses \
+         give {stated}: weigh them again, check the scales of both velocities, and that nothing \
+         else touches the masses",
+        "die Geschwindigkeiten beider Massen ändern sich, als wäre $m_y$/$m_x$ = {measured}; die \
+         angegebenen Massen geben {stated}: nachwiegen, die Maßstäbe beider Geschwindigkeiten \
+         prüfen, und dass sonst nichts die Massen berührt",
+        measured = Value::Number(*measured, 3), stated = Value::Number(*stated, 3);
+    Self::BeyondModel { effect, strength, standard_error, .. } =>
+        beyond(*effect, *strength > 0.0)[0],
+        beyond(*effect, *strength > 0.0)[1],
+        strength = Value::Number(scale(*effect) * strength.abs(), 3),
+        error = Value::Number(1.96 * scale(*effect) * standard_error, 3);
+    Self::Misfit { method, remark } | Self::Noticed { method, remark } =>
+        "{method}: {remark}",
+        "{method}: {remark}",
+        method = Value::Message(method), remark = Value::Message(remark);
+    Self::Parameter { parameter, note } =>
+        "{parameter}: {note}",
+        "{parameter}: {note}",
+        parameter = Value::Message(parameter), note = Value::Message(note);
+    Self::Disagreement { pair } =>
+        "the methods do not agree on {pair}",
+        "die Verfahren stimmen nicht überein bei {pair}",
+        pair = Value::Message(pair);
+    Self::Specimen { specimen, verdict } =>
+        "{specimen}: {verdict}",
+        "{specimen}: {verdict}",
+        specimen = Value::Name(specimen), verdict = sentences(verdict);
+    Self::MisfiledRecord { record, reason } =>
+        "{record}: {reason}",
+        "{record}: {reason}",
+        record = Value::Name(record), reason = Value::Message(reason);
+    Self::PrintedDampingFits { printed } =>
+        "The printed $β$ = {value} fits the speeds.",
+        "Das gedruckte $β$ = {value} passt zu den Geschwindigkeiten.",
+        value = Value::Shortest(*printed);
+    Self::PrintedDampingDoesNotFit { printed, deviation } =>
+        "The printed $β$ = {value} does not fit: a speed is off by {share}.",
+        "Das gedruckte $β$ = {value} passt nicht: Eine Geschwindigkeit liegt um {share} daneben.",
+        value = Value::Shortest(*printed), share = Value::Percent(*deviation, 1);
+    Self::PrintedDampingWithoutMotion { printed, settings, .. } =>
+        "The printed $β$ = {value} does not fit: the motion for {settings} does not exist with it.",
+        "Das gedruckte $β$ = {value} passt nicht: Die Bewegung bei {settings} gibt es damit nicht.",
+        value = Value::Shortest(*printed), settings = Value::list(settings);
+}
 
-    fn key(&self) -> String {
-        match self {
-            Self::BeyondModel {
-                effect, strength, ..
-            } => {
-                let way = if *strength > 0.0 { "above" } else { "below" };
-                format!("{}_{}_zero", effect.name(), way)
-            }
-            _ => self.kind().to_owned(),
+/// The kind or, of an effect beyond the model, its name and sign, which have texts of their own.
+fn template_key(finding: &Finding) -> String {
+    match finding {
+        Finding::BeyondModel {
+            effect, strength, ..
+        } => {
+            let way = if *strength > 0.0 { "above" } else { "below" };
+            format!("{}_{}_zero", effect.name(), way)
         }
+        _ => finding.kind().to_owned(),
     }
+}
 
-    fn texts(&self) -> [&'static str; 2] {
-        texts! { self;
-            Self::WrongClearance { .. } =>
-                "the gap stated with a clearance of {stated_mm} mm moves like one of {fitting_mm} \
-                 mm: measure it again and correct the run table; its records stay out of the fit",
-                "der mit einem Spiel von {stated_mm} mm angegebene Abstand bewegt sich wie einer \
-                 von {fitting_mm} mm: nachmessen und die Versuchstabelle richtigstellen; seine \
-                 Aufzeichnungen bleiben außerhalb der Anpassung";
-            Self::WrongGain { .. } =>
-                "{channel} reads {share} too {direction}: correct scale in [channels.{channel}], \
-                 or state a larger gain_uncertainty in [rig]",
-                "{channel} zeigt {share} zu {direction}: scale in [channels.{channel}] \
-                 richtigstellen, oder eine größere gain_uncertainty in [rig] angeben";
-            Self::WrongCorner { .. } =>
-                "the corner of the high-pass of {channel} is {share} too {direction} for the \
-                 stated one: correct high_pass in [channels.{channel}], or state a larger \
-                 corner_uncertainty in [rig]",
-                "die Grenzfrequenz des Hochpasses von {channel} liegt {share} zu {direction} \
-                 gegen die angegebene: high_pass in [channels.{channel}] richtigstellen, oder \
-                 eine größere corner_uncertainty in [rig] angeben";
-            Self::SwappedChannels { .. } =>
-                "all data fit far better with the velocities of both masses swapped: swap \
-                 [channels.velocity_x] and [channels.velocity_y], or the displacements",
-                "alle Daten passen weit besser, wenn die Geschwindigkeiten beider Massen \
-                 vertauscht sind: [channels.velocity_x] und [channels.velocity_y] tauschen, oder \
-                 die Wege";
-            Self::MomentumNotConserved { .. } =>
-                "the speeds of both masses change as if $m_y$/$m_x$ were {measured}, the stated \
-                 masses give {stated}: weigh them again, check the scales of both velocities, and \
-                 that nothing else touches the masses",
-                "die Geschwindigkeiten beider Massen ändern sich, als wäre $m_y$/$m_x$ = \
-                 {measured}; die angegebenen Massen geben {stated}: nachwiegen, die Maßstäbe \
-                 beider Geschwindigkeiten prüfen, und dass sonst nichts die Massen berührt";
-            Self::BeyondModel { effect, strength, .. } =>
-                beyond(*effect, *strength > 0.0)[0],
-                beyond(*effect, *strength > 0.0)[1];
-            Self::Misfit { .. } | Self::Noticed { .. } =>
-                "{method}: {remark}",
-                "{method}: {remark}";
-            Self::Parameter { .. } => "{parameter}: {note}", "{parameter}: {note}";
-            Self::Disagreement { .. } =>
-                "the methods do not agree on {pair}",
-                "die Verfahren stimmen nicht überein bei {pair}";
-            Self::Specimen { .. } => "{specimen}: {verdict}", "{specimen}: {verdict}";
-            Self::MisfiledRecord { .. } => "{record}: {reason}", "{record}: {reason}";
-            Self::PrintedDampingFits { .. } =>
-                "The printed $β$ = {value} fits the speeds.",
-                "Das gedruckte $β$ = {value} passt zu den Geschwindigkeiten.";
-            Self::PrintedDampingDoesNotFit { .. } =>
-                "The printed $β$ = {value} does not fit: a speed is off by {share}.",
-                "Das gedruckte $β$ = {value} passt nicht: Eine Geschwindigkeit liegt um {share} \
-                 daneben.";
-            Self::PrintedDampingWithoutMotion { .. } =>
-                "The printed $β$ = {value} does not fit: the motion for {settings} does not exist \
-                 with it.",
-                "Das gedruckte $β$ = {value} passt nicht: Die Bewegung bei {settings} gibt es \
-                 damit nicht.";
-        }
-    }
+fn millimetres(metres: f64) -> Value<'static> {
+    Value::Number(1e3 * metres, 4)
+}
 
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        let millimetres = |m: &f64| Value::Number(1e3 * m, 4);
-        match self {
-            Self::WrongClearance {
-                stated_m,
-                fitting_m,
-                ..
-            } => vec![
-                ("stated_mm", millimetres(stated_m)),
-                ("fitting_mm", millimetres(fitting_m)),
-            ],
-            Self::WrongGain {
-                channel, deviation, ..
-            } => vec![
-                ("channel", Value::Name(channel.name())),
-                ("share", Value::Percent(deviation.abs(), 1)),
-                ("direction", direction(*deviation)),
-            ],
-            Self::WrongCorner {
-                channel, deviation, ..
-            } => vec![
-                ("channel", Value::Name(channel.name())),
-                ("share", Value::Percent(deviation.abs(), 0)),
-                ("direction", direction(*deviation)),
-            ],
-            Self::BeyondModel {
-                effect,
-                strength,
-                standard_error,
-                ..
-            } => {
-                let scale = if *effect == Effect::ContactDuration {
-                    1.0
-                } else {
-                    100.0
-                };
-                vec![
-                    ("strength", Value::Number(scale * strength.abs(), 3)),
-                    ("error", Value::Number(1.96 * scale * standard_error, 3)),
-                ]
-            }
-            Self::SwappedChannels { .. } => Vec::new(),
-            Self::MomentumNotConserved {
-                measured, stated, ..
-            } => vec![
-                ("measured", Value::Number(*measured, 3)),
-                ("stated", Value::Number(*stated, 3)),
-            ],
-            Self::Misfit { method, remark } | Self::Noticed { method, remark } => vec![
-                ("method", Value::Message(method)),
-                ("remark", Value::Message(remark)),
-            ],
-            Self::Parameter { parameter, note } => vec![
-                ("parameter", Value::Message(parameter)),
-                ("note", Value::Message(note)),
-            ],
-            Self::Disagreement { pair } => vec![("pair", Value::Message(pair))],
-            Self::Specimen { specimen, verdict } => vec![
-                ("specimen", Value::Name(specimen)),
-                ("verdict", sentences(verdict)),
-            ],
-            Self::MisfiledRecord { record, reason } => vec![
-                ("record", Value::Name(record)),
-                ("reason", Value::Message(reason)),
-            ],
-            Self::PrintedDampingFits { printed } => vec![("value", Value::Shortest(*printed))],
-            Self::PrintedDampingDoesNotFit { printed, deviation } => vec![
-                ("value", Value::Shortest(*printed)),
-                ("share", Value::Percent(*deviation, 1)),
-            ],
-            Self::PrintedDampingWithoutMotion {
-                printed, settings, ..
-            } => vec![
-                ("value", Value::Shortest(*printed)),
-                (
-                    "settings",
-                    Value::List(settings.iter().map(|s| Value::Message(s)).collect()),
-                ),
-            ],
-        }
+/// From the strength of an effect to the number in its text: per cent, or milliseconds.
+fn scale(effect: Effect) -> f64 {
+    match effect {
+        Effect::ContactDuration => 1.0,
+        _ => 100.0,
     }
 }
 

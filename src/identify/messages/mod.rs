@@ -20,7 +20,7 @@ pub use remark::{GroupPoint, Remark, SpeedPoint};
 pub use sentence::{Sentence, StatedValue};
 
 use crate::identify::fit::parameters::Coordinate;
-use crate::message::{Message, Value};
+use crate::message::Message;
 
 impl Message for Coordinate {
     fn kind(&self) -> &'static str {
@@ -37,9 +37,4 @@ impl Message for Coordinate {
         };
         [symbol; 2]
     }
-}
-
-/// Symbols of parameters as a list.
-fn symbols(parameters: &[Coordinate]) -> Value<'_> {
-    Value::List(parameters.iter().map(|p| Value::Message(p)).collect())
 }

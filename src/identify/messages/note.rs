@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::FitError;
 use crate::identify::fit::parameters::Coordinate;
-use crate::message::{Message, Value};
-use crate::{messages, texts};
+use crate::message::Value;
+use crate::{message_table, messages};
 
 /// Why a parameter is weak or not identifiable, or why a method has no result.
 #[derive(
@@ -72,83 +72,52 @@ impl From<&FitError> for Note {
 
 messages!(Note);
 
-impl Message for Note {
-    fn kind(&self) -> &'static str {
-        self.into()
-    }
+message_table! { Note;
+    Self::Open { parameter, standard_error } =>
+        "the data leave {parameter} open by ± {width}",
+        "die Daten lassen {parameter} um ± {width} offen",
+        parameter = Value::Message(parameter), width = width(*parameter, *standard_error);
+    Self::NotDetermined { parameter } =>
+        "the data do not determine {parameter}",
+        "die Daten bestimmen {parameter} nicht",
+        parameter = Value::Message(parameter);
+    Self::LeansOn { parameter, correlation } =>
+        "depends on {parameter} (correlation {correlation})",
+        "hängt von {parameter} ab (Korrelation {correlation})",
+        parameter = Value::Message(parameter), correlation = Value::Number(*correlation, 2);
+    Self::MethodsDisagree =>
+        "the methods do not agree on it: the interval is widened by their disagreement",
+        "die Verfahren stimmen darin nicht überein: das Intervall ist um ihren Unterschied \
+         verbreitert";
+    Self::NotOneNumber =>
+        "$R$ is not one number here: see the remark on its change",
+        "$R$ ist hier nicht eine Zahl: siehe die Anmerkung zu seiner Änderung";
+    Self::Drifts =>
+        "the frequency changes over the decay, so that it is no single $f_0$: see the remark",
+        "die Frequenz ändert sich beim Ausschwingen und ist nicht ein $f_0$: siehe die Anmerkung";
+    Self::SeveralSpecimens =>
+        "the campaign has several specimens; each has its own parameters",
+        "die Messreihe hat mehrere Prüflinge; jeder hat seine eigenen Parameter";
+    Self::NoPublishedMotion =>
+        "no damping ratio gives all of these motions",
+        "kein Dämpfungsgrad ergibt alle diese Bewegungen";
+    Self::NoStart { observations } =>
+        "the model has no such motion at the starting values for {count} observations",
+        "das Modell hat bei den Startwerten für {count} Beobachtungen keine solche Bewegung",
+        count = Value::Count(*observations);
+    Self::NothingToFit =>
+        "there are no observations to fit",
+        "es gibt keine Beobachtungen für eine Anpassung";
+    Self::SolverFailed => "the solver failed", "der Löser versagte";
+    Self::NotSeparable =>
+        "the data do not separate the parameters",
+        "die Daten trennen die Parameter nicht";
+}
 
-    fn texts(&self) -> [&'static str; 2] {
-        texts! { self;
-            Self::Open { .. } =>
-                "the data leave {parameter} open by ± {width}",
-                "die Daten lassen {parameter} um ± {width} offen";
-            Self::NotDetermined { .. } =>
-                "the data do not determine {parameter}",
-                "die Daten bestimmen {parameter} nicht";
-            Self::LeansOn { .. } =>
-                "depends on {parameter} (correlation {correlation})",
-                "hängt von {parameter} ab (Korrelation {correlation})";
-            Self::MethodsDisagree =>
-                "the methods do not agree on it: the interval is widened by their disagreement",
-                "die Verfahren stimmen darin nicht überein: das Intervall ist um ihren \
-                 Unterschied verbreitert";
-            Self::NotOneNumber =>
-                "$R$ is not one number here: see the remark on its change",
-                "$R$ ist hier nicht eine Zahl: siehe die Anmerkung zu seiner Änderung";
-            Self::Drifts =>
-                "the frequency changes over the decay, so that it is no single $f_0$: see the \
-                 remark",
-                "die Frequenz ändert sich beim Ausschwingen und ist nicht ein $f_0$: siehe die \
-                 Anmerkung";
-            Self::SeveralSpecimens =>
-                "the campaign has several specimens; each has its own parameters",
-                "die Messreihe hat mehrere Prüflinge; jeder hat seine eigenen Parameter";
-            Self::NoPublishedMotion =>
-                "no damping ratio gives all of these motions",
-                "kein Dämpfungsgrad ergibt alle diese Bewegungen";
-            Self::NoStart { .. } =>
-                "the model has no such motion at the starting values for {count} observations",
-                "das Modell hat bei den Startwerten für {count} Beobachtungen keine solche \
-                 Bewegung";
-            Self::NothingToFit =>
-                "there are no observations to fit",
-                "es gibt keine Beobachtungen für eine Anpassung";
-            Self::SolverFailed => "the solver failed", "der Löser versagte";
-            Self::NotSeparable =>
-                "the data do not separate the parameters",
-                "die Daten trennen die Parameter nicht";
-        }
-    }
-
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        match self {
-            Self::Open {
-                parameter,
-                standard_error,
-            } => {
-                let width = match parameter.is_logarithm() {
-                    true => Value::Percent(*standard_error, 2),
-                    false => Value::Number(*standard_error, 2),
-                };
-                vec![("parameter", Value::Message(parameter)), ("width", width)]
-            }
-            Self::NotDetermined { parameter } => vec![("parameter", Value::Message(parameter))],
-            Self::LeansOn {
-                parameter,
-                correlation,
-            } => vec![
-                ("parameter", Value::Message(parameter)),
-                ("correlation", Value::Number(*correlation, 2)),
-            ],
-            Self::NoStart { observations } => vec![("count", Value::Count(*observations))],
-            Self::NotOneNumber
-            | Self::Drifts
-            | Self::MethodsDisagree
-            | Self::SeveralSpecimens
-            | Self::NoPublishedMotion
-            | Self::NothingToFit
-            | Self::SolverFailed
-            | Self::NotSeparable => Vec::new(),
-        }
+/// A standard error of a parameter: relative or, of R, absolute.
+fn width(parameter: Coordinate, standard_error: f64) -> Value<'static> {
+    match parameter.is_logarithm() {
+        true => Value::Percent(standard_error, 2),
+        false => Value::Number(standard_error, 2),
     }
 }

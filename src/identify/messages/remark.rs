@@ -6,7 +6,7 @@ use super::{Item, Note};
 use crate::identify::diagnostics::structure::ImpactGroup;
 use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::message::{Message, Value};
-use crate::{messages, texts};
+use crate::{message_table, messages};
 
 /// R at one approach speed.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -60,11 +60,16 @@ impl Message for GroupPoint {
 /// Groups that a remark names.
 const NAMED: usize = 6;
 
-/// The first few groups, and the last.
-fn points(all: &[GroupPoint]) -> Value<'_> {
-    let mut which: Vec<Value<'_>> = all.iter().take(NAMED).map(|p| Value::Message(p)).collect();
-    which.extend((all.len() > NAMED).then_some(Value::Name("…")));
-    Value::List(which)
+/// The first few groups.
+fn named(groups: &[GroupPoint]) -> Value<'_> {
+    abridged(&groups[..groups.len().min(NAMED)], groups.len())
+}
+
+/// The first of `count` messages, with an ellipsis for the others.
+fn abridged(first: &[impl Message], count: usize) -> Value<'_> {
+    let mut each: Vec<Value<'_>> = first.iter().map(|m| Value::Message(m)).collect();
+    each.extend((count > first.len()).then_some(Value::Name("…")));
+    Value::List(each)
 }
 
 /// What a method noticed about its data. Shares and deviations are relative (0.01 is 1 %).
@@ -222,215 +227,135 @@ pub enum Remark {
 
 messages!(Remark);
 
-impl Message for Remark {
-    fn kind(&self) -> &'static str {
-        self.into()
-    }
-
-    #[expect(clippy::too_many_lines, reason = "one arm for each variant")]
-    fn texts(&self) -> [&'static str; 2] {
-        texts! { self;
-            Self::OneDegreeOfFreedom { .. } =>
-                "the responses follow one degree of freedom within {share}",
-                "die Antworten folgen einem Freiheitsgrad auf {share}";
-            Self::NotOneDegreeOfFreedom { .. } =>
-                "the responses deviate by {share} from the curve of one degree of freedom: there \
-                 is more than one resonance, or the damping is not viscous",
-                "die Antworten weichen um {share} von der Kurve eines Freiheitsgrads ab: Es gibt \
-                 mehr als eine Resonanz, oder die Dämpfung ist nicht zäh";
-            Self::WaveformsUnexplained { .. } =>
-                "the simulated waveforms leave {share} of the measured ones unexplained",
-                "die simulierten Verläufe lassen {share} der gemessenen unerklärt";
-            Self::WaveformsThinned { .. } =>
-                "waveforms of {some} of {count} periodic records are fitted, evenly chosen",
-                "angepasst sind die Verläufe von {some} der {count} periodischen Aufzeichnungen, \
-                 gleichmäßig gewählt";
-            Self::IdealRig =>
-                "it takes the rig as ideal, without the delays of channels and the effects found \
-                 beyond the model: it is not compared, and its intervals are widened by what it \
-                 is off the joint estimate",
-                "es nimmt die Maschine als ideal an, ohne die Verzögerungen der Kanäle und die \
-                 Effekte über das Modell hinaus: es wird nicht verglichen, und seine Intervalle \
-                 sind um die Abweichung vom gemeinsamen Schätzwert erweitert";
-            Self::StatesDeviate { .. } =>
-                "from impact to impact, the states deviate {ratio} times their errors",
-                "von Stoß zu Stoß weichen die Zustände um das {ratio}-Fache ihrer Fehler ab";
-            Self::BracketMidpoints { .. } =>
-                "plain least squares on the midpoints of the s2 brackets: $R$ = {value} ± {half}",
-                "einfache kleinste Quadrate auf den Mitten der Schranken von s2: $R$ = {value} ± \
-                 {half}";
-            Self::EarlyJumps { .. } =>
-                "by the waveforms the motions $z$ = 1 end {share} of the frequency before their \
-                 s2 on average, so the brackets determine $R$ poorly: let the drive go on from \
-                 setting to setting, in smaller steps",
-                "nach den Verläufen enden die Bewegungen $z$ = 1 im Mittel {share} der Frequenz \
-                 vor ihrem s2, die Schranken bestimmen $R$ also schlecht: den Antrieb von \
-                 Einstellung zu Einstellung weiterlaufen lassen, in kleineren Schritten";
-            Self::RestitutionConstant { .. } =>
-                "$R$ is the same from {slow} to {fast} m/s within {change}",
-                "$R$ ist von {slow} bis {fast} m/s gleich, auf {change}";
-            Self::RestitutionChanges { .. } =>
-                "$R$ goes from {first} at {slow} m/s to {last} at {fast} m/s: $R$ depends on the \
-                 speed, one constant does not describe it",
-                "$R$ geht von {first} bei {slow} m/s auf {last} bei {fast} m/s: $R$ hängt von der \
-                 Geschwindigkeit ab, eine Konstante beschreibt es nicht";
-            Self::LongContact { .. } =>
-                "$R$ goes from {first} at {slow} m/s to {last} at {fast} m/s, and a contact lasts \
-                 {count} samples: it is not an instantaneous impact, so one coefficient of \
-                 restitution does not describe it",
-                "$R$ geht von {first} bei {slow} m/s auf {last} bei {fast} m/s, und ein Kontakt \
-                 dauert {count} Abtastwerte: Es ist kein augenblicklicher Stoß, und eine Stoßzahl \
-                 beschreibt ihn nicht";
-            Self::RestitutionByBounce { .. } =>
-                "$R$ changes from bounce to bounce, and with it the speed: {points}; one constant \
-                 does not describe it",
-                "$R$ ändert sich von Stoß zu Stoß, und mit ihm die Geschwindigkeit: {points}; \
-                 eine Konstante beschreibt es nicht";
-            Self::RecordsDiffer { .. } =>
-                "$R$ differs between the records by more than its errors: {points}; they are not \
-                 of one contact",
-                "$R$ unterscheidet sich zwischen den Aufzeichnungen um mehr als seine Fehler: \
-                 {points}; sie sind nicht die eines Kontakts";
-            Self::MassRatio { .. } =>
-                "by conservation of momentum the masses are $m_y$/$m_x$ = {value} ± {half}",
-                "nach der Impulserhaltung verhalten sich die Massen wie $m_y$/$m_x$ = {value} ± \
-                 {half}";
-            Self::TimesScatter { .. } =>
-                "the times of the impacts scatter by {error} ms",
-                "die Zeiten der Stöße streuen um {error} ms";
-            Self::FlightsLeftOut { .. } =>
-                "flights that do not follow from the one before, as where an impact was missed, \
-                 left out: {count}",
-                "Flüge, die nicht aus dem vorigen folgen, etwa wo ein Stoß fehlt, ausgelassen: \
-                 {count}";
-            Self::OutlyingImpacts { .. } =>
-                "impacts with speeds far from those of the others, left out: {count} ({which})",
-                "Stöße mit Geschwindigkeiten weit von denen der übrigen, ausgelassen: {count} \
-                 ({which})";
-            Self::DecaysUnexplained { .. } =>
-                "the fits leave {share} of the decays unexplained; {structure} is no noise",
-                "die Anpassungen lassen {share} der Ausschwingversuche unerklärt; {structure} ist \
-                 kein Rauschen";
-            Self::DecaysHaveStructure { .. } =>
-                "the fits leave {share} of the decays unexplained, and {structure} is no noise: \
-                 there is another mode, or the damping is not viscous",
-                "die Anpassungen lassen {share} der Ausschwingversuche unerklärt, und {structure} \
-                 ist kein Rauschen: Es gibt eine weitere Eigenschwingung, oder die Dämpfung ist \
-                 nicht zäh";
-            Self::DecaysDrift { .. } =>
-                "in {count} decays the frequency drifts, at most from {first} Hz in the first \
-                 quarter to {last} Hz in the last, {intervals} times half its interval: the \
-                 spring is not linear, or the mass moves in another direction too",
-                "in {count} Ausschwingversuchen wandert die Frequenz, am meisten von {first} Hz \
-                 im ersten Viertel auf {last} Hz im letzten, um das {intervals}-Fache ihres \
-                 halben Intervalls: Die Feder ist nicht linear, oder die Masse bewegt sich auch \
-                 anders";
-            Self::DecaysDiffer { .. } =>
-                "the decays' natural frequencies differ by up to {share}: they are not of one \
-                 oscillator",
-                "die Eigenfrequenzen der Ausschwingversuche unterscheiden sich um bis zu {share}: \
-                 Sie sind nicht die eines Schwingers";
-            Self::NoResult { .. } => "{why}", "{why}";
-            Self::PublishedSpeedsMet { .. } =>
-                "with $β$ = {value} the speeds are met within {share}",
-                "mit $β$ = {value} sind die Geschwindigkeiten auf {share} getroffen";
-        }
-    }
-
-    #[expect(clippy::too_many_lines, reason = "one arm for each variant")]
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        match self {
-            Self::OneDegreeOfFreedom { deviation } => {
-                vec![("share", Value::Percent(*deviation, 2))]
-            }
-            Self::NotOneDegreeOfFreedom { deviation } => {
-                vec![("share", Value::Percent(*deviation, 0))]
-            }
-            Self::WaveformsUnexplained { share } => vec![("share", Value::Percent(*share, 2))],
-            Self::WaveformsThinned { fitted, periodic } => vec![
-                ("some", Value::Count(*fitted)),
-                ("count", Value::Count(*periodic)),
-            ],
-            Self::IdealRig => Vec::new(),
-            Self::StatesDeviate { ratio } => vec![("ratio", Value::Number(*ratio, 1))],
-            Self::BracketMidpoints {
-                restitution,
-                half_width,
-            } => vec![
-                ("value", Value::Number(*restitution, 3)),
-                ("half", Value::Number(*half_width, 3)),
-            ],
-            Self::EarlyJumps { distance } => vec![("share", Value::Percent(*distance, 1))],
-            Self::RestitutionConstant {
-                slow_m_s,
-                fast_m_s,
-                within,
-            } => vec![
-                ("slow", Value::Number(*slow_m_s, 3)),
-                ("fast", Value::Number(*fast_m_s, 3)),
-                ("change", Value::Number(*within, 3)),
-            ],
-            Self::RestitutionChanges { slower, faster } => change(slower, faster),
-            Self::LongContact {
-                slower,
-                faster,
-                samples,
-            } => {
-                let mut values = change(slower, faster);
-                values.push(("count", Value::Number(*samples, 0)));
-                values
-            }
-            Self::RestitutionByBounce { points: all } | Self::RecordsDiffer { points: all } => {
-                vec![("points", points(all))]
-            }
-            Self::MassRatio { ratio, half_width } => vec![
-                ("value", Value::Number(*ratio, 3)),
-                ("half", Value::Number(*half_width, 3)),
-            ],
-            Self::TimesScatter { error_s } => vec![("error", Value::Number(1e3 * error_s, 2))],
-            Self::FlightsLeftOut { count } => vec![("count", Value::Count(*count))],
-            Self::OutlyingImpacts { count, first } => {
-                let mut which: Vec<Value<'_>> = first.iter().map(|i| Value::Message(i)).collect();
-                which.extend((*count > first.len()).then_some(Value::Name("…")));
-                vec![
-                    ("count", Value::Count(*count)),
-                    ("which", Value::List(which)),
-                ]
-            }
-            Self::DecaysUnexplained { share, structure }
-            | Self::DecaysHaveStructure { share, structure } => vec![
-                ("share", Value::Percent(*share, 1)),
-                ("structure", Value::Percent(*structure, 1)),
-            ],
-            Self::DecaysDrift {
-                count,
-                first_hz,
-                last_hz,
-                intervals,
-            } => vec![
-                ("count", Value::Count(*count)),
-                ("first", Value::Number(*first_hz, 4)),
-                ("last", Value::Number(*last_hz, 4)),
-                ("intervals", Value::Number(*intervals, 0)),
-            ],
-            Self::DecaysDiffer { spread } => vec![("share", Value::Percent(*spread, 1))],
-            Self::NoResult { why } => vec![("why", Value::Message(why))],
-            Self::PublishedSpeedsMet {
-                damping_ratio,
-                deviation,
-            } => vec![
-                ("value", Value::Number(*damping_ratio, 4)),
-                ("share", Value::Percent(*deviation, 2)),
-            ],
-        }
-    }
-}
-
-fn change(slower: &SpeedPoint, faster: &SpeedPoint) -> Vec<(&'static str, Value<'static>)> {
-    vec![
-        ("first", Value::Number(slower.restitution, 3)),
-        ("slow", Value::Number(slower.speed_m_s, 3)),
-        ("last", Value::Number(faster.restitution, 3)),
-        ("fast", Value::Number(faster.speed_m_s, 3)),
-    ]
+message_table! { Remark;
+    Self::OneDegreeOfFreedom { deviation } =>
+        "the responses follow one degree of freedom within {share}",
+        "die Antworten folgen einem Freiheitsgrad auf {share}",
+        share = Value::Percent(*deviation, 2);
+    Self::NotOneDegreeOfFreedom { deviation } =>
+        "the responses deviate by {share} from the curve of one degree of freedom: there is more \
+         than one resonance, or the damping is not viscous",
+        "die Antworten weichen um {share} von der Kurve eines Freiheitsgrads ab: Es gibt mehr als \
+         eine Resonanz, oder die Dämpfung ist nicht zäh",
+        share = Value::Percent(*deviation, 0);
+    Self::WaveformsUnexplained { share } =>
+        "the simulated waveforms leave {share} of the measured ones unexplained",
+        "die simulierten Verläufe lassen {share} der gemessenen unerklärt",
+        share = Value::Percent(*share, 2);
+    Self::WaveformsThinned { fitted, periodic } =>
+        "waveforms of {some} of {count} periodic records are fitted, evenly chosen",
+        "angepasst sind die Verläufe von {some} der {count} periodischen Aufzeichnungen, \
+         gleichmäßig gewählt",
+        some = Value::Count(*fitted), count = Value::Count(*periodic);
+    Self::IdealRig =>
+        "it takes the rig as ideal, without the delays of channels and the effects found beyond \
+         the model: it is not compared, and its intervals are widened by what it is off the joint \
+         estimate",
+        "es nimmt die Maschine als ideal an, ohne die Verzögerungen der Kanäle und die Effekte \
+         über das Modell hinaus: es wird nicht verglichen, und seine Intervalle sind um die \
+         Abweichung vom gemeinsamen Schätzwert erweitert";
+    Self::StatesDeviate { ratio } =>
+        "from impact to impact, the states deviate {ratio} times their errors",
+        "von Stoß zu Stoß weichen die Zustände um das {ratio}-Fache ihrer Fehler ab",
+        ratio = Value::Number(*ratio, 1);
+    Self::BracketMidpoints { restitution, half_width } =>
+        "plain least squares on the midpoints of the s2 brackets: $R$ = {value} ± {half}",
+        "einfache kleinste Quadrate auf den Mitten der Schranken von s2: $R$ = {value} ± {half}",
+        value = Value::Number(*restitution, 3), half = Value::Number(*half_width, 3);
+    Self::EarlyJumps { distance } =>
+        "by the waveforms the motions $z$ = 1 end {share} of the frequency before their s2 on \
+         average, so the brackets determine $R$ poorly: let the drive go on from setting to \
+         setting, in smaller steps",
+        "nach den Verläufen enden die Bewegungen $z$ = 1 im Mittel {share} der Frequenz vor ihrem \
+         s2, die Schranken bestimmen $R$ also schlecht: den Antrieb von Einstellung zu Einstellung \
+         weiterlaufen lassen, in kleineren Schritten",
+        share = Value::Percent(*distance, 1);
+    Self::RestitutionConstant { slow_m_s, fast_m_s, within } =>
+        "$R$ is the same from {slow} to {fast} m/s within {change}",
+        "$R$ ist von {slow} bis {fast} m/s gleich, auf {change}",
+        slow = Value::Number(*slow_m_s, 3),
+        fast = Value::Number(*fast_m_s, 3),
+        change = Value::Number(*within, 3);
+    Self::RestitutionChanges { slower, faster } =>
+        "$R$ goes from {first} at {slow} m/s to {last} at {fast} m/s: $R$ depends on the speed, \
+         one constant does not describe it",
+        "$R$ geht von {first} bei {slow} m/s auf {last} bei {fast} m/s: $R$ hängt von der \
+         Geschwindigkeit ab, eine Konstante beschreibt es nicht",
+        first = Value::Number(slower.restitution, 3),
+        slow = Value::Number(slower.speed_m_s, 3),
+        last = Value::Number(faster.restitution, 3),
+        fast = Value::Number(faster.speed_m_s, 3);
+    Self::LongContact { slower, faster, samples } =>
+        "$R$ goes from {first} at {slow} m/s to {last} at {fast} m/s, and a contact lasts {count} \
+         samples: it is not an instantaneous impact, so one coefficient of restitution does not \
+         describe it",
+        "$R$ geht von {first} bei {slow} m/s auf {last} bei {fast} m/s, und ein Kontakt dauert \
+         {count} Abtastwerte: Es ist kein augenblicklicher Stoß, und eine Stoßzahl beschreibt ihn \
+         nicht",
+        first = Value::Number(slower.restitution, 3),
+        slow = Value::Number(slower.speed_m_s, 3),
+        last = Value::Number(faster.restitution, 3),
+        fast = Value::Number(faster.speed_m_s, 3),
+        count = Value::Number(*samples, 0);
+    Self::RestitutionByBounce { points } =>
+        "$R$ changes from bounce to bounce, and with it the speed: {points}; one constant does not \
+         describe it",
+        "$R$ ändert sich von Stoß zu Stoß, und mit ihm die Geschwindigkeit: {points}; eine \
+         Konstante beschreibt es nicht",
+        points = named(points);
+    Self::RecordsDiffer { points } =>
+        "$R$ differs between the records by more than its errors: {points}; they are not of one \
+         contact",
+        "$R$ unterscheidet sich zwischen den Aufzeichnungen um mehr als seine Fehler: {points}; \
+         sie sind nicht die eines Kontakts",
+        points = named(points);
+    Self::MassRatio { ratio, half_width } =>
+        "by conservation of momentum the masses are $m_y$/$m_x$ = {value} ± {half}",
+        "nach der Impulserhaltung verhalten sich die Massen wie $m_y$/$m_x$ = {value} ± {half}",
+        value = Value::Number(*ratio, 3), half = Value::Number(*half_width, 3);
+    Self::TimesScatter { error_s } =>
+        "the times of the impacts scatter by {error} ms",
+        "die Zeiten der Stöße streuen um {error} ms",
+        error = Value::Number(1e3 * error_s, 2);
+    Self::FlightsLeftOut { count } =>
+        "flights that do not follow from the one before, as where an impact was missed, left out: \
+         {count}",
+        "Flüge, die nicht aus dem vorigen folgen, etwa wo ein Stoß fehlt, ausgelassen: {count}",
+        count = Value::Count(*count);
+    Self::OutlyingImpacts { count, first } =>
+        "impacts with speeds far from those of the others, left out: {count} ({which})",
+        "Stöße mit Geschwindigkeiten weit von denen der übrigen, ausgelassen: {count} ({which})",
+        count = Value::Count(*count), which = abridged(first, *count);
+    Self::DecaysUnexplained { share, structure } =>
+        "the fits leave {share} of the decays unexplained; {structure} is no noise",
+        "die Anpassungen lassen {share} der Ausschwingversuche unerklärt; {structure} ist kein \
+         Rauschen",
+        share = Value::Percent(*share, 1), structure = Value::Percent(*structure, 1);
+    Self::DecaysHaveStructure { share, structure } =>
+        "the fits leave {share} of the decays unexplained, and {structure} is no noise: there is \
+         another mode, or the damping is not viscous",
+        "die Anpassungen lassen {share} der Ausschwingversuche unerklärt, und {structure} ist kein \
+         Rauschen: Es gibt eine weitere Eigenschwingung, oder die Dämpfung ist nicht zäh",
+        share = Value::Percent(*share, 1), structure = Value::Percent(*structure, 1);
+    Self::DecaysDrift { count, first_hz, last_hz, intervals } =>
+        "in {count} decays the frequency drifts, at most from {first} Hz in the first quarter to \
+         {last} Hz in the last, {intervals} times half its interval: the spring is not linear, or \
+         the mass moves in another direction too",
+        "in {count} Ausschwingversuchen wandert die Frequenz, am meisten von {first} Hz im ersten \
+         Viertel auf {last} Hz im letzten, um das {intervals}-Fache ihres halben Intervalls: Die \
+         Feder ist nicht linear, oder die Masse bewegt sich auch anders",
+        count = Value::Count(*count),
+        first = Value::Number(*first_hz, 4),
+        last = Value::Number(*last_hz, 4),
+        intervals = Value::Number(*intervals, 0);
+    Self::DecaysDiffer { spread } =>
+        "the decays' natural frequencies differ by up to {share}: they are not of one oscillator",
+        "die Eigenfrequenzen der Ausschwingversuche unterscheiden sich um bis zu {share}: Sie sind \
+         nicht die eines Schwingers",
+        share = Value::Percent(*spread, 1);
+    Self::NoResult { why } => "{why}", "{why}", why = Value::Message(why);
+    Self::PublishedSpeedsMet { damping_ratio, deviation } =>
+        "with $β$ = {value} the speeds are met within {share}",
+        "mit $β$ = {value} sind die Geschwindigkeiten auf {share} getroffen",
+        value = Value::Number(*damping_ratio, 4), share = Value::Percent(*deviation, 2);
 }

@@ -2,11 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::symbols;
 use crate::identify::fit::parameters::Coordinate;
 use crate::message::{Message, Value};
 use crate::signal::whole;
-use crate::{messages, texts};
+use crate::{message_table, messages};
 
 /// A parameter with its value as a sentence states it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -122,95 +121,57 @@ pub enum Sentence {
 
 messages!(Sentence);
 
-impl Message for Sentence {
-    fn kind(&self) -> &'static str {
-        self.into()
-    }
-
-    fn texts(&self) -> [&'static str; 2] {
-        texts! { self;
-            Self::Identified { .. } => "The rig has {values}.", "Der Prüfstand hat {values}.";
-            Self::Weak { .. } =>
-                "The rig has {values}; {parameters} only weakly.",
-                "Der Prüfstand hat {values}; {parameters} nur schwach bestimmt.";
-            Self::PartlyIdentifiable { .. } =>
-                "The rig has {values}, but these data do not determine {parameters}.",
-                "Der Prüfstand hat {values}, aber {parameters} ist aus diesen Daten nicht zu \
-                 bestimmen.";
-            Self::NotIdentifiable { .. } =>
-                "These data do not determine {parameters}.",
-                "Aus diesen Daten ist {parameters} nicht zu bestimmen.";
-            Self::NothingUsable =>
-                "Nothing could be identified: no record is usable for any method.",
-                "Nichts war zu identifizieren: Keine Aufzeichnung ist für ein Verfahren brauchbar.";
-            Self::DoesNotFit =>
-                "The model does not describe these data: see the findings.",
-                "Das Modell beschreibt diese Daten nicht: siehe die Befunde.";
-            Self::MethodsAgree => "The methods agree.", "Die Verfahren stimmen überein.";
-            Self::MethodsDoNotAgree =>
-                "The methods do not agree.",
-                "Die Verfahren stimmen nicht überein.";
-            Self::OneMethod =>
-                "Each parameter is determined by one method only.",
-                "Jeden Parameter bestimmt nur ein Verfahren.";
-            Self::Specimens { .. } =>
-                "The campaign has {count} specimens; each is identified by itself.",
-                "Die Messreihe hat {count} Prüflinge; jeder ist für sich identifiziert.";
-            Self::SpecimensFit { .. } =>
-                "The model fits {some} of {count}.",
-                "Das Modell passt zu {some} von {count}.";
-            Self::SpecimensPoorlyKnown { .. } =>
-                "{parameter} is poorly known in {count}.",
-                "{parameter} ist in {count} schlecht bekannt.";
-            Self::MisfiledRecords { .. } =>
-                "Records that look misfiled: {count}.",
-                "Aufzeichnungen, die falsch abgelegt aussehen: {count}.";
-            Self::PublishedDamping { .. } =>
-                "The published speeds belong to a damping ratio $β$ of {value}.",
-                "Die veröffentlichten Geschwindigkeiten gehören zu einem Dämpfungsgrad $β$ von \
-                 {value}.";
-            Self::NoPublishedDamping =>
-                "No damping ratio gives the published speeds.",
-                "Kein Dämpfungsgrad ergibt die veröffentlichten Geschwindigkeiten.";
-        }
-    }
-
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        match self {
-            Self::Identified { values } => vec![("values", stated(values))],
-            Self::Weak { values, parameters } | Self::PartlyIdentifiable { values, parameters } => {
-                vec![
-                    ("values", stated(values)),
-                    ("parameters", symbols(parameters)),
-                ]
-            }
-            Self::NotIdentifiable { parameters } => vec![("parameters", symbols(parameters))],
-            Self::NothingUsable
-            | Self::DoesNotFit
-            | Self::MethodsAgree
-            | Self::MethodsDoNotAgree
-            | Self::OneMethod
-            | Self::NoPublishedDamping => Vec::new(),
-            Self::SpecimensFit { fitting, count } => vec![
-                ("some", Value::Count(*fitting)),
-                ("count", Value::Count(*count)),
-            ],
-            Self::SpecimensPoorlyKnown { parameter, count } => vec![
-                ("parameter", Value::Message(parameter)),
-                ("count", Value::Count(*count)),
-            ],
-            Self::Specimens { count } | Self::MisfiledRecords { count } => {
-                vec![("count", Value::Count(*count))]
-            }
-            Self::PublishedDamping { damping_ratio } => {
-                vec![("value", Value::Number(*damping_ratio, 4))]
-            }
-        }
-    }
-}
-
-fn stated(values: &[StatedValue]) -> Value<'_> {
-    Value::List(values.iter().map(|v| Value::Message(v)).collect())
+message_table! { Sentence;
+    Self::Identified { values } =>
+        "The rig has {values}.",
+        "Der Prüfstand hat {values}.",
+        values = Value::list(values);
+    Self::Weak { values, parameters } =>
+        "The rig has {values}; {parameters} only weakly.",
+        "Der Prüfstand hat {values}; {parameters} nur schwach bestimmt.",
+        values = Value::list(values), parameters = Value::list(parameters);
+    Self::PartlyIdentifiable { values, parameters } =>
+        "The rig has {values}, but these data do not determine {parameters}.",
+        "Der Prüfstand hat {values}, aber {parameters} ist aus diesen Daten nicht zu bestimmen.",
+        values = Value::list(values), parameters = Value::list(parameters);
+    Self::NotIdentifiable { parameters } =>
+        "These data do not determine {parameters}.",
+        "Aus diesen Daten ist {parameters} nicht zu bestimmen.",
+        parameters = Value::list(parameters);
+    Self::NothingUsable =>
+        "Nothing could be identified: no record is usable for any method.",
+        "Nichts war zu identifizieren: Keine Aufzeichnung ist für ein Verfahren brauchbar.";
+    Self::DoesNotFit =>
+        "The model does not describe these data: see the findings.",
+        "Das Modell beschreibt diese Daten nicht: siehe die Befunde.";
+    Self::MethodsAgree => "The methods agree.", "Die Verfahren stimmen überein.";
+    Self::MethodsDoNotAgree => "The methods do not agree.", "Die Verfahren stimmen nicht überein.";
+    Self::OneMethod =>
+        "Each parameter is determined by one method only.",
+        "Jeden Parameter bestimmt nur ein Verfahren.";
+    Self::Specimens { count } =>
+        "The campaign has {count} specimens; each is identified by itself.",
+        "Die Messreihe hat {count} Prüflinge; jeder ist für sich identifiziert.",
+        count = Value::Count(*count);
+    Self::SpecimensFit { fitting, count } =>
+        "The model fits {some} of {count}.",
+        "Das Modell passt zu {some} von {count}.",
+        some = Value::Count(*fitting), count = Value::Count(*count);
+    Self::SpecimensPoorlyKnown { parameter, count } =>
+        "{parameter} is poorly known in {count}.",
+        "{parameter} ist in {count} schlecht bekannt.",
+        parameter = Value::Message(parameter), count = Value::Count(*count);
+    Self::MisfiledRecords { count } =>
+        "Records that look misfiled: {count}.",
+        "Aufzeichnungen, die falsch abgelegt aussehen: {count}.",
+        count = Value::Count(*count);
+    Self::PublishedDamping { damping_ratio } =>
+        "The published speeds belong to a damping ratio $β$ of {value}.",
+        "Die veröffentlichten Geschwindigkeiten gehören zu einem Dämpfungsgrad $β$ von {value}.",
+        value = Value::Number(*damping_ratio, 4);
+    Self::NoPublishedDamping =>
+        "No damping ratio gives the published speeds.",
+        "Kein Dämpfungsgrad ergibt die veröffentlichten Geschwindigkeiten.";
 }
 
 impl Sentence {
