@@ -25,6 +25,13 @@ pub use records::{BracketRow, Overview, RecordRow};
 pub use replays::{Comparison, Signal, Trace};
 pub use single::{Beside, WhyNot, beside};
 
+/// What the figures of the theory draw.
+pub(crate) use impact_oscillator::atlas::{
+    Curve, SweepPoint,
+    portrait::{Portrait, Sample},
+    sweep::Impactless,
+};
+
 /// The fitted model and the measurement, side by side. All quantities are SI; every list may be empty.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Compared {

@@ -9,7 +9,7 @@ use super::table::Table;
 use crate::compare::RegionMap;
 use crate::motion::Motion;
 use crate::pipeline::PipelineError;
-use crate::report::theory::regions as figure;
+use crate::report::theory::regions::draw;
 use impact_oscillator::atlas::curves::{Curve, CurvePoint};
 use impact_oscillator::atlas::regions::{assemble, columns};
 use impact_oscillator::atlas::shard::AtlasRequest;
@@ -73,18 +73,8 @@ pub fn write_atlas(
         &motions(&atlas.maps[0]),
         &motions(&second),
     );
-    let drawn: Vec<figure::Curve> = atlas.curves.iter().map(drawn).collect();
     let title = "Regions of existence and stability of all motions";
-    context.figure(figure::draw((&map, &drawn), name, title).as_ref())
-}
-
-/// What the figure shows of a boundary.
-fn drawn(curve: &Curve) -> figure::Curve {
-    figure::Curve {
-        kind: curve.kind.name().to_owned(),
-        minor: curve.p > 1 || curve.n > 5,
-        points: curve.points.iter().map(|p| (p.eta, p.rho)).collect(),
-    }
+    context.figure(draw((&map, &atlas.curves), name, title).as_ref())
 }
 
 fn all_columns(

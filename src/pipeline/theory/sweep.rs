@@ -8,7 +8,7 @@ use super::StudyContext;
 use super::plan::SweepPlan;
 use super::table::Table;
 use crate::pipeline::PipelineError;
-use crate::report::theory::sweep::{Characteristics, Step, draw};
+use crate::report::theory::sweep::{Characteristics, draw};
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactless};
 use impact_oscillator::model::Machine;
@@ -59,25 +59,12 @@ pub fn run(
     context.table(name, &characteristics(machine, &forward, &backward))?;
     context.table(&format!("{name}-impacts"), &impacts(&forward, &backward))?;
     let data = Characteristics {
-        forward: forward.iter().map(drawn).collect(),
-        backward: backward.iter().map(drawn).collect(),
-        impactless_x: impactless.iter().map(|i| i.x).collect(),
-        impactless_y: impactless.iter().filter_map(|i| i.y).collect(),
+        forward: &forward,
+        backward: &backward,
+        impactless: &impactless,
     };
     let title = "Quasi-stationary characteristics";
     context.figure(Some(&draw(&data, name, title)))
-}
-
-/// What the figure shows of a step.
-fn drawn(p: &SweepPoint) -> Step {
-    Step {
-        eta: p.eta,
-        rho: p.rho,
-        x_max: p.x_max,
-        approach_speeds: p.approach_speeds.clone(),
-        lyapunov: p.lyapunov,
-        autocorrelation: p.autocorrelation.first().copied(),
-    }
 }
 
 struct Walk<'a> {

@@ -3,7 +3,7 @@
 use super::StudyContext;
 use super::table::Table;
 use crate::pipeline::PipelineError;
-use crate::report::theory::motion as figure;
+use crate::report::theory::motion::draw;
 use impact_oscillator::atlas::portrait::{Portrait, PortraitPlan, Strike, portrait};
 use impact_oscillator::model::Machine;
 
@@ -29,36 +29,9 @@ pub fn run(
     )?;
     let s = &plan.setting;
     let title = format!("Motion at η = {}, ρ = {}", s.frequency_ratio, s.clearance);
-    let drawn = figure::draw(&drawn(&portrait), name, &title);
-    context.figure(Some(&drawn))?;
+    context.figure(Some(&draw(&portrait, name, &title)))?;
     (context.progress)(2, 2);
     Ok(())
-}
-
-/// What the figure shows of a portrait.
-fn drawn(p: &Portrait) -> figure::Portrait {
-    let samples = p.samples.iter().map(|s| figure::Sample {
-        periods: s.periods,
-        x: s.x,
-        vx: s.vx,
-        y: s.y,
-        vy: s.vy,
-        together: s.sticking,
-    });
-    let impacts = p.impacts.iter().map(|i| figure::Strike {
-        periods: i.periods,
-        x: i.x,
-        speeds: [i.vx_before.zip(i.vy_before), i.vx_after.zip(i.vy_after)],
-    });
-    figure::Portrait {
-        two_masses: p.two_masses,
-        gap: p.gap,
-        samples: samples.collect(),
-        impacts: impacts.collect(),
-        poincare_phase: p.poincare_phase,
-        poincare: p.poincare.iter().map(|s| [s[0], s[1]]).collect(),
-        autocorrelation: p.autocorrelation.clone(),
-    }
 }
 
 fn series(p: &Portrait) -> Table {

@@ -2,6 +2,7 @@
 
 use super::ENGLISH;
 use super::keys::sheet;
+use crate::compare::{Portrait, Sample};
 use crate::report::figures::axis::{Axis, range};
 use crate::report::figures::canvas::{Canvas, Stroke};
 use crate::report::figures::dots::{self, DotLook, Dots};
@@ -22,53 +23,6 @@ const SPEED_HEIGHT: f64 = 74.0;
 const SQUARE: f64 = 126.0;
 /// Times drawn at most; longer series are drawn from their end.
 const MOST_SAMPLES: usize = 200_000;
-
-/// One motion, dimensionless; times are counted in drive periods.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Portrait {
-    /// Whether there are two masses.
-    pub two_masses: bool,
-    /// Where the second mass's face or the stop is: X + Y at contact.
-    pub gap: f64,
-    /// The time series.
-    pub samples: Vec<Sample>,
-    /// The impacts.
-    pub impacts: Vec<Strike>,
-    /// Phase of the Poincaré map, rad.
-    pub poincare_phase: f64,
-    /// The Poincaré map: (X, X′).
-    pub poincare: Vec<[f64; 2]>,
-    /// Autocorrelation of X: (lag, value).
-    pub autocorrelation: Vec<(f64, f64)>,
-}
-
-/// The state at one time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Sample {
-    /// Time.
-    pub periods: f64,
-    /// X
-    pub x: f64,
-    /// X′
-    pub vx: f64,
-    /// Y
-    pub y: f64,
-    /// Y′
-    pub vy: f64,
-    /// Whether the masses are together.
-    pub together: bool,
-}
-
-/// An impact.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Strike {
-    /// Time.
-    pub periods: f64,
-    /// X
-    pub x: f64,
-    /// (X′, Y′) just before and just after, if each is known.
-    pub speeds: [Option<(f64, f64)>; 2],
-}
 
 /// Draws a portrait.
 pub(crate) fn draw(portrait: &Portrait, name: &str, title: &str) -> Figure {
@@ -108,13 +62,14 @@ fn with_impacts(portrait: &Portrait) -> Vec<Sample> {
             } else {
                 0.0
             };
-            merged.extend(i.speeds.into_iter().flatten().map(|(vx, vy)| Sample {
+            let speeds = [i.vx_before.zip(i.vy_before), i.vx_after.zip(i.vy_after)];
+            merged.extend(speeds.into_iter().flatten().map(|(vx, vy)| Sample {
                 periods: i.periods,
                 x: i.x,
                 vx,
                 y,
                 vy,
-                together: false,
+                sticking: false,
             }));
         }
         merged.push(*sample);
@@ -140,7 +95,7 @@ fn keys(portrait: &Portrait) -> Vec<Key> {
     if !portrait.impacts.is_empty() {
         keys.push(Key::new(Sign::dot(look::INK), "impact"));
     }
-    if portrait.samples.iter().any(|s| s.together) {
+    if portrait.samples.iter().any(|s| s.sticking) {
         keys.push(Key::new(Sign::Patch(look::PALE), "masses together"));
     }
     keys
@@ -213,7 +168,7 @@ impl Drawing<'_> {
             canvas.rectangle((a.0, b.1), (b.0, a.1), look::PALE);
         };
         for s in &self.samples {
-            match (s.together, first) {
+            match (s.sticking, first) {
                 (true, None) => first = Some(s.periods),
                 (false, Some(from)) => {
                     band(from, s.periods);

@@ -3,7 +3,7 @@
 
 use super::ENGLISH;
 use super::keys::sheet;
-use crate::compare::RegionMap;
+use crate::compare::{Curve, RegionMap};
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Canvas, Stroke};
 use crate::report::figures::figure::Figure;
@@ -20,17 +20,6 @@ const LEFT: f64 = 34.0;
 const HEIGHT: f64 = 380.0;
 /// Shorter pieces of boundaries are in the table alone.
 const FEWEST_POINTS: usize = 3;
-
-/// A piece of a boundary of existence or stability.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Curve {
-    /// Which boundary, by its name in the table.
-    pub kind: String,
-    /// Whether it bounds a motion of more than one impact or of a long period, and is drawn thin.
-    pub minor: bool,
-    /// Points (η, ρ).
-    pub points: Vec<(f64, f64)>,
-}
 
 /// Draws the plane; `None` if the grid has no area.
 pub(crate) fn draw(
@@ -63,22 +52,21 @@ pub(crate) fn draw(
 fn draw_curves(canvas: &mut Canvas, panel: &Panel, curves: &[Curve], occupancy: &mut Occupancy) {
     canvas.layer(3);
     for curve in curves {
-        let points: Vec<_> = curve.points.iter().map(|(x, y)| panel.at(*x, *y)).collect();
+        let points = curve.points.iter().map(|p| panel.at(p.eta, p.rho));
+        let points: Vec<_> = points.collect();
         for piece in path::clip(&points, &panel.rect) {
             occupancy.take_line(&piece);
         }
         if curve.points.len() >= FEWEST_POINTS {
-            let full = stroke(&curve.kind);
-            let width = if curve.minor {
+            let full = stroke(curve.kind.name());
+            // thin: of a motion of more than one impact or of a long period
+            let width = if curve.p > 1 || curve.n > 5 {
                 0.6 * full.width
             } else {
                 full.width
             };
-            panel.curve(
-                canvas,
-                curve.points.iter().copied(),
-                Stroke { width, ..full },
-            );
+            let points = curve.points.iter().map(|p| (p.eta, p.rho));
+            panel.curve(canvas, points, Stroke { width, ..full });
         }
     }
 }
@@ -128,7 +116,7 @@ fn keys(curves: &[Curve], hysteresis: bool) -> Vec<Key> {
     let mut keys = vec![Key::new(Sign::Nothing, "$z$ = $p$/$n$ in the regions;")];
     let met = KINDS
         .iter()
-        .filter(|k| curves.iter().any(|c| c.kind == k.0));
+        .filter(|k| curves.iter().any(|c| c.kind.name() == k.0));
     keys.extend(met.map(|k| Key::new(Sign::Line(k.2), k.1)));
     if hysteresis {
         keys.push(Key::new(Sign::Nothing, "hatched: another motion too"));

@@ -3,6 +3,7 @@
 
 use super::ENGLISH;
 use super::keys::sheet;
+use crate::compare::{Impactless, SweepPoint};
 use crate::report::figures::axis::{Axis, range};
 use crate::report::figures::canvas::{Canvas, Colour, Stroke};
 use crate::report::figures::dots::{self, DotLook, Dots};
@@ -17,41 +18,11 @@ const LEFT: f64 = 42.0;
 /// Room between the panels, points.
 const GAP: f64 = 7.0;
 
-/// A sweep in both directions, dimensionless.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Characteristics {
-    /// Steps of the sweep there, in its own order.
-    pub forward: Vec<Step>,
-    /// Steps of the sweep back.
-    pub backward: Vec<Step>,
-    /// Amplitude and phase (rad) of the motion without impacts at every step of the sweep there.
-    pub impactless_x: Vec<(f64, f64)>,
-    /// The same of Y; empty if there is one mass.
-    pub impactless_y: Vec<(f64, f64)>,
-}
-
-/// One step of a sweep.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Step {
-    /// η
-    pub eta: f64,
-    /// ρ
-    pub rho: f64,
-    /// Greatest X.
-    pub x_max: f64,
-    /// Approach speeds of the impacts.
-    pub approach_speeds: Vec<f64>,
-    /// Largest Lyapunov exponent.
-    pub lyapunov: Option<f64>,
-    /// Autocorrelation after one drive period.
-    pub autocorrelation: Option<f64>,
-}
-
 /// A characteristic: title, height, values of a point.
 struct Row {
     title: &'static str,
     height: f64,
-    values: fn(&Step) -> Vec<f64>,
+    values: fn(&SweepPoint) -> Vec<f64>,
     zero: bool,
     ticks: usize,
 }
@@ -82,7 +53,7 @@ const ROWS: [Row; 4] = [
     Row {
         title: "autocorrelation\nafter one period",
         height: 62.0,
-        values: |p| p.autocorrelation.into_iter().collect(),
+        values: |p| p.autocorrelation.first().copied().into_iter().collect(),
         zero: true,
         ticks: 3,
     },
@@ -90,9 +61,19 @@ const ROWS: [Row; 4] = [
 /// Height of the last panel, the phase of the impactless motion, points.
 const PHASE_HEIGHT: f64 = 62.0;
 
+/// A sweep in both directions.
+pub(crate) struct Characteristics<'a> {
+    /// Steps of the sweep there, in its own order.
+    pub forward: &'a [SweepPoint],
+    /// Steps of the sweep back.
+    pub backward: &'a [SweepPoint],
+    /// The motion without impacts at every step of the sweep there.
+    pub impactless: &'a [Impactless],
+}
+
 /// Draws the characteristics over the quantity that moves.
-pub(crate) fn draw(data: &Characteristics, name: &str, title: &str) -> Figure {
-    let keys = keys(!data.impactless_y.is_empty());
+pub(crate) fn draw(data: &Characteristics<'_>, name: &str, title: &str) -> Figure {
+    let keys = keys(data.impactless.iter().any(|i| i.y.is_some()));
     let rows: f64 = ROWS.iter().map(|r| r.height + GAP).sum();
     let (mut canvas, top) = sheet(LEFT, &keys, rows + PHASE_HEIGHT);
     let drawing = Drawing { data };
@@ -128,18 +109,18 @@ fn keys(two: bool) -> Vec<Key> {
 const IMPACTLESS: Colour = look::QUIET;
 
 struct Drawing<'a> {
-    data: &'a Characteristics,
+    data: &'a Characteristics<'a>,
 }
 
 impl Drawing<'_> {
     fn moves_eta(&self) -> bool {
-        let span = |f: fn(&Step) -> f64| {
+        let span = |f: fn(&SweepPoint) -> f64| {
             range(self.data.forward.iter().map(f)).map_or(0.0, |(a, b)| b - a)
         };
         span(|p| p.eta) >= span(|p| p.rho)
     }
 
-    fn at(&self, p: &Step) -> f64 {
+    fn at(&self, p: &SweepPoint) -> f64 {
         if self.moves_eta() { p.eta } else { p.rho }
     }
 
@@ -159,7 +140,7 @@ impl Drawing<'_> {
     }
 
     fn row(&self, canvas: &mut Canvas, top: f64, row: &Row, amplitude: bool) {
-        let all = || self.data.forward.iter().chain(&self.data.backward);
+        let all = || self.data.forward.iter().chain(self.data.backward);
         let values = all().flat_map(row.values);
         let zero = row.zero.then_some(0.0);
         let y = Axis::around(values.chain(zero), 0.05, row.title).with_ticks(row.ticks);
@@ -174,8 +155,8 @@ impl Drawing<'_> {
         canvas.layer(2);
         let count = all().map(|p| (row.values)(p).len()).sum();
         for (points, colour) in [
-            (&self.data.backward, look::VERMILION),
-            (&self.data.forward, look::BLUE),
+            (self.data.backward, look::VERMILION),
+            (self.data.forward, look::BLUE),
         ] {
             let mut taken = Dots::default();
             let dot = DotLook::full(0.8 * dots::radius(count), colour);
@@ -195,14 +176,15 @@ impl Drawing<'_> {
 
     /// The impactless motion's curve of X, and of Y where there is one.
     fn impactless(&self, canvas: &mut Canvas, panel: &Panel, of: fn((f64, f64)) -> f64) {
-        let points = |values: &[(f64, f64)]| -> Vec<(f64, f64)> {
-            let pairs = self.data.forward.iter().zip(values);
-            pairs.map(|(p, value)| (self.at(p), of(*value))).collect()
+        let points = |value: fn(&Impactless) -> Option<(f64, f64)>| -> Vec<(f64, f64)> {
+            let pairs = self.data.forward.iter().zip(self.data.impactless);
+            let points = pairs.map(|(p, i)| Some((self.at(p), of(value(i)?))));
+            points.flatten().collect()
         };
         let dashed = Stroke::dashed(IMPACTLESS, 0.8, look::DASH);
-        panel.curve(canvas, points(&self.data.impactless_y), dashed);
+        panel.curve(canvas, points(|i| i.y), dashed);
         let solid = Stroke::solid(IMPACTLESS, 0.8);
-        panel.curve(canvas, points(&self.data.impactless_x), solid);
+        panel.curve(canvas, points(|i| Some(i.x)), solid);
     }
 
     fn phase(&self, canvas: &mut Canvas, top: f64) {
