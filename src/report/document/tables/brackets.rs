@@ -1,12 +1,12 @@
 //! The table of measured brackets.
 
-use super::{Column, Head, arrow, table};
+use super::{Column, arrow, table};
 use crate::compare::BracketRow;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::figures::boundaries::symbol;
 use crate::report::locale::Locale;
-use crate::report::phrase::Phrase;
+use crate::report::phrase::{Phrase, Text};
 
 /// From how many brackets on their table is set small and in two columns.
 const MANY_BRACKETS: usize = 14;
@@ -20,37 +20,23 @@ pub(crate) fn brackets(content: &ReportContent, locale: Locale<'_>) -> Option<Ta
         .iter()
         .map(|b| bracket_row(b, many, locale))
         .collect();
-    let columns: [Column; 8] = [
-        Column::left(if many {
-            Head::Symbol("")
-        } else {
-            Head::Of(Phrase::Boundary)
-        }),
-        Column::left(Head::Symbol("$z$")),
-        Column::right(Head::Symbol("$r$ (mm)")),
-        Column::right(Head::Symbol("$ρ$")),
-        Column::center(if many {
-            Head::Symbol("")
-        } else {
-            Head::Of(Phrase::Sweep)
-        }),
-        Column::center(Head::Unit(Phrase::MeasuredBetween, "Hz")),
-        Column::right(Head::Unit(Phrase::Simulated, "Hz")),
-        Column::wide(
-            if many {
-                Head::Symbol("")
-            } else {
-                Head::Of(Phrase::Remark)
-            },
-            1,
-        ),
+    let unless_many = |head: Phrase| if many { Text::from("") } else { head.into() };
+    let columns = vec![
+        Column::left(unless_many(Phrase::Boundary)),
+        Column::left("$z$"),
+        Column::right("$r$ (mm)"),
+        Column::right("$ρ$"),
+        Column::center(unless_many(Phrase::Sweep)),
+        Column::center((Phrase::MeasuredBetween, "Hz")),
+        Column::right((Phrase::Simulated, "Hz")),
+        Column::wide(unless_many(Phrase::Remark), 1),
     ];
     let caption = if many {
         Phrase::TableManyBrackets
     } else {
         Phrase::TableBrackets
     };
-    let table = table(&caption.into(), &columns, rows, locale)?;
+    let table = table(caption, columns, rows, locale)?;
     Some(if many {
         Table {
             size: 6.8,

@@ -1,6 +1,6 @@
 //! The uncertainty budget of the joint estimate.
 
-use super::{Column, Head, table};
+use super::{Column, table};
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::uncertainty::budget::{Budget, Combined, Contribution, Row, Source};
@@ -20,17 +20,6 @@ const UNIT: f64 = 1e-4;
 /// More degrees of freedom than this are printed as infinitely many.
 const MANY: f64 = 1e4;
 
-const COLUMNS: [Column; 8] = [
-    Column::wide(Head::Of(Phrase::UncertaintySource), 1),
-    Column::center(Head::Of(Phrase::EvaluationType)),
-    Column::right(Head::Of(Phrase::StandardUncertainty)),
-    Column::right(Head::Symbol("$R$")),
-    Column::right(Head::Symbol("$f_0$")),
-    Column::right(Head::Symbol("$β$")),
-    Column::right(Head::Symbol("$x_st$")),
-    Column::right(Head::Of(Phrase::DegreesOfFreedom)),
-];
-
 /// A row for each source that matters, one for all others, and what they amount to.
 pub(crate) fn budget(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let budget = &content.identification.uncertainty.budget;
@@ -45,8 +34,17 @@ pub(crate) fn budget(content: &ReportContent, locale: Locale<'_>) -> Option<Tabl
         rows.push(others(&minor, locale));
     }
     rows.extend(sums(budget, locale));
-    table(&Phrase::UncertaintyBudget.into(), &COLUMNS, rows, locale)
-        .map(|t| Table { size: SIZE, ..t })
+    let columns = vec![
+        Column::wide(Phrase::UncertaintySource, 1),
+        Column::center(Phrase::EvaluationType),
+        Column::right(Phrase::StandardUncertainty),
+        Column::right("$R$"),
+        Column::right("$f_0$"),
+        Column::right("$β$"),
+        Column::right("$x_st$"),
+        Column::right(Phrase::DegreesOfFreedom),
+    ];
+    table(Phrase::UncertaintyBudget, columns, rows, locale).map(|t| Table { size: SIZE, ..t })
 }
 
 fn matters(row: &Row, budget: &Budget) -> bool {

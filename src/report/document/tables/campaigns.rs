@@ -1,7 +1,7 @@
 //! The tables of campaigns compared: their estimates, the differences, what they share.
 
 use super::estimates::{LEAST_P, estimate_cells, p_value};
-use super::{Column, Head, table, verbatim};
+use super::{Column, table, verbatim};
 use crate::difference::{Comparison, Difference};
 use crate::identify::fit::parameters::Coordinate;
 use crate::report::document::model::{Rich, Table};
@@ -29,43 +29,33 @@ pub(crate) fn campaigns(comparison: &Comparison, locale: Locale<'_>) -> Option<T
         row.push(Rich::from(locale.translate(headline(c.verdict, true))));
         row
     });
-    let columns = [
-        Column::right(Head::Symbol("")),
-        Column::wide(Head::Of(Phrase::Campaign), 2),
-        Column::left(Head::Of(Phrase::Measured)),
-        Column::left(Head::Symbol("$R$")),
-        Column::left(Head::Symbol("$f_0$")),
-        Column::left(Head::Symbol("$β$")),
-        Column::left(Head::Symbol("$x_{st}$")),
-        Column::wide(Head::Of(Phrase::Verdict), 2),
+    let columns = vec![
+        Column::right(""),
+        Column::wide(Phrase::Campaign, 2),
+        Column::left(Phrase::Measured),
+        Column::left("$R$"),
+        Column::left("$f_0$"),
+        Column::left("$β$"),
+        Column::left("$x_{st}$"),
+        Column::wide(Phrase::Verdict, 2),
     ];
-    let table = table(
-        &Phrase::TableCampaigns.into(),
-        &columns,
-        rows.collect(),
-        locale,
-    )?;
+    let table = table(Phrase::TableCampaigns, columns, rows.collect(), locale)?;
     Some(Table { size: 7.5, ..table })
 }
 
 /// The differences from the first campaign.
 pub(crate) fn differences(comparison: &Comparison, locale: Locale<'_>) -> Option<Table> {
     let rows = comparison.differences.iter().map(|d| row(d, locale));
-    let columns = [
-        Column::right(Head::Of(Phrase::Campaign)),
-        Column::left(Head::Of(Phrase::Parameter)),
-        Column::right(Head::Of(Phrase::DifferenceOf)),
-        Column::right(Head::Of(Phrase::RelativeDifference)),
-        Column::right(Head::Of(Phrase::IfNothingWereShared)),
-        Column::right(Head::Of(Phrase::DegreesOfFreedom)),
-        Column::right(Head::Of(Phrase::PValue)),
+    let columns = vec![
+        Column::right(Phrase::Campaign),
+        Column::left(Phrase::Parameter),
+        Column::right(Phrase::DifferenceOf),
+        Column::right(Phrase::RelativeDifference),
+        Column::right(Phrase::IfNothingWereShared),
+        Column::right(Phrase::DegreesOfFreedom),
+        Column::right(Phrase::PValue),
     ];
-    table(
-        &Phrase::TableDifferences.into(),
-        &columns,
-        rows.collect(),
-        locale,
-    )
+    table(Phrase::TableDifferences, columns, rows.collect(), locale)
 }
 
 fn row(d: &Difference, locale: Locale<'_>) -> Vec<Rich> {
@@ -130,12 +120,12 @@ pub(crate) fn separate(comparison: &Comparison, locale: Locale<'_>) -> Option<Ta
 }
 
 fn of_nuisances(caption: Phrase, rows: Vec<Vec<Rich>>, locale: Locale<'_>) -> Option<Table> {
-    let columns = [
-        Column::wide(Head::Of(Phrase::UncertaintySource), 3),
-        Column::left(Head::Of(Phrase::SharedBy)),
-        Column::wide(Head::Of(Phrase::Why), 4),
+    let columns = vec![
+        Column::wide(Phrase::UncertaintySource, 3),
+        Column::left(Phrase::SharedBy),
+        Column::wide(Phrase::Why, 4),
     ];
-    table(&caption.into(), &columns, rows, locale)
+    table(caption, columns, rows, locale)
 }
 
 /// Campaigns by their numbers from 1.

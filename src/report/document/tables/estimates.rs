@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Column, Head, table, verbatim};
+use super::{Column, table, verbatim};
 use crate::identify::{Method, MethodResult, ParameterSet};
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
@@ -16,34 +16,30 @@ const SIZE: f64 = 7.5;
 /// Smaller p-values are printed as smaller than this.
 pub(super) const LEAST_P: f64 = 1e-3;
 
-/// The estimates, as [`estimate_cells`] fills them.
-const ESTIMATES: [Column; 4] = [
-    Column::wide(Head::Symbol("$R$"), 1),
-    Column::wide(Head::Symbol("$f_0$"), 1),
-    Column::wide(Head::Symbol("$β$"), 1),
-    Column::wide(Head::Symbol("$x_st$"), 1),
-];
+/// The columns of the estimates, as [`estimate_cells`] fills them.
+fn estimate_columns() -> impl Iterator<Item = Column> {
+    let symbols = ["$R$", "$f_0$", "$β$", "$x_st$"];
+    symbols.into_iter().map(|symbol| Column::wide(symbol, 1))
+}
 
-/// A row of a method, as [`method_row`] fills it.
-const METHOD: [Column; 8] = [
-    Column::left(Head::Of(Phrase::Method)),
-    ESTIMATES[0],
-    ESTIMATES[1],
-    ESTIMATES[2],
-    ESTIMATES[3],
-    Column::right(Head::Of(Phrase::ObservationsShort)),
-    Column::right(Head::Of(Phrase::Residual)),
-    Column::center(Head::Of(Phrase::Fits)),
-];
-
-/// What the columns of the methods hold.
-const METHODS_CAPTION: Phrase = Phrase::TableMethods;
+/// The columns of a method, as [`method_row`] fills them.
+fn method_columns() -> Vec<Column> {
+    let mut columns = vec![Column::left(Phrase::Method)];
+    columns.extend(estimate_columns());
+    columns.extend([
+        Column::right(Phrase::ObservationsShort),
+        Column::right(Phrase::Residual),
+        Column::center(Phrase::Fits),
+    ]);
+    columns
+}
 
 /// What each method found, and the joint estimate.
 pub(crate) fn methods(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let id = &content.identification;
     let rows = method_rows(&id.methods, &id.joint, locale);
-    table(&METHODS_CAPTION.into(), &METHOD, rows, locale).map(|t| Table { size: SIZE, ..t })
+    let columns = method_columns();
+    table(Phrase::TableMethods, columns, rows, locale).map(|t| Table { size: SIZE, ..t })
 }
 
 /// The same for each specimen of a campaign that holds several.
@@ -60,10 +56,9 @@ pub(crate) fn specimen_methods(content: &ReportContent, locale: Locale<'_>) -> O
             std::iter::once(name).chain(row).collect()
         })
     });
-    let mut columns: Vec<Column> = vec![Column::left(Head::Of(Phrase::Specimen))];
-    columns.extend(METHOD);
-    table(&METHODS_CAPTION.into(), &columns, rows.collect(), locale)
-        .map(|t| Table { size: SIZE, ..t })
+    let mut columns = vec![Column::left(Phrase::Specimen)];
+    columns.extend(method_columns());
+    table(Phrase::TableMethods, columns, rows.collect(), locale).map(|t| Table { size: SIZE, ..t })
 }
 
 /// The answer for each specimen of a campaign that holds several.
@@ -79,10 +74,10 @@ pub(crate) fn specimens(content: &ReportContent, locale: Locale<'_>) -> Option<T
             row.push(Rich::from(locale.translate(headline)));
             row
         });
-    let mut columns = vec![Column::left(Head::Of(Phrase::Specimen))];
-    columns.extend(ESTIMATES);
-    columns.push(Column::wide(Head::Of(Phrase::Verdict), 2));
-    table(&"".into(), &columns, rows.collect(), locale)
+    let mut columns = vec![Column::left(Phrase::Specimen)];
+    columns.extend(estimate_columns());
+    columns.push(Column::wide(Phrase::Verdict, 2));
+    table("", columns, rows.collect(), locale)
 }
 
 /// A cell for each of the four parameters.
@@ -157,17 +152,12 @@ pub(crate) fn agreement(content: &ReportContent, locale: Locale<'_>) -> Option<T
             Rich::from(p_value(pair.p_value, locale)),
         ]
     });
-    let columns: [Column; 5] = [
-        Column::left(Head::Of(Phrase::Parameter)),
-        Column::wide(Head::Of(Phrase::Method), 1),
-        Column::wide(Head::Of(Phrase::AndMethod), 1),
-        Column::right(Head::Of(Phrase::DifferenceOverError)),
-        Column::right(Head::Of(Phrase::PValue)),
+    let columns = vec![
+        Column::left(Phrase::Parameter),
+        Column::wide(Phrase::Method, 1),
+        Column::wide(Phrase::AndMethod, 1),
+        Column::right(Phrase::DifferenceOverError),
+        Column::right(Phrase::PValue),
     ];
-    table(
-        &Phrase::TableAgreement.into(),
-        &columns,
-        rows.collect(),
-        locale,
-    )
+    table(Phrase::TableAgreement, columns, rows.collect(), locale)
 }

@@ -22,32 +22,10 @@ use crate::report::figures::richtext::{Level, Run};
 use crate::report::locale::Locale;
 use crate::report::phrase::{Phrase, Text};
 
-/// The head of a column.
-#[derive(Debug, Clone, Copy)]
-enum Head {
-    /// Symbols, which are the same in every language.
-    Symbol(&'static str),
-    /// A phrase.
-    Of(Phrase),
-    /// A phrase and its unit.
-    Unit(Phrase, &'static str),
-}
-
-impl From<Head> for Text {
-    fn from(head: Head) -> Self {
-        match head {
-            Head::Symbol(symbol) => symbol.into(),
-            Head::Of(phrase) => phrase.into(),
-            Head::Unit(phrase, unit) => (phrase, unit).into(),
-        }
-    }
-}
-
 /// A column of a table.
-#[derive(Debug, Clone, Copy)]
 struct Column {
     /// Its head, with markup.
-    head: Head,
+    head: Text,
     align: Align,
     /// Relative width; 0: as wide as its content.
     width: u16,
@@ -55,41 +33,41 @@ struct Column {
 
 impl Column {
     /// As wide as its content, left-aligned.
-    const fn left(head: Head) -> Self {
+    fn left(head: impl Into<Text>) -> Self {
         Self::wide(head, 0)
     }
 
     /// With a share of the width that the others leave, left-aligned.
-    const fn wide(head: Head, width: u16) -> Self {
-        let align = Align::Left;
-        Self { head, align, width }
+    fn wide(head: impl Into<Text>, width: u16) -> Self {
+        Self::aligned(head, Align::Left, width)
     }
 
     /// As wide as its content, right-aligned: numbers.
-    const fn right(head: Head) -> Self {
-        let (align, width) = (Align::Right, 0);
-        Self { head, align, width }
+    fn right(head: impl Into<Text>) -> Self {
+        Self::aligned(head, Align::Right, 0)
     }
 
     /// As wide as its content, centred: signs.
-    const fn center(head: Head) -> Self {
-        let (align, width) = (Align::Center, 0);
+    fn center(head: impl Into<Text>) -> Self {
+        Self::aligned(head, Align::Center, 0)
+    }
+
+    fn aligned(head: impl Into<Text>, align: Align, width: u16) -> Self {
+        let head = head.into();
         Self { head, align, width }
     }
 }
 
 /// A table of columns whose heads are phrases; `None` if it has no rows.
 fn table(
-    caption: &Text,
-    columns: &[Column],
+    caption: impl Into<Text>,
+    columns: Vec<Column>,
     rows: Vec<Vec<Rich>>,
     locale: Locale<'_>,
 ) -> Option<Table> {
-    let heads = columns
-        .iter()
-        .map(|c| Rich::from(locale.text(&c.head.into())));
+    let heads = columns.iter().map(|c| Rich::from(locale.text(&c.head)));
     let table = Table {
-        caption: Rich::from(locale.text(caption)),
+        caption: Rich::from(locale.text(&caption.into())),
         heads: heads.collect(),
         align: columns.iter().map(|c| c.align).collect(),
         widths: columns.iter().map(|c| c.width).collect(),
@@ -169,12 +147,12 @@ pub(super) fn left_out(content: &ReportContent, locale: Locale<'_>) -> Option<Ta
         let count = count.map_or(String::new(), |c| c.to_string());
         vec![verbatim(what), Rich::from(count), why]
     });
-    let columns: [Column; 3] = [
-        Column::wide(Head::Of(Phrase::LeftOut), 2),
-        Column::right(Head::Of(Phrase::Count)),
-        Column::wide(Head::Of(Phrase::Why), 5),
+    let columns = vec![
+        Column::wide(Phrase::LeftOut, 2),
+        Column::right(Phrase::Count),
+        Column::wide(Phrase::Why, 5),
     ];
-    table(&"".into(), &columns, rows.collect(), locale)
+    table("", columns, rows.collect(), locale)
 }
 
 /// The first few names.
@@ -225,15 +203,6 @@ pub(super) fn hashes(content: &ReportContent, locale: Locale<'_>) -> Option<Tabl
         .iter()
         .map(|(k, v)| vec![verbatim(k.clone()), verbatim(v.clone())])
         .collect();
-    let caption = Phrase::TableHashes;
-    table(
-        &caption.into(),
-        &[
-            Column::wide(Head::Of(Phrase::Input), 2),
-            Column::left(Head::Symbol("SHA-256")),
-        ],
-        rows,
-        locale,
-    )
-    .map(|t| Table { size: 6.2, ..t })
+    let columns = vec![Column::wide(Phrase::Input, 2), Column::left("SHA-256")];
+    table(Phrase::TableHashes, columns, rows, locale).map(|t| Table { size: 6.2, ..t })
 }

@@ -1,6 +1,6 @@
 //! The table of all records.
 
-use super::{Column, Head, arrow, table, verbatim};
+use super::{Column, arrow, table, verbatim};
 use crate::compare::RecordRow;
 use crate::motion::Motion;
 use crate::report::content::ReportContent;
@@ -23,30 +23,24 @@ pub(crate) fn records(content: &ReportContent, locale: Locale<'_>) -> Option<Tab
         .records
         .iter()
         .any(|r| r.eta.is_some() && r.rho.is_some());
-    let mut columns: Vec<Column> = vec![
-        Column::left(Head::Of(Phrase::Record)),
-        Column::left(Head::Of(Phrase::Specimen)),
-    ];
+    let mut columns = vec![Column::left(Phrase::Record), Column::left(Phrase::Specimen)];
     columns.extend([
-        Column::center(Head::Symbol("")),
-        Column::right(Head::Symbol("$f$ (Hz)")),
-        Column::right(Head::Symbol("$r$ (mm)")),
+        Column::center(""),
+        Column::right("$f$ (Hz)"),
+        Column::right("$r$ (mm)"),
     ]);
     if planar {
-        columns.extend([
-            Column::right(Head::Symbol("$η$")),
-            Column::right(Head::Symbol("$ρ$")),
-        ]);
+        columns.extend([Column::right("$η$"), Column::right("$ρ$")]);
     }
     columns.extend([
-        Column::center(Head::Symbol("$z$")),
-        Column::right(Head::Of(Phrase::ConfidenceShort)),
-        Column::right(Head::Of(Phrase::Impacts)),
+        Column::center("$z$"),
+        Column::right(Phrase::ConfidenceShort),
+        Column::right(Phrase::Impacts),
     ]);
     columns.push(if many {
-        Column::left(Head::Symbol(""))
+        Column::left("")
     } else {
-        Column::wide(Head::Of(Phrase::UsedByAndFlags), 1)
+        Column::wide(Phrase::UsedByAndFlags, 1)
     });
     let row = |r: &RecordRow| record_row(r, planar, many, locale);
     let rows = content.compared.records.iter().map(row).collect();
@@ -67,7 +61,7 @@ pub(crate) fn records(content: &ReportContent, locale: Locale<'_>) -> Option<Tab
         }
         .into()
     };
-    let table = table(&caption, &columns, rows, locale)?;
+    let table = table(caption, columns, rows, locale)?;
     Some(if many {
         crowded(table)
     } else {
