@@ -12,6 +12,18 @@ use crate::report::phrase::Phrase;
 pub(crate) struct Rich(pub Vec<Run>);
 
 impl Rich {
+    /// A text that has no markup, whatever signs it holds.
+    pub(crate) fn verbatim(text: String) -> Self {
+        if text.is_empty() {
+            return Self::default();
+        }
+        Self(vec![Run {
+            text,
+            italic: false,
+            level: richtext::Level::Base,
+        }])
+    }
+
     /// The text without markup.
     pub(crate) fn plain(&self) -> String {
         self.0.iter().map(|r| r.text.as_str()).collect()
@@ -235,6 +247,9 @@ pub(crate) struct Table {
     pub dense: bool,
     /// The columns' text of a dense table.
     pub columns_text: Vec<String>,
+    /// The rows of a dense table, without markup, for what is not set by the template.
+    #[serde(skip)]
+    pub dense_rows: Vec<Vec<Rich>>,
 }
 
 /// Default size of the type of a table, points.
@@ -254,6 +269,7 @@ impl Table {
             side_by_side: 1,
             dense: false,
             columns_text: Vec::new(),
+            dense_rows: Vec::new(),
         }
     }
 
@@ -268,27 +284,12 @@ impl Table {
     }
 
     /// The cells, row by row, of a dense table too.
-    pub(crate) fn cells(&self) -> Vec<Vec<Rich>> {
-        if !self.dense {
-            return self.rows.clone();
+    pub(crate) fn cells(&self) -> &[Vec<Rich>] {
+        if self.dense {
+            &self.dense_rows
+        } else {
+            &self.rows
         }
-        let columns: Vec<Vec<&str>> = self
-            .columns_text
-            .iter()
-            .map(|c| c.split('\n').collect())
-            .collect();
-        let rows = columns.iter().map(Vec::len).max().unwrap_or(0);
-        let cell = |column: &Vec<&str>, row: usize| {
-            let text = column.get(row).copied().unwrap_or_default();
-            Rich(vec![Run {
-                text: text.to_owned(),
-                italic: false,
-                level: richtext::Level::Base,
-            }])
-        };
-        (0..rows)
-            .map(|row| columns.iter().map(|c| cell(c, row)).collect())
-            .collect()
     }
 
     /// The same table with its columns as text, which is set far faster and drops all markup.
@@ -297,10 +298,11 @@ impl Table {
             let cells: Vec<String> = self.rows.iter().map(|row| row[i].plain()).collect();
             cells.join("\n")
         };
-        let columns_text = (0..self.heads.len()).map(column).collect();
+        let plain = |row: &Vec<Rich>| row.iter().map(|c| Rich::verbatim(c.plain())).collect();
         Self {
             dense: true,
-            columns_text,
+            columns_text: (0..self.heads.len()).map(column).collect(),
+            dense_rows: self.rows.iter().map(plain).collect(),
             rows: Vec::new(),
             ..self
         }

@@ -220,7 +220,7 @@ fn versions(content: &ReportContent, locale: Locale<'_>) -> Option<Block> {
     let list = each.join(", ");
     let text = locale.translate_with(Phrase::Versions, &[("list", &list)]);
     (!each.is_empty()).then(|| Block::Paragraph {
-        text: tables::verbatim(text),
+        text: Rich::verbatim(text),
     })
 }
 

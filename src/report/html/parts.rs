@@ -251,7 +251,7 @@ fn table(table: &Table) -> String {
         format!("<caption>{caption}</caption>\n")
     };
     let mut text = format!("<table>\n{caption}<thead><tr>{heads}</tr></thead>\n<tbody>\n");
-    for row in &rows {
+    for row in rows {
         let cells: String = row
             .iter()
             .enumerate()

@@ -1,7 +1,7 @@
 //! The tables of campaigns compared: their estimates, the differences, what they share.
 
 use super::estimates::{LEAST_P, estimate_cells, p_value};
-use super::{Column, table, verbatim};
+use super::{Column, table};
 use crate::difference::{Comparison, Difference};
 use crate::identify::fit::parameters::Coordinate;
 use crate::report::document::model::{Rich, Table};
@@ -22,8 +22,8 @@ pub(crate) fn campaigns(comparison: &Comparison, locale: Locale<'_>) -> Option<T
     let rows = comparison.campaigns.iter().enumerate().map(|(i, c)| {
         let mut row = vec![
             Rich::from((i + 1).to_string()),
-            verbatim(c.name.clone()),
-            verbatim(c.measured.clone().unwrap_or_default()),
+            Rich::verbatim(c.name.clone()),
+            Rich::verbatim(c.measured.clone().unwrap_or_default()),
         ];
         row.extend(estimate_cells(&c.parameters, locale));
         row.push(Rich::from(locale.translate(headline(c.verdict, true))));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Column, table, verbatim};
+use super::{Column, table};
 use crate::identify::{Method, MethodResult, ParameterSet};
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
@@ -49,7 +49,7 @@ pub(crate) fn specimen_methods(content: &ReportContent, locale: Locale<'_>) -> O
         let rows = method_rows(&result.methods, &result.joint, locale);
         rows.into_iter().enumerate().map(move |(i, row)| {
             let name = if i == 0 {
-                verbatim(specimen.clone())
+                Rich::verbatim(specimen.clone())
             } else {
                 Rich::default()
             };
@@ -68,7 +68,7 @@ pub(crate) fn specimens(content: &ReportContent, locale: Locale<'_>) -> Option<T
         .specimens
         .iter()
         .map(|(specimen, result)| {
-            let mut row = vec![verbatim(specimen.clone())];
+            let mut row = vec![Rich::verbatim(specimen.clone())];
             row.extend(estimate_cells(&result.joint.parameters, locale));
             let headline = headline(result.verdict.kind, true);
             row.push(Rich::from(locale.translate(headline)));

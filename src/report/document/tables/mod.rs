@@ -18,7 +18,6 @@ use crate::identify::Item;
 use crate::record::Sweep;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Align, Rich, Table};
-use crate::report::figures::richtext::{Level, Run};
 use crate::report::locale::Locale;
 use crate::report::phrase::{Phrase, Text};
 
@@ -134,7 +133,11 @@ fn arrow(sweep: Sweep) -> &'static str {
 pub(super) fn left_out(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let records = content.compared.unusable.iter().map(|u| {
         let count = Some(u.records.len()).filter(|n| *n > 1);
-        (first_few(&u.records), count, verbatim(unusable(u, locale)))
+        (
+            first_few(&u.records),
+            count,
+            Rich::verbatim(unusable(u, locale)),
+        )
     });
     // impacts are in a remark of their method
     let fits = content.identification.left_out.iter();
@@ -145,7 +148,7 @@ pub(super) fn left_out(content: &ReportContent, locale: Locale<'_>) -> Option<Ta
     });
     let rows = records.chain(fits).map(|(what, count, why)| {
         let count = count.map_or(String::new(), |c| c.to_string());
-        vec![verbatim(what), Rich::from(count), why]
+        vec![Rich::verbatim(what), Rich::from(count), why]
     });
     let columns = vec![
         Column::wide(Phrase::LeftOut, 2),
@@ -183,25 +186,12 @@ fn unusable(unusable: &Unusable, locale: Locale<'_>) -> String {
     }
 }
 
-/// A cell whose text has no markup, whatever signs it holds.
-pub(super) fn verbatim(text: String) -> Rich {
-    if text.is_empty() {
-        Rich::default()
-    } else {
-        Rich(vec![Run {
-            text,
-            italic: false,
-            level: Level::Base,
-        }])
-    }
-}
-
 /// SHA-256 of the inputs.
 pub(super) fn hashes(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let inputs = &content.provenance.inputs_sha256;
     let rows = inputs
         .iter()
-        .map(|(k, v)| vec![verbatim(k.clone()), verbatim(v.clone())])
+        .map(|(k, v)| vec![Rich::verbatim(k.clone()), Rich::verbatim(v.clone())])
         .collect();
     let columns = vec![Column::wide(Phrase::Input, 2), Column::left("SHA-256")];
     table(Phrase::TableHashes, columns, rows, locale).map(|t| Table { size: 6.2, ..t })

@@ -1,6 +1,6 @@
 //! The table of all records.
 
-use super::{Column, arrow, table, verbatim};
+use super::{Column, arrow, table};
 use crate::compare::RecordRow;
 use crate::motion::Motion;
 use crate::report::content::ReportContent;
@@ -134,7 +134,7 @@ fn shortened(name: &Rich, room: f64, size: f64) -> Rich {
     let fitting = starts
         .map(|i| format!("…{}", &plain[i..]))
         .find(|text| !wide(text));
-    verbatim(fitting.unwrap_or_else(|| "…".into()))
+    Rich::verbatim(fitting.unwrap_or_else(|| "…".into()))
 }
 
 fn record_row(r: &RecordRow, planar: bool, many: bool, locale: Locale<'_>) -> Vec<Rich> {
@@ -165,7 +165,7 @@ fn record_row(r: &RecordRow, planar: bool, many: bool, locale: Locale<'_>) -> Ve
     } else {
         long_remark(r, locale)
     });
-    row.into_iter().map(verbatim).collect()
+    row.into_iter().map(Rich::verbatim).collect()
 }
 
 fn motion_label(r: &RecordRow, many: bool, locale: Locale<'_>) -> String {
