@@ -30,4 +30,4 @@ pub use campaign::Campaign;
 pub use common::Common;
 pub use comparison::{Comparison, ComparisonError, Difference, EqualityTest, Summary, compare};
 pub use message::{NotShared, Outcome, Remark, WhyShared, kinds};
-pub use share::{SeparateNuisance, SharedNuisance};
+pub use share::{AcrossCampaigns, SeparateNuisance, SharedNuisance};

@@ -9,9 +9,9 @@ use crate::identify::fit::coordinate::Coordinate;
 use crate::identify::{GAIN_ROLES, JointFit};
 use crate::record::Role;
 
-/// A nuisance that is one unknown of several campaigns.
+/// A nuisance of several campaigns, and why it is one unknown of them or why not.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SharedNuisance {
+pub struct AcrossCampaigns<Why> {
     /// Its coordinate in the fit of the first of them.
     pub coordinate: Coordinate,
     /// The clearance as stated, m, of an error of a single clearance.
@@ -19,21 +19,13 @@ pub struct SharedNuisance {
     /// The campaigns, by their numbers from 0.
     pub campaigns: Vec<usize>,
     /// Why.
-    pub why: WhyShared,
+    pub why: Why,
 }
 
+/// A nuisance that is one unknown of several campaigns.
+pub type SharedNuisance = AcrossCampaigns<WhyShared>;
 /// A nuisance that two campaigns might have shared.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SeparateNuisance {
-    /// Its coordinate in the fit of the first of them.
-    pub coordinate: Coordinate,
-    /// The clearance as stated, m, of an error of a single clearance.
-    pub clearance_m: Option<f64>,
-    /// The two, by their numbers from 0.
-    pub campaigns: [usize; 2],
-    /// Why not.
-    pub why: NotShared,
-}
+pub type SeparateNuisance = AcrossCampaigns<NotShared>;
 
 /// What a nuisance is in every campaign: its coordinate, or the clearance whose error it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -126,7 +118,7 @@ impl Sharing {
                     Some(SeparateNuisance {
                         coordinate: other.coordinate,
                         clearance_m: other.clearance_m,
-                        campaigns: [other.campaign, member.campaign],
+                        campaigns: vec![other.campaign, member.campaign],
                         why,
                     })
                 }));

@@ -208,7 +208,7 @@ pub(super) fn compared() -> CampaignsContent {
             separate: vec![SeparateNuisance {
                 coordinate: Coordinate::Gain(0),
                 clearance_m: None,
-                campaigns: [0, 1],
+                campaigns: vec![0, 1],
                 why: NotShared::StatedOtherwise,
             }],
             remarks: vec![Remark::NothingShared],

@@ -2,8 +2,9 @@
 
 use super::estimates::{LEAST_P, estimate_cells, p_value};
 use super::{Column, table};
-use crate::difference::{Comparison, Difference};
+use crate::difference::{AcrossCampaigns, Comparison, Difference};
 use crate::identify::fit::parameters::Coordinate;
+use crate::message::Message;
 use crate::report::document::model::{Rich, Table};
 use crate::report::document::verdict::headline;
 use crate::report::figures::correlation::name;
@@ -97,35 +98,32 @@ fn row(d: &Difference, locale: Locale<'_>) -> Vec<Rich> {
 
 /// What is one unknown of several campaigns.
 pub(crate) fn shared(comparison: &Comparison, locale: Locale<'_>) -> Option<Table> {
-    let rows = comparison.shared.iter().map(|s| {
-        vec![
-            Rich::from(nuisance(s.coordinate, s.clearance_m, locale)),
-            Rich::from(numbers(&s.campaigns)),
-            Rich::from(locale.message(&s.why)),
-        ]
-    });
-    of_nuisances(Phrase::TableShared, rows.collect(), locale)
+    nuisances(Phrase::TableShared, &comparison.shared, locale)
 }
 
 /// What two campaigns do not share although something suggests it.
 pub(crate) fn separate(comparison: &Comparison, locale: Locale<'_>) -> Option<Table> {
-    let rows = comparison.separate.iter().map(|s| {
-        vec![
-            Rich::from(nuisance(s.coordinate, s.clearance_m, locale)),
-            Rich::from(numbers(&s.campaigns)),
-            Rich::from(locale.message(&s.why)),
-        ]
-    });
-    of_nuisances(Phrase::TableNotShared, rows.collect(), locale)
+    nuisances(Phrase::TableNotShared, &comparison.separate, locale)
 }
 
-fn of_nuisances(caption: Phrase, rows: Vec<Vec<Rich>>, locale: Locale<'_>) -> Option<Table> {
+fn nuisances<Why: Message>(
+    caption: Phrase,
+    all: &[AcrossCampaigns<Why>],
+    locale: Locale<'_>,
+) -> Option<Table> {
     let columns = vec![
         Column::wide(Phrase::UncertaintySource, 3),
         Column::left(Phrase::SharedBy),
         Column::wide(Phrase::Why, 4),
     ];
-    table(caption, columns, rows, locale)
+    let rows = all.iter().map(|n| {
+        vec![
+            Rich::from(nuisance(n.coordinate, n.clearance_m, locale)),
+            Rich::from(numbers(&n.campaigns)),
+            Rich::from(locale.message(&n.why)),
+        ]
+    });
+    table(caption, columns, rows.collect(), locale)
 }
 
 /// Campaigns by their numbers from 1.
