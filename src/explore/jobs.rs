@@ -9,7 +9,7 @@ use tokio::sync::{mpsc, watch};
 use super::answer::answer;
 use super::first_tiles::{FirstTiles, Underway};
 use super::frame::Frame;
-use super::wire::{Ask, Request, Slot};
+use super::wire::{Ask, Kind, Request};
 use super::{ExploreError, Session, maps};
 
 /// Requests of the queue that wait at most.
@@ -17,7 +17,7 @@ const QUEUE: usize = 16;
 
 /// The jobs of one page.
 pub(super) struct Jobs {
-    newest: BTreeMap<Slot, watch::Sender<Option<Request>>>,
+    newest: BTreeMap<Kind, watch::Sender<Option<Request>>>,
     queue: mpsc::Sender<Request>,
     outbox: mpsc::Sender<Frame>,
     first_tiles: Arc<FirstTiles>,
@@ -86,7 +86,7 @@ impl Jobs {
     pub(super) fn start(session: &Arc<Session>, outbox: &mpsc::Sender<Frame>) -> Self {
         let first_tiles = Arc::<FirstTiles>::default();
         let mut newest = BTreeMap::new();
-        for slot in Slot::NEWEST {
+        for slot in Kind::NEWEST {
             let (sender, receiver) = watch::channel(None);
             newest.insert(slot, sender);
             let shared = (outbox.clone(), Arc::clone(&first_tiles));

@@ -27,8 +27,9 @@ struct Written {
 }
 
 /// What is asked.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, strum::EnumDiscriminants)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+#[strum_discriminants(name(Kind), vis(pub(super)), derive(PartialOrd, Ord))]
 pub(super) enum Ask {
     /// What the page starts from: the state, the campaign, the demos.
     Hello {},
@@ -108,23 +109,8 @@ pub(super) enum ExportFile {
     Svg,
 }
 
-/// Jobs of one slot replace each other: the newest counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Slot {
-    Map,
-    Boundaries,
-    Motion,
-    Line,
-    Basins,
-    Coexisting,
-    Record,
-    Residuals,
-    /// All others, one after the other.
-    Queue,
-}
-
-impl Slot {
-    /// The slots whose newest job counts.
+impl Kind {
+    /// Jobs of one of these kinds replace each other: the newest counts. All others wait in a queue.
     pub(super) const NEWEST: [Self; 8] = [
         Self::Map,
         Self::Boundaries,
@@ -138,18 +124,11 @@ impl Slot {
 }
 
 impl Ask {
-    /// The slot in which it is answered.
-    pub(super) fn slot(&self) -> Slot {
-        match self {
-            Self::Map {} => Slot::Map,
-            Self::Boundaries { .. } => Slot::Boundaries,
-            Self::Motion { .. } | Self::Run { .. } => Slot::Motion,
-            Self::Line {} => Slot::Line,
-            Self::Basins {} => Slot::Basins,
-            Self::Coexisting {} => Slot::Coexisting,
-            Self::Record {} => Slot::Record,
-            Self::Residuals {} => Slot::Residuals,
-            _ => Slot::Queue,
+    /// The kind whose jobs it replaces: the next stretch of a motion counts as the motion.
+    pub(super) fn slot(&self) -> Kind {
+        match self.into() {
+            Kind::Run => Kind::Motion,
+            kind => kind,
         }
     }
 }
