@@ -8,24 +8,15 @@ use crate::identify::Identification;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::plan::Proposal;
 use crate::motion::{Bracket, Motion, Observation};
-use crate::pipeline::watch::{Live, Outline, Watcher};
+use crate::pipeline::watch::{Live, NewsKind, Outline, Watcher};
 use crate::report::budget_source;
 use crate::signal::whole;
-
-/// What happened to a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Happened {
-    Removed,
-    Unlisted,
-    Replaced,
-    HalfWritten,
-}
 
 /// Most files that are named in one line.
 const MOST_NAMES: usize = 4;
 
 /// A line on files to which the same happened.
-pub(super) fn news(what: Happened, files: &[(&Path, Option<&str>)]) -> String {
+pub(super) fn news(what: NewsKind, files: &[(&Path, Option<&str>)]) -> String {
     let named = files
         .iter()
         .take(MOST_NAMES)
@@ -40,14 +31,14 @@ pub(super) fn news(what: Happened, files: &[(&Path, Option<&str>)]) -> String {
     let one = files.len() == 1;
     let (is, its) = if one { ("is", "its") } else { ("are", "their") };
     match what {
-        Happened::Removed => format!("{names} {is} gone: {its} records are left out."),
-        Happened::Unlisted => {
+        NewsKind::Removed => format!("{names} {is} gone: {its} records are left out."),
+        NewsKind::Unlisted => {
             format!("{names} {is} no longer named by the campaign: {its} records are left out.")
         }
-        Happened::Replaced => {
+        NewsKind::Replaced => {
             format!("{names} {is} rewritten: {its} records are observed again.")
         }
-        Happened::HalfWritten => format!(
+        NewsKind::HalfWritten => format!(
             "{names} {is} not whole after an hour, and not used: finish or remove {}.",
             if one { "it" } else { "them" }
         ),
@@ -296,12 +287,12 @@ mod tests {
         let path = Path::new("r1.csv");
         let all = vec![(path, None); 6];
         assert_eq!(
-            news(Happened::Removed, &all[..1]),
+            news(NewsKind::Removed, &all[..1]),
             "r1.csv is gone: its records are left out."
         );
-        let many = news(Happened::Replaced, &all);
+        let many = news(NewsKind::Replaced, &all);
         assert!(many.contains("r1.csv and 2 more are rewritten"), "{many}");
-        let torn = news(Happened::HalfWritten, &[(path, Some("no signature"))]);
+        let torn = news(NewsKind::HalfWritten, &[(path, Some("no signature"))]);
         assert!(
             torn.starts_with("r1.csv (no signature) is not whole after an hour"),
             "{torn}"

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use strum::VariantArray;
 
 use super::load::load_campaign;
 use super::progress::Progress;
@@ -12,7 +13,7 @@ use super::report_args::{ReportArgs, print_report_paths};
 use super::run_one::{command_line, keep_from, print_completed};
 use super::screen::Screen;
 use super::{Exit, Failure, Verbosity, interrupt, live_text};
-use crate::pipeline::watch::{News, Pace, Patience, Seen, Watcher, write_live};
+use crate::pipeline::watch::{News, NewsKind, Pace, Patience, Seen, Watcher, write_live};
 use crate::pipeline::{Completed, Destination, layout};
 use crate::report::Format;
 use labfiles::output::Lock;
@@ -182,27 +183,12 @@ pub(super) fn tell(seen: &Seen, screen: &mut Screen) {
 }
 
 /// News of the same kind together, each with its files and, where there is one, the reason.
-fn grouped(news: &[News]) -> Vec<(live_text::Happened, Vec<(&Path, Option<&str>)>)> {
-    use live_text::Happened;
-    let kinds = [
-        Happened::Removed,
-        Happened::Unlisted,
-        Happened::Replaced,
-        Happened::HalfWritten,
-    ];
-    let of = |news: &'_ News| match news {
-        News::Removed(_) => Happened::Removed,
-        News::Unlisted(_) => Happened::Unlisted,
-        News::Replaced(_) => Happened::Replaced,
-        News::HalfWritten { .. } => Happened::HalfWritten,
-    };
-    let each = kinds.map(|kind| {
-        let same = news.iter().filter(|n| of(n) == kind);
-        (kind, same.map(file_of).collect::<Vec<_>>())
+fn grouped(news: &[News]) -> Vec<(NewsKind, Vec<(&Path, Option<&str>)>)> {
+    let each = NewsKind::VARIANTS.iter().map(|kind| {
+        let same = news.iter().filter(|n| NewsKind::from(*n) == *kind);
+        (*kind, same.map(file_of).collect::<Vec<_>>())
     });
-    each.into_iter()
-        .filter(|(_, files)| !files.is_empty())
-        .collect()
+    each.filter(|(_, files)| !files.is_empty()).collect()
 }
 
 fn file_of(news: &News) -> (&Path, Option<&str>) {

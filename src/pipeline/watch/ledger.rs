@@ -39,7 +39,9 @@ impl Stamp {
 }
 
 /// Something about a file that the user should know.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, strum::EnumDiscriminants)]
+#[strum_discriminants(name(NewsKind), derive(strum::VariantArray))]
+#[strum_discriminants(doc = "What happened to a file.")]
 pub enum News {
     /// A file that was taken is gone, and its records with it.
     Removed(PathBuf),

@@ -12,7 +12,7 @@ mod live;
 mod processor_time;
 mod spacing;
 
-pub use ledger::{News, Patience};
+pub use ledger::{News, NewsKind, Patience};
 pub use live::{Live, write_live};
 
 use std::collections::BTreeMap;
