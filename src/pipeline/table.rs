@@ -4,6 +4,8 @@ use polars::error::PolarsError;
 use polars::prelude::{Column, DataFrame};
 use polars_io::parquet::write::ParquetWriter;
 
+use crate::report::figures::csv::quoted;
+
 /// Most rows in a row group of a Parquet file.
 const ROW_GROUP: usize = 1 << 18;
 
@@ -172,7 +174,7 @@ impl Values {
             Self::Numbers(v) => v[row].filter(|x| x.is_finite()).map(|x| x.to_string()),
             Self::Counts(v) => v[row].map(|x| x.to_string()),
             Self::Flags(v) => v[row].map(|x| x.to_string()),
-            Self::Texts(v) => v[row].as_deref().map(quoted),
+            Self::Texts(v) => v[row].as_deref().map(|x| quoted(x).into_owned()),
         };
         text.unwrap_or_default()
     }
@@ -184,14 +186,6 @@ impl Values {
             Self::Flags(v) => Column::new(name.into(), v),
             Self::Texts(v) => Column::new(name.into(), v),
         }
-    }
-}
-
-/// A text as a cell of a CSV file.
-fn quoted(text: &str) -> String {
-    match text.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
     }
 }
 

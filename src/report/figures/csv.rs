@@ -1,5 +1,7 @@
 //! A figure's data as CSV, so that a reader can draw it again.
 
+use std::borrow::Cow;
+
 use crate::signal::whole;
 
 /// Rows of text and numbers under a header; short rows are filled with empty fields.
@@ -31,12 +33,7 @@ impl Csv {
     pub(crate) fn texts(&mut self, fields: &[&str]) -> &mut Self {
         for field in fields {
             self.begin_field();
-            if field.contains([',', '"', '\n']) {
-                let quoted = field.replace('"', "\"\"");
-                self.text.extend(["\"", quoted.as_str(), "\""]);
-            } else {
-                self.text.push_str(field);
-            }
+            self.text.push_str(&quoted(field));
         }
         self
     }
@@ -71,6 +68,14 @@ impl Csv {
     pub(crate) fn finish(mut self) -> String {
         self.end_row();
         self.text
+    }
+}
+
+/// A text as a field of a CSV file.
+pub(crate) fn quoted(text: &str) -> Cow<'_, str> {
+    match text.contains([',', '"', '\n', '\r']) {
+        true => Cow::Owned(format!("\"{}\"", text.replace('"', "\"\""))),
+        false => Cow::Borrowed(text),
     }
 }
 

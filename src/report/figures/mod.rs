@@ -7,7 +7,7 @@ pub(super) mod canvas;
 mod compact;
 pub(super) mod comparison;
 pub(super) mod correlation;
-pub(super) mod csv;
+pub(crate) mod csv;
 pub(super) mod decays;
 pub(super) mod dots;
 pub(super) mod estimates;
