@@ -126,15 +126,7 @@ impl Panel {
     /// Frame, ticks, numbers and titles.
     pub(crate) fn frame(&self, canvas: &mut Canvas, sides: Sides, locale: Locale<'_>) {
         let r = &self.rect;
-        let corners = [
-            (r.left, r.top),
-            (r.right, r.top),
-            (r.right, r.bottom),
-            (r.left, r.bottom),
-            (r.left, r.top),
-            (r.right, r.top),
-        ];
-        canvas.line(&corners, look::FRAME_STROKE);
+        canvas.outline(&r.corners(), look::FRAME_STROKE);
         self.ticks_below(canvas, sides.below, locale);
         self.ticks_left(canvas, sides.left, locale);
     }

@@ -30,6 +30,13 @@ impl Rect {
         }
     }
 
+    /// Its corners, from the upper left one round.
+    pub(crate) fn corners(&self) -> [Point; 4] {
+        let (left, right) = (self.left, self.right);
+        let (top, bottom) = (self.top, self.bottom);
+        [(left, top), (right, top), (right, bottom), (left, bottom)]
+    }
+
     /// Width.
     pub(crate) fn width(&self) -> f64 {
         self.right - self.left

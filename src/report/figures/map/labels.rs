@@ -115,15 +115,8 @@ impl Map<'_> {
         for (i, value) in self.strips.clone().into_iter().enumerate() {
             let middle = self.strip_middle(i);
             let (top, bottom) = (middle - STRIP_HALF, middle + STRIP_HALF);
-            let corners = [
-                (r.left, top),
-                (r.right, top),
-                (r.right, bottom),
-                (r.left, bottom),
-                (r.left, top),
-                (r.right, top),
-            ];
-            self.canvas.line(&corners, look::FRAME_STROKE);
+            let strip = Rect { top, bottom, ..r };
+            self.canvas.outline(&strip.corners(), look::FRAME_STROKE);
             let text_look = TextLook::new(look::TICK_SIZE, Anchor::Right).colour(look::INK);
             self.canvas.text(
                 (r.left - 3.0, middle + 2.3),
