@@ -27,6 +27,16 @@ pub struct Checked {
     fingerprints: Vec<Fingerprint>,
 }
 
+impl Checked {
+    /// With what reading the records after these found.
+    fn and(mut self, later: Self) -> Self {
+        self.diagnostics.extend(later.diagnostics);
+        self.usable += later.usable;
+        self.fingerprints.extend(later.fingerprints);
+        self
+    }
+}
+
 /// What distinguishes a record from others.
 #[derive(Debug)]
 struct Fingerprint {
@@ -50,20 +60,12 @@ pub fn read_all(
     done: &(dyn Fn(u64) + Sync),
 ) -> Checked {
     let count = AtomicU64::new(0);
-    let found: Vec<Checked> = by_file(&campaign.records)
-        .into_par_iter()
-        .map(|entries| {
-            let checked = read_file(campaign, entries, open);
-            done(count.fetch_add(entries.len() as u64, Ordering::Relaxed) + entries.len() as u64);
-            checked
-        })
-        .collect();
-    let mut all = Checked::default();
-    for one in found {
-        all.diagnostics.extend(one.diagnostics);
-        all.usable += one.usable;
-        all.fingerprints.extend(one.fingerprints);
-    }
+    let found = by_file(&campaign.records).into_par_iter().map(|entries| {
+        let checked = read_file(campaign, entries, open);
+        done(count.fetch_add(entries.len() as u64, Ordering::Relaxed) + entries.len() as u64);
+        checked
+    });
+    let mut all = found.reduce(Checked::default, Checked::and);
     all.diagnostics.extend(duplicates(&all.fingerprints));
     let driven = campaign.records.iter().any(|r| campaign.driven(r));
     if driven {
@@ -77,18 +79,10 @@ fn read_file(campaign: &ResolvedCampaign, entries: &[RecordEntry], open: Opener<
     let Ok(source) = open(&entries[0].file) else {
         return Checked::default();
     };
-    let parts: Vec<Checked> = entries
-        .par_iter()
-        .filter(|e| e.dataset.is_some() && !e.excluded)
-        .map(|entry| read_one(campaign, entry, source.as_ref()))
-        .collect();
-    let mut all = Checked::default();
-    for part in parts {
-        all.diagnostics.extend(part.diagnostics);
-        all.usable += part.usable;
-        all.fingerprints.extend(part.fingerprints);
-    }
-    all
+    let usable = |e: &&RecordEntry| e.dataset.is_some() && !e.excluded;
+    let each = entries.par_iter().filter(usable);
+    let each = each.map(|entry| read_one(campaign, entry, source.as_ref()));
+    each.reduce(Checked::default, Checked::and)
 }
 
 fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Source) -> Checked {
