@@ -5,7 +5,7 @@ use super::diagnostic::Code;
 use super::discovery::{self, Discovered, Opener, Shared};
 use super::names::{self, Known};
 use super::resolved::RecordEntry;
-use super::settings::{Defaults, Wanted, defaults, note_settings, setting};
+use super::settings::{Wanted, defaults, note_settings, setting};
 use super::written::{Attributes, Records};
 use crate::record::Setting;
 
@@ -59,7 +59,7 @@ pub(super) fn resolve(
 fn entries(
     listed: &[Discovered],
     attributes: &Attributes,
-    defaults: &Defaults,
+    defaults: &Setting,
     context: &mut ResolveContext<'_>,
 ) -> Vec<RecordEntry> {
     let wanted = Wanted::of(attributes, context);

@@ -9,13 +9,8 @@ use super::written::{Attributes, Placed, Records, value};
 use crate::record::{Setting, Sweep};
 use labfiles::units::{self, Dimension};
 
-/// Settings of the records that state none.
-#[derive(Debug, Clone)]
-pub(super) struct Defaults {
-    pub(super) setting: Setting,
-}
-
-pub(super) fn defaults(records: &Records, context: &mut ResolveContext<'_>) -> Defaults {
+/// The setting of records that state none.
+pub(super) fn defaults(records: &Records, context: &mut ResolveContext<'_>) -> Setting {
     let frequency = context.positive(
         &records.drive_frequency,
         "records.drive_frequency",
@@ -45,16 +40,14 @@ pub(super) fn defaults(records: &Records, context: &mut ResolveContext<'_>) -> D
             "write it relative to the nominal one: 1",
         );
     }
-    Defaults {
-        setting: Setting {
-            stated_frequency_hz: frequency,
-            clearance_m: clearance,
-            sweep: value(&records.sweep).unwrap_or(Sweep::Unknown),
-            drive_amplitude: amplitude.unwrap_or(1.0),
-            sequence: 0,
-            specimen: None,
-            excitation: value(&records.excitation).unwrap_or_default(),
-        },
+    Setting {
+        stated_frequency_hz: frequency,
+        clearance_m: clearance,
+        sweep: value(&records.sweep).unwrap_or(Sweep::Unknown),
+        drive_amplitude: amplitude.unwrap_or(1.0),
+        sequence: 0,
+        specimen: None,
+        excitation: value(&records.excitation).unwrap_or_default(),
     }
 }
 
@@ -147,7 +140,7 @@ fn attribute(
 pub(super) fn setting(
     one: &Discovered,
     wanted: &Wanted,
-    defaults: &Defaults,
+    default: &Setting,
     context: &mut ResolveContext<'_>,
 ) -> Setting {
     let row = one.row.as_ref();
@@ -166,7 +159,6 @@ pub(super) fn setting(
         .specimen
         .as_ref()
         .and_then(|name| one.attributes.get(name).cloned());
-    let default = &defaults.setting;
     Setting {
         stated_frequency_hz: row
             .and_then(|r| r.drive_frequency_hz)
