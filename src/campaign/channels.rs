@@ -297,16 +297,8 @@ fn content(
     key: &str,
     context: &mut ResolveContext<'_>,
 ) -> ContactContent {
-    match placed {
-        Some(placed) if role == Role::Contact => *placed.get_ref(),
-        Some(placed) => {
-            let what = format!("a content means nothing for {}", role.name());
-            let remedy = "move it to [channels.contact]";
-            context.fault(Code::Conflict, placed, key, what, remedy);
-            ContactContent::Signal
-        }
-        None => ContactContent::Signal,
-    }
+    let placed = of_contact(role, placed, ("a content", key), context);
+    placed.map_or(ContactContent::Signal, |placed| *placed.get_ref())
 }
 
 fn threshold(
@@ -316,18 +308,22 @@ fn threshold(
     context: &mut ResolveContext<'_>,
 ) -> Option<units::Quantity> {
     let found = any_quantity(placed, key, context)?;
+    of_contact(role, placed, ("a threshold", key), context).map(|_| found)
+}
+
+/// What is stated of a contact; a fault where it is stated of another channel.
+fn of_contact<'a, T>(
+    role: Role,
+    placed: &'a Placed<T>,
+    (what, key): (&str, &str),
+    context: &mut ResolveContext<'_>,
+) -> Option<&'a Spanned<T>> {
+    let placed = placed.as_ref()?;
     if role == Role::Contact {
-        return Some(found);
+        return Some(placed);
     }
-    if let Some(placed) = placed {
-        let what = format!("a threshold means nothing for {}", role.name());
-        context.fault(
-            Code::Conflict,
-            placed,
-            key,
-            what,
-            "move it to [channels.contact]",
-        );
-    }
+    let what = format!("{what} means nothing for {}", role.name());
+    let remedy = "move it to [channels.contact]";
+    context.fault(Code::Conflict, placed, key, what, remedy);
     None
 }
