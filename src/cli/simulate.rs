@@ -163,16 +163,16 @@ pub(super) struct Campaign {
     #[arg(long, value_name = "N")]
     pub rig_seed: Option<u64>,
     /// Coefficient of restitution R, 0 to 1
-    #[arg(long, value_name = "R", default_value_t = 0.9, value_parser = restitution)]
+    #[arg(long, value_name = "R", default_value_t = 0.9, value_parser = within(0.0, 1.0))]
     pub restitution: f64,
     /// Damping ratio β, above 0, up to 0.5
-    #[arg(long, value_name = "B", default_value_t = 0.07, value_parser = damping_ratio)]
+    #[arg(long, value_name = "B", default_value_t = 0.07, value_parser = within(1e-6, 0.5))]
     pub damping_ratio: f64,
     /// Natural frequency f0, Hz
-    #[arg(long, value_name = "F", default_value_t = 12.6, value_parser = frequency)]
+    #[arg(long, value_name = "F", default_value_t = 12.6, value_parser = within(1e-3, 1e5))]
     pub natural_frequency_hz: f64,
     /// Static deflection `x_st` = F0/k, m
-    #[arg(long, value_name = "X", default_value_t = 1e-3, value_parser = deflection)]
+    #[arg(long, value_name = "X", default_value_t = 1e-3, value_parser = within(1e-9, 1.0))]
     pub static_deflection_m: f64,
     /// Number of records [default: 200]
     #[arg(long, value_name = "N")]
@@ -195,24 +195,9 @@ pub(super) struct Campaign {
 /// Records of a campaign where the number is not given.
 const DEFAULT_RECORDS: usize = 200;
 
-fn restitution(text: &str) -> Result<f64, String> {
-    number_within(text, 0.0, 1.0)
-}
-
-fn damping_ratio(text: &str) -> Result<f64, String> {
-    number_within(text, 1e-6, 0.5)
-}
-
-fn frequency(text: &str) -> Result<f64, String> {
-    number_within(text, 1e-3, 1e5)
-}
-
-fn deflection(text: &str) -> Result<f64, String> {
-    number_within(text, 1e-9, 1.0)
-}
-
-fn number_within(text: &str, low: f64, high: f64) -> Result<f64, String> {
-    match text.parse::<f64>() {
+/// Reads a number from `low` to `high`.
+fn within(low: f64, high: f64) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| match text.parse::<f64>() {
         Ok(value) if (low..=high).contains(&value) => Ok(value),
         Ok(_) => Err(format!("it must lie between {low} and {high}")),
         Err(_) => Err("it is not a number".to_owned()),
