@@ -1,7 +1,8 @@
 //! Hashes of all inputs.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::Read;
+use std::fs::File;
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
@@ -34,16 +35,9 @@ pub fn hashes(campaign: &ResolvedCampaign) -> BTreeMap<String, String> {
 
 /// SHA-256 of a file as lower-case hexadecimal.
 fn hash(path: &Path) -> std::io::Result<String> {
-    let mut file = std::fs::File::open(path)?;
+    let mut file = BufReader::with_capacity(1 << 18, File::open(path)?);
     let mut hasher = Sha256::new();
-    let mut buffer = vec![0; 1 << 18];
-    loop {
-        let read = file.read(&mut buffer)?;
-        if read == 0 {
-            break;
-        }
-        hasher.update(&buffer[..read]);
-    }
+    std::io::copy(&mut file, &mut hasher)?;
     Ok(hexadecimal(hasher))
 }
 
