@@ -146,10 +146,8 @@ pub fn files(
         comparison,
         versions: versions(),
     };
-    let json = serde_json::to_string_pretty(&written).map_err(|e| PipelineError::Table {
-        table: COMPARISON.to_owned(),
-        reason: e.to_string(),
-    })?;
+    let json =
+        serde_json::to_string_pretty(&written).map_err(PipelineError::in_table(COMPARISON))?;
     let mut files = vec![
         (COMPARISON.to_owned(), (json + "\n").into_bytes()),
         (TABLE.to_owned(), table(comparison)?),
@@ -178,10 +176,6 @@ struct Line<'a> {
 /// The estimates of all campaigns and their differences as CSV.
 fn table(comparison: &Comparison) -> Result<Vec<u8>, PipelineError> {
     use crate::identify::fit::parameters::Coordinate;
-    let unwritable = |reason: String| PipelineError::Table {
-        table: TABLE.to_owned(),
-        reason,
-    };
     let mut writer = csv::Writer::from_writer(Vec::new());
     for (number, campaign) in comparison.campaigns.iter().enumerate() {
         for parameter in Coordinate::PHYSICAL {
@@ -207,8 +201,8 @@ fn table(comparison: &Comparison) -> Result<Vec<u8>, PipelineError> {
             };
             writer
                 .serialize(line)
-                .map_err(|e| unwritable(e.to_string()))?;
+                .map_err(PipelineError::in_table(TABLE))?;
         }
     }
-    writer.into_inner().map_err(|e| unwritable(e.to_string()))
+    writer.into_inner().map_err(PipelineError::in_table(TABLE))
 }

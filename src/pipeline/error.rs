@@ -104,6 +104,14 @@ impl PipelineError {
         }
     }
 
+    /// Why a table could not be made or read.
+    pub(super) fn in_table<E: ToString>(table: &str) -> impl Fn(E) -> Self + use<'_, E> {
+        move |error| Self::Table {
+            table: table.to_owned(),
+            reason: error.to_string(),
+        }
+    }
+
     /// What the user can do.
     pub fn remedy(&self) -> String {
         match self {

@@ -124,10 +124,7 @@ pub(super) fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value,
         records: Vec::new(),
         ..campaign.clone()
     };
-    serde_json::to_value(short).map_err(|e| PipelineError::Table {
-        table: "settings".into(),
-        reason: e.to_string(),
-    })
+    serde_json::to_value(short).map_err(PipelineError::in_table("settings"))
 }
 
 /// Versions of the program and of what it writes.

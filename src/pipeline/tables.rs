@@ -266,9 +266,6 @@ fn parquet(
     name: &'static str,
     parts: impl Iterator<Item = Table>,
 ) -> Result<(&'static str, Vec<u8>), PipelineError> {
-    let bytes = Table::parquet_of(parts).map_err(|e| PipelineError::Table {
-        table: name.to_owned(),
-        reason: e.to_string(),
-    })?;
+    let bytes = Table::parquet_of(parts).map_err(PipelineError::in_table(name))?;
     Ok((name, bytes))
 }

@@ -53,10 +53,7 @@ impl StudyContext<'_> {
     /// Write a table as `NAME.csv` and `NAME.parquet`.
     fn table(&self, name: &str, table: &Table) -> Result<(), PipelineError> {
         self.bytes(&format!("{name}.csv"), table.csv().as_bytes())?;
-        let parquet = table.parquet().map_err(|e| PipelineError::Table {
-            table: name.to_owned(),
-            reason: e.to_string(),
-        })?;
+        let parquet = table.parquet().map_err(PipelineError::in_table(name))?;
         self.bytes(&format!("{name}.parquet"), &parquet)
     }
 
