@@ -10,7 +10,7 @@ use crate::identify::plan::Proposal;
 use crate::motion::{Bracket, Motion, Observation};
 use crate::pipeline::watch::{Live, NewsKind, Outline, Watcher};
 use crate::report::budget_source;
-use crate::signal::whole;
+use crate::signal::{robust, whole};
 
 /// Most files that are named in one line.
 const MOST_NAMES: usize = 4;
@@ -70,11 +70,9 @@ fn map(outline: &Outline) -> String {
         .filter(|o| !o.excluded())
         .filter_map(|o| Some((o.frequency_hz()?, o.setting.clearance_m?, o)))
         .collect();
-    let low = places.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
-    let high = places.iter().map(|p| p.0).fold(f64::NEG_INFINITY, f64::max);
-    if places.is_empty() {
+    let Some((low, high)) = robust::range(places.iter().map(|p| p.0)) else {
         return String::new();
-    }
+    };
     let column = |frequency_hz: f64| {
         let share = (frequency_hz - low) / (high - low).max(1e-9);
         (0..COLUMNS)

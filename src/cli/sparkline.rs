@@ -1,5 +1,6 @@
 //! A small curve of a signal in characters.
 
+use crate::signal::robust::range;
 use crate::signal::whole;
 
 /// Bits of the eight dots of a braille character, by column and row from the top.
@@ -11,12 +12,10 @@ const BLANK: u32 = 0x2800;
 /// column shows the whole range of the samples that fall into it; gaps are samples that are no
 /// numbers. Without a finite value there are no lines.
 pub(super) fn sparkline(values: &[f64], width: usize, height: usize) -> Vec<String> {
-    let finite = || values.iter().copied().filter(|v| v.is_finite());
-    let (low, high) = (
-        finite().fold(f64::INFINITY, f64::min),
-        finite().fold(f64::NEG_INFINITY, f64::max),
-    );
-    if low > high || width == 0 || height == 0 {
+    let Some((low, high)) = range(values.iter().copied()) else {
+        return Vec::new();
+    };
+    if width == 0 || height == 0 {
         return Vec::new();
     }
     let (columns, rows) = (2 * width, 4 * height);
@@ -40,10 +39,7 @@ pub(super) fn sparkline(values: &[f64], width: usize, height: usize) -> Vec<Stri
         let joined = own
             .clone()
             .chain(before.filter(|_| own.clone().next().is_some()));
-        let (a, b) = joined.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
-            (a.min(v), b.max(v))
-        });
-        if a <= b {
+        if let Some((a, b)) = range(joined) {
             for r in row(b)..=row(a) {
                 cells[r / 4][column / 2] |= DOTS[column % 2][r % 4];
             }

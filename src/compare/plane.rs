@@ -7,6 +7,7 @@ use crate::identify::fit::parameters::Coordinate;
 use crate::identify::replay::LIVELY_SPEED;
 use crate::identify::uncertainty::band::Spread;
 use crate::motion::{BoundaryKind, Motion};
+use crate::signal::robust::range;
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::atlas::{MapGrid, MapSettings, region_map as simulate_map};
 use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
@@ -93,24 +94,21 @@ struct View {
 impl View {
     /// Of records at (η, ρ); `reach` is the largest ρ at which anything touches.
     fn of(places: &[(f64, f64)], reach: f64) -> Option<Self> {
-        let touching: Vec<f64> = places.iter().map(|p| p.1).filter(|r| *r <= reach).collect();
-        if places.len() < FEWEST_RECORDS || touching.is_empty() {
+        if places.len() < FEWEST_RECORDS {
             return None;
         }
-        let span = |values: &[f64], margin: f64| {
-            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let span = |(low, high): (f64, f64), margin: f64| {
             let room = margin * (high - low).max(0.1);
             (low - room, high + room)
         };
-        let etas: Vec<f64> = places.iter().map(|p| p.0).collect();
-        let eta = span(&etas, 0.05);
-        let (low, high) = span(&touching, 0.0);
+        let eta = span(range(places.iter().map(|p| p.0))?, 0.05);
+        let touching = places.iter().map(|p| p.1).filter(|r| *r <= reach);
+        let (low, high) = range(touching)?;
         // A single clearance is shown with as much of the plane about it as a figure shows.
         let rho = if high - low < 0.1 * high {
             (0.8 * low, 1.2 * high)
         } else {
-            span(&touching, 0.12)
+            span((low, high), 0.12)
         };
         Some(Self {
             eta: (eta.0.max(0.05), eta.1),

@@ -28,23 +28,20 @@ pub struct Overview {
 
 pub(super) fn overview(input: &Input<'_>) -> Overview {
     let all = input.observations;
-    let frequencies = || all.iter().filter_map(|o| Some(o.drive?.frequency_hz));
+    let frequencies = all.iter().filter_map(|o| Some(o.drive?.frequency_hz));
     let mut clearances: Vec<f64> = all.iter().filter_map(|o| o.setting.clearance_m).collect();
     clearances.sort_by(f64::total_cmp);
     clearances.dedup();
     let median = |f: fn(&Observation) -> f64| {
         robust::median(&all.iter().map(f).filter(|v| *v > 0.0).collect::<Vec<_>>())
     };
-    let ends = frequencies()
-        .reduce(f64::min)
-        .zip(frequencies().reduce(f64::max));
     Overview {
         records: all.len(),
         records_used: all.iter().filter(|o| !o.excluded()).count(),
         impacts: all.iter().map(|o| o.impacts.len()).sum(),
         record_length_s: median(|o| o.duration_s),
         sample_rate_hz: median(|o| o.sample_rate_hz),
-        frequency_range_hz: ends.map(|(low, high)| [low, high]),
+        frequency_range_hz: robust::range(frequencies).map(Into::into),
         clearances_m: clearances,
     }
 }

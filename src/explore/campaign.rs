@@ -251,15 +251,13 @@ impl Campaign {
         });
         let places: Vec<(f64, f64)> = places.collect();
         let range = |of: fn(&(f64, f64)) -> f64| {
-            let low = places.iter().map(of).fold(f64::INFINITY, f64::min);
-            let high = places.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+            let (low, high) = robust::range(places.iter().map(of))?;
             let margin = 0.08 * (high - low).max(0.2);
-            (low - margin, high + margin)
+            Some((low - margin, high + margin))
         };
-        if places.is_empty() {
+        let (Some(eta), Some(rho)) = (range(|p| p.0), range(|p| p.1)) else {
             return first.view;
-        }
-        let (eta, rho) = (range(|p| p.0), range(|p| p.1));
+        };
         Window {
             eta: (eta.0.max(0.05), eta.1),
             rho: (rho.0.max(0.0).min(rho.1 - 0.1), rho.1.min(20.0)),

@@ -51,24 +51,11 @@ struct Reach {
 impl Reach {
     /// Where the campaign has been; `None` where no record states both.
     fn of(observations: &[Observation]) -> Option<Self> {
-        let range = |values: Vec<f64>| {
-            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            (low <= high).then_some([low, high])
-        };
+        let all = observations.iter();
+        let clearances = all.clone().filter_map(|o| o.setting.clearance_m);
         Some(Self {
-            frequency_hz: range(
-                observations
-                    .iter()
-                    .filter_map(Observation::frequency_hz)
-                    .collect(),
-            )?,
-            clearance_m: range(
-                observations
-                    .iter()
-                    .filter_map(|o| o.setting.clearance_m)
-                    .collect(),
-            )?,
+            frequency_hz: robust::range(all.filter_map(Observation::frequency_hz))?.into(),
+            clearance_m: robust::range(clearances)?.into(),
         })
     }
 }

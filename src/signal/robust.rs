@@ -1,6 +1,17 @@
-//! Robust location and scale.
+//! Robust location and scale, and the range of values.
 
 use crate::signal::columns::{dot, sum};
+
+/// Least and greatest of the finite values; `None` where there are none.
+pub fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
+    values
+        .into_iter()
+        .filter(|v| v.is_finite())
+        .fold(None, |seen, v| match seen {
+            None => Some((v, v)),
+            Some((low, high)) => Some((low.min(v), high.max(v))),
+        })
+}
 
 /// Median of the values; `None` for an empty slice. NaN must not be among them.
 pub fn median(values: &[f64]) -> Option<f64> {

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::discovery::Opener;
 use crate::record::Role;
+use crate::signal::robust;
 use labfiles::{ChannelInfo, DatasetInfo, Samples, Source};
 
 pub use experiment::Experiment;
@@ -207,7 +208,7 @@ fn channels(source: &dyn Source, dataset: usize, set: &DatasetInfo) -> Vec<Infer
             name: info.name.clone(),
             unit: info.unit.clone(),
             samples: info.samples,
-            range: range(&values),
+            range: robust::range(values.iter().copied()).map(Into::into),
             is_time: set.time_axis == Some(i),
             role: None,
             levels: two_levels(&values),
@@ -217,20 +218,12 @@ fn channels(source: &dyn Source, dataset: usize, set: &DatasetInfo) -> Vec<Infer
     set.channels.iter().enumerate().map(seen).collect()
 }
 
-fn range(values: &[f64]) -> Option<[f64; 2]> {
-    let finite = values.iter().filter(|v| v.is_finite());
-    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
-        (l.min(*v), h.max(*v))
-    });
-    (low <= high).then_some([low, high])
-}
-
 /// The two levels of a signal that is nearly always at one of them, as a contact.
 fn two_levels(values: &[f64]) -> Option<[f64; 2]> {
     if (values.len() as u64) < FEWEST_SAMPLES {
         return None;
     }
-    let [low, high] = range(values)?;
+    let (low, high) = robust::range(values.iter().copied())?;
     let near = |level: f64| {
         let width = 0.15 * (high - low);
         values

@@ -2,6 +2,7 @@
 
 use crate::report::locale::Locale;
 use crate::report::phrase::Text;
+use crate::signal::robust::range;
 use crate::signal::whole;
 
 /// One axis: its range in data and its title with unit, in the report's markup.
@@ -117,17 +118,6 @@ impl Axis {
             locale.fixed(value, decimals)
         }
     }
-}
-
-/// Least and greatest of the finite values.
-pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
-    values
-        .into_iter()
-        .filter(|v| v.is_finite())
-        .fold(None, |seen, v| match seen {
-            None => Some((v, v)),
-            Some((low, high)) => Some((low.min(v), high.max(v))),
-        })
 }
 
 /// The next of 1, 2, 5 times a power of ten.

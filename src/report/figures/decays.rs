@@ -1,6 +1,6 @@
 //! Free decays with their fits, three to a row.
 
-use super::axis::{Axis, range};
+use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, Stroke, TextLook};
 use super::csv::Csv;
 use super::figure::Figure;
@@ -13,6 +13,7 @@ use crate::compare::{FreeDecay, Signal};
 use crate::report::locale::Locale;
 use crate::report::parameters::decimals_for;
 use crate::report::phrase::{Phrase, Text};
+use crate::signal::robust::range;
 use labfiles::units::Dimension;
 
 /// How many decays one figure holds.

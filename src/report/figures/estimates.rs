@@ -1,6 +1,6 @@
 //! The estimates of all methods beside the joint one, a panel for each parameter.
 
-use super::axis::{Axis, range};
+use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, Stroke, TextLook};
 use super::csv::Csv;
 use super::dots::{DotLook, Dots};
@@ -14,6 +14,7 @@ use crate::report::content::ReportContent;
 use crate::report::locale::Locale;
 use crate::report::parameters::{PARAMETERS, ParameterLook, interval95};
 use crate::report::phrase::Phrase;
+use crate::signal::robust::range;
 
 /// Height of a method's line, points.
 const ROW: f64 = 14.5;

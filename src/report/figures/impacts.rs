@@ -1,6 +1,6 @@
 //! Speeds after over before each impact, and their ratio over the closing speed.
 
-use super::axis::{Axis, range};
+use super::axis::Axis;
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
@@ -12,6 +12,7 @@ use super::units::{PrintUnit, print_unit};
 use crate::compare::{ImpactPoint, ImpactScatter};
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
+use crate::signal::robust::range;
 use labfiles::units::Dimension;
 
 /// Height of the panels, points.

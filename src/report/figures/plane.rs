@@ -1,12 +1,13 @@
 //! The plane of the map: (η, ρ) where f0 and `x_st` are known, else frequency and clearance.
 
-use super::axis::{Axis, range};
+use super::axis::Axis;
 use crate::compare::{BracketRow, RecordRow};
 use crate::identify::Estimate;
 use crate::identify::plan::Proposal;
 use crate::motion::Motion;
 use crate::report::content::ReportContent;
 use crate::report::phrase::Phrase;
+use crate::signal::robust::range;
 
 /// Least and greatest value, where there is any.
 type Range = Option<(f64, f64)>;

@@ -1,6 +1,6 @@
 //! Residual diagnostics of one method: histogram, autocorrelation, over frequency, over gap.
 
-use super::axis::{Axis, range};
+use super::axis::Axis;
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
@@ -13,6 +13,7 @@ use crate::compare::{ResidualPoint, ResidualSet};
 use crate::report::locale::Locale;
 use crate::report::parameters::NORMAL_95;
 use crate::report::phrase::{Phrase, Text};
+use crate::signal::robust::range;
 use crate::signal::whole;
 
 /// Height of the panels, points.

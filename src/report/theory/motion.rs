@@ -3,7 +3,7 @@
 use super::ENGLISH;
 use super::keys::sheet;
 use crate::compare::{Portrait, Sample};
-use crate::report::figures::axis::{Axis, range};
+use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Canvas, Stroke};
 use crate::report::figures::dots::{self, DotLook, Dots};
 use crate::report::figures::figure::Figure;
@@ -12,6 +12,7 @@ use crate::report::figures::look;
 use crate::report::figures::marks::mix;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
+use crate::signal::robust::range;
 
 /// Room left of the panels, points.
 const LEFT: f64 = 36.0;

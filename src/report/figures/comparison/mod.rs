@@ -8,7 +8,7 @@ pub(crate) use data::name;
 
 use crate::compare::{Comparison, Signal};
 use crate::record::Role;
-use crate::report::figures::axis::{Axis, range};
+use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
 use crate::report::figures::figure::Figure;
 use crate::report::figures::fonts::Face;
@@ -19,6 +19,7 @@ use crate::report::figures::path::Rect;
 use crate::report::figures::richtext;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
+use crate::signal::robust::range;
 use rows::{Row, root_mean_square, rows, shown, symbol};
 
 /// Room left of the first column, for numbers and titles, points.
