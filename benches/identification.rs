@@ -78,25 +78,26 @@ fn campaign() -> Result<Vec<Observation>, ModelError> {
         stiffness_asymmetry: -0.01,
         ..Truth::symmetric(0.9, 12.6, 0.07, 1e-3)
     };
-    let faults = Faults::default();
     let plan = Plan::for_rig(
         truth.natural_frequency_hz,
         truth.damping_ratio,
         truth.static_deflection_m,
         RECORDS,
     );
-    let raw = records(&Laboratory {
-        truth: &truth,
-        faults: &faults,
-        effects: &Effects::default(),
-        plan: &plan,
+    let laboratory = Laboratory {
+        truth,
+        faults: Faults::default(),
+        effects: Effects::default(),
+        clearance_uncertainty_m: None,
+        plan,
         rig_seed: 1,
         seed: 1,
-    })?;
+    };
+    let raw = records(&laboratory)?;
     let mut observations: Vec<Observation> = raw
         .par_iter()
         .map(|raw| {
-            let record = calibrated(raw, &truth, &faults);
+            let record = calibrated(raw, &laboratory.truth, &laboratory.faults);
             let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
             observe(&record, RigKind::Double, &detect, &classify)
         })

@@ -55,18 +55,18 @@ fn laboratory() -> Vec<Record> {
         stiffness_asymmetry: -0.005,
         ..Truth::symmetric(0.9, 12.6, 0.07, 1.25e-3)
     };
-    let faults = Faults::default();
-    let plan = Plan::for_rig(12.6, 0.07, 1.25e-3, 120);
     let laboratory = Laboratory {
-        truth: &truth,
-        faults: &faults,
-        effects: &Effects::default(),
-        plan: &plan,
+        truth,
+        faults: Faults::default(),
+        effects: Effects::default(),
+        clearance_uncertainty_m: None,
+        plan: Plan::for_rig(12.6, 0.07, 1.25e-3, 120),
         rig_seed: 2026,
         seed: 2026,
     };
     let raw = records(&laboratory).expect("a campaign");
-    raw.iter().map(|r| calibrated(r, &truth, &faults)).collect()
+    let Laboratory { truth, faults, .. } = &laboratory;
+    raw.iter().map(|r| calibrated(r, truth, faults)).collect()
 }
 
 /// Two seconds of a decay a(t) = 3 e^(−βΩt) cos(√(1−β²)Ωt) m/s² with β = 0.02, after 0.05 s of rest.

@@ -43,25 +43,24 @@ use crate::motion::Observation;
 /// use impactid::synthetic::run::calibrated;
 /// use impactid::synthetic::{Effects, Faults, Laboratory, Plan, Step, Truth, records};
 ///
-/// let truth = Truth::symmetric(0.8, 12.0, 0.05, 1e-3);
 /// let step = |i: u32| Step {
 ///     frequency_hz: 9.0 + 0.5 * f64::from(i),
 ///     clearance_m: 20e-3,
 ///     sweep: Sweep::Up,
 ///     from_rest: i == 0,
 /// };
-/// let (faults, effects) = (Faults::default(), Effects::default());
 /// let laboratory = Laboratory {
-///     truth: &truth,
-///     faults: &faults,
-///     effects: &effects,
-///     plan: &Plan { steps: (0..14).map(step).collect() },
+///     truth: Truth::symmetric(0.8, 12.0, 0.05, 1e-3),
+///     faults: Faults::default(),
+///     effects: Effects::default(),
+///     clearance_uncertainty_m: None,
+///     plan: Plan { steps: (0..14).map(step).collect() },
 ///     rig_seed: 1,
 ///     seed: 1,
 /// };
 /// let observations: Vec<_> = records(&laboratory)?
 ///     .iter()
-///     .map(|raw| calibrated(raw, &truth, &faults))
+///     .map(|raw| calibrated(raw, &laboratory.truth, &laboratory.faults))
 ///     .map(|record| {
 ///         let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
 ///         observe(&record, RigKind::Double, &detect, &classify)

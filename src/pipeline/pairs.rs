@@ -17,7 +17,7 @@ use crate::pipeline::coverage::{Tally, identified};
 use crate::pipeline::{PipelineError, Progress};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use crate::signal::robust;
-use crate::synthetic::{Draw, Faults, Reach, RigSpec, Truth, draw};
+use crate::synthetic::{Faults, Laboratory, Reach, RigSpec, Truth, draw};
 
 /// What a study of pairs simulates.
 #[derive(Debug, Clone)]
@@ -183,7 +183,7 @@ fn changed_truth(truth: &Truth, rng: &mut ChaCha8Rng) -> Truth {
 }
 
 /// A simulated campaign as the laboratory would state it.
-fn campaign(draw: &Draw, number: usize, found: Identification) -> Campaign {
+fn campaign(draw: &Laboratory, number: usize, found: Identification) -> Campaign {
     let channel = |role| ChannelSetup {
         instrument: Some(format!("simulated, no. {}", draw.rig_seed)),
         high_pass_hz: draw.faults.high_pass_hz,

@@ -101,16 +101,17 @@ pub fn write_campaign(recipe: &Recipe, out: &Path) -> Result<usize, PipelineErro
     let effects = recipe.rig.draw(&mut recipe.truth, &plan, rig_seed);
     let recipe = &recipe;
     let laboratory = Laboratory {
-        truth: &recipe.truth,
-        faults: &recipe.faults,
-        effects: &effects,
-        plan: &plan,
+        truth: recipe.truth.clone(),
+        faults: recipe.faults.clone(),
+        effects,
+        clearance_uncertainty_m: recipe.rig.clearance_uncertainty_m(&recipe.truth),
+        plan,
         rig_seed,
         seed: recipe.seed,
     };
     labfiles::output::make_folder(out)?;
     let keep = |raw| kept(raw, &recipe.faults);
-    let files: Vec<RecordsFile> = if plan.steps.len() <= RECORDS_A_FILE {
+    let files: Vec<RecordsFile> = if laboratory.plan.steps.len() <= RECORDS_A_FILE {
         let whole = |_: usize, block: Vec<KeptRecord>| Ok::<_, PipelineError>(block);
         let all = blocks(&laboratory, usize::MAX, &keep, &whole)?;
         let all = all.into_iter().flatten().collect();
@@ -121,12 +122,15 @@ pub fn write_campaign(recipe: &Recipe, out: &Path) -> Result<usize, PipelineErro
         })?
     };
     write_bytes(&out.join(RUN_TABLE), run_table(&files).as_bytes())?;
-    write_bytes(&out.join("campaign.toml"), campaign_toml(recipe).as_bytes())?;
+    write_bytes(
+        &out.join("campaign.toml"),
+        campaign_toml(recipe, laboratory.clearance_uncertainty_m).as_bytes(),
+    )?;
     write_json(
         &out.join("truth.json"),
-        &truth_file(recipe, &effects, &files),
+        &truth_file(recipe, &laboratory.effects, &files),
     )?;
-    Ok(plan.steps.len())
+    Ok(laboratory.plan.steps.len())
 }
 
 /// A record as it is written, and its truth.
@@ -249,7 +253,7 @@ fn truth_file<'a>(
 }
 
 /// campaign.toml as the virtual laboratory would have filled it in: nominal values only.
-fn campaign_toml(recipe: &Recipe) -> String {
+fn campaign_toml(recipe: &Recipe, clearance_uncertainty_m: Option<f64>) -> String {
     let mut text = String::from(
         "# A SYNTHETIC campaign: simulated by `impactid simulate campaign`, not measured.\n\
          # The truth behind it is in truth.json; it is not stated here.\n\n\
@@ -264,7 +268,7 @@ fn campaign_toml(recipe: &Recipe) -> String {
          gain_uncertainty = \"0.5 %\"\n\
          corner_uncertainty = \"2 %\"\n",
     );
-    if let Some(uncertainty_m) = recipe.rig.clearance_uncertainty_m(&recipe.truth) {
+    if let Some(uncertainty_m) = clearance_uncertainty_m {
         let _ = writeln!(
             text,
             "clearance_uncertainty = \"{:.3} um\"",

@@ -5,23 +5,11 @@ use impact_oscillator::model::Impact;
 use impact_oscillator::model::params::{Initial, ModelError, Setting};
 use impact_oscillator::model::simulate::{Simulator, Trajectory};
 
-use super::effects::Effects;
 use super::equations::{ContactLaw, Equations, Phase4};
 use super::integrate::{Hit, Integrator, Recording};
+use super::laboratory::Laboratory;
 use super::plan::Step;
-use super::truth::Truth;
 use crate::signal::whole;
-
-/// What a rig's motion follows from.
-#[derive(Debug, Clone, Copy)]
-pub struct Physics<'a> {
-    /// True parameters.
-    pub truth: &'a Truth,
-    /// Effects beyond the model.
-    pub effects: &'a Effects,
-    /// Settings of the campaign in all.
-    pub steps: usize,
-}
 
 /// A motion that goes on through a sweep, in units of the nominal `x_st` and 1/Ω.
 #[derive(Debug, Clone)]
@@ -41,7 +29,7 @@ pub enum Recorded {
     Integrated(Recording),
 }
 
-impl Physics<'_> {
+impl Laboratory {
     /// A motion from rest at the first setting of a sweep, number `index` of the campaign.
     ///
     /// # Errors
@@ -73,17 +61,17 @@ impl Physics<'_> {
     }
 
     fn law(&self) -> Result<ContactLaw, ModelError> {
-        ContactLaw::new(self.truth, self.effects)
+        ContactLaw::new(&self.truth, &self.effects)
     }
 
     fn equations(&self, law: ContactLaw, index: usize, step: &Step) -> Equations {
-        let last = self.steps.saturating_sub(1).max(1);
-        let elapsed = if self.steps > 1 {
+        let last = self.plan.steps.len().saturating_sub(1);
+        let elapsed = if last > 0 {
             index as f64 / last as f64
         } else {
             0.5
         };
-        Equations::new(self.truth, self.effects, law, step, elapsed)
+        Equations::new(&self.truth, &self.effects, law, step, elapsed)
     }
 
     /// Change a motion's setting to step number `index`.
@@ -244,7 +232,9 @@ impl Recorded {
 mod tests {
     use super::*;
     use crate::record::Sweep;
-    use crate::synthetic::effects::Harmonic;
+    use crate::synthetic::effects::{Effects, Harmonic};
+    use crate::synthetic::plan::Plan;
+    use crate::synthetic::truth::{Faults, Truth};
 
     fn step(eta: f64, rho: f64) -> Step {
         Step {
@@ -252,6 +242,18 @@ mod tests {
             clearance_m: 1e-3 * rho,
             sweep: Sweep::Up,
             from_rest: true,
+        }
+    }
+
+    fn laboratory(truth: Truth, effects: Effects, steps: Vec<Step>) -> Laboratory {
+        Laboratory {
+            truth,
+            faults: Faults::default(),
+            effects,
+            clearance_uncertainty_m: None,
+            plan: Plan { steps },
+            rig_seed: 1,
+            seed: 1,
         }
     }
 
@@ -272,16 +274,10 @@ mod tests {
                 damping_asymmetry: 0.05,
                 ..Truth::symmetric(r, 10.0, 0.07, 1e-3)
             };
-            let effects = Effects::default();
-            let (truth, effects) = (&truth, &effects);
-            let physics = Physics {
-                truth,
-                effects,
-                steps: 1,
-            };
             let step = step(eta, rho);
-            let mut exact = physics.at_rest(0, &step).unwrap();
-            let mut integrated = physics.integrated(0, &step).unwrap();
+            let laboratory = laboratory(truth, Effects::default(), vec![step]);
+            let mut exact = laboratory.at_rest(0, &step).unwrap();
+            let mut integrated = laboratory.integrated(0, &step).unwrap();
             assert!(matches!(exact, Engine::Exact(_)));
             let pair = [exact.record(40.0), integrated.record(40.0)];
             let taus = || (0..4000).map(|i| 0.01 * f64::from(i));
@@ -316,13 +312,11 @@ mod tests {
             force_curvature: 0.05,
             ..Effects::default()
         };
-        let physics = Physics {
-            truth: &truth,
-            effects: &effects,
-            steps: 1,
-        };
         let eta = 1.3;
-        let mut engine = physics.at_rest(0, &step(eta, 30.0)).unwrap();
+        let step = step(eta, 30.0);
+        let mut engine = laboratory(truth, effects, vec![step])
+            .at_rest(0, &step)
+            .unwrap();
         engine.advance(60.0 * std::f64::consts::TAU);
         let (start, phase) = (engine.tau(), engine.phase());
         let recorded = engine.record(10.0);
@@ -350,13 +344,10 @@ mod tests {
             frequency_drift: 0.1,
             ..Effects::default()
         };
-        let physics = Physics {
-            truth: &truth,
-            effects: &effects,
-            steps: 3,
-        };
+        let step = step(0.01, 30.0);
+        let laboratory = laboratory(truth, effects, vec![step; 3]);
         for (index, ratio) in [(0, 0.95f64), (1, 1.0), (2, 1.05)] {
-            let mut engine = physics.at_rest(index, &step(0.01, 30.0)).unwrap();
+            let mut engine = laboratory.at_rest(index, &step).unwrap();
             engine.advance(std::f64::consts::TAU / 0.01);
             let expected = 1.0 / (ratio * ratio);
             assert!((engine.state()[0] / expected - 1.0).abs() < 1e-3);

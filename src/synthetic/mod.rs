@@ -3,11 +3,11 @@
 //! detector, classifier and identification alike, and are always labelled as synthetic.
 
 pub mod acquisition;
-pub mod draw;
 pub mod effects;
 pub mod engine;
 mod equations;
 mod integrate;
+pub mod laboratory;
 pub mod plan;
 pub mod rig;
 pub mod rig_spec;
@@ -18,9 +18,9 @@ pub mod truth;
 #[cfg(test)]
 mod tests;
 
-pub use draw::{Draw, Reach, draw};
 pub use effects::Effects;
+pub use laboratory::{Laboratory, Reach, draw};
 pub use plan::{Plan, Step};
 pub use rig_spec::{Effect, RigError, RigSpec};
-pub use run::{Laboratory, RawChannel, RawRecord, blocks, records};
+pub use run::{RawChannel, RawRecord, blocks, records};
 pub use truth::{Faults, TrueImpact, Truth};

@@ -8,9 +8,9 @@ use crate::motion::Motion;
 use crate::record::{self, Channel, Record, Role};
 use crate::signal::whole;
 use crate::synthetic::acquisition::{self, Disturbance, HighPass};
-use crate::synthetic::effects::Effects;
-use crate::synthetic::engine::{Engine, Physics, Recorded};
+use crate::synthetic::engine::{Engine, Recorded};
 use crate::synthetic::equations::Phase4;
+use crate::synthetic::laboratory::Laboratory;
 use crate::synthetic::plan::{Plan, Step};
 use crate::synthetic::rig::{ROLES, sensitivities};
 use crate::synthetic::settled::true_motion;
@@ -68,28 +68,11 @@ struct Take<'a> {
     impacts: &'a [TrueImpact],
 }
 
-/// What a virtual laboratory is made of and what it visits.
-#[derive(Debug, Clone, Copy)]
-pub struct Laboratory<'a> {
-    /// True parameters.
-    pub truth: &'a Truth,
-    /// Faults of the rig.
-    pub faults: &'a Faults,
-    /// Effects beyond the model.
-    pub effects: &'a Effects,
-    /// The settings that are visited.
-    pub plan: &'a Plan,
-    /// Seed of the rig's own errors: its gains and corners.
-    pub rig_seed: u64,
-    /// Seed of everything else that is random.
-    pub seed: u64,
-}
-
 /// All records of a plan, in order. Sweeps run in parallel; the result does not depend on it.
 ///
 /// # Errors
 /// [`ModelError`] if the truth or the plan is outside the model's range.
-pub fn records(laboratory: &Laboratory<'_>) -> Result<Vec<RawRecord>, ModelError> {
+pub fn records(laboratory: &Laboratory) -> Result<Vec<RawRecord>, ModelError> {
     let whole = |_: usize, block: Vec<RawRecord>| Ok::<_, ModelError>(block);
     let parts = blocks(laboratory, usize::MAX, &|raw| raw, &whole)?;
     Ok(parts.into_iter().flatten().collect())
@@ -103,7 +86,7 @@ pub fn records(laboratory: &Laboratory<'_>) -> Result<Vec<RawRecord>, ModelError
 /// # Errors
 /// [`ModelError`] if the truth or the plan is outside the model's range; what `write` says.
 pub fn blocks<K: Send, W: Send, E: From<ModelError> + Send>(
-    laboratory: &Laboratory<'_>,
+    laboratory: &Laboratory,
     most: usize,
     keep: &(dyn Fn(RawRecord) -> K + Sync),
     write: &(dyn Fn(usize, Vec<K>) -> Result<W, E> + Sync),
@@ -111,26 +94,18 @@ pub fn blocks<K: Send, W: Send, E: From<ModelError> + Send>(
     let Laboratory {
         truth,
         faults,
-        effects,
-        plan,
         rig_seed,
-        seed,
-    } = *laboratory;
+        ..
+    } = laboratory;
     let rig = VirtualRig {
-        physics: Physics {
-            truth,
-            effects,
-            steps: plan.steps.len(),
-        },
-        faults,
-        gains: draw_gains(faults, sensitivities(truth).len(), rig_seed),
-        corners: draw_corners(faults, rig_seed),
-        seed,
+        laboratory,
+        gains: draw_gains(faults, sensitivities(truth).len(), *rig_seed),
+        corners: draw_corners(faults, *rig_seed),
     };
-    let parts: Result<Vec<Vec<W>>, E> = sweeps(plan)
+    let parts: Result<Vec<Vec<W>>, E> = sweeps(&laboratory.plan)
         .par_iter()
         .map(|(first, steps)| {
-            let mut engine = rig.physics.at_rest(*first, &steps[0])?;
+            let mut engine = laboratory.at_rest(*first, &steps[0])?;
             let mut first = *first;
             let mut written = Vec::new();
             for steps in steps.chunks(most.max(1)) {
@@ -159,22 +134,20 @@ fn sweeps(plan: &Plan) -> Vec<(usize, Vec<Step>)> {
 }
 
 struct VirtualRig<'a> {
-    physics: Physics<'a>,
-    faults: &'a Faults,
+    laboratory: &'a Laboratory,
     gains: Vec<f64>,
     /// Of the three integrators, over the stated corner.
     corners: [f64; 3],
-    seed: u64,
 }
 
 impl VirtualRig<'_> {
     /// Settle at a step, then record.
     fn record(&self, engine: &mut Engine, index: usize, step: &Step) -> RawRecord {
-        let setting = self.physics.setting(step);
-        let omega = self.physics.truth.natural_rate();
-        let mut rng = ChaCha8Rng::seed_from_u64(self.seed.wrapping_add(1));
+        let setting = self.laboratory.setting(step);
+        let omega = self.laboratory.truth.natural_rate();
+        let mut rng = ChaCha8Rng::seed_from_u64(self.laboratory.seed.wrapping_add(1));
         rng.set_stream(index as u64);
-        self.physics.set(engine, index, step);
+        self.laboratory.set(engine, index, step);
         // A random fraction of a period, so that records start at any phase of the drive.
         let settle = (SETTLE_PERIODS + rng.random_range(0.0..1.0)) * setting.period();
         engine.settle(settle, setting.period());
@@ -215,11 +188,11 @@ impl VirtualRig<'_> {
     }
 
     fn speed(&self) -> f64 {
-        self.physics.truth.static_deflection_m * self.physics.truth.natural_rate()
+        self.laboratory.truth.static_deflection_m * self.laboratory.truth.natural_rate()
     }
 
     fn channels(&self, take: &Take<'_>, rng: &mut ChaCha8Rng) -> Vec<RawChannel> {
-        let delays = self.physics.effects.delays_s;
+        let delays = self.laboratory.effects.delays_s;
         let times: Vec<f64> = (0..SAMPLES).map(|i| i as f64 / RATE_HZ).collect();
         let rate = std::f64::consts::TAU * take.step.frequency_hz;
         let drive = times
@@ -227,11 +200,12 @@ impl VirtualRig<'_> {
             .map(|t| 2.0 * (rate * (t - delays[0]) + take.phase).cos())
             .collect();
         let late: Vec<f64> = times.iter().map(|t| t - delays[1]).collect();
-        let contact = acquisition::contact_volts(&late, take.impacts, self.faults, rng);
+        let contact = acquisition::contact_volts(&late, take.impacts, &self.laboratory.faults, rng);
         let [vx, vy, x, y, frame] = self.motion_samples(take);
         let signals: [Vec<f64>; 7] = [drive, contact, vx, vy, x, y, frame];
-        let mut disturbance = Disturbance::new(self.physics.effects, self.seed, take.index);
-        sensitivities(self.physics.truth)
+        let mut disturbance =
+            Disturbance::new(&self.laboratory.effects, self.laboratory.seed, take.index);
+        sensitivities(&self.laboratory.truth)
             .iter()
             .zip(signals)
             .zip(&self.gains)
@@ -246,7 +220,7 @@ impl VirtualRig<'_> {
                     .map(|v| v * factor * (1.0 - bend * v * v))
                     .collect();
                 disturbance.add(&mut volts);
-                acquisition::convert(&mut volts, self.faults, rng);
+                acquisition::convert(&mut volts, &self.laboratory.faults, rng);
                 RawChannel {
                     name: sensitivity.name,
                     volts,
@@ -257,11 +231,11 @@ impl VirtualRig<'_> {
 
     /// Relative loss of a channel per square of its signal, SI.
     fn bend(&self, channel: &str) -> f64 {
-        let effects = self.physics.effects;
+        let effects = &self.laboratory.effects;
         let full = match channel {
             "generator" | "contact" | "frame_x" => return 0.0,
             "integrator_x" | "integrator_y" => effects.resonance_amplitude_m,
-            _ => effects.resonance_amplitude_m * self.physics.truth.natural_rate(),
+            _ => effects.resonance_amplitude_m * self.laboratory.truth.natural_rate(),
         };
         match effects.compression == 0.0 {
             true => 0.0,
@@ -273,8 +247,8 @@ impl VirtualRig<'_> {
     /// and late by its delay: the laser's velocity of x has no filter, the integrators' signals
     /// have a high-pass.
     fn motion_samples(&self, take: &Take<'_>) -> [Vec<f64>; 5] {
-        let delays = &self.physics.effects.delays_s;
-        let corner = |i: usize| Some(self.corners[i] * self.faults.high_pass_hz?);
+        let delays = &self.laboratory.effects.delays_s;
+        let corner = |i: usize| Some(self.corners[i] * self.laboratory.faults.high_pass_hz?);
         let channels: [(usize, f64, Option<f64>); 5] = [
             (1, delays[2], None),
             (3, delays[3], corner(0)),
@@ -300,8 +274,8 @@ impl VirtualRig<'_> {
 
     /// [x, x', y, y'] in SI at [`FINE`] times the rate of sampling, the pre-roll included.
     fn fine_states(&self, take: &Take<'_>, delay_s: f64) -> Vec<Phase4> {
-        let omega = self.physics.truth.natural_rate();
-        let (x_st, speed) = (self.physics.truth.static_deflection_m, self.speed());
+        let omega = self.laboratory.truth.natural_rate();
+        let (x_st, speed) = (self.laboratory.truth.static_deflection_m, self.speed());
         let count = PRE_ROLL_FINE + (SAMPLES - 1) * FINE + 1;
         let taus = (0..count).map(|i| take.start_tau + (i as f64 * FINE_STEP_S - delay_s) * omega);
         let states = take.recorded.sample(taus).into_iter();

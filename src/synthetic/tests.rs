@@ -8,20 +8,18 @@ use crate::signal::robust;
 
 /// Impacts of a campaign of forty records with R = 0.7, as detected.
 fn impacts(effects: &Effects) -> Vec<Impact> {
-    let truth = Truth::symmetric(0.7, 12.0, 0.06, 1e-3);
-    let faults = Faults::default();
-    let plan = Plan::for_rig(12.0, 0.06, 1e-3, 40);
-    let raw = records(&Laboratory {
-        truth: &truth,
-        faults: &faults,
-        effects,
-        plan: &plan,
+    let laboratory = Laboratory {
+        truth: Truth::symmetric(0.7, 12.0, 0.06, 1e-3),
+        faults: Faults::default(),
+        effects: effects.clone(),
+        clearance_uncertainty_m: None,
+        plan: Plan::for_rig(12.0, 0.06, 1e-3, 40),
         rig_seed: 3,
         seed: 3,
-    })
-    .unwrap();
+    };
+    let raw = records(&laboratory).unwrap();
     let found = raw.iter().flat_map(|raw| {
-        let record = calibrated(raw, &truth, &faults);
+        let record = calibrated(raw, &laboratory.truth, &laboratory.faults);
         detect(&record, RigKind::Double, &DetectSettings::default()).impacts
     });
     found.filter(|i| i.dead_zone_s == 0.0).collect()

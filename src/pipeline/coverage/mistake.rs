@@ -3,7 +3,7 @@
 use super::Seen;
 use crate::identify::Finding;
 use crate::record::{FlagCode, Record, Role};
-use crate::synthetic::{Draw, Effect};
+use crate::synthetic::{Effect, Laboratory};
 
 /// A mistake of the laboratory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr, strum::VariantArray)]
@@ -31,7 +31,7 @@ impl Mistake {
     }
 
     /// The campaign with an uncertainty of its gaps stated, where the mistake is measured by it.
-    pub(super) fn stated(self, draw: &Draw) -> Draw {
+    pub(super) fn stated(self, draw: &Laboratory) -> Laboratory {
         let typical_m = Effect::Gaps.typical_strength() * draw.truth.static_deflection_m;
         let uncertainty_m = match self {
             Self::GapOffByFiveUncertainties | Self::GapOffByItsUncertainty => {
@@ -39,7 +39,7 @@ impl Mistake {
             }
             _ => draw.clearance_uncertainty_m,
         };
-        Draw {
+        Laboratory {
             clearance_uncertainty_m: uncertainty_m,
             ..draw.clone()
         }

@@ -21,7 +21,7 @@ use crate::motion::{
 use crate::pipeline::{PipelineError, Progress};
 use crate::record::{FlagCode, Record};
 use crate::synthetic::run::calibrated;
-use crate::synthetic::{Draw, Reach, RigSpec, Truth, draw, records};
+use crate::synthetic::{Laboratory, Reach, RigSpec, Truth, draw, records};
 
 mod mistake;
 mod tallies;
@@ -72,7 +72,7 @@ impl Seen {
 fn evidence<'a>(
     observations: &'a [Observation],
     brackets: &'a [Bracket],
-    draw: &Draw,
+    draw: &Laboratory,
 ) -> Evidence<'a> {
     Evidence {
         rig: RigKind::Double,
@@ -94,7 +94,7 @@ fn evidence<'a>(
 }
 
 /// Simulate, observe and identify a campaign, with a mistake or without.
-fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError> {
+fn campaign(draw: &Laboratory, mistake: Option<Mistake>) -> Result<Seen, PipelineError> {
     let Some(mistake) = mistake else {
         return spoilt(draw, |_| ());
     };
@@ -104,8 +104,8 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError
 }
 
 /// Simulate a campaign, change its records, observe and identify it.
-fn spoilt(draw: &Draw, change: impl Fn(&mut [Record])) -> Result<Seen, PipelineError> {
-    let raw = records(&draw.laboratory())?;
+fn spoilt(draw: &Laboratory, change: impl Fn(&mut [Record])) -> Result<Seen, PipelineError> {
+    let raw = records(draw)?;
     let mut records: Vec<Record> = raw
         .iter()
         .map(|r| calibrated(r, &draw.truth, &draw.faults))
@@ -136,12 +136,12 @@ fn spoilt(draw: &Draw, change: impl Fn(&mut [Record])) -> Result<Seen, PipelineE
 ///
 /// # Errors
 /// Where the simulation refuses its parameters.
-pub(super) fn identified(draw: &Draw) -> Result<Identification, PipelineError> {
+pub(super) fn identified(draw: &Laboratory) -> Result<Identification, PipelineError> {
     Ok(campaign(draw, None)?.outcome)
 }
 
 /// What a campaign contributes to the scores.
-fn trial(seen: &Seen, draw: &Draw) -> Trial {
+fn trial(seen: &Seen, draw: &Laboratory) -> Trial {
     let truth = parameters(&draw.truth);
     let bounds = bounds(&evidence(&seen.observations, &seen.brackets, draw), &truth);
     Trial::new(truth, &seen.outcome.joint, &seen.outcome.methods, bounds)

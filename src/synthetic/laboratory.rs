@@ -1,4 +1,5 @@
-//! Random campaigns: truth, noise and faults drawn from the ranges that laboratories have.
+//! A virtual laboratory, and random ones: truth, noise and faults drawn from the ranges that laboratories
+//! have.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -6,13 +7,12 @@ use rand_chacha::ChaCha8Rng;
 use super::effects::Effects;
 use super::plan::Plan;
 use super::rig_spec::RigSpec;
-use super::run::Laboratory;
 use super::truth::{Faults, Truth, draw_asymmetry};
 use crate::signal::whole;
 
-/// A campaign to simulate.
+/// A virtual laboratory: what it is made of, what it visits and what it states.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Draw {
+pub struct Laboratory {
     /// True parameters.
     pub truth: Truth,
     /// Faults of the rig.
@@ -21,11 +21,11 @@ pub struct Draw {
     pub effects: Effects,
     /// Standard uncertainty that the laboratory states of its gaps, m, if they are off.
     pub clearance_uncertainty_m: Option<f64>,
-    /// The settings visited.
+    /// The settings that are visited.
     pub plan: Plan,
-    /// Seed of the rig's own errors.
+    /// Seed of the rig's own errors: its gains and corners.
     pub rig_seed: u64,
-    /// Seed of its noise.
+    /// Seed of everything else that is random.
     pub seed: u64,
 }
 
@@ -38,11 +38,11 @@ pub enum Reach {
     NothingTouches,
 }
 
-/// Draw campaign number `index` of a study; the same seed and index always give the same.
+/// Draw the laboratory of campaign number `index` of a study; the same seed and index always give the same.
 ///
 /// R 0.5 to 0.93, β 0.025 to 0.09, f0 8 to 17 Hz, `x_st` 0.3 to 3 mm, 120 to 260 records, noise 1 to
 /// 8 mV on ±5 V, integrators' corner 0.2 to 0.8 Hz, asymmetry up to 2 %, and the effects of `rig`.
-pub fn draw(seed: u64, index: u64, reach: Reach, rig: &RigSpec) -> Draw {
+pub fn draw(seed: u64, index: u64, reach: Reach, rig: &RigSpec) -> Laboratory {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(index);
     let mut between = |low: f64, high: f64| rng.random_range(low..high);
@@ -82,7 +82,7 @@ pub fn draw(seed: u64, index: u64, reach: Reach, rig: &RigSpec) -> Draw {
         )
     };
     let effects = rig.draw(&mut truth, &plan, own_seed);
-    Draw {
+    Laboratory {
         clearance_uncertainty_m: rig.clearance_uncertainty_m(&truth),
         truth,
         faults,
@@ -93,7 +93,7 @@ pub fn draw(seed: u64, index: u64, reach: Reach, rig: &RigSpec) -> Draw {
     }
 }
 
-impl Draw {
+impl Laboratory {
     /// The same with about another number of records, on the same rig.
     #[must_use]
     pub fn with_records(mut self, records: usize, rig: &RigSpec) -> Self {
@@ -114,18 +114,6 @@ impl Draw {
             truth,
             seed,
             ..self.clone()
-        }
-    }
-
-    /// The laboratory that runs it.
-    pub fn laboratory(&self) -> Laboratory<'_> {
-        Laboratory {
-            truth: &self.truth,
-            faults: &self.faults,
-            effects: &self.effects,
-            plan: &self.plan,
-            rig_seed: self.rig_seed,
-            seed: self.seed,
         }
     }
 }
