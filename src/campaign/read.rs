@@ -74,9 +74,7 @@ pub(super) fn read(text: &str, faults: &mut FaultCollector) -> Option<WrittenCam
                     .span()
                     .and_then(|span| take_out(document.get_mut(), &span));
                 note_form(&places, &fault, path.as_deref(), faults);
-                if path.is_none() {
-                    return None;
-                }
+                path?;
             }
         }
     }
