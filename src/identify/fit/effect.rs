@@ -135,61 +135,45 @@ impl Effect {
         self as usize
     }
 
-    /// The kind it belongs to.
-    pub fn kind(self) -> EffectKind {
+    /// Its kind, the standard deviation of its prior, and whether it is an acceleration.
+    fn properties(self) -> (EffectKind, f64, bool) {
         match self {
             Self::SecondHarmonicCos
             | Self::SecondHarmonicSin
             | Self::ThirdHarmonicCos
-            | Self::ThirdHarmonicSin => EffectKind::Harmonics,
-            Self::ForceSlope | Self::ForceCurve => EffectKind::ForceFrequency,
-            Self::Hardening => EffectKind::Hardening,
-            Self::Friction => EffectKind::Friction,
-            Self::FrequencyDrift
-            | Self::FrequencyBend
-            | Self::DampingDrift
-            | Self::DeflectionDrift
-            | Self::ClearanceDrift => EffectKind::Drift,
-            Self::ContactDuration | Self::ContactLaw | Self::ContactReach => {
-                EffectKind::ContactDuration
-            }
-            Self::Drag => EffectKind::Drag,
-            Self::SpringAsymmetry => EffectKind::SpringAsymmetry,
-            Self::HystereticDamping => EffectKind::HystereticDamping,
+            | Self::ThirdHarmonicSin => (EffectKind::Harmonics, 5e-3, true),
+            Self::ForceSlope => (EffectKind::ForceFrequency, 2e-2, false),
+            Self::ForceCurve => (EffectKind::ForceFrequency, 1e-2, false),
+            Self::Hardening => (EffectKind::Hardening, 5e-3, true),
+            Self::Friction => (EffectKind::Friction, 5e-3, true),
+            Self::FrequencyDrift => (EffectKind::Drift, 3e-3, false),
+            Self::FrequencyBend => (EffectKind::Drift, 1e-3, false),
+            Self::DampingDrift => (EffectKind::Drift, 2e-2, false),
+            Self::DeflectionDrift => (EffectKind::Drift, 5e-3, false),
+            Self::ContactDuration => (EffectKind::ContactDuration, 0.6, false),
+            Self::ContactLaw => (EffectKind::ContactDuration, 0.1, false),
+            Self::ContactReach => (EffectKind::ContactDuration, 0.3, false),
+            Self::Drag => (EffectKind::Drag, 1e-2, true),
+            Self::SpringAsymmetry => (EffectKind::SpringAsymmetry, 5e-3, true),
+            Self::HystereticDamping => (EffectKind::HystereticDamping, 0.1, false),
+            Self::ClearanceDrift => (EffectKind::Drift, 1e-2, false),
         }
+    }
+
+    /// The kind it belongs to.
+    pub fn kind(self) -> EffectKind {
+        self.properties().0
     }
 
     /// Standard deviation of its prior: what a good laboratory would accept.
     pub fn accepted(self) -> f64 {
-        match self {
-            Self::SecondHarmonicCos
-            | Self::SecondHarmonicSin
-            | Self::ThirdHarmonicCos
-            | Self::ThirdHarmonicSin => 5e-3,
-            Self::ForceSlope => 2e-2,
-            Self::ForceCurve => 1e-2,
-            Self::Hardening | Self::Friction => 5e-3,
-            Self::FrequencyDrift => 3e-3,
-            Self::FrequencyBend => 1e-3,
-            Self::DampingDrift => 2e-2,
-            Self::DeflectionDrift => 5e-3,
-            Self::ContactDuration => 0.6,
-            Self::ContactLaw => 0.1,
-            Self::ContactReach => 0.3,
-            Self::Drag | Self::ClearanceDrift => 1e-2,
-            Self::SpringAsymmetry => 5e-3,
-            Self::HystereticDamping => 0.1,
-        }
+        self.properties().1
     }
 
     /// Whether it acts as a small extra acceleration along the orbit, so that its slopes are those
     /// of a perturbation; the others change the parameters of a record.
     pub fn is_acceleration(self) -> bool {
-        self.place() <= Self::ThirdHarmonicSin.place()
-            || matches!(
-                self,
-                Self::Hardening | Self::Friction | Self::Drag | Self::SpringAsymmetry
-            )
+        self.properties().2
     }
 
     /// Name in `identification.json`.
