@@ -8,9 +8,8 @@ use serde::{Deserialize, Serialize};
 use crate::identify::JointFit;
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::trajectory::{TrajectoryBlock, distinct_phases};
-use crate::identify::evidence::trajectory_record::{TrajectoryRecord, Weighing};
+use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
-use crate::identify::fit::group::Group;
 use crate::identify::fit::normal::inverse;
 use crate::identify::fit::parameters::{Coordinate, GAIN_ROLES, Parameters};
 use crate::identify::fit::{Fit, Problem};
@@ -257,7 +256,6 @@ impl UsualRecord {
         };
         let speed = parameters.static_deflection_m * parameters.natural_rate();
         TrajectoryRecord {
-            observation: 0,
             frequency_hz,
             clearance_m,
             drive_amplitude: 1.0,
@@ -266,15 +264,7 @@ impl UsualRecord {
             closing_speed_m_s: orbit.approach_speed * speed,
             frequency_error: self.frequency_error,
             phase_error_rad: self.phase_error_rad,
-            gap: None,
-            lone_clearance_error_m: 0.0,
-            place: 0.0,
-            group: Group::default(),
-            press_per_s: 0.0,
-            shared: Vec::new(),
-            perturbations: Vec::new(),
-            weighing: Weighing::default(),
-            reduced: None,
+            ..TrajectoryRecord::default()
         }
     }
 }

@@ -42,7 +42,7 @@ pub struct FoldedChannel {
 }
 
 /// A periodic record folded onto n drive periods.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Folded {
     /// Drive periods in one period of the motion.
     pub periods_n: u32,

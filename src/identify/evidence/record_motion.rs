@@ -488,7 +488,6 @@ pub(super) mod tests {
 
     use super::*;
     use crate::identify::evidence::trajectory::distinct_phases;
-    use crate::identify::evidence::trajectory_record::Weighing;
     use crate::identify::fit::effect::Effect;
     use crate::identify::fit::effect::Effects;
     use crate::identify::fit::parameters::GAIN_ROLES;
@@ -546,7 +545,6 @@ pub(super) mod tests {
                 .to_vec(),
         };
         TrajectoryRecord {
-            observation: 0,
             frequency_hz,
             clearance_m: 0.4e-3,
             drive_amplitude: 1.1,
@@ -556,14 +554,9 @@ pub(super) mod tests {
             frequency_error: 1e-5,
             phase_error_rad: 1e-3,
             gap: Some(1),
-            lone_clearance_error_m: 0.0,
             place: 0.3,
-            group: crate::identify::fit::group::Group::default(),
             press_per_s: -40.0,
-            shared: Vec::new(),
-            perturbations: Vec::new(),
-            weighing: Weighing::default(),
-            reduced: None,
+            ..TrajectoryRecord::default()
         }
     }
 

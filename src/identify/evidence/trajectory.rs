@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::event::RigKind;
 use crate::identify::evidence::nearest_orbit::NearestOrbit;
 use crate::identify::evidence::record_motion::{Column, RecordMotion, Slopes};
-use crate::identify::evidence::trajectory_record::{TrajectoryRecord, Weighing};
+use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::waveform::{Phases, Terms};
 use crate::identify::fit::Block;
 use crate::identify::fit::effect::{Effect, Effects};
@@ -219,20 +219,12 @@ fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> 
         frequency_hz: drive.frequency_hz,
         frequency_error: drive.frequency_error_hz / drive.frequency_hz,
         phase_error_rad: o.drive_phase_error_rad(),
-        gap: None,
-        lone_clearance_error_m: 0.0,
-        place: 0.0,
-        group: Group::default(),
-        press_per_s: 0.0,
-        shared: Vec::new(),
-        perturbations: Vec::new(),
-        weighing: Weighing::default(),
-        reduced: None,
         clearance_m: o.setting.clearance_m?,
         drive_amplitude: o.setting.drive_amplitude,
         phases: distinct_phases(&folded).into(),
         folded,
         closing_speed_m_s: crate::signal::robust::median(&speeds)?,
+        ..TrajectoryRecord::default()
     })
 }
 

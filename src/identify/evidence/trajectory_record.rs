@@ -15,7 +15,7 @@ use crate::signal::columns::{dot, subtract};
 use crate::signal::robust;
 
 /// One folded record.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct TrajectoryRecord {
     /// Index among the observations.
     pub observation: usize,
