@@ -77,11 +77,7 @@ pub fn problem<'b>(
         if !free.contains(&coordinate) {
             free.insert(0, coordinate);
         }
-        priors.push(Prior {
-            coordinate,
-            centre,
-            deviation,
-        });
+        priors.push(Prior::new(coordinate, centre, deviation));
     }
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
     Some(blocks.problem(list, free, priors))

@@ -20,11 +20,8 @@ pub fn wide_priors(start: &Parameters, free: &[Coordinate]) -> Vec<Prior> {
                 Coordinate::Damping | Coordinate::Deflection => 2.0,
                 _ => return None,
             };
-            Some(Prior {
-                coordinate: *coordinate,
-                centre: start.coordinate(*coordinate),
-                deviation,
-            })
+            let centre = start.coordinate(*coordinate);
+            Some(Prior::new(*coordinate, centre, deviation))
         })
         .collect()
 }

@@ -346,27 +346,15 @@ impl Blocks {
         (free, priors): (&mut Vec<Coordinate>, &mut Vec<Prior>),
     ) {
         let touched = |c: &Coordinate| fitted.iter().any(|(block, _)| block.touches(*c));
-        let stated = |c, deviation: f64| Prior {
-            coordinate: c,
-            centre: 0.0,
-            deviation,
-        };
-        let gains = self
-            .gains()
-            .map(|c| stated(c, nominal.gain_uncertainty.max(1e-6)));
-        let corners = self.corners();
-        let corners = corners.map(|c| stated(c, nominal.corner_uncertainty.max(1e-6)));
-        let all = gains
-            .chain(corners)
+        let gain = nominal.gain_uncertainty.max(1e-6);
+        let corner = nominal.corner_uncertainty.max(1e-6);
+        let effects = nominal.effects.iter();
+        let all = (self.gains().map(|c| Prior::new(c, 0.0, gain)))
+            .chain(self.corners().map(|c| Prior::new(c, 0.0, corner)))
             .chain(self.delays(nominal))
             .chain(self.asymmetries(nominal))
             .chain(self.clearances(nominal))
-            .chain(
-                nominal
-                    .effects
-                    .iter()
-                    .map(|e| stated(Coordinate::Effect(e), e.accepted())),
-            );
+            .chain(effects.map(|e| Prior::new(Coordinate::Effect(e), 0.0, e.accepted())));
         for prior in all.filter(|p| p.deviation > 0.0 && touched(&p.coordinate)) {
             free.push(prior.coordinate);
             priors.push(prior);
@@ -376,10 +364,10 @@ impl Blocks {
     /// Delays of the channels that are measured, ms.
     fn delays(&self, nominal: &Nominal) -> impl Iterator<Item = Prior> {
         let measured = (0..4).filter(|i| self.measures(*i, |_| true));
-        measured.map(|i| Prior {
-            coordinate: Coordinate::Delay(i),
-            centre: 1e3 * nominal.delays_s[i],
-            deviation: 1e3 * nominal.delay_uncertainties_s[i].unwrap_or(self.half_sample_s),
+        measured.map(|i| {
+            let uncertainty_s = nominal.delay_uncertainties_s[i].unwrap_or(self.half_sample_s);
+            let centre = 1e3 * nominal.delays_s[i];
+            Prior::new(Coordinate::Delay(i), centre, 1e3 * uncertainty_s)
         })
     }
 
@@ -387,19 +375,13 @@ impl Blocks {
     fn asymmetries(&self, nominal: &Nominal) -> impl Iterator<Item = Prior> {
         let [centre, deviation] = nominal.mass_asymmetry.unwrap_or([0.0, MASS_ASYMMETRY]);
         let all = [
-            (Coordinate::DriveAsymmetry, 0.0, ASYMMETRY),
-            (Coordinate::StiffnessAsymmetry, 0.0, ASYMMETRY),
-            (Coordinate::DampingAsymmetry, 0.0, ASYMMETRY),
-            (Coordinate::MassAsymmetry, centre, deviation),
+            Prior::new(Coordinate::DriveAsymmetry, 0.0, ASYMMETRY),
+            Prior::new(Coordinate::StiffnessAsymmetry, 0.0, ASYMMETRY),
+            Prior::new(Coordinate::DampingAsymmetry, 0.0, ASYMMETRY),
+            Prior::new(Coordinate::MassAsymmetry, centre, deviation),
         ];
         let seen = self.sees_both();
-        all.into_iter()
-            .filter(move |_| seen)
-            .map(|(coordinate, centre, deviation)| Prior {
-                coordinate,
-                centre,
-                deviation,
-            })
+        all.into_iter().filter(move |_| seen)
     }
 
     /// Errors of the clearances, mm: one that all share and one of each stated.
@@ -407,11 +389,7 @@ impl Blocks {
         let deviation = 1e3 * nominal.clearance_uncertainty_m;
         let gaps = (0..self.gaps_m.len()).map(Coordinate::Gap);
         let all = std::iter::once(Coordinate::ScrewZero).chain(gaps);
-        all.map(move |coordinate| Prior {
-            coordinate,
-            centre: 0.0,
-            deviation,
-        })
+        all.map(move |coordinate| Prior::new(coordinate, 0.0, deviation))
     }
 }
 

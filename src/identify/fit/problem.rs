@@ -32,6 +32,17 @@ pub struct Prior {
     pub deviation: f64,
 }
 
+impl Prior {
+    /// The prior of a coordinate about a centre.
+    pub fn new(coordinate: Coordinate, centre: f64, deviation: f64) -> Self {
+        Self {
+            coordinate,
+            centre,
+            deviation,
+        }
+    }
+}
+
 /// A least-squares problem: blocks with weights, priors, and the coordinates that are free.
 #[derive(Default)]
 pub struct Problem<'a> {
