@@ -4,9 +4,8 @@ use crate::event::RigKind;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::motion::{BoundaryKind, Bracket};
-use impact_oscillator::model::boundary::{s1_of_branch, s2_of_branch};
+use impact_oscillator::model::boundary::{rho_grazing, s1_of_branch, s2_of_branch};
 use impact_oscillator::model::orbit::Branch;
-use impact_oscillator::model::params::Machine;
 
 /// Brackets that the fit uses, with the likelihood of each.
 #[derive(Debug, Clone)]
@@ -167,40 +166,18 @@ pub fn predicted_hz(bracket: &Bracket, parameters: &Parameters, rig: RigKind) ->
         bracket.clearance_m,
         bracket.drive_amplitude,
     );
+    let restitution = parameters.restitution.clamp(0.0, 1.0);
+    let branch = |eta: f64| Branch::new(&machine, eta, bracket.periods_n);
     let rho = |eta: f64| match bracket.kind {
-        BoundaryKind::Grazing => grazing(&machine, eta),
+        BoundaryKind::Grazing => rho_grazing(&machine, eta),
+        // not a number where the orbits do not double
         BoundaryKind::PeriodDoubling => {
-            doubling(&machine, parameters.restitution, eta, bracket.periods_n)
+            s1_of_branch(&machine, &branch(eta), restitution).map_or(f64::NAN, |at| at.0)
         }
-        _ => saddle_node(&machine, parameters.restitution, eta, bracket.periods_n),
+        _ => s2_of_branch(&branch(eta), restitution).0 / machine.gap(1.0),
     };
     let eta = nearest_crossing(rho, middle.clearance, middle.frequency_ratio)?;
     Some(eta * parameters.natural_frequency_hz)
-}
-
-/// ρ' in units of half the gap for either rig.
-fn grazing(machine: &Machine, eta: f64) -> f64 {
-    half_gap(machine, Branch::new(machine, eta, 1).forced.norm())
-}
-
-fn saddle_node(machine: &Machine, restitution: f64, eta: f64, n: u32) -> f64 {
-    let branch = Branch::new(machine, eta, n);
-    half_gap(
-        machine,
-        s2_of_branch(&branch, restitution.clamp(0.0, 1.0)).0,
-    )
-}
-
-/// ρ of s1; not a number where the orbits do not double.
-fn doubling(machine: &Machine, restitution: f64, eta: f64, n: u32) -> f64 {
-    let branch = Branch::new(machine, eta, n);
-    let found = s1_of_branch(machine, &branch, restitution.clamp(0.0, 1.0));
-    found.map_or(f64::NAN, |at| at.0)
-}
-
-/// Clearance ρ that belongs to a whole gap.
-fn half_gap(machine: &Machine, gap: f64) -> f64 {
-    gap / machine.gap(1.0)
 }
 
 /// Crossing of ρ(η) with a level nearest to η0: scanned outward, then closed in on.
@@ -284,7 +261,7 @@ pub(in crate::identify) mod tests {
     use super::*;
     use crate::identify::bracket_midpoints;
     use crate::record::Sweep;
-    use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
+    use impact_oscillator::model::boundary::{rho_s1, rho_s2};
 
     /// A bracket 2 % wide about the boundary of a kind at η, as the model itself has it; `off_middle`: how far
     /// its middle lies below, in half widths.
