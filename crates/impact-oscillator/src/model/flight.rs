@@ -74,6 +74,15 @@ pub struct FlightPaths {
 }
 
 impl FlightPaths {
+    /// Paths that hold for ever.
+    pub(super) fn lasting(x: Path, y: Path) -> Self {
+        Self {
+            x,
+            y,
+            valid_for: f64::INFINITY,
+        }
+    }
+
     /// Displacements, velocities, accelerations at time t since the start.
     pub fn at(&self, t: f64) -> State {
         let ([x, vx, ax], [y, vy, ay]) = (self.x.at(t), self.y.at(t));
@@ -147,11 +156,7 @@ pub fn free_flight(machine: &Machine, drive: Drive, start: &State) -> FlightPath
                 Some(o) => harmonic_path(o, drive, start.y, start.vy),
                 None => Path::constant(0.0, drive.eta),
             };
-            FlightPaths {
-                x,
-                y,
-                valid_for: f64::INFINITY,
-            }
+            FlightPaths::lasting(x, y)
         }
         Flight::ConstantForce {
             acceleration,
@@ -191,11 +196,7 @@ pub(crate) fn sticking_flight(
 ) -> FlightPaths {
     let Some(oy) = &machine.y else {
         let x = Path::constant(clearance, drive.eta);
-        return FlightPaths {
-            x,
-            y: Path::constant(0.0, drive.eta),
-            valid_for: f64::INFINITY,
-        };
+        return FlightPaths::lasting(x, Path::constant(0.0, drive.eta));
     };
     let pair = pair_oscillator(&machine.x, oy);
     let (kx, ky) = (stiffness(&machine.x), stiffness(oy));
@@ -204,11 +205,7 @@ pub(crate) fn sticking_flight(
     j.polynomial[0] = shift;
     let x = Path::constant(clearance, drive.eta).plus(1.0, &j);
     let y = Path::constant(clearance, drive.eta).plus(-1.0, &j);
-    FlightPaths {
-        x,
-        y,
-        valid_for: f64::INFINITY,
-    }
+    FlightPaths::lasting(x, y)
 }
 
 fn stiffness(o: &Oscillator) -> f64 {

@@ -215,12 +215,7 @@ impl Runner<'_> {
         };
         let u = relative.path(self.drive(), s.x + s.y, s.vx + s.vy);
         if self.machine.y.is_none() {
-            let y = Path::constant(0.0, self.eta);
-            return FlightPaths {
-                x: u,
-                y,
-                valid_for: f64::INFINITY,
-            };
+            return FlightPaths::lasting(u, Path::constant(0.0, self.eta));
         }
         let apart = Relative {
             oscillator: Oscillator {
@@ -232,11 +227,7 @@ impl Runner<'_> {
         };
         let v = apart.path(self.drive(), s.x - s.y, s.vx - s.vy);
         let (x, y) = (u.plus(1.0, &v).scaled(0.5), u.plus(-1.0, &v).scaled(0.5));
-        FlightPaths {
-            x,
-            y,
-            valid_for: f64::INFINITY,
-        }
+        FlightPaths::lasting(x, y)
     }
 
     /// The phase's paths, the next change within a time and the phase after it.
