@@ -99,7 +99,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         if !run.selection.leave_out_gap(odd.stated_m) {
             break;
         }
-        fits = run.fits(start, fits.resonance, fits.impacts);
+        fits = run.fits(start, fits.alone.resonance, fits.alone.impacts);
     }
     fits = run.without_influential(fits);
     suspicions.extend(run.other_suspicions(&fits));
@@ -188,11 +188,8 @@ fn without(
 
 /// Every method's fit, and all together.
 struct Fits {
-    resonance: Option<FitResult>,
-    impacts: Option<FitResult>,
-    trajectories: Option<FitResult>,
+    alone: Alone,
     boundaries: Option<FitResult>,
-    flights: Option<FitResult>,
     joint: Option<FitResult>,
     /// Where the joint fit started, and the weights of its blocks.
     start: Parameters,
@@ -301,26 +298,21 @@ impl IdentificationRun<'_> {
 
     /// Boundaries and all together, beside what the other methods tell alone.
     fn together(&mut self, start: Parameters, alone: Alone) -> Fits {
-        let Alone {
-            resonance,
-            impacts,
-            trajectories,
-            flights,
-        } = alone;
         let boundaries = self.selection.boundaries(start);
-        let waveforms = succeeded(&trajectories).map(|f| &f.fit.parameters);
-        self.posterior = succeeded(&resonance).and_then(|found| {
+        let waveforms = succeeded(&alone.trajectories).map(|f| &f.fit.parameters);
+        self.posterior = succeeded(&alone.resonance).and_then(|found| {
             let error = found.fit.error(Coordinate::Deflection)? * found.factor.sqrt();
             let about = (&found.fit.parameters, error.min(0.3));
             posterior::of_brackets(&self.selection.blocks.boundary, about, waveforms)
         });
         let weight = |attempt: &Option<FitResult>| succeeded(attempt).map(|f| 1.0 / f.factor);
         // Flights rest on the speeds at impacts; waveforms tell the same better than either.
-        let flown = weight(&flights).filter(|_| succeeded(&trajectories).is_none());
-        let impact_weight = succeeded(&impacts).map(|found| joint::impact_weight(found, &start));
+        let flown = weight(&alone.flights).filter(|_| succeeded(&alone.trajectories).is_none());
+        let impact_weight =
+            succeeded(&alone.impacts).map(|found| joint::impact_weight(found, &start));
         let weights: Weights = [
-            (Method::Resonance, weight(&resonance)),
-            (Method::Trajectories, weight(&trajectories)),
+            (Method::Resonance, weight(&alone.resonance)),
+            (Method::Trajectories, weight(&alone.trajectories)),
             (
                 Method::Boundaries,
                 weight(&boundaries).filter(|_| self.posterior.is_none()),
@@ -333,11 +325,8 @@ impl IdentificationRun<'_> {
         .collect();
         let joint = self.joint(&self.selection.blocks, start, &weights);
         Fits {
-            resonance,
-            impacts,
-            trajectories,
+            alone,
             boundaries,
-            flights,
             joint,
             start,
             weights,
@@ -380,24 +369,16 @@ impl IdentificationRun<'_> {
     /// The fits after influential records of some methods were left out, from a start near the optimum.
     fn fitted_again(&mut self, start: Parameters, fits: Fits, of: &BTreeSet<Method>) -> Fits {
         let (blocks, nominal) = (&self.selection.blocks, &self.evidence.nominal);
-        let resonance = match of.contains(&Method::Resonance) {
-            true => methods::resonance_from(blocks, nominal, start),
-            false => fits.resonance,
-        };
-        let trajectories = match of.contains(&Method::Trajectories) {
-            true => methods::trajectories(blocks, nominal, start, Precision::Result),
-            false => fits.trajectories,
-        };
-        let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
-        self.together(
-            start,
-            Alone {
-                resonance,
-                impacts: fits.impacts,
-                trajectories,
-                flights: fits.flights,
-            },
-        )
+        let mut alone = fits.alone;
+        if of.contains(&Method::Resonance) {
+            alone.resonance = methods::resonance_from(blocks, nominal, start);
+        }
+        if of.contains(&Method::Trajectories) {
+            let precision = Precision::Result;
+            alone.trajectories = methods::trajectories(blocks, nominal, start, precision);
+        }
+        let start = succeeded(&alone.trajectories).map_or(start, |f| f.fit.parameters);
+        self.together(start, alone)
     }
 
     /// All blocks in one fit, each with its weight; those without one stay out.
@@ -478,7 +459,7 @@ impl IdentificationRun<'_> {
             typical,
             ..
         } = &self.selection;
-        let weight = 1.0 / succeeded(&fits.trajectories)?.factor;
+        let weight = 1.0 / succeeded(&fits.alone.trajectories)?.factor;
         let uncertainty_m = self.evidence.nominal.clearance_uncertainty_m;
         let both = Weights::from([(Method::Resonance, 1.0), (Method::Trajectories, 1.0)]);
         let fit = |blocks: &Blocks| {
@@ -552,10 +533,11 @@ impl IdentificationRun<'_> {
         let posterior = self.posterior.as_ref();
         let together = succeeded(&fits.joint).map(|j| &j.fit);
         let found = [
-            fits.resonance
+            fits.alone
+                .resonance
                 .as_ref()
                 .map(|a| (Method::Resonance, results::resonance(blocks, a))),
-            fits.trajectories.as_ref().map(|a| {
+            fits.alone.trajectories.as_ref().map(|a| {
                 let result = results::trajectories(blocks, a, self.evidence);
                 (Method::Trajectories, result)
             }),
@@ -563,11 +545,12 @@ impl IdentificationRun<'_> {
                 let result = results::boundaries(blocks, a, posterior);
                 (Method::Boundaries, result)
             }),
-            fits.impacts.as_ref().map(|a| {
+            fits.alone.impacts.as_ref().map(|a| {
                 let result = results::impacts(blocks, a, self.evidence, together);
                 (Method::Impacts, result)
             }),
-            fits.flights
+            fits.alone
+                .flights
                 .as_ref()
                 .map(|a| (Method::Flights, results::flights(blocks, a))),
             decay::pooled(self.evidence.observations).map(|result| (Method::FreeDecay, result)),
