@@ -136,7 +136,7 @@ impl VerdictKind {
 }
 
 /// The verdict: one word, plain sentences (its `Display`, `summary` in JSON), and the findings.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self")]
 pub struct Verdict {
     /// The word.
@@ -237,7 +237,7 @@ pub struct Allowed {
 /// assert_eq!(back.verdict, found.verdict);
 /// # Ok::<(), serde_json::Error>(())
 /// ```
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Identification {
     /// The verdict.
     pub verdict: Verdict,

@@ -9,9 +9,7 @@ use serde::Deserialize;
 
 use crate::identify::estimate::{estimate, not_identifiable};
 use crate::identify::fit::parameters::Coordinate;
-use crate::identify::identification::{
-    Agreement, Identification, MethodResult, Verdict, VerdictKind,
-};
+use crate::identify::identification::{Identification, MethodResult, Verdict, VerdictKind};
 use crate::identify::messages::{Finding, Note, PublishedSetting, Remark, Sentence};
 use crate::identify::method::Method;
 use crate::identify::uncertainty::quantile::NORMAL_975;
@@ -183,13 +181,7 @@ fn identification(result: MethodResult, verdict: Verdict) -> Identification {
         verdict,
         joint: result.clone(),
         methods: BTreeMap::from([(Method::PublishedSpeeds, result)]),
-        agreement: Agreement::default(),
-        uncertainty: Default::default(),
-        suspicions: Vec::new(),
-        left_out: Vec::new(),
-        used_by: BTreeMap::new(),
-        joint_fit: None,
-        specimens: BTreeMap::new(),
+        ..Identification::default()
     }
 }
 

@@ -6,7 +6,7 @@ use crate::identify::estimate::Status;
 use crate::identify::evidence::Evidence;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::identification::{
-    Agreement, Identification, MethodResult, SpecimenResult, Verdict, VerdictKind,
+    Identification, MethodResult, SpecimenResult, Verdict, VerdictKind,
 };
 use crate::identify::messages::{Finding, Item, LeftOut, Note, Sentence};
 use crate::identify::method::Method;
@@ -173,14 +173,10 @@ impl Whole {
         Identification {
             verdict,
             joint,
-            methods: BTreeMap::new(),
-            agreement: Agreement::default(),
-            uncertainty: Default::default(),
-            suspicions: Vec::new(),
             left_out: self.left_out,
             used_by: self.used_by,
-            joint_fit: None,
             specimens: self.results,
+            ..Identification::default()
         }
     }
 }
