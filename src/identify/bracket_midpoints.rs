@@ -51,6 +51,5 @@ pub fn restitution(block: &BoundaryBlock, at: &Parameters) -> Option<Estimate> {
     let found = fit_blocks(problem, *at).ok()?;
     let error = found.fit.error(Coordinate::Restitution)? * found.factor.sqrt();
     let value = found.fit.parameters.restitution;
-    let name = Coordinate::Restitution;
-    Some(estimate::estimate(name, value, error, None))
+    Some(estimate::estimate(Coordinate::Restitution, value, error))
 }

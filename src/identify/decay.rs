@@ -57,9 +57,8 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     let (f, f_error) = weighted_mean(&frequencies);
     let (b, b_error) = weighted_mean(&dampings);
     result.parameters.natural_frequency_hz =
-        Some(estimate::estimate(Coordinate::Frequency, f, f_error, None));
-    result.parameters.damping_ratio =
-        Some(estimate::estimate(Coordinate::Damping, b, b_error, None));
+        Some(estimate::estimate(Coordinate::Frequency, f, f_error));
+    result.parameters.damping_ratio = Some(estimate::estimate(Coordinate::Damping, b, b_error));
     let spread = frequencies
         .iter()
         .map(|p| (p.0 - f).abs())

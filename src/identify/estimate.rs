@@ -73,10 +73,9 @@ pub(super) fn limits(coordinate: Coordinate) -> (f64, f64) {
     }
 }
 
-/// Estimate of one coordinate from its value and standard error (both of the coordinate); a weak one
-/// carries the note.
-pub fn estimate(coordinate: Coordinate, value: f64, error: f64, note: Option<Note>) -> Estimate {
-    estimate_within(coordinate, value, Spread::known(error), note)
+/// Estimate of one coordinate from its value and standard error (both of the coordinate).
+pub fn estimate(coordinate: Coordinate, value: f64, error: f64) -> Estimate {
+    estimate_within(coordinate, value, Spread::known(error), None)
 }
 
 /// Estimate of one coordinate from its value and how far it may be off.
@@ -226,12 +225,12 @@ mod tests {
 
     #[test]
     fn valid_an_interval_is_1_96_errors_to_either_side_of_the_coordinate() {
-        let r = estimate(Coordinate::Restitution, 0.8, 0.01, None);
+        let r = estimate(Coordinate::Restitution, 0.8, 0.01);
         assert_eq!(r.status, Status::Identified);
         let [low, high] = r.interval95.expect("an interval");
         assert!((low - 0.780_400_36).abs() < 1e-8 && (high - 0.819_599_64).abs() < 1e-8);
         // of a logarithm: 12 Hz ± 0.5 %, [12·e^−0.0098, 12·e^0.0098]
-        let f = estimate(Coordinate::Frequency, 12f64.ln(), 0.005, None);
+        let f = estimate(Coordinate::Frequency, 12f64.ln(), 0.005);
         assert!((f.standard_error.expect("an error") - 0.06).abs() < 1e-12);
         let [low, high] = f.interval95.expect("an interval");
         assert!((low - 11.882_976).abs() < 1e-6 && (high - 12.118_176).abs() < 1e-6);
@@ -239,30 +238,27 @@ mod tests {
 
     #[test]
     fn r_stays_between_0_and_1() {
-        let near_one = estimate(Coordinate::Restitution, 0.99, 0.02, None);
+        let near_one = estimate(Coordinate::Restitution, 0.99, 0.02);
         assert_eq!(near_one.interval95.map(|i| i[1]), Some(1.0));
     }
 
     #[test]
     fn an_error_above_its_limit_leaves_no_value_and_a_note() {
-        let weak = estimate(
-            Coordinate::Damping,
-            0.05f64.ln(),
-            0.2,
-            Some(Note::NotSeparable),
-        );
+        let note = Some(Note::NotSeparable);
+        let error = Spread::known(0.2);
+        let weak = estimate_within(Coordinate::Damping, 0.05f64.ln(), error, note);
         assert_eq!(
             (weak.status, weak.note),
             (Status::Weak, Some(Note::NotSeparable))
         );
         let parameter = Coordinate::Damping;
-        let open = estimate(parameter, 0.05f64.ln(), 0.95, None);
+        let open = estimate(parameter, 0.05f64.ln(), 0.95);
         let note = Note::Open {
             parameter,
             standard_error: 0.95,
         };
         assert_eq!((open.value, open.note), (None, Some(note)));
-        let unbounded = estimate(parameter, 0.0, f64::INFINITY, None);
+        let unbounded = estimate(parameter, 0.0, f64::INFINITY);
         assert_eq!(unbounded.note, Some(Note::NotDetermined { parameter }));
     }
 

@@ -85,12 +85,8 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         fits: Some(true),
         ..MethodResult::default()
     };
-    result.parameters.restitution = Some(estimate::estimate(
-        Coordinate::Restitution,
-        value,
-        error,
-        None,
-    ));
+    let restitution = estimate::estimate(Coordinate::Restitution, value, error);
+    result.parameters.restitution = Some(restitution);
     result.impact_groups = Some(ImpactGroups {
         by_record: groups,
         ..structure::groups(&ratios, observations)

@@ -149,7 +149,7 @@ pub fn identify(speeds: &[PublishedSpeed], printed: &[f64]) -> Identification {
     let squares = cost(speeds, beta).unwrap_or(f64::INFINITY);
     let factor = (squares / speeds.len().saturating_sub(1).max(1) as f64).max(1.0);
     let error = log_error(speeds, beta) * factor.sqrt();
-    let estimate = estimate(Coordinate::Damping, beta.ln(), error, None);
+    let estimate = estimate(Coordinate::Damping, beta.ln(), error);
     let sentence = match estimate.value {
         Some(damping_ratio) => Sentence::PublishedDamping { damping_ratio },
         None => Sentence::NoPublishedDamping,

@@ -148,16 +148,12 @@ pub fn boundaries(
     let mut result = methods::result(fitted, &tells, brackets, 2 * brackets);
     if let Some(posterior) = posterior {
         let (value, error) = posterior.restitution;
-        let mut estimate = estimate::estimate(Coordinate::Restitution, value, error, None);
+        let mut estimate = estimate::estimate(Coordinate::Restitution, value, error);
         estimate.interval95 = estimate.interval95.map(|_| posterior.interval95);
         result.parameters.restitution = Some(estimate);
         let (value, error) = posterior.ln_deflection;
-        result.parameters.static_deflection_m = Some(estimate::estimate(
-            Coordinate::Deflection,
-            value,
-            error,
-            None,
-        ));
+        let deflection = estimate::estimate(Coordinate::Deflection, value, error);
+        result.parameters.static_deflection_m = Some(deflection);
         let about = fitted.as_ref().ok().map(|found| Parameters {
             restitution: posterior.restitution.0,
             ..found.fit.parameters

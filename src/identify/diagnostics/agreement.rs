@@ -132,7 +132,7 @@ mod tests {
     /// A method with R and its standard error.
     fn with_restitution(value: f64, error: f64) -> MethodResult {
         let mut result = MethodResult::default();
-        result.parameters.restitution = Some(estimate(Coordinate::Restitution, value, error, None));
+        result.parameters.restitution = Some(estimate(Coordinate::Restitution, value, error));
         result
     }
 
@@ -140,7 +140,7 @@ mod tests {
     fn with_frequency(value: f64, error: f64) -> MethodResult {
         let mut result = MethodResult::default();
         result.parameters.natural_frequency_hz =
-            Some(estimate(Coordinate::Frequency, value.ln(), error, None));
+            Some(estimate(Coordinate::Frequency, value.ln(), error));
         result
     }
 

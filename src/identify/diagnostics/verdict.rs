@@ -310,13 +310,15 @@ fn stated_value((parameter, estimate): &(Coordinate, &Estimate)) -> Option<State
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::estimate::estimate;
+    use crate::identify::estimate::estimate_within;
     use crate::identify::messages::PairAgreement;
+    use crate::identify::uncertainty::scatter::Spread;
 
     /// A joint result with standard errors of R and ln f0.
     fn joint(restitution: f64, frequency: f64) -> MethodResult {
         let of = |c: Coordinate, value: f64, error| {
-            Some(estimate(c, value, error, Some(Note::NotSeparable)))
+            let note = Some(Note::NotSeparable);
+            Some(estimate_within(c, value, Spread::known(error), note))
         };
         let mut result = MethodResult::default();
         result.parameters.restitution = of(Coordinate::Restitution, 0.8, restitution);
