@@ -67,7 +67,7 @@ const RESOLUTION: f64 = 1e-13;
 
 /// Velocities after an impact: X'₊ = X'₋ − μ₁(1+R)w, Y'₊ = Y'₋ − μ₂(1+R)w with the approach
 /// speed w and the mobilities μ of [`Machine::mobility`]: eq. (4).
-pub(crate) fn newton(machine: &Machine, before: &State) -> State {
+fn newton(machine: &Machine, before: &State) -> State {
     let w = before.vx + before.vy;
     let change = (1.0 + machine.restitution().at(w)) * w;
     let (mx, my) = machine.mobility();
@@ -76,6 +76,23 @@ pub(crate) fn newton(machine: &Machine, before: &State) -> State {
         vy: before.vy - my * change,
         ..*before
     }
+}
+
+/// The states just before and just after an impact, from displacement and velocity of each mass
+/// before it.
+pub(crate) fn impact_pair(machine: &Machine, drive: Drive, at: [(f64, f64); 2]) -> (State, State) {
+    let [(x, vx), (y, vy)] = at;
+    let mut before = State {
+        x,
+        vx,
+        y,
+        vy,
+        ..State::default()
+    };
+    (before.ax, before.ay) = free_accelerations(machine, drive, &before);
+    let mut after = newton(machine, &before);
+    (after.ax, after.ay) = free_accelerations(machine, drive, &after);
+    (before, after)
 }
 
 /// Free accelerations of both masses in a state.

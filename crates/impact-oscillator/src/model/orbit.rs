@@ -10,7 +10,7 @@
 //! a quadratic for w, eq. (9). With Pᵢ, Dᵢ the Green's functions' position and velocity just before the
 //! impact, α = −(1+R)Σ μᵢPᵢ and Q = 1 + (1+R)Σ μᵢDᵢ.
 
-use super::contact::{free_accelerations, is_plastic, newton};
+use super::contact::{impact_pair, is_plastic};
 use super::crossing::first_zero;
 use super::flight::{Drive, FlightPaths, State, exponent, forced_amplitude, free_flight};
 use super::params::{Flight, Machine, ModelError, Oscillator, Setting};
@@ -339,9 +339,7 @@ fn unjudged_orbit(machine: &Machine, setting: Setting, n: u32, w: f64) -> Orbit 
     let r = machine.restitution().at(w);
     let phase = branch.phase(r, machine.gap(setting.clearance), w);
     let drive = Drive { eta, phase };
-    let before = state_before(machine, drive, n, (1.0 + r) * w);
-    let mut after = newton(machine, &before);
-    (after.ax, after.ay) = free_accelerations(machine, drive, &after);
+    let (before, after) = states_at_impact(machine, drive, n, (1.0 + r) * w);
     let flight = free_flight(machine, drive, &after);
     let setting = setting.at_phase(phase);
     Orbit {
@@ -357,8 +355,8 @@ fn unjudged_orbit(machine: &Machine, setting: Setting, n: u32, w: f64) -> Orbit 
     }
 }
 
-/// State just before the impact: forced response plus Green's functions.
-fn state_before(machine: &Machine, drive: Drive, n: u32, change: f64) -> State {
+/// States just before the impact, forced response plus Green's functions, and just after it.
+fn states_at_impact(machine: &Machine, drive: Drive, n: u32, change: f64) -> (State, State) {
     let period = f64::from(n) * std::f64::consts::TAU / drive.eta;
     let (mx, my) = machine.mobility();
     let of = |o: &Oscillator, mobility: f64| {
@@ -369,17 +367,9 @@ fn state_before(machine: &Machine, drive: Drive, n: u32, change: f64) -> State {
             -drive.eta * f.im + jump * g.velocity_before,
         )
     };
-    let (x, vx) = of(&machine.x, mx);
-    let (y, vy) = machine.y.as_ref().map_or((0.0, 0.0), |o| of(o, my));
-    let mut s = State {
-        x,
-        vx,
-        y,
-        vy,
-        ..State::default()
-    };
-    (s.ax, s.ay) = free_accelerations(machine, drive, &s);
-    s
+    let x = of(&machine.x, mx);
+    let y = machine.y.as_ref().map_or((0.0, 0.0), |o| of(o, my));
+    impact_pair(machine, drive, [x, y])
 }
 
 fn existence(machine: &Machine, orbit: &Orbit) -> Existence {

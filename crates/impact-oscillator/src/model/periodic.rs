@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector, Matrix4};
 
-use super::contact::{Impact, free_accelerations, is_plastic, newton};
+use super::contact::{Impact, impact_pair, is_plastic};
 use super::crossing::first_zero;
 use super::flight::{Drive, State, exponent, forced_amplitude, free_flight};
 use super::orbit::Existence;
@@ -282,23 +282,13 @@ impl PeriodicOrbit {
             }
             (x, v)
         };
-        let (x, vx) = of(&response.parts[0]);
-        let (y, vy) = response.parts.get(1).map_or((0.0, 0.0), of);
+        let x = of(&response.parts[0]);
+        let y = response.parts.get(1).map_or((0.0, 0.0), of);
         let drive = Drive {
             eta: self.eta,
             phase: self.eta * t,
         };
-        let mut before = State {
-            x,
-            vx,
-            y,
-            vy,
-            ..State::default()
-        };
-        (before.ax, before.ay) = free_accelerations(machine, drive, &before);
-        let mut after = newton(machine, &before);
-        (after.ax, after.ay) = free_accelerations(machine, drive, &after);
-        (before, after)
+        impact_pair(machine, drive, [x, y])
     }
 
     /// Map of a variation over one period, starting just before the first impact: the product
