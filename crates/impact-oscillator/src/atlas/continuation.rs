@@ -32,32 +32,12 @@ impl Along {
     }
 }
 
-/// How far and how finely an orbit is continued.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Walk {
-    /// Least value of the parameter.
-    pub(super) least: f64,
-    /// Greatest value of the parameter.
-    pub(super) greatest: f64,
-    /// Longest step in arclength.
-    pub(super) longest: f64,
-    /// Length to which an edge is located.
-    pub(super) resolution: f64,
-    /// Most steps.
-    pub(super) steps: usize,
-}
-
-impl Default for Walk {
-    fn default() -> Self {
-        Self {
-            least: -1.0,
-            greatest: 10.0,
-            longest: 0.3,
-            resolution: 1e-9,
-            steps: 400,
-        }
-    }
-}
+/// Longest step in arclength.
+const LONGEST: f64 = 0.3;
+/// Length to which an edge is located.
+const RESOLUTION: f64 = 1e-7;
+/// Most steps.
+const STEPS: usize = 400;
 
 /// A point of a branch with its direction in (times, speeds, parameter).
 #[derive(Debug, Clone)]
@@ -179,9 +159,9 @@ impl Follower<'_> {
     }
 
     /// Between a good point and a step that is too far, the last good orbit and what ends it.
-    fn locate(&self, from: &Point, mut too_far: f64, mut kind: EdgeKind, resolution: f64) -> Edge {
+    fn locate(&self, from: &Point, mut too_far: f64, mut kind: EdgeKind) -> Edge {
         let (mut good, mut orbit) = (0.0, from.orbit.clone());
-        while too_far - good > resolution {
+        while too_far - good > RESOLUTION {
             let middle = 0.5 * (good + too_far);
             let found = self.at(from, middle);
             match found.as_ref().map(|o| self.ends(from, o)) {
@@ -197,7 +177,12 @@ impl Follower<'_> {
     }
 
     /// The branch's edge; parameter and greatest approach speed of every orbit on the way.
-    fn walk(&self, seed: &PeriodicOrbit, walk: &Walk, passed: &mut Vec<(f64, f64)>) -> Edge {
+    fn walk(
+        &self,
+        seed: &PeriodicOrbit,
+        (least, greatest): (f64, f64),
+        passed: &mut Vec<(f64, f64)>,
+    ) -> Edge {
         let n = 2 * seed.times.len() + 1;
         let mut towards = DVector::zeros(n);
         towards[n - 1] = self.direction;
@@ -209,22 +194,22 @@ impl Follower<'_> {
             orbit: seed.clone(),
             tangent,
         };
-        let mut ds = 0.1 * walk.longest;
-        for _ in 0..walk.steps {
+        let mut ds = 0.1 * LONGEST;
+        for _ in 0..STEPS {
             passed.push((self.along.of(&point.orbit), point.orbit.greatest_speed()));
             let Some(next) = self.at(&point, ds) else {
                 passed.pop();
                 ds *= 0.4;
-                if ds < walk.resolution {
+                if ds < RESOLUTION {
                     return lost(&point.orbit);
                 }
                 continue;
             };
             if let Some(kind) = self.ends(&point, &next) {
-                return self.locate(&point, ds, kind, walk.resolution);
+                return self.locate(&point, ds, kind);
             }
             let value = self.along.of(&next);
-            if value <= walk.least || value >= walk.greatest {
+            if value <= least || value >= greatest {
                 return Edge {
                     kind: EdgeKind::Bound,
                     orbit: next,
@@ -238,7 +223,7 @@ impl Follower<'_> {
             ds = if turn < 0.9 {
                 0.5 * ds
             } else {
-                (1.5 * ds).min(walk.longest)
+                (1.5 * ds).min(LONGEST)
             };
             point = Point {
                 orbit: next,
@@ -267,13 +252,14 @@ pub(super) struct Followed {
     pub(super) passed: Vec<(f64, f64)>,
 }
 
-/// Continue a stable orbit in one direction (+1: rising parameter) to its edge.
+/// Continue a stable orbit in one direction (+1: rising parameter) to its edge, or to the least or
+/// greatest value of the parameter.
 pub(super) fn follow(
     machine: &Machine,
     seed: &PeriodicOrbit,
     along: Along,
     direction: f64,
-    walk: &Walk,
+    bounds: (f64, f64),
 ) -> Followed {
     let follower = Follower {
         machine,
@@ -281,7 +267,7 @@ pub(super) fn follow(
         direction,
     };
     let mut passed = Vec::new();
-    let edge = follower.walk(seed, walk, &mut passed);
+    let edge = follower.walk(seed, bounds, &mut passed);
     passed.push((along.of(&edge.orbit), edge.orbit.greatest_speed()));
     Followed { edge, passed }
 }

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use super::continuation::{Along, Walk, branch_at_doubling, follow};
+use super::continuation::{Along, branch_at_doubling, follow};
 use super::edge::{Edge, EdgeKind};
 use super::map::{End, clear_of};
 use super::settings::AtlasSettings;
@@ -286,13 +286,8 @@ impl Line<'_> {
 
     fn span(&self, seed: &PeriodicOrbit) -> Option<Span> {
         let values = self.values();
-        let walk = Walk {
-            least: *values.first()?,
-            greatest: *values.last()?,
-            resolution: 1e-7,
-            ..Walk::default()
-        };
-        let edge = |direction| follow(self.machine, seed, self.along, direction, &walk);
+        let bounds = (*values.first()?, *values.last()?);
+        let edge = |direction| follow(self.machine, seed, self.along, direction, bounds);
         let (mut low, mut high) = (edge(-1.0), edge(1.0));
         if self.along.of(&low.edge.orbit) > self.along.of(&high.edge.orbit) {
             std::mem::swap(&mut low, &mut high);
