@@ -179,12 +179,47 @@ impl<'a> Carried<'a> {
         let setting = Setting::new(eta, rho);
         setting.check()?;
         self.simulator.set(eta, rho);
-        Ok(one_step(
-            self.machine,
-            &mut self.simulator,
-            setting,
-            &self.watch,
-        ))
+        let (period, watch) = (setting.period(), self.watch);
+        let simulator = &mut self.simulator;
+        simulator.advance(watch.settle_periods * period, &mut |_: &Impact| {});
+        let mut follower = simulator.clone();
+        let (motion, impacts) = observe(simulator, setting, &watch);
+        let mut watched = Trajectory::default();
+        let begin = follower.tau();
+        follower
+            .clone()
+            .advance(watch.watch_periods * period, &mut watched);
+        let mut lyapunov = Lyapunov::new(self.machine, setting.frequency_ratio);
+        follower.advance(watch.watch_periods * period, &mut lyapunov);
+        let greatest = |of: fn(&FlightPaths) -> &Path| {
+            let arcs = watched.arcs.iter();
+            arcs.map(|arc| maximum(of(&arc.paths), arc.duration))
+                .fold(f64::NEG_INFINITY, f64::max)
+        };
+        let next = |tau: &f64| Some(tau + period / SAMPLES as f64);
+        let even = std::iter::successors(Some(begin), next).take_while(|tau| *tau < watched.end());
+        let x: Vec<f64> = watched.sample(even).iter().map(|s| s.x).collect();
+        let lags = (1..=LONGEST_LAG).map(|periods| periods * SAMPLES);
+        let shown = match motion {
+            SettledMotion::Periodic {
+                p, chatter: false, ..
+            } => p as usize,
+            _ => MOST_IMPACTS,
+        };
+        let last = &impacts[impacts.len().saturating_sub(shown)..];
+        let of = |f: fn(&Impact) -> f64| last.iter().map(f).collect();
+        Ok(SweepPoint {
+            eta: setting.frequency_ratio,
+            rho: setting.clearance,
+            motion,
+            x_max: greatest(|paths| &paths.x),
+            y_max: greatest(|paths| &paths.y),
+            approach_speeds: of(|i| i.approach_speed),
+            x_speeds: of(|i| i.vx_before),
+            phases: of(|i| i.phase),
+            lyapunov: Some(lyapunov.exponent()).filter(|l| l.is_finite()),
+            autocorrelation: autocorrelation(&x, lags),
+        })
     }
 }
 
@@ -226,59 +261,6 @@ pub fn sweep(
         }
     }
     Ok(points)
-}
-
-fn one_step(
-    machine: &Machine,
-    simulator: &mut Simulator,
-    setting: Setting,
-    watch: &Watch,
-) -> SweepPoint {
-    let period = setting.period();
-    simulator.advance(watch.settle_periods * period, &mut |_: &Impact| {});
-    let mut follower = simulator.clone();
-    let (motion, impacts) = observe(simulator, setting, watch);
-    let mut watched = Trajectory::default();
-    let begin = follower.tau();
-    follower
-        .clone()
-        .advance(watch.watch_periods * period, &mut watched);
-    let mut lyapunov = Lyapunov::new(machine, setting.frequency_ratio);
-    follower.advance(watch.watch_periods * period, &mut lyapunov);
-    let greatest = |of: fn(&FlightPaths) -> &Path| {
-        let arcs = watched.arcs.iter();
-        arcs.map(|arc| maximum(of(&arc.paths), arc.duration))
-            .fold(f64::NEG_INFINITY, f64::max)
-    };
-    let next = |tau: &f64| Some(tau + period / SAMPLES as f64);
-    let even = std::iter::successors(Some(begin), next).take_while(|tau| *tau < watched.end());
-    let x: Vec<f64> = watched.sample(even).iter().map(|s| s.x).collect();
-    let shown = match motion {
-        SettledMotion::Periodic {
-            p, chatter: false, ..
-        } => p as usize,
-        _ => MOST_IMPACTS,
-    };
-    let last = &impacts[impacts.len().saturating_sub(shown)..];
-    let of = |f: fn(&Impact) -> f64| last.iter().map(f).collect();
-    SweepPoint {
-        eta: setting.frequency_ratio,
-        rho: setting.clearance,
-        motion,
-        x_max: greatest(|paths| &paths.x),
-        y_max: greatest(|paths| &paths.y),
-        approach_speeds: of(|i| i.approach_speed),
-        x_speeds: of(|i| i.vx_before),
-        phases: of(|i| i.phase),
-        lyapunov: Some(lyapunov.exponent()).filter(|l| l.is_finite()),
-        autocorrelation: whole_periods(&x),
-    }
-}
-
-/// The autocorrelation of samples at lags of 1, 2, … drive periods.
-fn whole_periods(samples: &[f64]) -> Vec<f64> {
-    let lags = (1..=LONGEST_LAG).map(|periods| periods * SAMPLES);
-    autocorrelation(samples, lags)
 }
 
 /// Autocorrelation of a uniformly sampled signal at the lags that are below its length: the correlation
