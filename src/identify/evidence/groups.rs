@@ -21,11 +21,7 @@ pub(super) fn groups(observations: &[Observation]) -> Vec<Group> {
     let amplitudes: Vec<f64> = observations.iter().map(amplitude).collect();
     let (by_frequency, by_amplitude) = (bands(&frequencies), bands(&amplitudes));
     (0..observations.len())
-        .map(|i| Group {
-            setting: by_setting[i],
-            frequency: by_frequency[i],
-            amplitude: by_amplitude[i],
-        })
+        .map(|i| [by_setting[i], by_frequency[i], by_amplitude[i]])
         .collect()
 }
 

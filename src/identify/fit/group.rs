@@ -1,22 +1,8 @@
 //! Groups of records whose misfits may be alike, by several partitions of the campaign.
 
-/// The groups of an item, one of each partition of the campaign's records.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Group {
-    /// Records of one gap and direction of the sweep.
-    pub setting: usize,
-    /// Records of one band of drive frequencies.
-    pub frequency: usize,
-    /// Records of one band of amplitudes.
-    pub amplitude: usize,
-}
+/// Number of partitions.
+pub const PARTITIONS: usize = 3;
 
-impl Group {
-    /// Number of partitions.
-    pub const PARTITIONS: usize = 3;
-
-    /// The group of each partition; that by setting first.
-    pub fn of_each(self) -> [usize; Self::PARTITIONS] {
-        [self.setting, self.frequency, self.amplitude]
-    }
-}
+/// The group of an item in each partition of the campaign's records: by gap and direction of the
+/// sweep, by band of drive frequencies, by band of amplitudes.
+pub type Group = [usize; PARTITIONS];

@@ -17,12 +17,11 @@
 //! its 99 % point under noise.
 
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-use crate::identify::fit::group::Group;
+use crate::identify::fit::group::{Group, PARTITIONS};
 use crate::identify::fit::normal::{Normal, inverse};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::fit::{Fit, Problem};
@@ -113,7 +112,7 @@ pub fn scatter(problem: &Problem<'_>, fit: &Fit) -> Scatter {
         covariance,
     };
     let mut scatter = Scatter::default();
-    for partition in 0..Group::PARTITIONS {
+    for partition in 0..PARTITIONS {
         let groups = merged(&cells, partition);
         if groups.len() < FEWEST {
             continue;
@@ -135,12 +134,10 @@ pub fn scatter(problem: &Problem<'_>, fit: &Fit) -> Scatter {
 fn merged(cells: &BTreeMap<Group, Normal>, partition: usize) -> Vec<Normal> {
     let mut groups: BTreeMap<usize, Normal> = BTreeMap::new();
     for (group, cell) in cells {
-        match groups.entry(group.of_each()[partition]) {
-            Entry::Occupied(mut sum) => sum.get_mut().add(cell),
-            Entry::Vacant(place) => {
-                place.insert(cell.clone());
-            }
-        }
+        groups
+            .entry(group[partition])
+            .and_modify(|sum| sum.add(cell))
+            .or_insert_with(|| cell.clone());
     }
     groups.into_values().collect()
 }
@@ -250,10 +247,7 @@ mod tests {
         }
 
         fn group(&self, item: usize) -> Option<Group> {
-            Some(Group {
-                setting: item,
-                ..Group::default()
-            })
+            Some([item, 0, 0])
         }
     }
 
