@@ -432,18 +432,11 @@ impl IdentificationRun<'_> {
             return Uncertainty::default();
         };
         let present = joint::present(blocks, &fits.weights);
-        let parts = &joint.parts;
         let options = &self.evidence.uncertainty;
         Uncertainty {
-            budget: budget::budget(&problem, (&present, parts), joint, blocks, apart),
+            budget: budget::budget(&problem, &present, joint, blocks, apart),
             scatter: joint.scatter.clone(),
-            ..uncertainty::uncertainty(
-                &problem,
-                (&present, parts),
-                &joint.fit,
-                joint.factor,
-                options,
-            )
+            ..uncertainty::uncertainty(&problem, &present, joint, options)
         }
     }
 

@@ -49,6 +49,13 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// The parameters that are fitted, each with its place among the free coordinates.
+    pub fn estimated(&self) -> Vec<(usize, Coordinate)> {
+        let free = self.free.iter().copied().enumerate();
+        free.filter(|(_, c)| Coordinate::PHYSICAL.contains(c))
+            .collect()
+    }
+
     /// Standard error of a coordinate; `None` if it was not free.
     pub fn error(&self, coordinate: Coordinate) -> Option<f64> {
         let i = self.free.iter().position(|c| *c == coordinate)?;

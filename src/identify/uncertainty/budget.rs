@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::Blocks;
 use crate::identify::fit::Problem;
-use crate::identify::fit::normal::Normal;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
 use crate::identify::method_fit::MethodFit;
@@ -109,25 +108,17 @@ fn finite(freedom: f64) -> Option<f64> {
     freedom.is_finite().then_some(freedom)
 }
 
-/// The budget of a joint fit of a problem whose blocks belong to the methods and have these normal
-/// equations at its optimum, those of the priors last; `between_methods` are
-/// the standard uncertainties by their disagreement.
+/// The budget of a joint fit of a problem whose blocks belong to the methods; `between_methods` are the
+/// standard uncertainties by their disagreement.
 pub fn budget(
     problem: &Problem<'_>,
-    (methods, parts): (&[Method], &[Normal]),
+    methods: &[Method],
     found: &MethodFit,
     blocks: &Blocks,
     between_methods: &[(Coordinate, f64)],
 ) -> Budget {
-    let fit = &found.fit;
-    let estimated: Vec<(usize, Coordinate)> = fit
-        .free
-        .iter()
-        .copied()
-        .enumerate()
-        .filter(|(_, c)| Coordinate::PHYSICAL.contains(c))
-        .collect();
-    let mut rows = noise_rows((methods, parts), found, &estimated);
+    let estimated = found.fit.estimated();
+    let mut rows = noise_rows(methods, found, &estimated);
     rows.extend(stated_rows(problem, found, blocks, &estimated));
     let spreads: Vec<_> = estimated
         .iter()
@@ -190,14 +181,14 @@ pub fn budget(
 
 /// The noise of each method's residuals.
 fn noise_rows(
-    (methods, parts): (&[Method], &[Normal]),
+    methods: &[Method],
     found: &MethodFit,
     estimated: &[(usize, Coordinate)],
 ) -> Vec<Row> {
     let fit = &found.fit;
     let covariance = &fit.covariance * found.factor;
     let mut rows = Vec::new();
-    for (method, part) in methods.iter().zip(parts) {
+    for (method, part) in methods.iter().zip(&found.parts) {
         let spread = &fit.covariance * &part.matrix * &covariance;
         rows.push(Row {
             source: Source::Noise { method: *method },

@@ -28,6 +28,7 @@ use crate::identify::fit::normal::{Normal, inverse};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::fit::{Fit, Problem};
 use crate::identify::method::Method;
+use crate::identify::method_fit::MethodFit;
 use crate::identify::uncertainty::budget::Budget;
 use crate::identify::uncertainty::profile::profile;
 use crate::identify::uncertainty::scatter::Scatter;
@@ -75,25 +76,21 @@ pub enum InformationSource {
     Method(Method),
 }
 
-/// All that is asked for, about a joint fit; `by_method`: the methods of the problem's blocks and the
-/// blocks' normal equations at its optimum, those of the priors last.
+/// All that is asked for, about a joint fit; `methods` are those of the problem's blocks.
 pub fn uncertainty(
     problem: &Problem<'_>,
-    by_method: (&[Method], &[Normal]),
-    fit: &Fit,
-    factor: f64,
+    methods: &[Method],
+    found: &MethodFit,
     options: &UncertaintyOptions,
 ) -> Uncertainty {
-    let estimated: Vec<Coordinate> = Coordinate::PHYSICAL
-        .into_iter()
-        .filter(|c| fit.free.contains(c))
-        .collect();
+    let (fit, factor) = (&found.fit, found.factor);
+    let estimated = fit.estimated();
     Uncertainty {
-        information_share: shares(by_method, fit, &estimated),
+        information_share: shares(methods, found, &estimated),
         profiles: match options.intervals {
             IntervalMethod::Profile => estimated
                 .iter()
-                .filter_map(|c| profile(problem, fit, factor, *c))
+                .filter_map(|(_, c)| profile(problem, fit, factor, *c))
                 .collect(),
             _ => Vec::new(),
         },
@@ -107,20 +104,18 @@ pub fn uncertainty(
 
 /// Share of each block in the information on each coordinate: (C F C)ᵢᵢ/Cᵢᵢ with the block's F.
 fn shares(
-    (methods, parts): (&[Method], &[Normal]),
-    fit: &Fit,
-    estimated: &[Coordinate],
+    methods: &[Method],
+    found: &MethodFit,
+    estimated: &[(usize, Coordinate)],
 ) -> BTreeMap<Coordinate, BTreeMap<InformationSource, f64>> {
     let mut all: BTreeMap<Coordinate, BTreeMap<InformationSource, f64>> = BTreeMap::new();
     let methods = methods.iter().copied().map(InformationSource::Method);
     let sources = methods.chain([InformationSource::Stated]);
-    for (source, part) in sources.zip(parts) {
-        let spread = &fit.covariance * &part.matrix * &fit.covariance;
-        for coordinate in estimated {
-            let Some(i) = fit.free.iter().position(|c| c == coordinate) else {
-                continue;
-            };
-            let share = spread[(i, i)] / fit.covariance[(i, i)];
+    let covariance = &found.fit.covariance;
+    for (source, part) in sources.zip(&found.parts) {
+        let spread = covariance * &part.matrix * covariance;
+        for (i, coordinate) in estimated {
+            let share = spread[(*i, *i)] / covariance[(*i, *i)];
             all.entry(*coordinate).or_default().insert(source, share);
         }
     }
@@ -133,7 +128,7 @@ fn bootstrap(
     problem: &Problem<'_>,
     fit: &Fit,
     options: &UncertaintyOptions,
-    estimated: &[Coordinate],
+    estimated: &[(usize, Coordinate)],
 ) -> Vec<Bootstrapped> {
     let blocks = problem.item_parts(&fit.parameters);
     let replicas: Vec<Vec<f64>> = (0..options.replicas as u64)
@@ -142,10 +137,9 @@ fn bootstrap(
         .collect();
     estimated
         .iter()
-        .filter_map(|coordinate| {
-            let i = fit.free.iter().position(|c| c == coordinate)?;
+        .filter_map(|(i, coordinate)| {
             let best = fit.parameters.coordinate(*coordinate);
-            let mut values: Vec<f64> = replicas.iter().map(|step| best + step[i]).collect();
+            let mut values: Vec<f64> = replicas.iter().map(|step| best + step[*i]).collect();
             values.sort_by(f64::total_cmp);
             summary(*coordinate, &values)
         })
