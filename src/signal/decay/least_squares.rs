@@ -7,9 +7,7 @@ use super::Decay;
 use super::structure;
 
 /// The channels from the first fitted sample on, each with its weight, the inverse of its variance.
-pub(super) struct Signals<'a> {
-    pub(super) tails: &'a [(&'a [f64], f64)],
-}
+pub(super) type Signals<'a> = [(&'a [f64], f64)];
 
 /// State of the search: `ω_d` and σ per sample with the best linear part of each channel.
 #[derive(Debug, Clone)]
@@ -39,11 +37,11 @@ fn slopes(linear: &Vector3<f64>, row: &Vector3<f64>, i: usize) -> Vector2<f64> {
 
 /// Best offset and amplitudes of each channel at given rates (the linear part is projected out).
 fn project(signals: &Signals<'_>, rates: Vector2<f64>) -> Option<Point> {
-    let longest = signals.tails.iter().map(|(tail, _)| tail.len()).max()?;
+    let longest = signals.iter().map(|(tail, _)| tail.len()).max()?;
     let rows: Vec<Vector3<f64>> = (0..longest).map(|i| basis(rates, i)).collect();
     let mut squares = 0.0;
-    let mut linear = Vec::with_capacity(signals.tails.len());
-    for (tail, weight) in signals.tails {
+    let mut linear = Vec::with_capacity(signals.len());
+    for (tail, weight) in signals {
         let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
         for (row, v) in rows.iter().zip(*tail) {
             normal += row * row.transpose();
@@ -65,7 +63,7 @@ impl Point {
     /// Gauss–Newton equations of the rates.
     fn equations(&self, signals: &Signals<'_>) -> (Matrix2<f64>, Vector2<f64>) {
         let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
-        for ((tail, weight), linear) in signals.tails.iter().zip(&self.linear) {
+        for ((tail, weight), linear) in signals.iter().zip(&self.linear) {
             for (i, v) in tail.iter().enumerate() {
                 let row = basis(self.rates, i);
                 let slope = slopes(linear, &row, i);
@@ -106,8 +104,7 @@ impl Point {
         if self.rates[1] <= 0.0 {
             return None;
         }
-        let tails = [(tail, 1.0)];
-        let own = project(&Signals { tails: &tails }, self.rates)?;
+        let own = project(&[(tail, 1.0)], self.rates)?;
         let linear = own.linear.first()?;
         let residuals = own.residuals(0, tail);
         let level = crate::signal::robust::rms(tail);
@@ -132,7 +129,7 @@ impl Point {
     /// Covariance of the rates with every channel's own linear part free.
     pub(super) fn covariance(&self, signals: &Signals<'_>) -> Option<Matrix2<f64>> {
         let mut information = Matrix2::zeros();
-        for ((tail, weight), linear) in signals.tails.iter().zip(&self.linear) {
+        for ((tail, weight), linear) in signals.iter().zip(&self.linear) {
             let mut normal = SMatrix::<f64, 5, 5>::zeros();
             for i in 0..tail.len() {
                 let row = basis(self.rates, i);

@@ -103,13 +103,12 @@ pub fn fit_channels(channels: &[&[f64]], rate_hz: f64) -> Option<Decay> {
         .min_by(|a, b| a.1.point_error().total_cmp(&b.1.point_error()))?;
     let agrees =
         |other: &&Start| (other.point.rates[0] / start.point.rates[0] - 1.0).abs() < SAME_FREQUENCY;
-    let tails: Vec<(&[f64], f64)> = channels
+    let signals: Vec<(&[f64], f64)> = channels
         .iter()
         .zip(&alone)
         .filter_map(|(c, s)| Some((*c, s.as_ref().filter(agrees)?)))
         .map(|(c, s)| (&c[start.first..], s.variance.recip()))
         .collect();
-    let signals = Signals { tails: &tails };
     let point = descend(&signals, start.point.rates)?;
     let tail = &channels[best][start.first..];
     let mut decay = point.decay(tail, rate_hz)?;
@@ -157,8 +156,7 @@ impl Start {
             return None;
         }
         let omega = per_sample * std::f64::consts::TAU;
-        let tails = [(tail, 1.0)];
-        let plain = Signals { tails: &tails };
+        let plain = [(tail, 1.0)];
         let point = [0.001, 0.005, 0.02, 0.08]
             .into_iter()
             .filter_map(|beta| descend(&plain, Vector2::new(omega, beta * omega)))
@@ -171,9 +169,7 @@ impl Start {
             .powi(2)
             .max(f64::MIN_POSITIVE);
         let variance = (variance * structure::correlation_factor(&residuals)).max(least);
-        let covariance = point.covariance(&Signals {
-            tails: &[(tail, variance.recip())],
-        })?;
+        let covariance = point.covariance(&[(tail, variance.recip())])?;
         Some(Self {
             first,
             point,
@@ -197,7 +193,6 @@ fn other_starts(signals: &Signals<'_>, point: &Point, period: f64, rate_hz: f64)
     for k in 1..=OTHER_STARTS {
         let skip = whole::index((period * k as f64 / OTHER_STARTS as f64).round());
         let later: Vec<(&[f64], f64)> = signals
-            .tails
             .iter()
             .filter_map(|(tail, weight)| Some((tail.get(skip..)?, *weight)))
             .collect();
@@ -205,7 +200,7 @@ fn other_starts(signals: &Signals<'_>, point: &Point, period: f64, rate_hz: f64)
             .first()
             .is_some_and(|(tail, _)| tail.len() as f64 >= LEAST_PERIODS * period);
         let found = match long_enough {
-            true => descend(&Signals { tails: &later }, point.rates),
+            true => descend(&later, point.rates),
             false => None,
         };
         if let Some(found) = found {

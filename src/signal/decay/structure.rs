@@ -29,7 +29,7 @@ impl Drift {
 
 /// The drift of a decay over its quarters; `None` if these are too short.
 pub(super) fn drift(signals: &Signals<'_>, whole: &Point, rate_hz: f64) -> Option<Drift> {
-    let samples = signals.tails.iter().map(|(tail, _)| tail.len()).min()?;
+    let samples = signals.iter().map(|(tail, _)| tail.len()).min()?;
     let length = samples / PARTS;
     let period = std::f64::consts::TAU / whole.rates[0];
     if (length as f64) < PERIODS_OF_A_PART * period {
@@ -37,12 +37,10 @@ pub(super) fn drift(signals: &Signals<'_>, whole: &Point, rate_hz: f64) -> Optio
     }
     let mut parts = Vec::with_capacity(PARTS);
     for k in 0..PARTS {
-        let tails: Vec<(&[f64], f64)> = signals
-            .tails
+        let part: Vec<(&[f64], f64)> = signals
             .iter()
             .map(|(tail, weight)| (&tail[k * length..(k + 1) * length], *weight))
             .collect();
-        let part = Signals { tails: &tails };
         let found = descend(&part, whole.rates)?;
         let covariance = found.covariance(&part)?;
         let [frequency_hz, _] = found.natural(rate_hz);
