@@ -83,7 +83,7 @@ impl Classification {
     }
 }
 
-fn undetermined(reason: Undetermined, evidence: Evidence) -> Classification {
+pub(super) fn undetermined(reason: Undetermined, evidence: Evidence) -> Classification {
     Classification {
         motion: Motion::Undetermined { reason },
         confidence: 0.0,

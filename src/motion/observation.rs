@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::event::{DetectSettings, DriveTone, Impact, RigKind, detect};
-use crate::motion::classify::{Classification, ClassifySettings, classify};
+use crate::motion::classify::{Classification, ClassifySettings, classify, undetermined};
 use crate::motion::fold::{Folded, fold};
 use crate::motion::kind::Motion;
 use crate::motion::response::{Response, responses};
@@ -144,21 +144,14 @@ pub fn observe(
         detection.unsupported_pulses,
     ));
     let mut observation = Observation {
-        record: record.id.clone(),
-        setting: record.setting.clone(),
-        sample_rate_hz: record.sample_rate_hz,
-        duration_s: record.duration_s(),
         drive: detection.drive,
         impacts: detection.impacts.clone(),
         unsupported_pulses: detection.unsupported_pulses,
         missed_pulses: detection.missed_pulses,
         jump_samples: detection.jump_samples,
-        amplitudes: amplitudes(record),
-        response: Vec::new(),
-        folded: None,
-        decay: None,
         flags,
         classification,
+        ..undriven(record)
     };
     if let Some(drive) = &observation.drive {
         if observation.has_no_impact() {
@@ -172,29 +165,28 @@ pub fn observe(
 
 /// Observe a free decay: no drive, no impacts, one fit.
 fn observe_decay(record: &Record) -> Observation {
-    let decay = free_decay(record);
-    let mut flags = record.flags.clone();
-    if decay.is_none() {
-        flags.push(Flag::new(
+    let mut observation = undriven(record);
+    observation.decay = free_decay(record);
+    if observation.decay.is_none() {
+        observation.flags.push(Flag::new(
             FlagCode::NoFreeDecay,
             None,
             "no free decay of three periods or more was found",
             "check that the record is a free decay and that its motion channel is named",
         ));
     }
+    observation
+}
+
+/// A record without a drive and impacts, of which nothing is fitted.
+fn undriven(record: &Record) -> Observation {
     Observation {
         record: record.id.clone(),
         setting: record.setting.clone(),
         sample_rate_hz: record.sample_rate_hz,
         duration_s: record.duration_s(),
         drive: None,
-        classification: Classification {
-            motion: Motion::Undetermined {
-                reason: Undetermined::DecayWithoutDrive,
-            },
-            confidence: 0.0,
-            evidence: Default::default(),
-        },
+        classification: undetermined(Undetermined::DecayWithoutDrive, Default::default()),
         impacts: Vec::new(),
         unsupported_pulses: 0,
         missed_pulses: 0,
@@ -202,8 +194,8 @@ fn observe_decay(record: &Record) -> Observation {
         amplitudes: amplitudes(record),
         response: Vec::new(),
         folded: None,
-        decay,
-        flags,
+        decay: None,
+        flags: record.flags.clone(),
     }
 }
 
