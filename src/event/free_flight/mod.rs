@@ -206,23 +206,16 @@ impl<'a> Search<'a> {
             .iter()
             .any(|c| c.first <= fall.last + 1 && fall.first <= c.last + 1);
         let impact = Impact {
-            time_s: time / self.rate_hz,
-            time_error_s: time_error / self.rate_hz,
-            drive_phase_rad: None,
             approach_speed_before_m_s: Some(approach),
             approach_speed_after_m_s: Some(-separation),
             speed_error_m_s: Some(error),
             x: Some(of_body(0)),
             y: (self.bodies.len() > 1).then(|| of_body(1)),
-            corner_shifts: [None, None],
-            lags: [None, None],
-            dead_zone_s: 0.0,
-            contact_duration_s: None,
-            external_push_m_s: None,
             source: match touched {
                 true => DetectionSource::Both,
                 false => DetectionSource::Velocity,
             },
+            ..Impact::timed(time / self.rate_hz, time_error / self.rate_hz)
         };
         Found::Impact(Box::new(impact), self.left_out(index, &before))
     }
