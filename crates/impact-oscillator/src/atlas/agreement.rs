@@ -158,16 +158,9 @@ fn is_beyond(settings: &AtlasSettings, motion: SettledMotion) -> bool {
 
 /// Why a cell is in no region, by the orbit on which its last impacts close.
 fn cause(machine: &Machine, at: (f64, f64), end: &End) -> Cause {
-    let SettledMotion::Periodic {
-        p,
-        n,
-        dead_zone: false,
-        ..
-    } = end.motion
-    else {
+    let Some(motion) = end.motion.numbers(false) else {
         return Cause::NoRegion;
     };
-    let motion = (p, n);
     let orbit = orbit_of_cell(machine, at, end, motion);
     let Some(orbit) = orbit.filter(|o| o.existence(machine) == Existence::Exists) else {
         return Cause::NoOrbit;

@@ -66,12 +66,7 @@ pub struct Slice {
 impl Slice {
     /// The motion.
     pub fn motion(&self) -> SettledMotion {
-        SettledMotion::Periodic {
-            p: self.p,
-            n: self.n,
-            dead_zone: false,
-            chatter: false,
-        }
+        SettledMotion::periodic(self.p, self.n)
     }
 
     /// Whether it contains a clearance.
@@ -265,15 +260,7 @@ impl Line<'_> {
 
     /// p and n of a motion without dead zone within the greatest that are sought.
     fn sought(&self, motion: SettledMotion) -> Option<(u32, u32)> {
-        let SettledMotion::Periodic {
-            p,
-            n,
-            dead_zone: false,
-            ..
-        } = motion
-        else {
-            return None;
-        };
+        let (p, n) = motion.numbers(false)?;
         (p <= self.settings.largest_p && n <= self.settings.largest_n).then_some((p, n))
     }
 

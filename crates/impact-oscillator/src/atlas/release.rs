@@ -14,9 +14,7 @@ use super::edge::EdgeKind;
 use crate::model::boundary::rho_sticking;
 use crate::model::recurrence::observe;
 use crate::model::simulate::{Arc, Sink};
-use crate::model::{
-    Flight, Initial, Machine, Oscillator, Setting, SettledMotion, Simulator, Watch,
-};
+use crate::model::{Flight, Initial, Machine, Oscillator, Setting, Simulator, Watch};
 
 /// p and n.
 pub(super) type Label = (u32, u32);
@@ -261,7 +259,7 @@ impl<'a> Releases<'a> {
             tolerance: 1e-3,
             ..Watch::default()
         };
-        let (_, n) = label(observe(&mut simulator, setting, &watch).0)?;
+        let (_, n) = observe(&mut simulator, setting, &watch).0.numbers(true)?;
         self.rest(at, n, difference)
     }
 
@@ -281,7 +279,7 @@ impl<'a> Releases<'a> {
             watch_periods: f64::from(2 * n + 1),
             ..Watch::default()
         };
-        let label = label(observe(&mut simulator, setting, &watch).0)?;
+        let label = observe(&mut simulator, setting, &watch).0.numbers(true)?;
         Some(Rest {
             label,
             difference,
@@ -365,19 +363,6 @@ impl<'a> Releases<'a> {
             slope.set_column(k, &column);
         }
         Some(slope)
-    }
-}
-
-/// p and n of a motion with a dead zone; `None`: it has none.
-pub(super) fn label(motion: SettledMotion) -> Option<Label> {
-    match motion {
-        SettledMotion::Periodic {
-            p,
-            n,
-            dead_zone: true,
-            ..
-        } => Some((p, n)),
-        _ => None,
     }
 }
 

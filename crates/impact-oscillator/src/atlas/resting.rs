@@ -13,7 +13,7 @@ use super::kernel::Cell;
 use super::map::{
     End as MapEnd, Kernel, MapGrid, MapSettings, Start, UnitMass, clear_of, march_all,
 };
-use super::release::{Label, Releases as ExactReleases, RestingStart, Run, RunEnd, label};
+use super::release::{Label, Releases as ExactReleases, RestingStart, Run, RunEnd};
 use crate::model::{Initial, Machine, Watch};
 use crate::parallel;
 
@@ -76,7 +76,7 @@ impl Releases<'_> {
         let outcomes = march_all(&course, &cells, self.settings.kernel);
         let mut labels = vec![None; points.len()];
         for (i, outcome) in numbers.into_iter().zip(outcomes) {
-            labels[i] = label(outcome.motion);
+            labels[i] = outcome.motion.numbers(true);
         }
         labels
     }
@@ -234,7 +234,7 @@ fn resting_starts(
 ) -> Vec<RestingStart> {
     let start = |end: &MapEnd| {
         let initial = clear_of(machine, rho, end.initial);
-        Some((label(end.motion)?, initial, end.phase))
+        Some((end.motion.numbers(true)?, initial, end.phase))
     };
     maps.iter()
         .filter_map(|map| start(map.get(cell)?))

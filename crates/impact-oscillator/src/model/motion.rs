@@ -33,6 +33,27 @@ pub enum SettledMotion {
 }
 
 impl SettledMotion {
+    /// z = p/n without a dead zone.
+    #[must_use]
+    pub fn periodic(p: u32, n: u32) -> Self {
+        Self::Periodic {
+            p,
+            n,
+            dead_zone: false,
+            chatter: false,
+        }
+    }
+
+    /// p and n of a periodic motion with a dead zone, or of one without.
+    pub(crate) fn numbers(self, with_dead_zone: bool) -> Option<(u32, u32)> {
+        match self {
+            Self::Periodic {
+                p, n, dead_zone, ..
+            } if dead_zone == with_dead_zone => Some((p, n)),
+            _ => None,
+        }
+    }
+
     /// Whether it repeats itself after a whole number of drive periods.
     #[must_use]
     pub fn is_periodic(self) -> bool {

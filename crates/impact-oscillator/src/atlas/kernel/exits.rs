@@ -172,12 +172,7 @@ fn recognise<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, here: &An
         return;
     }
     if p == 1.0 || info.confirming {
-        info.found = Some(SettledMotion::Periodic {
-            p: count(p),
-            n: count(n),
-            dead_zone: false,
-            chatter: false,
-        });
+        info.found = Some(SettledMotion::periodic(count(p), count(n)));
         s.tolerance.set(lane, -1.0);
         s.reach.set(lane, f64::INFINITY);
         return;
