@@ -1,7 +1,7 @@
 //! Samples of the velocities that were taken while a contact lasted.
 
 use crate::event::kinematics::{Body, Series};
-use crate::event::refine::{Candidate, DEGREE, Instant, arcs};
+use crate::event::refine::{Arcs, DEGREE, Instant, flights};
 use crate::record::Role;
 
 /// Least height of a jump, in noise deviations, from which its samples are used.
@@ -36,12 +36,11 @@ pub(super) fn measured_velocity(body: &Body) -> Option<&Series> {
 /// too uncertain.
 pub(super) fn samples(
     bodies: [Option<&Series>; 2],
-    candidates: &[Candidate],
+    arcs: Arcs<'_>,
     index: usize,
     instant: Instant,
-    arc_samples: usize,
 ) -> Option<Samples> {
-    if candidates[index].dead_samples > 0.0 || instant.error > LEAST_PLACED {
+    if arcs.candidates[index].dead_samples > 0.0 || instant.error > LEAST_PLACED {
         return None;
     }
     let mut out = Samples {
@@ -50,13 +49,13 @@ pub(super) fn samples(
     };
     for (body, velocity) in bodies.into_iter().enumerate() {
         let Some(velocity) = velocity else { continue };
-        let [before, after] = arcs(velocity, candidates, index, arc_samples)?;
+        let [before, after] = flights(velocity, arcs, index)?;
         let height = before.value(instant.time) - after.value(instant.time);
         let full = before.samples.min(after.samples) > DEGREE + 1;
         if !full || height < CLEAR_JUMP * velocity.noise {
             return None;
         }
-        let found = beside(velocity, candidates, index, instant, arc_samples);
+        let found = beside(velocity, arcs, index, instant);
         out.passages.extend(found.into_iter().map(|p| (p, body)));
     }
     (!out.passages.is_empty()).then_some(out)
@@ -65,13 +64,12 @@ pub(super) fn samples(
 /// Samples within the jump of one impact.
 pub(super) fn beside(
     velocity: &Series,
-    candidates: &[Candidate],
+    arcs: Arcs<'_>,
     index: usize,
     instant: Instant,
-    arc_samples: usize,
 ) -> Vec<Passage> {
-    let jump = candidates[index].jump;
-    let Some([before, after]) = arcs(velocity, candidates, index, arc_samples) else {
+    let jump = arcs.candidates[index].jump;
+    let Some([before, after]) = flights(velocity, arcs, index) else {
         return Vec::new();
     };
     let height = before.value(instant.time) - after.value(instant.time);

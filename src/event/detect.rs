@@ -6,7 +6,7 @@ use crate::event::finite_contact::{self, FiniteContact};
 use crate::event::impact::{DetectionSource, Impact};
 use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
 use crate::event::kinematics::{Kinematics, RigKind, Series};
-use crate::event::refine::{self, Candidate, Instant};
+use crate::event::refine::{self, Arcs, Candidate, Instant};
 use crate::event::{drift, free_flight, impact_speeds};
 use crate::record::{Flag, FlagCode, Record, Role};
 use crate::signal::whole;
@@ -138,12 +138,11 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
     if let Some(flag) = wrong_way(&found, record) {
         flags.push(flag);
     }
-    let impacts = refined(
-        &mut kinematics,
-        &found.candidates,
-        drive.as_ref(),
-        (rig, arc_samples),
-    );
+    let arcs = Arcs {
+        candidates: &found.candidates,
+        samples: arc_samples,
+    };
+    let impacts = refined(&mut kinematics, arcs, drive.as_ref(), rig);
     let closed_samples: usize = closed.iter().map(Closed::samples).sum();
     Detection {
         drive,
@@ -230,49 +229,46 @@ fn window_samples(drive: Option<&DriveTone>, rate_hz: f64, periods: f64) -> usiz
 /// Refine the times, remove the drift that follows from them, refine again, extrapolate the speeds.
 fn refined(
     kinematics: &mut Kinematics,
-    candidates: &[Candidate],
+    arcs: Arcs<'_>,
     drive: Option<&DriveTone>,
-    (rig, arc_samples): (RigKind, usize),
+    rig: RigKind,
 ) -> Vec<Impact> {
+    let candidates = arcs.candidates;
     if kinematics.relative.velocity.is_none() {
         return without_speeds(candidates, drive, kinematics.rate_hz);
     }
-    let Some(contact) = finite_contact::measure(kinematics, candidates, arc_samples) else {
-        return undrifted(kinematics, candidates, drive, (rig, arc_samples, None));
+    let Some(contact) = finite_contact::measure(kinematics, arcs) else {
+        return undrifted(kinematics, arcs, drive, (rig, None));
     };
     let wide = finite_contact::widened(candidates);
-    let instants = refine::instants(kinematics, &wide, arc_samples);
+    let instants = refine::instants(kinematics, arcs.of(&wide));
     let spanned = contact.spanned(candidates, &instants);
-    let instants = refine::instants(kinematics, &spanned, arc_samples);
-    let instants = contact.placed(kinematics, &spanned, &instants, arc_samples);
+    let instants = refine::instants(kinematics, arcs.of(&spanned));
+    let instants = contact.placed(kinematics, arcs.of(&spanned), &instants);
     let spanned = contact.spanned(candidates, &instants);
-    finite_contact::bridge(kinematics, &spanned, &instants, &contact, arc_samples);
+    let arcs = arcs.of(&spanned);
+    finite_contact::bridge(kinematics, arcs, &instants, &contact);
     kinematics.update_relative(rig);
-    undrifted(
-        kinematics,
-        &spanned,
-        drive,
-        (rig, arc_samples, Some((&contact, &instants))),
-    )
+    undrifted(kinematics, arcs, drive, (rig, Some((&contact, &instants))))
 }
 
 /// Correct the velocities for jumps and drift, then refine the impacts.
 fn undrifted(
     kinematics: &mut Kinematics,
-    candidates: &[Candidate],
+    arcs: Arcs<'_>,
     drive: Option<&DriveTone>,
-    (rig, arc_samples, contact): (RigKind, usize, Option<(&FiniteContact, &[Instant])>),
+    (rig, contact): (RigKind, Option<(&FiniteContact, &[Instant])>),
 ) -> Vec<Impact> {
     // The times of a contact that lasts are known from its samples.
     let instants = |kinematics: &Kinematics| match contact {
         Some((_, placed)) => placed.to_vec(),
-        None => refine::instants(kinematics, candidates, arc_samples),
+        None => refine::instants(kinematics, arcs),
     };
     let first = instants(kinematics);
     let (delay, delays) = contact.map_or((0.0, [0.0; 2]), |(c, _)| (c.delay(), c.delays));
     let jumps: Vec<Instant> = first.iter().map(|i| i.later(delay)).collect();
     let later = delays.map(|own| own - delay);
-    refine::correct_jumps(kinematics, candidates, (&jumps, later), arc_samples);
+    refine::correct_jumps(kinematics, arcs, (&jumps, later));
     kinematics.update_relative(rig);
     let times: Vec<f64> = jumps.iter().map(|i| i.time).collect();
     let rate_hz = kinematics.rate_hz;
@@ -288,13 +284,7 @@ fn undrifted(
     }
     let instants = instants(kinematics);
     let contact = contact.map(|(contact, _)| contact);
-    impact_speeds::impacts(
-        kinematics,
-        candidates,
-        &instants,
-        drive,
-        (arc_samples, contact),
-    )
+    impact_speeds::impacts(kinematics, arcs, &instants, drive, contact)
 }
 
 /// Candidates for impacts, and counts of what supports and contradicts them.
@@ -350,11 +340,16 @@ const SHOWN: f64 = 0.5;
 impl Fused {
     /// Without the jumps that no contact pulse and no difference of the flights beside them confirm:
     /// extrapolated across an impact nearby, a velocity seems to jump.
-    fn confirmed(self, velocity: &Series, arc_samples: usize) -> Self {
+    fn confirmed(self, velocity: &Series, samples: usize) -> Self {
         let without_pulse = |c: &Candidate| c.source == DetectionSource::Velocity;
         let all = &self.candidates;
+        let candidates = all.as_slice();
+        let arcs = Arcs {
+            candidates,
+            samples,
+        };
         let shows = |i: usize| {
-            let Some([before, after]) = refine::arcs(velocity, all, i, arc_samples) else {
+            let Some([before, after]) = refine::flights(velocity, arcs, i) else {
                 return true;
             };
             let middle = all[i].jump.middle();

@@ -14,7 +14,7 @@ use crate::event::contact_profile::{ContactProfile, TabulatedProfile};
 use crate::event::contact_samples::{Passage, Samples, beside, measured_velocity, samples};
 use crate::event::jumps::Jump;
 use crate::event::kinematics::{Body, Kinematics};
-use crate::event::refine::{self, Candidate, Instant, arcs, instants};
+use crate::event::refine::{self, Arcs, Candidate, Instant, flights, instants};
 use crate::signal::robust;
 use crate::signal::whole;
 
@@ -71,9 +71,8 @@ impl FiniteContact {
     pub(super) fn placed(
         &self,
         kinematics: &Kinematics,
-        candidates: &[Candidate],
+        arcs: Arcs<'_>,
         instants: &[Instant],
-        arc_samples: usize,
     ) -> Vec<Instant> {
         let mut out = instants.to_vec();
         if self.duration == 0.0 {
@@ -84,14 +83,14 @@ impl FiniteContact {
             (&kinematics.y, self.delays[1]),
         ];
         for (i, instant) in out.iter_mut().enumerate() {
-            if candidates[i].dead_samples > 0.0 {
+            if arcs.candidates[i].dead_samples > 0.0 {
                 continue;
             }
             let samples: Vec<(Passage, f64)> = bodies
                 .iter()
                 .filter_map(|(body, delay)| Some((measured_velocity(body)?, *delay)))
                 .flat_map(|(velocity, delay)| {
-                    let samples = beside(velocity, candidates, i, *instant, arc_samples);
+                    let samples = beside(velocity, arcs, i, *instant);
                     samples.into_iter().map(move |p| (p, delay))
                 })
                 .collect();
@@ -159,22 +158,19 @@ impl FiniteContact {
 
 /// How long the impacts of a record last; `None` if they are instants, or if nothing shows it
 /// (it takes measured velocity and displacement).
-pub(super) fn measure(
-    kinematics: &Kinematics,
-    candidates: &[Candidate],
-    arc_samples: usize,
-) -> Option<FiniteContact> {
+pub(super) fn measure(kinematics: &Kinematics, arcs: Arcs<'_>) -> Option<FiniteContact> {
     kinematics.relative.displacement.as_ref()?;
-    let wide = widened(candidates);
-    let instants = instants(kinematics, &wide, arc_samples);
+    let candidates = &widened(arcs.candidates);
+    let arcs = arcs.of(candidates);
+    let instants = instants(kinematics, arcs);
     let bodies = [&kinematics.x, &kinematics.y].map(measured_velocity);
-    let impacts: Vec<Samples> = (0..wide.len())
-        .filter_map(|i| samples(bodies, &wide, i, instants[i], arc_samples))
+    let impacts: Vec<Samples> = (0..candidates.len())
+        .filter_map(|i| samples(bodies, arcs, i, instants[i]))
         .collect();
     if impacts.len() < FEWEST {
         return None;
     }
-    let profile = ContactProfile::new(typical_ratio(kinematics, &wide, &instants, arc_samples)?);
+    let profile = ContactProfile::new(typical_ratio(kinematics, arcs, &instants)?);
     let tabulated = TabulatedProfile::new(&profile);
     let search = Search {
         profile,
@@ -182,7 +178,7 @@ pub(super) fn measure(
         impacts,
     };
     let mut found = search.best()?;
-    found.kinks_apart = kinks_apart(kinematics, &wide, arc_samples);
+    found.kinks_apart = kinks_apart(kinematics, arcs);
     match bodies {
         [Some(_), None] => found.delays[1] = found.delays[0],
         [None, Some(_)] => found.delays[0] = found.delays[1],
@@ -195,13 +191,13 @@ pub(super) fn measure(
 const KINKS: usize = 20;
 
 /// Half the time between the kinks of both bodies' displacements, samples; 0 of a single one.
-fn kinks_apart(kinematics: &Kinematics, candidates: &[Candidate], arc_samples: usize) -> f64 {
+fn kinks_apart(kinematics: &Kinematics, arcs: Arcs<'_>) -> f64 {
     let rate_hz = kinematics.rate_hz;
     let kink = |body: &Body, i: usize| {
         let both = (body.displacement.as_ref()?, body.velocity.as_ref()?);
-        Some(refine::kink(both, candidates, i, arc_samples, rate_hz)?.time)
+        Some(refine::kink(both, arcs, i, rate_hz)?.time)
     };
-    let few = 0..candidates.len().min(KINKS);
+    let few = 0..arcs.candidates.len().min(KINKS);
     let apart: Vec<f64> = few
         .filter_map(|i| Some(kink(&kinematics.x, i)? - kink(&kinematics.y, i)?))
         .collect();
@@ -221,18 +217,13 @@ pub(super) fn widened(candidates: &[Candidate]) -> Vec<Candidate> {
 }
 
 /// Speed after over before the impacts, median.
-fn typical_ratio(
-    kinematics: &Kinematics,
-    candidates: &[Candidate],
-    instants: &[Instant],
-    arc_samples: usize,
-) -> Option<f64> {
+fn typical_ratio(kinematics: &Kinematics, arcs: Arcs<'_>, instants: &[Instant]) -> Option<f64> {
     let velocity = kinematics.relative.velocity.as_ref()?;
     let offset = robust::mean(&velocity.values);
-    let ratios: Vec<f64> = (0..candidates.len())
-        .filter(|i| candidates[*i].dead_samples == 0.0)
+    let ratios: Vec<f64> = (0..instants.len())
+        .filter(|i| arcs.candidates[*i].dead_samples == 0.0)
         .filter_map(|i| {
-            let [before, after] = arcs(velocity, candidates, i, arc_samples)?;
+            let [before, after] = flights(velocity, arcs, i)?;
             let time = instants[i].time;
             Some((offset - after.value(time)) / (before.value(time) - offset))
         })
@@ -367,20 +358,19 @@ impl Search {
 /// time then, at the mean delay.
 pub(super) fn bridge(
     kinematics: &mut Kinematics,
-    candidates: &[Candidate],
+    arcs: Arcs<'_>,
     instants: &[Instant],
     contact: &FiniteContact,
-    arc_samples: usize,
 ) {
     let rate_hz = kinematics.rate_hz;
     for body in [&mut kinematics.x, &mut kinematics.y] {
         let Some(velocity) = body.velocity.as_mut() else {
             continue;
         };
-        let flights: Vec<_> = (0..candidates.len())
-            .map(|i| arcs(velocity, candidates, i, arc_samples))
+        let flights: Vec<_> = (0..arcs.candidates.len())
+            .map(|i| flights(velocity, arcs, i))
             .collect();
-        for ((candidate, instant), flights) in candidates.iter().zip(instants).zip(flights) {
+        for ((candidate, instant), flights) in arcs.candidates.iter().zip(instants).zip(flights) {
             let Some([before, after]) = flights else {
                 continue;
             };

@@ -6,40 +6,33 @@ use crate::event::finite_contact::FiniteContact;
 use crate::event::impact::{Impact, MassSpeeds};
 use crate::event::kinematics::{Body, Kinematics};
 use crate::event::lag;
-use crate::event::refine::{Candidate, Instant, arcs, speeds};
+use crate::event::refine::{Arcs, Instant, flights, speeds};
 use crate::signal::local_fit::LocalFit;
 
 /// The impacts at the refined times. If impacts are not instantaneous the approach speeds are those
 /// at the start and at the end of contact.
 pub(super) fn impacts(
     kinematics: &Kinematics,
-    candidates: &[Candidate],
+    arcs: Arcs<'_>,
     instants: &[Instant],
     drive: Option<&DriveTone>,
-    (arc_samples, contact): (usize, Option<&FiniteContact>),
+    contact: Option<&FiniteContact>,
 ) -> Vec<Impact> {
+    let candidates = arcs.candidates;
     let of = |body: &Body, i: usize, delay: f64| {
         let velocity = body.velocity.as_ref()?;
-        speeds(
-            velocity,
-            candidates,
-            i,
-            instants[i].later(delay),
-            arc_samples,
-        )
+        speeds(velocity, arcs, i, instants[i].later(delay))
     };
     let delays = contact.map_or([0.0; 2], |c| c.delays);
     let rate_hz = kinematics.rate_hz;
     let shifts = Shifts::of(kinematics);
-    let lags = lag::lags(kinematics, candidates, instants, contact, arc_samples);
+    let lags = lag::lags(kinematics, arcs, instants, contact);
     (0..candidates.len())
         .map(|i| {
             let time_s = instants[i].time / rate_hz;
             let lasting = contact
                 .filter(|_| candidates[i].dead_samples == 0.0)
-                .and_then(|c| {
-                    contact_speeds(kinematics, candidates, i, (instants[i], c), arc_samples)
-                });
+                .and_then(|c| contact_speeds(kinematics, arcs, i, (instants[i], c)));
             let approach = match &lasting {
                 Some(c) => Some((c.speeds, c.error)),
                 None => of(&kinematics.relative, i, 0.0),
@@ -76,19 +69,18 @@ struct ContactSpeeds {
 /// after. Each body's velocity is taken as late as its channel shows it.
 fn contact_speeds(
     kinematics: &Kinematics,
-    candidates: &[Candidate],
+    arcs: Arcs<'_>,
     index: usize,
     (instant, contact): (Instant, &FiniteContact),
-    arc_samples: usize,
 ) -> Option<ContactSpeeds> {
     let relative = kinematics.relative.velocity.as_ref()?;
-    let [before, after] = arcs(relative, candidates, index, arc_samples)?;
+    let [before, after] = flights(relative, arcs, index)?;
     let bodies: Vec<([LocalFit; 2], f64)> = [&kinematics.x, &kinematics.y]
         .into_iter()
         .zip(contact.delays)
         .filter_map(|(body, delay)| {
             let velocity = body.velocity.as_ref()?;
-            Some((arcs(velocity, candidates, index, arc_samples)?, delay))
+            Some((flights(velocity, arcs, index)?, delay))
         })
         .collect();
     let delay = bodies.iter().map(|b| b.1).sum::<f64>() / bodies.len().max(1) as f64;

@@ -9,7 +9,7 @@ use crate::event::contact_samples::measured_velocity;
 use crate::event::finite_contact::FiniteContact;
 use crate::event::impact::Lag;
 use crate::event::kinematics::{Body, Kinematics, RelativeSource};
-use crate::event::refine::{Candidate, Instant, arcs};
+use crate::event::refine::{Arcs, Candidate, Instant, flights};
 use crate::record::Role;
 use crate::signal::local_fit::LocalFit;
 
@@ -17,20 +17,19 @@ use crate::signal::local_fit::LocalFit;
 /// displacements.
 pub(super) fn lags(
     kinematics: &Kinematics,
-    candidates: &[Candidate],
+    arcs: Arcs<'_>,
     instants: &[Instant],
     contact: Option<&FiniteContact>,
-    arc_samples: usize,
 ) -> Vec<[Option<Lag>; 2]> {
     let lasting = contact.is_some_and(|c| c.duration > 0.0);
     if lasting || kinematics.relative.displacement.is_none() {
-        return vec![[None, None]; candidates.len()];
+        return vec![[None, None]; arcs.candidates.len()];
     }
     let assumed = contact.map_or([0.0; 2], |c| c.delays);
     let of = |(i, candidate): (usize, &Candidate)| {
         let placed = candidate.dead_samples == 0.0 && instants[i].error < candidate.middle_error();
         let read = |body: &Body, delay: f64| {
-            let fits = arcs(measured_velocity(body)?, candidates, i, arc_samples)?;
+            let fits = flights(measured_velocity(body)?, arcs, i)?;
             Read::of(body, fits, (instants[i].time, delay), kinematics)
         };
         match placed {
@@ -41,7 +40,7 @@ pub(super) fn lags(
             false => [None, None],
         }
     };
-    let read: Vec<[Option<Read>; 2]> = candidates.iter().enumerate().map(of).collect();
+    let read: Vec<[Option<Read>; 2]> = arcs.candidates.iter().enumerate().map(of).collect();
     let per_second = arcs_per_second(instants, kinematics.rate_hz);
     let drifts = [0, 1].map(|body| {
         let jumps: Vec<f64> = read

@@ -50,14 +50,23 @@ impl Candidate {
     }
 }
 
-/// Windows before and after one candidate, of so many samples at most: ranges that contain no other
-/// impact.
-fn windows(
-    velocity: &Series,
-    candidates: &[Candidate],
-    index: usize,
-    width: usize,
-) -> [(usize, usize); 2] {
+/// The candidates of a record, and the most samples of an arc that is fitted beside one of them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Arcs<'a> {
+    pub candidates: &'a [Candidate],
+    pub samples: usize,
+}
+
+impl<'a> Arcs<'a> {
+    /// The same beside other candidates.
+    pub(super) fn of(self, candidates: &'a [Candidate]) -> Self {
+        Self { candidates, ..self }
+    }
+}
+
+/// Windows before and after one candidate: ranges that contain no other impact.
+fn windows(velocity: &Series, arcs: Arcs<'_>, index: usize) -> [(usize, usize); 2] {
+    let (candidates, width) = (arcs.candidates, arcs.samples);
     let samples = velocity.values.len();
     let jump = candidates[index].jump;
     let low = match index.checked_sub(1).map(|i| &candidates[i]) {
@@ -94,34 +103,24 @@ fn fits(values: &[f64], windows: [(usize, usize); 2]) -> Option<[LocalFit; 2]> {
 /// Times of all candidates: from the kink of the displacement if it is measured, else from the
 /// condition that the relative displacement is the same at every impact, else the middle of the
 /// sample interval.
-pub(super) fn instants(
-    kinematics: &Kinematics,
-    candidates: &[Candidate],
-    arc_samples: usize,
-) -> Vec<Instant> {
+pub(super) fn instants(kinematics: &Kinematics, arcs: Arcs<'_>) -> Vec<Instant> {
     let middle = |c: &Candidate| Instant {
         time: c.jump.middle(),
         error: c.middle_error(),
     };
-    let plain: Vec<Instant> = candidates.iter().map(middle).collect();
+    let plain: Vec<Instant> = arcs.candidates.iter().map(middle).collect();
     match (
         &kinematics.relative.displacement,
         &kinematics.relative.velocity,
     ) {
-        (Some(displacement), Some(velocity)) => (0..candidates.len())
+        (Some(displacement), Some(velocity)) => (0..plain.len())
             .map(|i| {
-                kink(
-                    (displacement, velocity),
-                    candidates,
-                    i,
-                    arc_samples,
-                    kinematics.rate_hz,
-                )
-                .filter(|k| k.error < plain[i].error)
-                .unwrap_or(plain[i])
+                kink((displacement, velocity), arcs, i, kinematics.rate_hz)
+                    .filter(|k| k.error < plain[i].error)
+                    .unwrap_or(plain[i])
             })
             .collect(),
-        (None, Some(velocity)) => closed_arcs(velocity, candidates, &plain, arc_samples),
+        (None, Some(velocity)) => closed_arcs(velocity, arcs, &plain),
         _ => plain,
     }
 }
@@ -129,13 +128,12 @@ pub(super) fn instants(
 /// Where the displacement's flights before and after a candidate cross.
 pub(super) fn kink(
     (displacement, velocity): (&Series, &Series),
-    candidates: &[Candidate],
+    arcs: Arcs<'_>,
     index: usize,
-    arc_samples: usize,
     rate_hz: f64,
 ) -> Option<Instant> {
-    let jump = candidates[index].jump;
-    let windows = windows(velocity, candidates, index, arc_samples);
+    let jump = arcs.candidates[index].jump;
+    let windows = windows(velocity, arcs, index);
     let [before, after] = fits(&displacement.values, windows)?;
     let (low, high) = (jump.left as f64, (jump.left + jump.gap) as f64);
     let time = crossing(&before, &after, low, high)?;
@@ -148,18 +146,13 @@ pub(super) fn kink(
 
 /// Least squares for the shifts δ of all impact times within their sample intervals and the
 /// velocity offset b: for each arc, area + `v₋δ_end` − `v₊δ_start` = b · duration.
-fn closed_arcs(
-    velocity: &Series,
-    candidates: &[Candidate],
-    plain: &[Instant],
-    arc_samples: usize,
-) -> Vec<Instant> {
+fn closed_arcs(velocity: &Series, arcs: Arcs<'_>, plain: &[Instant]) -> Vec<Instant> {
     let count = plain.len();
     if count < 3 {
         return plain.to_vec();
     }
     let speeds: Vec<Option<MassSpeeds>> = (0..count)
-        .map(|i| speeds(velocity, candidates, i, plain[i], arc_samples).map(|s| s.0))
+        .map(|i| speeds(velocity, arcs, i, plain[i]).map(|s| s.0))
         .collect();
     let mut normal = DMatrix::<f64>::zeros(count + 1, count + 1);
     let mut right = DVector::<f64>::zeros(count + 1);
@@ -195,7 +188,7 @@ fn closed_arcs(
     let shifts = &inverse * right;
     (0..count)
         .map(|i| {
-            let half = 0.5 * candidates[i].jump.gap as f64;
+            let half = 0.5 * arcs.candidates[i].jump.gap as f64;
             Instant {
                 time: plain[i].time + shifts[i].clamp(-half, half),
                 error: inverse[(i, i)].max(0.0).sqrt().min(plain[i].error),
@@ -205,25 +198,18 @@ fn closed_arcs(
 }
 
 /// Flights of one signal before and after a candidate, fitted to samples that touch no impact.
-pub(super) fn arcs(
-    velocity: &Series,
-    candidates: &[Candidate],
-    index: usize,
-    arc_samples: usize,
-) -> Option<[LocalFit; 2]> {
-    let windows = windows(velocity, candidates, index, arc_samples);
-    fits(&velocity.values, windows)
+pub(super) fn flights(velocity: &Series, arcs: Arcs<'_>, index: usize) -> Option<[LocalFit; 2]> {
+    fits(&velocity.values, windows(velocity, arcs, index))
 }
 
 /// Speeds of one signal before and after a candidate at a time, with their standard error.
 pub(super) fn speeds(
     velocity: &Series,
-    candidates: &[Candidate],
+    arcs: Arcs<'_>,
     index: usize,
     instant: Instant,
-    arc_samples: usize,
 ) -> Option<(MassSpeeds, f64)> {
-    let [before, after] = arcs(velocity, candidates, index, arc_samples)?;
+    let [before, after] = flights(velocity, arcs, index)?;
     let time = instant.time;
     let error = velocity.noise * before.error_factor(time).max(after.error_factor(time));
     let speeds = MassSpeeds {
@@ -237,9 +223,8 @@ pub(super) fn speeds(
 /// within their sample intervals; each body may have jumped later than its samples show it.
 pub(super) fn correct_jumps(
     kinematics: &mut Kinematics,
-    candidates: &[Candidate],
+    arcs: Arcs<'_>,
     (instants, later): (&[Instant], [f64; 2]),
-    arc_samples: usize,
 ) {
     let rate_hz = kinematics.rate_hz;
     for (body, later) in [&mut kinematics.x, &mut kinematics.y]
@@ -249,8 +234,8 @@ pub(super) fn correct_jumps(
         let Some(velocity) = body.velocity.as_mut().filter(|v| v.high_pass_hz.is_some()) else {
             continue;
         };
-        let known: Vec<Option<MassSpeeds>> = (0..candidates.len())
-            .map(|i| speeds(velocity, candidates, i, instants[i], arc_samples).map(|s| s.0))
+        let known: Vec<Option<MassSpeeds>> = (0..instants.len())
+            .map(|i| speeds(velocity, arcs, i, instants[i]).map(|s| s.0))
             .collect();
         for (instant, speeds) in instants.iter().zip(known) {
             if let Some(s) = speeds {
@@ -323,6 +308,13 @@ mod tests {
         found.into_iter().map(candidate).collect()
     }
 
+    fn arcs(candidates: &[Candidate]) -> Arcs<'_> {
+        Arcs {
+            candidates,
+            samples: ARC_SAMPLES,
+        }
+    }
+
     fn truth(k: usize) -> f64 {
         FLIGHT * (k as f64 + 0.4)
     }
@@ -332,14 +324,8 @@ mod tests {
         let kinematics = flights();
         let candidates = candidates(&kinematics);
         assert_eq!(candidates.len(), 10);
-        let instants = instants(&kinematics, &candidates, ARC_SAMPLES);
-        let impacts = impacts(
-            &kinematics,
-            &candidates,
-            &instants,
-            None,
-            (ARC_SAMPLES, None),
-        );
+        let instants = instants(&kinematics, arcs(&candidates));
+        let impacts = impacts(&kinematics, arcs(&candidates), &instants, None, None);
         for (k, (instant, impact)) in instants.iter().zip(&impacts).enumerate() {
             assert!(
                 (instant.time - truth(k)).abs() < 1e-6,
@@ -360,7 +346,7 @@ mod tests {
         let mut kinematics = flights();
         kinematics.relative.displacement = None;
         let candidates = candidates(&kinematics);
-        let instants = instants(&kinematics, &candidates, ARC_SAMPLES);
+        let instants = instants(&kinematics, arcs(&candidates));
         // Time errors in samples and standard errors of the same least squares (trapezoids between
         // the middles, extrapolated speeds, prior of 1/√12) in 70 lines of Python.
         let script = [
@@ -387,12 +373,16 @@ mod tests {
         let velocity = kinematics.relative.velocity.as_ref().unwrap();
         let mut list = candidates(&kinematics);
         list[1].dead_samples = 5.0;
-        let found = windows(velocity, &list, 2, 200);
+        let wide = Arcs {
+            samples: 200,
+            ..arcs(&list)
+        };
+        let found = windows(velocity, wide, 2);
         let (before, own, next) = (list[1].jump, list[2].jump, list[3].jump);
         assert_eq!(found[0], (before.left + before.gap + 5, own.left + 1));
         assert_eq!(found[1], (own.left + own.gap, next.left + 1));
         // After an impact with a dead zone only the samples inside it count.
-        let found = windows(velocity, &list, 1, 200);
+        let found = windows(velocity, wide, 1);
         assert_eq!(found[1].1 - found[1].0, 5);
     }
 }
