@@ -197,21 +197,15 @@ pub fn rho_s1(machine: &Machine, eta: f64, n: u32) -> Option<BoundaryPoint> {
     }
 }
 
-/// Clearance and approach speed at s1 of one mass (or of equal ones) for constant R, without a
-/// check of existence.
-pub fn s1_of_branch(machine: &Machine, branch: &Branch, restitution: f64) -> Option<(f64, f64)> {
-    marginal(machine, branch, restitution, -1.0)
-}
-
-/// Clearance and approach speed of one mass (or of equal ones) where a multiplier is `sign`
-/// (±1): trace = sign·(1 + determinant). For +1 it is s2 again.
-fn marginal(machine: &Machine, branch: &Branch, r: f64, sign: f64) -> Option<(f64, f64)> {
+/// Clearance and approach speed at s1 of one mass (or of equal ones) for constant R, where
+/// trace = −(1 + determinant), without a check of existence.
+pub fn s1_of_branch(machine: &Machine, branch: &Branch, r: f64) -> Option<(f64, f64)> {
     let masses = machine.gap(1.0);
     let (o, eta) = (&machine.x, branch.eta);
     let lambda = exponent(o);
     let C64 { re: ec, im: es } = branch.returned;
     let determinant = r * r * branch.returned.norm_sqr();
-    let g = (2.0 * r * ec + sign * (1.0 + determinant)) * lambda.im / es;
+    let g = (2.0 * r * ec - (1.0 + determinant)) * lambda.im / es;
     let (f, p) = (branch.forced / masses, o.drive_per_mass());
     let (alpha, q) = (branch.alpha(r), branch.q(r) / eta);
     let f2 = f.norm_sqr();

@@ -176,21 +176,22 @@ impl Branch {
         1.0 + (1.0 + restitution) * self.velocity
     }
 
+    /// F e^{iψ} at the impact of an orbit with approach speed w.
+    pub(super) fn at_impact(&self, restitution: f64, gap: f64, w: f64) -> C64 {
+        C64::new(
+            gap - self.alpha(restitution) * w,
+            -self.q(restitution) * w / self.eta,
+        )
+    }
+
     /// (G − αw)² + (Qw/η)² − |F|²: zero on an orbit.
     pub fn mismatch(&self, restitution: f64, gap: f64, w: f64) -> f64 {
-        let (a, q) = (
-            gap - self.alpha(restitution) * w,
-            self.q(restitution) * w / self.eta,
-        );
-        a * a + q * q - self.forced.norm_sqr()
+        self.at_impact(restitution, gap, w).norm_sqr() - self.forced.norm_sqr()
     }
 
     /// Phase of the drive at the impact of an orbit with approach speed w.
     pub fn phase(&self, restitution: f64, gap: f64, w: f64) -> f64 {
-        let u = C64::new(
-            gap - self.alpha(restitution) * w,
-            -self.q(restitution) * w / self.eta,
-        );
+        let u = self.at_impact(restitution, gap, w);
         (u.arg() - self.forced.arg()).rem_euclid(std::f64::consts::TAU)
     }
 

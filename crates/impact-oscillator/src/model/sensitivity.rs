@@ -207,11 +207,8 @@ impl Sensitivity {
 
     /// Re(F e^{iψ}) and Im, by the gap and the approach speed.
     fn at_impact(&self) -> C64 {
-        let w = self.approach_speed;
-        C64::new(
-            self.gap - self.branch.alpha(self.restitution) * w,
-            -self.branch.q(self.restitution) * w / self.branch.eta,
-        )
+        let branch = &self.branch;
+        branch.at_impact(self.restitution, self.gap, self.approach_speed)
     }
 
     /// The orbit itself.
