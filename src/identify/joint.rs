@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::evidence::{Blocks, Nominal, impact_bias};
+use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, FitError, Prior, Problem};
 use crate::identify::method::Method;
@@ -25,10 +25,9 @@ pub fn block(method: Method, blocks: &Blocks) -> Option<&dyn Block> {
 /// Weights of the methods in a joint fit; a method without one stays out.
 pub type Weights = BTreeMap<Method, f64>;
 
-/// Weight of the impacts among the other methods: what the extrapolation of speeds leaves open is
+/// Weight of the impacts among the other methods: what the extrapolation of speeds leaves open, `bias`, is
 /// common to all impacts, so that all together tell no more than that.
-pub fn impact_weight(found: &MethodFit, waveforms: &Parameters) -> f64 {
-    let bias = impact_bias(waveforms);
+pub fn impact_weight(found: &MethodFit, bias: f64) -> f64 {
     let square = found.fit.conditional_variance(Coordinate::Restitution);
     let square = square.unwrap_or(0.0) * found.factor;
     square / (square + bias * bias) / found.factor

@@ -52,7 +52,7 @@ pub fn impacts(
     if let Some(estimate) = &mut result.parameters.restitution {
         widen(
             estimate,
-            fit.map_or(0.0, |fit| impact_bias(&fit.parameters))
+            fit.map_or(0.0, |fit| impact_bias(block, fit, evidence.nominal.effects))
                 .hypot(block.common_error()),
         );
     }

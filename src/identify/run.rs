@@ -10,7 +10,7 @@ use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
 use crate::identify::diagnostics::verdict::{self, Basis};
 use crate::identify::estimate::ParameterSet;
-use crate::identify::evidence::{Blocks, Evidence};
+use crate::identify::evidence::{Blocks, Evidence, impact_bias};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Precision, Problem};
 use crate::identify::identification::{Allowed, Identification, JointFit, MethodResult};
@@ -279,7 +279,8 @@ impl IdentificationRun<'_> {
     ) -> Fits {
         let trajectories = self.selection.trajectories(start);
         let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
-        let delayed = trajectories.is_some() && self.selection.blocks.delay_impacts(&start);
+        let waveforms = succeeded(&trajectories).or(succeeded(&resonance));
+        let delayed = waveforms.is_some() && self.selection.blocks.delay_impacts(&start);
         let impacts = match delayed {
             true => methods::impacts(&self.selection.blocks, &self.evidence.nominal, start),
             false => impacts,
@@ -308,8 +309,13 @@ impl IdentificationRun<'_> {
         let weight = |attempt: &Option<FitResult>| succeeded(attempt).map(|f| 1.0 / f.factor);
         // Flights rest on the speeds at impacts; waveforms tell the same better than either.
         let flown = weight(&alone.flights).filter(|_| succeeded(&alone.trajectories).is_none());
-        let impact_weight =
-            succeeded(&alone.impacts).map(|found| joint::impact_weight(found, &start));
+        let impact_weight = succeeded(&alone.impacts).map(|found| {
+            let told = [&alone.trajectories, &alone.resonance];
+            let waveforms = told.into_iter().find_map(succeeded).unwrap_or(found);
+            let effects = self.evidence.nominal.effects;
+            let bias = impact_bias(&self.selection.blocks.impact, &waveforms.fit, effects);
+            joint::impact_weight(found, bias)
+        });
         let weights: Weights = [
             (Method::Resonance, weight(&alone.resonance)),
             (Method::Trajectories, weight(&alone.trajectories)),

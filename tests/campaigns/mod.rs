@@ -188,3 +188,36 @@ fn proposed_settings_lower_the_error_of_r_from_what_the_campaign_states() {
     // a record more of 60 alike cannot halve the error
     assert!(errors[0] > 0.5 * now, "{now} {errors:?}");
 }
+
+/// Without clearances R rests on the speeds at impacts alone: nothing tells how long the contacts last, nor
+/// corrects for it.
+#[test]
+fn valid_r_without_clearances_allows_for_contacts_and_delays() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path();
+    for (rig, seed) in [
+        ("contact=0.6", "51"),
+        ("delays=0.5", "52"),
+        ("realistic", "31"),
+    ] {
+        let of_rig = ["--rig", rig, "--seed", seed, "--records", "60"];
+        let command = ["-q", "simulate", "campaign", "--out", "rig", "--force"];
+        let simulated = impactid(path, &[&command[..], &of_rig].concat());
+        assert_eq!(simulated.code, 0, "{}", simulated.said);
+        let runs = path.join("rig/runs.csv");
+        let table = fs::read_to_string(&runs).expect("the run table");
+        let first_three = |line: &str| line.split(',').take(3).collect::<Vec<_>>().join(",");
+        let bare: Vec<String> = table.lines().map(first_three).collect();
+        assert_eq!(bare[0], "file,dataset,drive_frequency_hz");
+        fs::write(&runs, bare.join("\n")).expect("the run table");
+        let ran = impactid(path, &["-q", "run", "rig/campaign.toml", "--out", "out"]);
+        assert_eq!(ran.code, 0, "{rig}: {}", ran.said);
+        let found = json(&path.join("out/identification.json"));
+        let interval = |i: usize| found["joint"]["restitution"]["interval95"][i].as_f64();
+        let [low, high] = [0, 1].map(|i| interval(i).expect("an interval"));
+        assert!(
+            low < 0.9 && 0.9 < high && high - low < 0.02,
+            "{rig}: {low} {high}"
+        );
+    }
+}

@@ -30,7 +30,7 @@ use crate::identify::fit::effect::{Effect, Effects};
 use crate::identify::fit::gap_errors::MOST_GAPS;
 use crate::identify::fit::group::Group;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
-use crate::identify::fit::{Block, FitProgress, Prior, Problem};
+use crate::identify::fit::{Block, Fit, FitProgress, Prior, Problem};
 use crate::identify::uncertainty::options::UncertaintyOptions;
 use crate::motion::{Bracket, Observation};
 use crate::signal::robust;
@@ -120,18 +120,26 @@ const DELAY_BIAS_PER_MS: f64 = 3e-3;
 /// A contact that the flights' extrapolation begins to notice, ms.
 const SHORT_CONTACT_MS: f64 = 0.1;
 
-/// What the extrapolation of speeds to the impacts leaves open in R, with the length of a contact and the delays
-/// of the channels that waveforms tell.
-pub fn impact_bias(parameters: &Parameters) -> f64 {
-    let contact_ms = parameters.effect(Effect::ContactDuration);
+/// What the extrapolation of speeds to the impacts leaves open in R, with the length of a contact and the
+/// delays of the channels that a fit of waveforms found. Where the fit tells nothing of the length, all of what
+/// a good laboratory would accept is left, if the rig may have it (`effects`) and is driven through its impacts.
+pub fn impact_bias(block: &ImpactBlock, waveforms: &Fit, effects: Effects) -> f64 {
+    let length = Effect::ContactDuration;
+    let untold = !waveforms.free.contains(&Coordinate::Effect(length));
+    let contact_ms = match untold && !block.free && effects.iter().any(|e| e == length) {
+        true => length.accepted(),
+        false => waveforms.parameters.effect(length),
+    };
     let noticed = (contact_ms / SHORT_CONTACT_MS).clamp(-1.0, 1.0);
-    let [first, last] = [f64::min, f64::max].map(|of| parameters.delays_s.into_iter().reduce(of));
+    let delays_s = waveforms.parameters.delays_s.into_iter();
+    let [first, last] = [f64::min, f64::max].map(|of| delays_s.clone().reduce(of));
     let apart_ms = 1e3 * (last.unwrap_or(0.0) - first.unwrap_or(0.0));
     IMPACT_BIAS
         .hypot(CONTACT_BIAS * noticed)
         .hypot(CONTACT_BIAS_PER_MS * contact_ms)
         .hypot(DELAY_BIAS_PER_MS * apart_ms)
 }
+
 /// Asymmetry that a well-made rig may have.
 const ASYMMETRY: f64 = 0.05;
 /// Asymmetry of masses that were made alike.
