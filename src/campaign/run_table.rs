@@ -1,6 +1,9 @@
 //! The run table: a CSV file with one row per record, units in its header.
 
 use std::path::Path;
+use std::str::FromStr;
+
+use strum::VariantNames;
 
 use super::context::Wrong;
 use super::diagnostic::{Code, FaultCollector};
@@ -269,24 +272,12 @@ fn read_row(
         record: cells.text(2),
         drive_frequency_hz: cells.number(3, faults),
         clearance_m: cells.number(4, faults),
-        sweep: cells.word(5, &SWEEPS, faults),
+        sweep: cells.word(5, faults),
         drive_amplitude: cells.number(6, faults),
-        excitation: cells.word(7, &EXCITATIONS, faults),
+        excitation: cells.word(7, faults),
         specimen: cells.text(8),
     })
 }
-
-/// Words for the sweep direction.
-pub(super) const SWEEPS: [(&str, Sweep); 3] = [
-    ("up", Sweep::Up),
-    ("down", Sweep::Down),
-    ("unknown", Sweep::Unknown),
-];
-
-const EXCITATIONS: [(&str, Excitation); 2] = [
-    ("harmonic", Excitation::Harmonic),
-    ("free_decay", Excitation::FreeDecay),
-];
 
 struct Cells<'a> {
     record: &'a csv::StringRecord,
@@ -322,19 +313,15 @@ impl Cells<'_> {
         }
     }
 
-    fn word<T: Copy>(
+    fn word<T: FromStr + VariantNames>(
         &self,
         column: usize,
-        words: &[(&str, T)],
         faults: &mut FaultCollector,
     ) -> Option<T> {
         let cell = self.text(column)?;
-        let found = words
-            .iter()
-            .find(|(word, _)| word.eq_ignore_ascii_case(&cell));
+        let found = cell.parse().ok();
         if found.is_none() {
-            let names: Vec<&str> = words.iter().map(|(w, _)| *w).collect();
-            let what = format!("'{cell}' is not one of {}", names.join(", "));
+            let what = format!("'{cell}' is not one of {}", T::VARIANTS.join(", "));
             faults.fault(
                 Code::InvalidValue,
                 Some(self.line),
@@ -343,6 +330,6 @@ impl Cells<'_> {
                 "write one of these words",
             );
         }
-        found.map(|(_, value)| *value)
+        found
     }
 }

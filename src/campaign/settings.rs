@@ -4,7 +4,6 @@ use super::context::ResolveContext;
 use super::diagnostic::{Code, Diagnostic, Place, Severity};
 use super::discovery::Discovered;
 use super::resolved::RecordEntry;
-use super::run_table::SWEEPS;
 use super::written::{Attributes, Placed, Records, value};
 use crate::record::{Setting, Sweep};
 use labfiles::units::{self, Dimension};
@@ -43,11 +42,10 @@ pub(super) fn defaults(records: &Records, context: &mut ResolveContext<'_>) -> S
     Setting {
         stated_frequency_hz: frequency,
         clearance_m: clearance,
-        sweep: value(&records.sweep).unwrap_or(Sweep::Unknown),
+        sweep: value(&records.sweep).unwrap_or_default(),
         drive_amplitude: amplitude.unwrap_or(1.0),
-        sequence: 0,
-        specimen: None,
         excitation: value(&records.excitation).unwrap_or_default(),
+        ..Setting::default()
     }
 }
 
@@ -185,23 +183,18 @@ fn attribute_number(
     context: &mut ResolveContext<'_>,
 ) -> Option<f64> {
     one.dataset?;
-    let Some(text) = wanted.text(one) else {
-        let what = format!("it has no attribute '{}'", wanted.name);
-        context
-            .faults
-            .extend([attribute_fault(one, &wanted.name, what)]);
-        return None;
-    };
-    match text.trim().parse::<f64>() {
-        Ok(value) if value.is_finite() => Some(value * wanted.to_si),
-        _ => {
-            let what = format!("its attribute '{}' is '{text}', not a number", wanted.name);
-            context
-                .faults
-                .extend([attribute_fault(one, &wanted.name, what)]);
-            None
-        }
+    let name = &wanted.name;
+    let text = wanted.text(one);
+    let number = text.and_then(|text| text.trim().parse::<f64>().ok());
+    let number = number.filter(|number| number.is_finite());
+    if number.is_none() {
+        let what = match text {
+            Some(text) => format!("its attribute '{name}' is '{text}', not a number"),
+            None => format!("it has no attribute '{name}'"),
+        };
+        context.faults.extend([attribute_fault(one, name, what)]);
     }
+    number.map(|number| number * wanted.to_si)
 }
 
 fn attribute_sweep(
@@ -210,14 +203,12 @@ fn attribute_sweep(
     context: &mut ResolveContext<'_>,
 ) -> Option<Sweep> {
     let text = one.attributes.get(name)?;
-    let found = SWEEPS
-        .iter()
-        .find(|(word, _)| word.eq_ignore_ascii_case(text.trim()));
+    let found = text.trim().parse().ok();
     if found.is_none() {
         let what = format!("its attribute '{name}' is '{text}', not up, down or unknown");
         context.faults.extend([attribute_fault(one, name, what)]);
     }
-    found.map(|(_, sweep)| *sweep)
+    found
 }
 
 fn attribute_fault(one: &Discovered, name: &str, message: String) -> Diagnostic {

@@ -10,7 +10,7 @@ use crate::event::RigKind;
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::{Identification, identify_campaign};
 use crate::motion::{ClassifySettings, brackets, observe, scale_drives};
-use crate::record::{Channel, Excitation, Record, Role, Setting, Sweep};
+use crate::record::{Channel, Excitation, Record, Role, Setting};
 use crate::synthetic::run::calibrated;
 use crate::synthetic::{Effects, Faults, Laboratory, Plan, Truth, records};
 use labfiles::units::Dimension;
@@ -93,13 +93,9 @@ pub(crate) fn decay(id: &str, mass: usize, f0_hz: f64) -> Record {
             threshold: None,
         }],
         setting: Setting {
-            stated_frequency_hz: None,
-            clearance_m: None,
-            sweep: Sweep::Unknown,
-            drive_amplitude: 1.0,
-            sequence: 0,
             specimen: Some(format!("mass {}", mass + 1)),
             excitation: Excitation::FreeDecay,
+            ..Setting::default()
         },
         flags: Vec::new(),
     }

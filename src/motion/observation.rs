@@ -286,7 +286,7 @@ impl Observation {
             stated_frequency_hz: Some(frequency_hz),
             clearance_m: Some(1e-3),
             sweep: crate::record::Sweep::Up,
-            ..Setting::unstated()
+            ..Setting::default()
         };
         Self {
             record: record.to_owned(),

@@ -397,7 +397,7 @@ mod tests {
             channels: &channels,
             time: None,
             sample_rate_hz: None,
-            setting: &Setting::unstated(),
+            setting: &Setting::default(),
             driven: false,
             skip_s: 0.0,
         };

@@ -286,7 +286,7 @@ mod tests {
             id: "r".into(),
             sample_rate_hz: 2000.0,
             channels,
-            setting: Setting::unstated(),
+            setting: Setting::default(),
             flags: Vec::new(),
         }
     }

@@ -125,6 +125,7 @@ pub struct Channel {
 /// Direction in which the drive frequency was stepped when the record was taken.
 #[derive(
     Debug,
+    Default,
     Clone,
     Copy,
     PartialEq,
@@ -134,9 +135,11 @@ pub struct Channel {
     Ord,
     Serialize,
     Deserialize,
+    strum::EnumString,
     strum::IntoStaticStr,
+    strum::VariantNames,
 )]
-#[strum(serialize_all = "snake_case")]
+#[strum(serialize_all = "snake_case", ascii_case_insensitive)]
 #[serde(rename_all = "snake_case")]
 pub enum Sweep {
     /// Frequency stepped upward.
@@ -144,6 +147,7 @@ pub enum Sweep {
     /// Frequency stepped downward.
     Down,
     /// Not stated: the record holds no information about hysteresis.
+    #[default]
     Unknown,
 }
 
@@ -155,7 +159,20 @@ impl Sweep {
 }
 
 /// How a record was excited.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    Default,
+    PartialEq,
+    Eq,
+    Hash,
+    Serialize,
+    Deserialize,
+    strum::EnumString,
+    strum::VariantNames,
+)]
+#[strum(serialize_all = "snake_case", ascii_case_insensitive)]
 #[serde(rename_all = "snake_case")]
 pub enum Excitation {
     /// A harmonic drive.
@@ -187,14 +204,13 @@ pub struct Setting {
     pub excitation: Excitation,
 }
 
-#[cfg(test)]
-impl Setting {
+impl Default for Setting {
     /// Nothing is stated but the usual drive.
-    pub(crate) fn unstated() -> Self {
+    fn default() -> Self {
         Self {
             stated_frequency_hz: None,
             clearance_m: None,
-            sweep: Sweep::Unknown,
+            sweep: Sweep::default(),
             drive_amplitude: 1.0,
             sequence: 0,
             specimen: None,
@@ -261,7 +277,7 @@ impl Record {
             id: "record".into(),
             sample_rate_hz,
             channels: channels.iter().map(channel).collect(),
-            setting: Setting::unstated(),
+            setting: Setting::default(),
             flags: Vec::new(),
         }
     }

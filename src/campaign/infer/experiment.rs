@@ -3,7 +3,7 @@
 use super::{FolderContents, InferredChannel};
 use crate::event::{DetectSettings, Detection, FlightKind, RigKind, detect};
 use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
-use crate::record::{ContactContent, Excitation, FlagCode, Record, Role, Setting, Sweep};
+use crate::record::{ContactContent, FlagCode, Record, Role, Setting};
 use crate::signal::{decay, onsets};
 use labfiles::units::{self, Dimension};
 use labfiles::{DatasetInfo, Source};
@@ -162,22 +162,13 @@ fn read(source: &dyn Source, channels: &[InferredChannel]) -> Record {
             })
         })
         .collect();
-    let setting = Setting {
-        stated_frequency_hz: None,
-        clearance_m: None,
-        sweep: Sweep::Unknown,
-        drive_amplitude: 1.0,
-        sequence: 0,
-        specimen: None,
-        excitation: Excitation::Harmonic,
-    };
     let setup = RecordSetup {
         id: "",
         dataset: 0,
         channels: &setups,
         time: None,
         sample_rate_hz: None,
-        setting: &setting,
+        setting: &Setting::default(),
         driven: false,
         skip_s: 0.0,
     };
