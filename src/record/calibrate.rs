@@ -132,21 +132,20 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
         }
     };
     let times = axis.and_then(|index| seconds(samples.pop(), dataset, index));
-    let times = match (
-        axis.filter(|i| time_axis::counts_frames(dataset, *i)),
-        setup.sample_rate_hz,
-    ) {
-        (Some(_), Some(rate_hz)) => times.map(|t| t.iter().map(|n| n / rate_hz).collect()),
-        _ => times,
+    let counts_frames = axis.is_some_and(|i| time_axis::counts_frames(dataset, i));
+    let mut times: Option<Vec<f64>> = match setup.sample_rate_hz.filter(|_| counts_frames) {
+        Some(rate_hz) => times.map(|t| t.iter().map(|n| n / rate_hz).collect()),
+        None => times,
     };
     let ranges = scale_all(&mut record, dataset, &bound, samples);
-    if is_list(setup) {
-        events::settle(&mut record, content(setup));
-        return record;
+    let content = content(setup);
+    if !content.is_list() {
+        condition::equal_lengths(&mut record, times.as_mut());
+        condition::trim_missing(&mut record, times.as_mut());
+        settle_rate(&mut record, setup, dataset, &bound, times.as_deref());
     }
-    settle(&mut record, setup, dataset, &bound, times);
-    if content(setup) != ContactContent::Signal {
-        events::settle(&mut record, content(setup));
+    if content != ContactContent::Signal {
+        events::settle(&mut record, content);
         return record;
     }
     condition::inspect(&mut record, &ranges, setup.driven);
@@ -162,11 +161,6 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
 fn content(setup: &RecordSetup<'_>) -> ContactContent {
     let contact = setup.channels.iter().find(|c| c.role == Role::Contact);
     contact.map_or(ContactContent::Signal, |c| c.content)
-}
-
-/// Whether the rows of the dataset are impacts, not samples.
-fn is_list(setup: &RecordSetup<'_>) -> bool {
-    content(setup).is_list()
 }
 
 /// A column that counts a camera's frames, if the rate of the frames is stated: it shows lost ones.
@@ -233,19 +227,6 @@ fn scale_all(
         }
     }
     ranges
-}
-
-/// Bring channels and time to one length without missing ends, and settle the sample rate.
-fn settle(
-    record: &mut Record,
-    setup: &RecordSetup<'_>,
-    dataset: &DatasetInfo,
-    bound: &[BoundRole<'_>],
-    mut times: Option<Vec<f64>>,
-) {
-    condition::equal_lengths(record, times.as_mut());
-    condition::trim_missing(record, times.as_mut());
-    settle_rate(record, setup, dataset, bound, times.as_deref());
 }
 
 fn scaled(

@@ -32,14 +32,14 @@ impl ContactContent {
 const FEWEST: usize = 3;
 
 /// Turn a contact that is stated as events into the times of its impacts, s. The record then has the
-/// mean rate of its impacts as its rate. `true` if the record is such a list.
-pub(super) fn settle(record: &mut Record, content: ContactContent) -> bool {
+/// mean rate of its impacts as its rate.
+pub(super) fn settle(record: &mut Record, content: ContactContent) {
     let rate_hz = record.sample_rate_hz;
     let Some(channel) = record.channels.iter_mut().find(|c| c.role == Role::Contact) else {
-        return false;
+        return;
     };
     let times = match content {
-        ContactContent::Signal => return channel.dimension == Dimension::Time,
+        ContactContent::Signal => return,
         ContactContent::Times => times(&channel.values),
         ContactContent::Intervals => Ok(added_up(&channel.values)),
         ContactContent::Sound => {
@@ -49,28 +49,18 @@ pub(super) fn settle(record: &mut Record, content: ContactContent) -> bool {
     };
     let flag = match times {
         Ok(times) if times.len() >= FEWEST => {
-            let span = times[times.len() - 1] - times[0];
-            list(channel, times);
-            record.sample_rate_hz = channel_rate(record, span);
+            let span_s = times[times.len() - 1] - times[0];
+            record.sample_rate_hz = (times.len() - 1) as f64 / span_s.max(f64::MIN_POSITIVE);
+            channel.values = times;
+            channel.dimension = Dimension::Time;
+            channel.threshold = None;
             record.channels.retain(|c| c.role == Role::Contact);
-            return true;
+            return;
         }
         Ok(times) => too_few(channel, times.len(), content),
         Err(row) => not_rising(channel, row),
     };
     record.flags.push(flag);
-    true
-}
-
-fn list(channel: &mut Channel, times: Vec<f64>) {
-    channel.values = times;
-    channel.dimension = Dimension::Time;
-    channel.threshold = None;
-}
-
-fn channel_rate(record: &Record, span_s: f64) -> f64 {
-    let impacts = record.channel(Role::Contact).map_or(0, |c| c.values.len());
-    impacts.saturating_sub(1) as f64 / span_s.max(f64::MIN_POSITIVE)
 }
 
 /// The stated times without empty rows at their end; the first row that does not rise as the error.
@@ -128,7 +118,7 @@ mod tests {
     #[test]
     fn intervals_add_up_to_times_until_one_is_zero() {
         let mut list = record(&[0.5, 0.4, 0.32, 0.0]);
-        assert!(settle(&mut list, ContactContent::Intervals));
+        settle(&mut list, ContactContent::Intervals);
         let times = list.values(Role::Contact).unwrap();
         assert_eq!(times.len(), 4);
         assert!((times[3] - 1.22).abs() < 1e-12);
