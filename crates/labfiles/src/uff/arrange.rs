@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::header::Header;
+use super::header::{Freedom, Header};
 use super::samples::{self, Side};
 use super::sets::{Function, Sets};
 use crate::bytes::FileBytes;
@@ -12,29 +12,11 @@ use crate::source::{ChannelInfo, DatasetInfo, StoredType};
 pub(super) type Arranged = (Vec<DatasetInfo>, Vec<Vec<(usize, Side)>>);
 
 /// What distinguishes one channel of a record from another, and one record from the next.
-type Identity<'a> = (
-    i64,
-    Option<&'a str>,
-    i64,
-    i64,
-    Option<&'a str>,
-    i64,
-    i64,
-    Option<&'a str>,
-);
+type Identity<'a> = (i64, [&'a Freedom; 2], Option<&'a str>);
 
 fn identity(header: &Header) -> Identity<'_> {
-    let (response, reference) = (&header.response, &header.reference);
-    (
-        header.function,
-        response.name.as_deref(),
-        response.node,
-        response.direction,
-        reference.name.as_deref(),
-        reference.node,
-        reference.direction,
-        header.axes[1].label.as_deref(),
-    )
+    let freedoms = [&header.response, &header.reference];
+    (header.function, freedoms, header.axes[1].label.as_deref())
 }
 
 /// Whether two functions have the same abscissa: even ones by their headers, uneven ones value by
@@ -214,13 +196,7 @@ fn attributes(sets: &Sets, first: &Function, number: usize) -> BTreeMap<String, 
     }
     let system = first.system.map(|index| sets.systems[index].attributes());
     all.extend(system.into_iter().flatten());
-    let lines = first
-        .header
-        .lines
-        .iter()
-        .enumerate()
-        .filter(|(_, line)| !line.is_empty());
-    all.extend(lines.map(|(index, line)| (format!("id{}", index + 1), line.clone())));
+    all.extend(first.header.named_lines());
     for line in &first.header.lines[3..] {
         all.extend(pairs(line).into_iter().flatten());
     }

@@ -19,7 +19,7 @@ pub(super) struct Axis {
 }
 
 /// A degree of freedom: where and in which direction something was measured or excited.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Hash)]
 pub(super) struct Freedom {
     /// Name, if it is not blank or NONE.
     pub name: Option<String>,
@@ -201,47 +201,44 @@ impl Header {
         iso8601(&self.lines[2])
     }
 
+    /// The lines of identification that are not blank, under their names.
+    pub(super) fn named_lines(&self) -> impl Iterator<Item = (String, String)> {
+        let lines = self.lines.iter().enumerate();
+        lines
+            .filter(|(_, line)| !line.is_empty())
+            .map(|(index, line)| (format!("id{}", index + 1), line.clone()))
+    }
+
     /// The header's fields as text, under the names of the format's description.
     pub(super) fn properties(&self) -> BTreeMap<String, String> {
-        let mut all = BTreeMap::new();
-        for (index, line) in self.lines.iter().enumerate().filter(|(_, l)| !l.is_empty()) {
-            all.insert(format!("id{}", index + 1), line.clone());
-        }
-        let mut set = |name: &str, value: String| all.insert(name.to_owned(), value);
-        set("func_type", self.function.to_string());
-        set("load_case_id", self.load_case.to_string());
-        set("rsp_node", self.response.node.to_string());
-        set("rsp_dir", self.response.direction.to_string());
-        set("ref_node", self.reference.node.to_string());
-        set("ref_dir", self.reference.direction.to_string());
-        set("ord_data_type", self.ordinate_type.to_string());
-        if self.even {
-            set("abscissa_min", self.start.to_string());
-            set("abscissa_inc", self.increment.to_string());
-        }
-        let names = ["abscissa", "ordinate", "denominator", "z_axis"];
-        for (name, axis) in names.into_iter().zip(&self.axes) {
-            axis.label
-                .iter()
-                .for_each(|label| drop(set(&format!("{name}_label"), label.clone())));
-            axis.unit
-                .iter()
-                .for_each(|unit| drop(set(&format!("{name}_unit"), unit.clone())));
-            if axis.kind != 0 {
-                set(&format!("{name}_type"), axis.kind.to_string());
-            }
-        }
-        let freedoms = [
-            ("rsp_ent_name", &self.response),
-            ("ref_ent_name", &self.reference),
+        let (response, reference) = (&self.response, &self.reference);
+        let integer = |value: i64| Some(value.to_string());
+        let of_even = |value: f64| self.even.then(|| value.to_string());
+        let fields = [
+            ("func_type", integer(self.function)),
+            ("load_case_id", integer(self.load_case)),
+            ("rsp_ent_name", response.name.clone()),
+            ("rsp_node", integer(response.node)),
+            ("rsp_dir", integer(response.direction)),
+            ("ref_ent_name", reference.name.clone()),
+            ("ref_node", integer(reference.node)),
+            ("ref_dir", integer(reference.direction)),
+            ("ord_data_type", integer(self.ordinate_type)),
+            ("abscissa_min", of_even(self.start)),
+            ("abscissa_inc", of_even(self.increment)),
         ];
-        for (name, freedom) in freedoms {
-            freedom
-                .name
-                .iter()
-                .for_each(|value| drop(set(name, value.clone())));
-        }
-        all
+        let fields = fields.into_iter().map(|(name, v)| (name.to_owned(), v));
+        let names = ["abscissa", "ordinate", "denominator", "z_axis"];
+        let axes = names.into_iter().zip(&self.axes).flat_map(|(name, axis)| {
+            let kind = Some(axis.kind).filter(|kind| *kind != 0);
+            [
+                (format!("{name}_label"), axis.label.clone()),
+                (format!("{name}_unit"), axis.unit.clone()),
+                (format!("{name}_type"), kind.and_then(integer)),
+            ]
+        });
+        let stated = fields.chain(axes).filter_map(|(name, v)| Some((name, v?)));
+        self.named_lines().chain(stated).collect()
     }
 }
 
