@@ -42,27 +42,18 @@ pub fn load_taken(path: &Path, open: Opener<'_>, taken: Taken<'_>) -> Outcome {
 fn load_listed(path: &Path, files: (Opener<'_>, Option<Taken<'_>>)) -> Outcome {
     let mut faults = FaultCollector::new(path);
     let text = read::text(path, &mut faults);
-    let written = text
-        .as_deref()
-        .and_then(|text| read::read(text, &mut faults));
-    let (Some(text), Some(written)) = (text, written) else {
-        let mut diagnostics = faults.into_diagnostics();
-        diagnostics.sort();
-        return Outcome {
-            campaign: None,
-            diagnostics,
-        };
-    };
+    let text = text.as_deref();
+    let written = text.and_then(|text| read::read(text, &mut faults));
     let mut context = ResolveContext {
-        text: Text::new(&text),
+        text: Text::new(text.unwrap_or_default()),
         faults,
     };
-    let campaign = resolve(path, &written, files, &mut context);
+    let campaign = written.map(|written| resolve(path, &written, files, &mut context));
     let blocks = context.faults.blocks();
     let mut diagnostics = context.faults.into_diagnostics();
     diagnostics.sort();
     Outcome {
-        campaign: (!blocks).then_some(campaign),
+        campaign: campaign.filter(|_| !blocks),
         diagnostics,
     }
 }
@@ -73,13 +64,7 @@ fn resolve(
     (open, taken): (Opener<'_>, Option<Taken<'_>>),
     context: &mut ResolveContext<'_>,
 ) -> ResolvedCampaign {
-    let machine = required(
-        &written.campaign.machine,
-        "campaign.machine",
-        MACHINES,
-        context,
-    );
-    let machine = machine.unwrap_or(Machine::Double);
+    let machine = machine(&written.campaign.machine, context);
     let flight = value(&written.campaign.flight).unwrap_or(Flight::Harmonic);
     let channels = match written.published {
         Some(_) => Vec::new(),
@@ -129,20 +114,13 @@ fn resolve(
     }
 }
 
-const MACHINES: &str = "write machine = \"double\" (two masses) or \"single\" (one, and a stop)";
-
-fn required<T: Copy>(
-    placed: &Placed<T>,
-    key: &str,
-    remedy: &str,
-    context: &mut ResolveContext<'_>,
-) -> Option<T> {
+fn machine(placed: &Placed<Machine>, context: &mut ResolveContext<'_>) -> Machine {
     if placed.is_none() && !context.faults.blocks() {
-        context
-            .faults
-            .fault(Code::Missing, None, key, "it is not given", remedy);
+        let (key, what) = ("campaign.machine", "it is not given");
+        let remedy = "write machine = \"double\" (two masses) or \"single\" (one, and a stop)";
+        context.faults.fault(Code::Missing, None, key, what, remedy);
     }
-    value(placed)
+    value(placed).unwrap_or(Machine::Double)
 }
 
 fn name(placed: &Placed<String>, folder: &Path) -> String {
