@@ -28,13 +28,8 @@ pub(super) fn element(datatype: &Datatype) -> Element {
                 (8, false) => Number::U64,
                 _ => return other(),
             };
-            match (byte_order, whole) {
-                (DatatypeByteOrder::LittleEndian, true) => {
-                    Element::Number(number, ByteOrder::Little)
-                }
-                (DatatypeByteOrder::BigEndian, true) => Element::Number(number, ByteOrder::Big),
-                _ => other(),
-            }
+            let order = order(*byte_order).filter(|_| whole);
+            order.map_or_else(other, |order| Element::Number(number, order))
         }
         Datatype::FloatingPoint {
             size,
@@ -46,21 +41,13 @@ pub(super) fn element(datatype: &Datatype) -> Element {
                 layout.mantissa_size,
                 layout.exponent_bias,
             ) == (5, 10, 15);
-            let order = match byte_order {
-                DatatypeByteOrder::Vax => return other(),
-                DatatypeByteOrder::BigEndian => ByteOrder::Big,
-                _ => ByteOrder::Little,
+            let number = match size {
+                2 if half => Number::F16,
+                4 if *layout == FloatingPointLayout::IEEE754_BINARY32 => Number::F32,
+                8 if *layout == FloatingPointLayout::IEEE754_BINARY64 => Number::F64,
+                _ => return other(),
             };
-            match size {
-                2 if half => Element::Number(Number::F16, order),
-                4 if *layout == FloatingPointLayout::IEEE754_BINARY32 => {
-                    Element::Number(Number::F32, order)
-                }
-                8 if *layout == FloatingPointLayout::IEEE754_BINARY64 => {
-                    Element::Number(Number::F64, order)
-                }
-                _ => other(),
-            }
+            order(*byte_order).map_or_else(other, |order| Element::Number(number, order))
         }
         Datatype::Compound { size, members } => {
             let fields = members.iter().map(|m| {
@@ -84,5 +71,14 @@ pub(super) fn element(datatype: &Datatype) -> Element {
             ..
         } => Element::Reference,
         _ => other(),
+    }
+}
+
+/// The order of a number's bytes; `None`: neither of the usual two.
+fn order(order: DatatypeByteOrder) -> Option<ByteOrder> {
+    match order {
+        DatatypeByteOrder::LittleEndian => Some(ByteOrder::Little),
+        DatatypeByteOrder::BigEndian => Some(ByteOrder::Big),
+        DatatypeByteOrder::Vax => None,
     }
 }
