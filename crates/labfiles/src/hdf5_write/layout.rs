@@ -1,5 +1,7 @@
 //! Records in the file: tables of samples × channels, or groups of arrays.
 
+use std::convert::identity;
+
 use ::hdf5::{AttrValue, DatasetBuilder, FinishedGroup, GroupBuilder};
 
 use crate::hdf5_write::record::{ColumnToWrite, Folder, RecordTable, Stored, Value};
@@ -47,28 +49,35 @@ pub(super) fn attr(value: &Value) -> AttrValue {
 
 /// A record as one dataset samples × channels.
 pub(super) fn table(dataset: &mut DatasetBuilder, record: &RecordTable, single: bool) {
-    let rows = record.channels.first().map_or(0, |c| c.samples.len());
-    let columns = record.channels.len();
-    match &record.channels[0].samples {
-        Stored::Counts { .. } => {
-            dataset.with_i16_data(&interleaved(record, rows, |s, i| match s {
-                Stored::Counts { counts, .. } => counts[i],
-                Stored::Numbers(_) => 0,
-            }));
-            scales(dataset, record);
-        }
-        Stored::Numbers(_) if single => {
-            dataset.with_f32_data(&interleaved(record, rows, |s, i| to_f32(number(s, i))));
-        }
-        Stored::Numbers(_) => {
-            dataset.with_f64_data(&interleaved(record, rows, number));
+    let (mut numbers, mut counts) = (Vec::new(), Vec::new());
+    let (mut scales, mut offsets) = (Vec::new(), Vec::new());
+    for channel in &record.channels {
+        match &channel.samples {
+            Stored::Numbers(values) => numbers.push(&values[..]),
+            Stored::Counts {
+                counts: own,
+                scale,
+                offset,
+            } => {
+                counts.push(&own[..]);
+                scales.push(*scale);
+                offsets.push(*offset);
+            }
         }
     }
-    dataset.with_shape(&[rows as u64, columns as u64]);
-    pack(
-        dataset,
-        &[(rows as u64).clamp(1, CHUNK_ROWS), columns as u64],
-    );
+    if !counts.is_empty() {
+        dataset.with_i16_data(&interleaved(&counts, identity));
+        dataset.set_attr("scale", AttrValue::F64Array(scales));
+        dataset.set_attr("offset", AttrValue::F64Array(offsets));
+    } else if single {
+        dataset.with_f32_data(&interleaved(&numbers, to_f32));
+    } else {
+        dataset.with_f64_data(&interleaved(&numbers, identity));
+    }
+    let rows = record.channels[0].samples.len() as u64;
+    let columns = record.channels.len() as u64;
+    dataset.with_shape(&[rows, columns]);
+    pack(dataset, &[rows.clamp(1, CHUNK_ROWS), columns]);
     let names = record.channels.iter().map(|c| c.name.clone()).collect();
     let units = record.channels.iter().map(|c| c.unit.clone()).collect();
     dataset.set_attr("channels", AttrValue::StringArray(names));
@@ -78,36 +87,11 @@ pub(super) fn table(dataset: &mut DatasetBuilder, record: &RecordTable, single: 
     }
 }
 
-/// Scale and offset of each channel of counts.
-fn scales(dataset: &mut DatasetBuilder, record: &RecordTable) {
-    let (scale, offset) = record
-        .channels
-        .iter()
-        .map(|c| match c.samples {
-            Stored::Counts { scale, offset, .. } => (scale, offset),
-            Stored::Numbers(_) => (1.0, 0.0),
-        })
-        .unzip();
-    dataset.set_attr("scale", AttrValue::F64Array(scale));
-    dataset.set_attr("offset", AttrValue::F64Array(offset));
-}
-
-fn number(samples: &Stored, i: usize) -> f64 {
-    match samples {
-        Stored::Numbers(values) => values[i],
-        Stored::Counts {
-            counts,
-            scale,
-            offset,
-        } => f64::from(counts[i]) * scale + offset,
-    }
-}
-
-/// The channels' samples row by row.
-fn interleaved<T>(record: &RecordTable, rows: usize, of: impl Fn(&Stored, usize) -> T) -> Vec<T> {
-    (0..rows)
-        .flat_map(|i| record.channels.iter().map(move |c| (c, i)))
-        .map(|(c, i)| of(&c.samples, i))
+/// The samples of columns of one length row by row.
+fn interleaved<T: Copy, U>(columns: &[&[T]], of: impl Fn(T) -> U) -> Vec<U> {
+    (0..columns[0].len())
+        .flat_map(|row| columns.iter().map(move |column| column[row]))
+        .map(of)
         .collect()
 }
 
