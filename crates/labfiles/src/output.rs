@@ -95,36 +95,15 @@ impl Drop for Part {
 }
 
 impl Part {
-    fn of(target: &Path) -> Self {
-        Self {
-            path: hidden_beside(target),
-            placed: false,
-        }
-    }
-
-    fn create(&self) -> io::Result<BufWriter<File>> {
-        let mut options = OpenOptions::new();
-        let options = options.write(true).create(true).truncate(true);
-        let file = options.open(&self.path)?;
-        Ok(BufWriter::with_capacity(1 << 16, file))
-    }
-
     /// Flush all that was written to the disk, then give the file its name.
-    fn finish(self, writer: BufWriter<File>, target: &Path) -> io::Result<()> {
+    fn place(mut self, writer: BufWriter<File>, target: &Path) -> io::Result<()> {
         let file = writer
             .into_inner()
             .map_err(io::IntoInnerError::into_error)?;
         file.sync_all()?;
-        self.place(target)
-    }
-
-    fn place(mut self, target: &Path) -> io::Result<()> {
         fs::rename(&self.path, target)?;
         self.placed = true;
-        match target.parent() {
-            Some(folder) => sync_folder(folder),
-            None => Ok(()),
-        }
+        target.parent().map_or(Ok(()), sync_folder)
     }
 }
 
@@ -180,10 +159,14 @@ pub(crate) fn write_whole_or<E>(
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,
     from_io: impl Fn(io::Error) -> E,
 ) -> Result<(), E> {
-    let part = Part::of(path);
-    let mut writer = part.create().map_err(&from_io)?;
+    let part = Part {
+        path: hidden_beside(path),
+        placed: false,
+    };
+    let file = File::create(&part.path).map_err(&from_io)?;
+    let mut writer = BufWriter::with_capacity(1 << 16, file);
     fill(&mut writer)?;
-    part.finish(writer, path).map_err(from_io)
+    part.place(writer, path).map_err(from_io)
 }
 
 /// Write the files of a folder together: `fill` writes them into a hidden folder beside it, and all
