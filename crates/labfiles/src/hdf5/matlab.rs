@@ -29,6 +29,7 @@ pub(crate) fn is_matlab(tree: &Tree) -> bool {
 }
 
 /// The variables of a file, and the arrays to which the places of their leaves refer.
+#[derive(Default)]
 pub(crate) struct Found {
     /// As the older levels' readers find them.
     pub variables: Variables,
@@ -41,13 +42,9 @@ pub(crate) struct Found {
 /// # Errors
 /// If references lead nowhere or too deep.
 pub(crate) fn find(store: &Store, tree: &Tree) -> Result<Found, StoreError> {
-    let found = Found {
-        variables: Variables::default(),
-        arrays: Vec::new(),
-    };
     let mut walk = Walk {
         store,
-        found,
+        found: Found::default(),
         visited: 0,
     };
     for array in &tree.arrays {
@@ -216,19 +213,13 @@ impl Walk<'_> {
 
     /// The value of a short array as text; one that cannot be read is noted.
     fn value(&mut self, array: &Array, leaf: &Leaf) -> Option<String> {
-        let (store, mut fault) = (self.store, None);
-        let value = text::short_value(leaf, ByteOrder::Little, |_| {
-            let raw = store.raw(array).map_err(|e| fault = Some(e));
-            Ok(little(array, raw.unwrap_or_default()))
-        });
-        match fault {
-            None => value.ok().flatten(),
-            Some(fault) => {
-                let note = format!("the value of '{}' cannot be read: {fault}", leaf.name);
-                self.found.variables.notes.push(note);
-                None
-            }
-        }
+        let raw = |_| Ok(little(array, self.store.raw(array)?));
+        let value = text::short_value(leaf, ByteOrder::Little, raw);
+        value.unwrap_or_else(|fault: StoreError| {
+            let note = format!("the value of '{}' cannot be read: {fault}", leaf.name);
+            self.found.variables.notes.push(note);
+            None
+        })
     }
 }
 

@@ -3,7 +3,6 @@
 use super::tree::{Content, Encoding, Leaf, Part};
 use crate::bytes::to_usize;
 use crate::numbers::{self, ByteOrder};
-use crate::source::ReadError;
 
 /// Longest text that is kept as an attribute, bytes.
 const SHORT: u64 = 512;
@@ -53,11 +52,11 @@ pub(crate) fn row_count(leaf: &Leaf) -> u64 {
 }
 
 /// The value of an array of one number or of one short string, as text.
-pub(crate) fn short_value(
+pub(crate) fn short_value<E>(
     leaf: &Leaf,
     order: ByteOrder,
-    mut fetch: impl FnMut(Part) -> Result<Vec<u8>, ReadError>,
-) -> Result<Option<String>, ReadError> {
+    fetch: impl FnOnce(Part) -> Result<Vec<u8>, E>,
+) -> Result<Option<String>, E> {
     match leaf.content {
         Content::Real(part) if leaf.count() == 1 => {
             let mut values = Vec::new();
