@@ -66,23 +66,6 @@ impl Number {
             Self::F16 | Self::F32 | Self::F64 => StoredType::Float(bits),
         }
     }
-
-    /// The type's usual name, e.g. `int16`.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::I8 => "int8",
-            Self::I16 => "int16",
-            Self::I32 => "int32",
-            Self::I64 => "int64",
-            Self::U8 => "uint8",
-            Self::U16 => "uint16",
-            Self::U32 => "uint32",
-            Self::U64 => "uint64",
-            Self::F16 => "float16",
-            Self::F32 => "float32",
-            Self::F64 => "float64",
-        }
-    }
 }
 
 /// Places of the samples of one channel among bytes: every `stride` bytes from `offset` on.

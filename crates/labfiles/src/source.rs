@@ -27,6 +27,21 @@ pub enum StoredType {
     Time,
 }
 
+impl StoredType {
+    /// The usual name: `int16`, `float64`, `complex128`, `bool`, `text`, `time`.
+    pub(crate) fn name(self) -> String {
+        match self {
+            Self::Int(bits) => format!("int{bits}"),
+            Self::UInt(bits) => format!("uint{bits}"),
+            Self::Float(bits) => format!("float{bits}"),
+            Self::Complex(bits) => format!("complex{}", 2 * u16::from(bits)),
+            Self::Bool => "bool".to_owned(),
+            Self::Text => "text".to_owned(),
+            Self::Time => "time".to_owned(),
+        }
+    }
+}
+
 /// A channel as its file describes it, before its samples are read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelInfo {

@@ -2,7 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::source::{ChannelInfo, Samples, StoredType};
+use crate::source::{ChannelInfo, Samples};
 
 /// A number of a channel: real, complex, or none.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,7 +121,7 @@ pub fn summarise(info: &ChannelInfo, samples: &Samples) -> Summary {
     let mut summary = Summary {
         name: info.name.clone(),
         unit: info.unit.clone(),
-        stored: type_name(info.stored),
+        stored: info.stored.name(),
         samples: samples.len() as u64,
         sample_rate_hz: info.sample_rate_hz,
         first: Number::None,
@@ -223,22 +223,10 @@ impl Tally {
     }
 }
 
-/// The usual name of a stored type.
-fn type_name(stored: StoredType) -> String {
-    match stored {
-        StoredType::Int(bits) => format!("int{bits}"),
-        StoredType::UInt(bits) => format!("uint{bits}"),
-        StoredType::Float(bits) => format!("float{bits}"),
-        StoredType::Complex(bits) => format!("complex{}", 2 * u16::from(bits)),
-        StoredType::Bool => "bool".to_owned(),
-        StoredType::Text => "text".to_owned(),
-        StoredType::Time => "time".to_owned(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::source::StoredType;
 
     fn info(stored: StoredType) -> ChannelInfo {
         ChannelInfo {

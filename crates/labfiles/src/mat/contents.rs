@@ -60,7 +60,7 @@ impl Walker<'_, '_> {
             return Err(self.elements.refuse(tag.at, "numbers", kind_name(tag.kind)));
         };
         if head.count.checked_mul(number.bytes()) != Some(tag.bytes) {
-            let expected = format!("{} numbers of type {}", head.count, number.name());
+            let expected = format!("{} numbers of type {}", head.count, number.stored().name());
             return Err(self
                 .elements
                 .refuse(tag.at, expected, format!("{} bytes", tag.bytes)));

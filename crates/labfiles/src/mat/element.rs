@@ -198,7 +198,7 @@ pub(super) fn number_of(kind: u32) -> Option<Number> {
 /// The kind of an element, for a message.
 pub(super) fn kind_name(kind: u32) -> String {
     match (kind, number_of(kind)) {
-        (_, Some(number)) => format!("an element of {}", number.name()),
+        (_, Some(number)) => format!("an element of {}", number.stored().name()),
         (14, _) => "a matrix element".into(),
         (15, _) => "a compressed element".into(),
         (16..=18, _) => "an element of text".into(),
