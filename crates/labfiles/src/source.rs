@@ -62,7 +62,7 @@ pub struct ChannelInfo {
 }
 
 /// A dataset (one record) as its file describes it, before its samples are read.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct DatasetInfo {
     /// Name in the file; empty if the file is the dataset.
     pub name: String,

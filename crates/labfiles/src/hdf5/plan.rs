@@ -42,7 +42,7 @@ pub(crate) struct Locator {
 }
 
 /// How to read one dataset.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Plan {
     /// The arrays that it takes, each read once.
     pub arrays: Vec<Array>,
@@ -72,8 +72,7 @@ pub(crate) fn plan(store: &Store, tree: &Tree) -> Plans {
 
 impl Plans {
     fn group(&mut self, store: &Store, tree: &Tree, inherited: &Attrs) {
-        let mut attributes = inherited.clone();
-        attributes.extend(tree.attributes.clone());
+        let mut attributes = merged(inherited, &tree.attributes);
         let sorted = self.sort(store, tree, &mut attributes);
         self.tables(&sorted, tree, &attributes);
         for array in &sorted.slabs {
@@ -265,24 +264,13 @@ struct Record {
 
 impl Record {
     fn new(name: String, attributes: &Attrs) -> Self {
-        let attributes = attributes
-            .iter()
-            .map(|(k, v)| (k.clone(), v.text()))
-            .collect();
         let info = DatasetInfo {
             name,
-            channels: Vec::new(),
-            time_axis: None,
-            attributes,
+            attributes: texts(attributes),
+            ..DatasetInfo::default()
         };
-        Self {
-            info,
-            plan: Plan {
-                arrays: Vec::new(),
-                channels: Vec::new(),
-                slab: None,
-            },
-        }
+        let plan = Plan::default();
+        Self { info, plan }
     }
 
     fn channel(&mut self, name: String, unit: Option<String>, locator: Locator) {
@@ -315,11 +303,7 @@ impl Record {
         self.channel(array.name.clone(), unit, locator);
         self.plan.arrays.push(array.clone());
         if let Some(channel) = self.info.channels.last_mut() {
-            let texts: BTreeMap<String, String> = array
-                .attributes
-                .iter()
-                .map(|(k, v)| (k.clone(), v.text()))
-                .collect();
+            let texts = texts(&array.attributes);
             channel.sample_rate_hz = attribute::sample_rate_hz(&texts);
             channel.start_time = attribute::start_time(&texts);
             channel.properties = texts;
@@ -369,6 +353,11 @@ impl Record {
         self.info.time_axis = self.info.channels.iter().position(attribute::is_time_axis);
         (self.info, self.plan)
     }
+}
+
+fn texts(attributes: &Attrs) -> BTreeMap<String, String> {
+    let each = attributes.iter();
+    each.map(|(k, v)| (k.clone(), v.text())).collect()
 }
 
 /// All elements of an array, one after the other.
