@@ -27,7 +27,6 @@ use crate::hdf5::store::{Array, StoreError, Tree};
 use crate::numbers::Spacing;
 use crate::rate;
 use crate::source::{ChannelInfo, DatasetInfo, ReadError, Reader, Samples, Source, opened};
-use crate::units::parse_unit;
 
 /// The first bytes of an HDF5 file.
 pub(crate) const SIGNATURE: [u8; 8] = [0x89, b'H', b'D', b'F', b'\r', b'\n', 0x1A, b'\n'];
@@ -174,12 +173,8 @@ impl Hdf5Reader {
         let head = info.samples.min(rate::HEAD_SAMPLES as u64);
         let head = self.axis_values(array, locator, 0, head)?;
         let end = self.axis_values(array, locator, info.samples.checked_sub(1)?, 1)?;
-        let seconds = info
-            .unit
-            .as_deref()
-            .and_then(parse_unit)
-            .map_or(1.0, |u| u.to_si);
-        rate::from_axis(&head, end.first().copied(), info.samples).map(|r| r / seconds)
+        let end = end.first().copied();
+        rate::from_axis(&head, end, info.samples, info.unit.as_deref())
     }
 
     fn axis_values(

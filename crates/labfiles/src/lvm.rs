@@ -134,7 +134,7 @@ fn rates(
             let values = x_values(layout, head, i);
             let last = end.get(i);
             let last = last.and_then(|c| number::parse_cell(c, layout.decimal));
-            measured.insert(first, rate::from_axis(&values, last, segment.rows));
+            measured.insert(first, rate::from_axis(&values, last, segment.rows, None));
         }
     }
     let rate = |&(_, column): &(usize, Column)| {

@@ -19,7 +19,6 @@ use crate::rate;
 use crate::source::{
     ChannelInfo, DatasetInfo, ReadError, Reader, Samples, Source, StoredType, opened,
 };
-use crate::units::parse_unit;
 
 /// The key under which a footer keeps each record's attributes, as JSON.
 pub(crate) const RECORDS_KEY: &str = "impactid_records";
@@ -78,10 +77,9 @@ fn dataset(
     if let Some(axis) = time_axis.filter(|_| rate.is_none())
         && let Samples::Real(values) = columns.read(plan[axis].column, &plan[axis].rows)?
     {
-        let unit = channels[axis].unit.as_deref().and_then(parse_unit);
+        let unit = channels[axis].unit.as_deref();
         let head = &values[..values.len().min(rate::HEAD_SAMPLES)];
-        rate = rate::from_axis(head, values.last().copied(), values.len() as u64)
-            .map(|r| r / unit.map_or(1.0, |u| u.to_si));
+        rate = rate::from_axis(head, values.last().copied(), values.len() as u64, unit);
     }
     for channel in &mut channels {
         channel.sample_rate_hz = rate;

@@ -1,14 +1,22 @@
 //! The rate at which samples follow, from a time axis.
 
+use crate::units::parse_unit;
+
 /// How many values at the front of a time axis give its usual step.
 pub(crate) const HEAD_SAMPLES: usize = 256;
 
-/// Samples per unit of the axis: from its ends where the samples between them are complete,
-/// else from the usual steps of its head, so that dropped samples do not bend it.
+/// Samples per second of an axis, in s if its unit is not known: from its ends where the samples
+/// between them are complete, else from the usual steps of its head, so that dropped samples do not
+/// bend it.
 ///
 /// `head` are the first values, `end` is the last of `count`. `None`: the axis does not climb or
 /// has fewer than two values.
-pub(crate) fn from_axis(head: &[f64], end: Option<f64>, count: u64) -> Option<f64> {
+pub(crate) fn from_axis(
+    head: &[f64],
+    end: Option<f64>,
+    count: u64,
+    unit: Option<&str>,
+) -> Option<f64> {
     let median = median_step(head)?;
     let usual: Vec<f64> = head
         .windows(2)
@@ -22,7 +30,8 @@ pub(crate) fn from_axis(head: &[f64], end: Option<f64>, count: u64) -> Option<f6
         (s - step).abs() * between < 0.5 * step + 1e-3 * between * step
     });
     let rate = 1.0 / whole.unwrap_or(step);
-    rate.is_finite().then_some(rate)
+    let seconds = unit.and_then(parse_unit).map_or(1.0, |u| u.to_si);
+    rate.is_finite().then_some(rate / seconds)
 }
 
 /// The median of the steps forward.
@@ -46,9 +55,9 @@ mod tests {
             .map(|i| (f64::from(i) / 1652.9 * 1e6).round() / 1e6)
             .collect();
         let end = (9_999.0 / 1652.9f64 * 1e6).round() / 1e6;
-        assert!((from_axis(&printed, Some(end), 10_000).unwrap() - 1652.9).abs() < 1e-3);
-        let gap = from_axis(&printed, Some(end + 3.0), 10_000).unwrap();
+        assert!((from_axis(&printed, Some(end), 10_000, None).unwrap() - 1652.9).abs() < 1e-3);
+        let gap = from_axis(&printed, Some(end + 3.0), 10_000, None).unwrap();
         assert!((gap - 1652.9).abs() < 0.5, "{gap}");
-        assert_eq!(from_axis(&[0.0, 0.0], None, 2), None);
+        assert_eq!(from_axis(&[0.0, 0.0], None, 2, None), None);
     }
 }

@@ -37,9 +37,7 @@ pub(crate) fn find(
     let mut axis = found.next().or_else(|| unnamed(header, layout, rows))?;
     let head = head_of(layout, rows, axis.column);
     let end = last.and_then(|cells| cell_value(layout, cells.get(axis.column)?, axis.column, rows));
-    let unit = axis.unit.as_deref().and_then(parse_unit);
-    let seconds = unit.map_or(1.0, |u| u.to_si);
-    axis.rate_hz = rate::from_axis(&head, end, count).map(|r| r / seconds);
+    axis.rate_hz = rate::from_axis(&head, end, count, axis.unit.as_deref());
     if layout.kinds[axis.column] == Kind::Time {
         let first = rows.first(axis.column);
         axis.start = first.and_then(|c| stamp(layout, c)).map(clock::Stamp::iso);
