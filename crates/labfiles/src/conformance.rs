@@ -191,13 +191,8 @@ pub(crate) fn read_all(source: &dyn Source, dataset: usize) -> Result<Vec<Sample
     let samples = source.read(dataset, &all)?;
     assert_eq!(samples.len(), infos.len());
     for (samples, info) in samples.iter().zip(infos) {
-        let found = match samples {
-            Samples::Real(values) => values.len(),
-            Samples::Complex(values) => values.len(),
-            Samples::Text(values) => values.len(),
-        };
         assert_eq!(
-            found as u64,
+            samples.len() as u64,
             info.samples,
             "{}: {}",
             source.path().display(),

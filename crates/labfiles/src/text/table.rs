@@ -40,6 +40,7 @@ pub(crate) struct Layout {
 }
 
 /// Columns being filled.
+#[derive(Clone)]
 enum Column {
     Skip,
     Number(Vec<f64>),
@@ -48,6 +49,7 @@ enum Column {
 }
 
 /// A column of points in time.
+#[derive(Clone)]
 struct Times {
     values: Vec<f64>,
     origin: Option<Stamp>,
@@ -110,15 +112,11 @@ pub(crate) fn read_columns(
 
 /// A column's samples; one that is wanted twice is copied.
 fn take_or_copy(columns: &mut [Column], wanted: &[usize], i: usize) -> Samples {
-    if wanted.iter().filter(|&&w| w == i).count() == 1 {
-        return std::mem::replace(&mut columns[i], Column::Skip).samples();
-    }
-    match &columns[i] {
-        Column::Skip => Samples::Real(Vec::new()),
-        Column::Number(values) => Samples::Real(values.clone()),
-        Column::Time(times) => Samples::Real(times.values.clone()),
-        Column::Text(values) => Samples::Text(values.clone()),
-    }
+    let column = match wanted.iter().filter(|&&w| w == i).count() {
+        1 => std::mem::replace(&mut columns[i], Column::Skip),
+        _ => columns[i].clone(),
+    };
+    column.samples()
 }
 
 fn empty_column(kind: Kind, rows: usize) -> Column {
