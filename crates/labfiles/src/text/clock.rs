@@ -52,21 +52,12 @@ pub(crate) fn parse(cell: &str, month_first: bool) -> Option<Stamp> {
     if cell.is_empty() || cell.len() > 48 || !cell.is_ascii() {
         return None;
     }
-    let (date, time) = match cell.find(['T', ' ']) {
-        Some(i) if parse_date(&cell[..i], month_first).is_some() => (&cell[..i], &cell[i + 1..]),
-        Some(_) => ("", cell),
-        None if parse_date(cell, month_first).is_some() => (cell, ""),
-        None => ("", cell),
-    };
-    let days = if date.is_empty() {
-        None
-    } else {
-        Some(parse_date(date, month_first)?)
-    };
-    let seconds = if time.is_empty() {
-        0.0
-    } else {
-        parse_time(time.trim())?
+    let (date, rest) = cell.split_once(['T', ' ']).unwrap_or((cell, ""));
+    let days = parse_date(date, month_first);
+    let time = if days.is_some() { rest } else { cell };
+    let seconds = match time {
+        "" => 0.0,
+        _ => parse_time(time.trim())?,
     };
     Some(Stamp { days, seconds })
 }
