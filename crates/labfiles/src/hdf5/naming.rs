@@ -102,64 +102,43 @@ pub(crate) fn merged(inherited: &Attrs, own: &Attrs) -> Attrs {
 
 /// The channels' names, where an attribute lists as many as there are.
 pub(crate) fn names(attributes: &Attrs, channels: u64) -> Option<Vec<String>> {
-    NAME_KEYS
-        .iter()
-        .filter_map(|k| attributes.get(*k))
-        .map(Attr::list)
+    lists(attributes, &NAME_KEYS)
         .find(|l| l.len() as u64 == channels && l.iter().all(|n| !n.is_empty()))
 }
 
 /// The channels' units: a list of as many, or one for all.
 pub(crate) fn units(attributes: &Attrs, channels: usize) -> Vec<Option<String>> {
-    let lists = || {
-        UNIT_KEYS
-            .iter()
-            .filter_map(|k| attributes.get(*k))
-            .map(Attr::list)
-    };
-    let all = lists().find(|l| l.len() == channels);
-    let one = || {
-        lists()
-            .find(|l| l.len() == 1)
-            .map(|l| vec![l[0].clone(); channels])
-    };
-    all.or_else(one)
-        .map(|l| l.into_iter().map(Some).collect())
-        .unwrap_or_default()
+    let of_length = |length: usize| lists(attributes, &UNIT_KEYS).find(|l| l.len() == length);
+    let one = || Some(vec![of_length(1)?.remove(0); channels]);
+    let all = of_length(channels).or_else(one).unwrap_or_default();
+    all.into_iter().map(Some).collect()
+}
+
+/// The lists that attributes of some names hold.
+fn lists<'a>(attributes: &'a Attrs, keys: &'a [&str]) -> impl Iterator<Item = Vec<String>> + 'a {
+    let found = keys.iter().filter_map(|k| attributes.get(*k));
+    found.map(Attr::list)
 }
 
 /// Scale and offset of each channel: `scale_factor` and `add_offset` of any array, `scale` and
 /// `offset` of an array of integers.
 pub(crate) fn scaling(array: &Array, channels: usize) -> Vec<(f64, f64)> {
-    let of = |keys: &[&str], neutral: f64| -> Vec<f64> {
-        let found = keys
-            .iter()
-            .find_map(|k| array.attributes.get(*k))
-            .and_then(Attr::numbers);
-        match found {
+    let of_integers = |key: &str| {
+        array
+            .attributes
+            .get(key)
+            .filter(|_| array.element.is_integer())
+    };
+    let of = |of_integer: &str, of_any: &str, neutral: f64| -> Vec<f64> {
+        let found = of_integers(of_integer).or_else(|| array.attributes.get(of_any));
+        match found.and_then(Attr::numbers) {
             Some([one]) => vec![*one; channels],
             Some(all) if all.len() == channels => all.to_vec(),
             _ => vec![neutral; channels],
         }
     };
-    let integer = array.element.is_integer();
-    let scales = of(
-        if integer {
-            &["scale", "scale_factor"]
-        } else {
-            &["scale_factor"]
-        },
-        1.0,
-    );
-    let offsets = of(
-        if integer {
-            &["offset", "add_offset"]
-        } else {
-            &["add_offset"]
-        },
-        0.0,
-    );
-    scales.into_iter().zip(offsets).collect()
+    let scales = of("scale", "scale_factor", 1.0).into_iter();
+    scales.zip(of("offset", "add_offset", 0.0)).collect()
 }
 
 /// Order of names in which `run10` follows `run9`.
