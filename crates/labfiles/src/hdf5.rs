@@ -210,12 +210,11 @@ fn slots<'a>(
 /// The samples of one channel from its array's bytes.
 fn extract(raw: &[u8], locator: &Locator, spacing: Spacing) -> Option<Samples> {
     let mut samples = locator.element.decode(raw, spacing)?;
+    let (scale, offset) = locator.scaling;
     if let Samples::Real(values) = &mut samples
-        && (locator.scale != 1.0 || locator.offset != 0.0)
+        && (scale, offset) != (1.0, 0.0)
     {
-        values
-            .iter_mut()
-            .for_each(|v| *v = *v * locator.scale + locator.offset);
+        values.iter_mut().for_each(|v| *v = *v * scale + offset);
     }
     Some(samples)
 }

@@ -35,10 +35,8 @@ pub(crate) struct Locator {
     pub element: Element,
     /// Which of the array's bytes they are.
     pub spacing: Spacing,
-    /// value = stored · scale + offset.
-    pub scale: f64,
-    /// See `scale`.
-    pub offset: f64,
+    /// Scale and offset: value = stored · scale + offset.
+    pub scaling: (f64, f64),
 }
 
 /// How to read one dataset.
@@ -227,8 +225,7 @@ impl Plans {
                         offset: *offset,
                         ..whole(array)
                     },
-                    scale: 1.0,
-                    offset: 0.0,
+                    scaling: (1.0, 0.0),
                 };
                 record.channel(name.clone(), units.get(i).cloned().flatten(), locator);
             }
@@ -292,13 +289,11 @@ impl Record {
             .iter()
             .find_map(|k| array.attributes.get(*k))
             .map(Attr::text);
-        let (scale, offset) = scaling(array, 1)[0];
         let locator = Locator {
             array: self.plan.arrays.len(),
             element: array.element.clone(),
             spacing: whole(array),
-            scale,
-            offset,
+            scaling: scaling(array, 1)[0],
         };
         self.channel(array.name.clone(), unit, locator);
         self.plan.arrays.push(array.clone());
@@ -320,17 +315,15 @@ impl Record {
         let scaling = scaling(table, to_usize(channels));
         let number = self.plan.arrays.len();
         self.plan.arrays.push(table.clone());
-        for i in 0..channels {
+        for (i, scaling) in (0..channels).zip(scaling) {
             let name = names
                 .as_ref()
                 .map_or_else(|| format!("column_{}", i + 1), |n| n[to_usize(i)].clone());
-            let (scale, offset) = scaling[to_usize(i)];
             let locator = Locator {
                 array: number,
                 element: table.element.clone(),
                 spacing: orientation.spacing(table, i),
-                scale,
-                offset,
+                scaling,
             };
             self.channel(name, units.get(to_usize(i)).cloned().flatten(), locator);
         }
