@@ -125,17 +125,14 @@ impl Header {
             expected,
             found: format!("{:?}", decode_text(line).trim_end()),
         };
-        let columns = |from, to| field(line, from, to).and_then(|text| text.parse::<i64>().ok());
         let text = decode_text(line);
         let words: Vec<&str> = text.split_whitespace().collect();
-        let word = |index: usize| words.get(index).and_then(|word| word.parse::<i64>().ok());
-        let [kind, points, spacing] = match (columns(0, 10), columns(10, 20), columns(20, 30)) {
-            (Some(kind), Some(points), Some(spacing)) => [kind, points, spacing],
-            _ => match (word(0), word(1), word(2)) {
-                (Some(kind), Some(points), Some(spacing)) => [kind, points, spacing],
-                _ => return Err(fault("type, number of points and spacing of a function")),
-            },
-        };
+        let column = |i: usize| field(line, 10 * i, 10 * i + 10)?.parse::<i64>().ok();
+        let word = |i: usize| words.get(i)?.parse::<i64>().ok();
+        let three = |of: &dyn Fn(usize) -> Option<i64>| Some([of(0)?, of(1)?, of(2)?]);
+        let found = three(&column).or_else(|| three(&word));
+        let [kind, points, spacing] =
+            found.ok_or_else(|| fault("type, number of points and spacing of a function"))?;
         if !matches!(kind, 2 | 4 | 5 | 6) {
             return Err(fault("ordinate type 2, 4, 5 or 6"));
         }
