@@ -67,6 +67,11 @@ impl FileBytes {
         ))
     }
 
+    /// The file's path.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// All bytes.
     pub(crate) fn all(&self) -> &[u8] {
         self.map.as_deref().unwrap_or(&[])
@@ -97,14 +102,7 @@ impl FileBytes {
         expected: impl Into<String>,
         found: impl Into<String>,
     ) -> ReadError {
-        ReadError {
-            path: self.path.clone(),
-            channel: None,
-            expected: expected.into(),
-            found: found.into(),
-            byte: Some(at),
-            remedy: DAMAGED.into(),
-        }
+        self.unsupported(at, found, expected, DAMAGED)
     }
 
     /// An error for something valid that this program does not read, with the remedy.
@@ -115,10 +113,7 @@ impl FileBytes {
         expected: impl Into<String>,
         remedy: impl Into<String>,
     ) -> ReadError {
-        ReadError {
-            remedy: remedy.into(),
-            ..self.refuse(at, expected, found)
-        }
+        ReadError::new(&self.path, expected, found, remedy).at(at)
     }
 
     /// A cursor over the whole file.

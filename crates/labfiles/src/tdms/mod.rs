@@ -81,25 +81,20 @@ impl TdmsFile {
     fn channel(&self, dataset: usize, channel: usize) -> Result<Samples, ReadError> {
         let (object, scale) = &self.channels[dataset][channel];
         let object = &self.content.objects[*object];
-        let name = || Some(object.path.join("/"));
-        let scaling = scale.as_ref().as_ref().map_err(|fault| ReadError {
-            channel: name(),
-            byte: None,
-            ..self.file.unsupported(
-                0,
-                fault.to_string(),
-                "linear, polynomial or table scaling",
-                "Save the channel scaled, or scale it in campaign.toml from its raw values.",
-            )
-        })?;
+        let unread = |fault: &ScalingFault| {
+            let expected = "linear, polynomial or table scaling";
+            let remedy =
+                "Save the channel scaled, or scale it in campaign.toml from its raw values.";
+            ReadError::new(self.file.path(), expected, fault.to_string(), remedy)
+        };
         let reader = Chunks {
             file: &self.file,
             content: &self.content,
         };
-        reader.samples(object, scaling).map_err(|e| ReadError {
-            channel: name(),
-            ..e
-        })
+        let scaling = scale.as_ref().as_ref().map_err(unread);
+        scaling
+            .and_then(|scaling| reader.samples(object, scaling))
+            .map_err(|e| e.channel(object.path.join("/")))
     }
 }
 
