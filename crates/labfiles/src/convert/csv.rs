@@ -36,14 +36,8 @@ fn one(item: &Item<'_>, path: &Path, named: &Path) -> Result<(), ConvertError> {
 }
 
 fn rows(item: &Item<'_>, columns: &[Column], mut out: impl Write) -> std::io::Result<()> {
-    for (key, value) in item.described() {
+    for (key, value) in item.stated() {
         writeln!(out, "# {key} = {}", value.replace(['\n', '\r'], " "))?;
-    }
-    if let Some(rate) = item.sample_rate_hz() {
-        writeln!(out, "# sample_rate_hz = {rate}")?;
-    }
-    if let Some(start) = item.start_time() {
-        writeln!(out, "# start_time = {start}")?;
     }
     let text = |c: &Column| matches!(c.samples, Samples::Text(_));
     let texts = columns.iter().enumerate().filter(|(_, c)| text(c));

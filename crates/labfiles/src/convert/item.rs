@@ -95,6 +95,16 @@ impl Item<'_> {
         self.channels().iter().find_map(|c| c.start_time.as_deref())
     }
 
+    /// All that the record states, as text: attributes, rate and start.
+    pub(super) fn stated(&self) -> impl Iterator<Item = (String, String)> {
+        let own = self.described().map(|(k, v)| (k.clone(), v.clone()));
+        let rate = self.sample_rate_hz().map(|r| r.to_string());
+        let rate = rate.map(|r| ("sample_rate_hz".to_owned(), r));
+        let start = self.start_time();
+        let start = start.map(|s| ("start_time".to_owned(), s.to_owned()));
+        own.chain(rate).chain(start)
+    }
+
     /// The attributes to write: the record's own without those that the target writes otherwise.
     pub(super) fn described(&self) -> impl Iterator<Item = (&String, &String)> {
         const ELSEWHERE: [&str; 11] = [

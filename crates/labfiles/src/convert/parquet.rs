@@ -84,26 +84,11 @@ fn columns(items: &[Item<'_>]) -> Vec<(String, bool)> {
 
 /// Rates, starts and attributes: of the one record plainly, of several as JSON by name.
 fn footer(items: &[Item<'_>]) -> Vec<(String, String)> {
-    let of = |item: &Item<'_>| {
-        let mut all: BTreeMap<String, String> = item
-            .described()
-            .map(|(k, v)| (k.clone(), v.clone()))
-            .collect();
-        all.extend(
-            item.sample_rate_hz()
-                .map(|r| ("sample_rate_hz".to_owned(), r.to_string())),
-        );
-        all.extend(
-            item.start_time()
-                .map(|s| ("start_time".to_owned(), s.to_owned())),
-        );
-        all
-    };
+    let of = |item: &Item<'_>| item.stated().collect::<BTreeMap<_, _>>();
     if let [item] = items {
         return of(item).into_iter().collect();
     }
-    let records: BTreeMap<&str, BTreeMap<String, String>> =
-        items.iter().map(|i| (i.name.as_str(), of(i))).collect();
+    let records: BTreeMap<&str, _> = items.iter().map(|i| (i.name.as_str(), of(i))).collect();
     serde_json::to_string(&records)
         .map(|json| (RECORDS_KEY.to_owned(), json))
         .into_iter()
