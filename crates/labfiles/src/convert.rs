@@ -83,21 +83,18 @@ pub fn convert(
     options: &Options,
 ) -> Result<Converted, ConvertError> {
     let mut items = items(sources, options);
-    let notes = match target {
-        Target::Hdf5 => items.iter().filter_map(texts_left_out).collect(),
-        Target::Uff | Target::UffText => {
-            let left_out = items.iter().filter_map(texts_left_out);
-            let single = options.single_precision;
-            let rounded = items
-                .iter()
-                .flat_map(|i| uff::notes(i, target == Target::UffText, single));
-            left_out.chain(rounded).collect()
-        }
-        Target::Parquet | Target::Csv => items.iter().filter_map(filled_up).collect(),
+    let (tables, text) = match target {
+        Target::Parquet | Target::Csv => (true, false),
+        Target::Hdf5 | Target::Uff => (false, false),
+        Target::UffText => (false, true),
     };
-    if !matches!(target, Target::Parquet | Target::Csv) {
-        items.retain(Item::has_numbers);
+    let note = if tables { filled_up } else { texts_left_out };
+    let mut notes: Vec<String> = items.iter().filter_map(note).collect();
+    if matches!(target, Target::Uff | Target::UffText) {
+        let rounded = |item| uff::notes(item, text, options.single_precision);
+        notes.extend(items.iter().flat_map(rounded));
     }
+    items.retain(|item| tables || item.has_numbers());
     if !items.iter().any(Item::has_numbers) {
         return Err(ConvertError::Read(without_numbers(sources)));
     }
@@ -105,9 +102,7 @@ pub fn convert(
         Target::Hdf5 => hdf5::write(&items, out, options)?,
         Target::Parquet => parquet::write(&items, out, options)?,
         Target::Csv => csv::write(&items, out)?,
-        Target::Uff | Target::UffText => {
-            uff::write(&items, out, options, target == Target::UffText)?;
-        }
+        Target::Uff | Target::UffText => uff::write(&items, out, options, text)?,
     }
     Ok(Converted {
         records: items.len(),
