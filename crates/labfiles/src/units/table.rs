@@ -32,33 +32,27 @@ pub enum Dimension {
 impl Dimension {
     /// The dimension's name in messages.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Length => "length",
-            Self::Velocity => "velocity",
-            Self::Acceleration => "acceleration",
-            Self::Force => "force",
-            Self::Voltage => "voltage",
-            Self::Frequency => "frequency",
-            Self::Time => "time",
-            Self::Mass => "mass",
-            Self::Angle => "angle",
-            Self::Number => "plain number",
-        }
+        self.texts().0
     }
 
     /// The SI unit's symbol.
     pub fn si_symbol(self) -> &'static str {
+        self.texts().1
+    }
+
+    /// Name and SI symbol.
+    fn texts(self) -> (&'static str, &'static str) {
         match self {
-            Self::Length => "m",
-            Self::Velocity => "m/s",
-            Self::Acceleration => "m/s²",
-            Self::Force => "N",
-            Self::Voltage => "V",
-            Self::Frequency => "Hz",
-            Self::Time => "s",
-            Self::Mass => "kg",
-            Self::Angle => "rad",
-            Self::Number => "1",
+            Self::Length => ("length", "m"),
+            Self::Velocity => ("velocity", "m/s"),
+            Self::Acceleration => ("acceleration", "m/s²"),
+            Self::Force => ("force", "N"),
+            Self::Voltage => ("voltage", "V"),
+            Self::Frequency => ("frequency", "Hz"),
+            Self::Time => ("time", "s"),
+            Self::Mass => ("mass", "kg"),
+            Self::Angle => ("angle", "rad"),
+            Self::Number => ("plain number", "1"),
         }
     }
 }
