@@ -126,7 +126,7 @@ fn attributes(found: &FolderContents) -> Vec<(&'static str, String)> {
 }
 
 fn with_unit(name: &str, usual: &str) -> String {
-    let own = units::split_unit(name).1.and_then(units::parse_split_unit);
+    let own = units::unit_of(None, name);
     match units::parse_unit(usual) {
         Some(unit) if own.is_none_or(|u| u.dimension != unit.dimension) => {
             format!("{name} [{usual}]")
@@ -178,10 +178,7 @@ fn table(
     writeln!(text, "[channels.{}]", role.name())?;
     writeln!(text, "channel = {}", quoted(&channel.name))?;
     let known = channel.unit.as_deref().and_then(units::parse_unit);
-    let of_name = units::split_unit(&channel.name)
-        .1
-        .and_then(units::parse_split_unit);
-    let unit = known.or(of_name);
+    let unit = units::unit_of(channel.unit.as_deref(), &channel.name);
     match (known, unit.and_then(units::symbol_of)) {
         (Some(_), _) => writeln!(text, "# unit = as the file states")?,
         (None, None) if found.experiment == Experiment::Events(ContactContent::Sound) => {}

@@ -62,13 +62,7 @@ pub(super) fn counts_frames(dataset: &DatasetInfo, index: usize) -> bool {
 /// Factor to seconds of a time axis from its unit or its name (`time_ms`); 1 if neither states it.
 pub fn seconds_per_unit(dataset: &DatasetInfo, index: usize) -> f64 {
     let info = &dataset.channels[index];
-    let of_name = units::split_unit(&info.name)
-        .1
-        .and_then(units::parse_split_unit);
-    info.unit
-        .as_deref()
-        .and_then(units::parse_unit)
-        .or(of_name)
+    units::unit_of(info.unit.as_deref(), &info.name)
         .filter(|u| u.dimension == units::Dimension::Time)
         .map_or(1.0, |u| u.to_si)
 }

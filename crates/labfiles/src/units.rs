@@ -14,7 +14,7 @@ pub use quantity::{Quantity, QuantityError, parse_quantity, parse_quantity_of};
 pub use scale::{Scale, parse_scale};
 pub use table::{
     Dimension, STANDARD_GRAVITY_M_S2, Unit, parse_split_unit, parse_unit, split_unit, symbol_of,
-    symbols_of,
+    symbols_of, unit_of,
 };
 
 #[cfg(test)]

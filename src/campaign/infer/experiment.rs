@@ -36,10 +36,7 @@ const FEWEST_SOUNDS: usize = 4;
 /// Whether a dataset is a list of events: few rows, and nothing but times in it.
 pub(super) fn is_event_list(set: &DatasetInfo) -> bool {
     let of_time = |c: &labfiles::ChannelInfo| {
-        let own = units::split_unit(&c.name)
-            .1
-            .and_then(units::parse_split_unit);
-        let unit = c.unit.as_deref().and_then(units::parse_unit).or(own);
+        let unit = units::unit_of(c.unit.as_deref(), &c.name);
         unit.is_some_and(|u| u.dimension == Dimension::Time)
     };
     let rows = set.channels.iter().map(|c| c.samples).max().unwrap_or(0);

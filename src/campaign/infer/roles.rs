@@ -95,11 +95,8 @@ fn kind(channel: &InferredChannel) -> Kind {
     if has(&["contact", "touch", "switch", "kontakt"]) {
         return Kind::Contact;
     }
-    let unit = channel.unit.as_deref().and_then(units::parse_unit);
-    let of_name = units::split_unit(&channel.name)
-        .1
-        .and_then(units::parse_split_unit);
-    match unit.or(of_name).map(|u| u.dimension) {
+    let unit = units::unit_of(channel.unit.as_deref(), &channel.name);
+    match unit.map(|u| u.dimension) {
         Some(Dimension::Velocity) => return Kind::Velocity,
         Some(Dimension::Length) => return Kind::Displacement,
         Some(Dimension::Acceleration) => return Kind::Acceleration,

@@ -186,6 +186,18 @@ pub fn parse_split_unit(symbol: &str) -> Option<Unit> {
     parse_unit(symbol).or_else(|| suffix_unit(symbol))
 }
 
+/// The unit of a channel: as stated where that is known, else the one that its name bears.
+///
+/// ```
+/// use labfiles::units::{parse_unit, unit_of};
+/// assert_eq!(unit_of(None, "gap_mm"), parse_unit("mm"));
+/// assert_eq!(unit_of(Some("m"), "gap_mm"), parse_unit("m"));
+/// ```
+pub fn unit_of(stated: Option<&str>, name: &str) -> Option<Unit> {
+    let of_name = || split_unit(name).1.and_then(parse_split_unit);
+    stated.and_then(parse_unit).or_else(of_name)
+}
+
 /// The unit after an underscore: letters without case, `m_s` for m/s.
 fn suffix_unit(suffix: &str) -> Option<Unit> {
     let slashed = suffix.to_lowercase().replace('_', "/");
