@@ -3,7 +3,7 @@
 mod experiment;
 mod roles;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::discovery::Opener;
@@ -164,23 +164,15 @@ fn globs(paths: &[PathBuf]) -> Vec<String> {
             .map(|e| format!("*.{}", e.to_string_lossy()))
             .unwrap_or_default()
     };
-    let mut all: Vec<String> = paths
-        .iter()
-        .map(
-            |p| match p.parent().map(slashed).filter(|f| !f.is_empty()) {
-                Some(folder) => format!("{folder}/{}", ending(p)),
-                None => ending(p),
-            },
-        )
-        .collect();
-    all.sort();
-    all.dedup();
+    let in_folder = |p: &PathBuf| match p.parent().map(slashed).filter(|f| !f.is_empty()) {
+        Some(folder) => format!("{folder}/{}", ending(p)),
+        None => ending(p),
+    };
+    let mut all: BTreeSet<String> = paths.iter().map(in_folder).collect();
     if all.len() > 4 {
         all = paths.iter().map(|p| format!("**/{}", ending(p))).collect();
-        all.sort();
-        all.dedup();
     }
-    all
+    all.into_iter().collect()
 }
 
 fn describe(source: &dyn Source, found: &mut FolderContents) {
@@ -200,10 +192,7 @@ fn describe(source: &dyn Source, found: &mut FolderContents) {
 fn channels(source: &dyn Source, dataset: usize, set: &DatasetInfo) -> Vec<InferredChannel> {
     let seen = |(i, info): (usize, &ChannelInfo)| {
         let samples = source.read(dataset, &[i]).ok().and_then(|mut s| s.pop());
-        let values = match samples {
-            Some(Samples::Real(values)) => values,
-            _ => Vec::new(),
-        };
+        let values = samples.and_then(Samples::into_real).unwrap_or_default();
         InferredChannel {
             name: info.name.clone(),
             unit: info.unit.clone(),
