@@ -54,22 +54,15 @@ pub fn inspect(record: &Record) -> Vec<Flag> {
         return vec![flag];
     }
     let rates = |velocity, acceleration| {
-        let integral = integrals(acceleration)?;
-        Match::of(&changes(velocity)?, &integral)
+        let integral = integrals(acceleration);
+        let found = integral.and_then(|integral| Match::of(&changes(velocity)?, &integral));
+        (found, velocity, acceleration)
     };
     let pairs = [
         (x, Role::DisplacementX, Role::VelocityX),
         (y, Role::DisplacementY, Role::VelocityY),
-        (
-            rates(Role::VelocityX, Role::AccelerationX),
-            Role::VelocityX,
-            Role::AccelerationX,
-        ),
-        (
-            rates(Role::VelocityY, Role::AccelerationY),
-            Role::VelocityY,
-            Role::AccelerationY,
-        ),
+        rates(Role::VelocityX, Role::AccelerationX),
+        rates(Role::VelocityY, Role::AccelerationY),
     ];
     pairs
         .into_iter()
