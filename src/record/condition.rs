@@ -119,19 +119,17 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
         let found = not_numbers(channel)
             .or_else(|| dead(channel, &span, driven))
             .or_else(|| clipped(channel, &span, *range));
-        flags.extend(found.map(|f| lenient(channel.role, f)));
+        // What is wrong with a frame's channel leaves no record out.
+        flags.extend(found.map(|flag| Flag {
+            excludes: flag.excludes && !channel.role.is_frame(),
+            ..flag
+        }));
     }
     if flags.is_empty() && driven {
         // Without a drive a body comes to rest.
         flags.extend(held(record));
     }
     record.flags.extend(flags);
-}
-
-/// What is wrong with a frame's channel leaves no record out.
-fn lenient(role: Role, mut flag: Flag) -> Flag {
-    flag.excludes &= !role.is_frame();
-    flag
 }
 
 fn no_samples(record: &Record) -> Flag {
