@@ -195,14 +195,16 @@ fn note_unknown(name: &str, bare: &str, faults: &mut FaultCollector) {
 /// Factor to SI of a column, from the unit in its name.
 fn factor(column: usize, symbol: Option<&str>) -> Result<f64, Wrong> {
     let name = COLUMNS[column];
-    let expected = match name {
-        "drive_frequency" => Dimension::Frequency,
-        "clearance" => Dimension::Length,
+    let (expected, remedy) = match name {
+        "drive_frequency" => (
+            Dimension::Frequency,
+            "call it drive_frequency_hz or \"drive_frequency [Hz]\"",
+        ),
+        "clearance" => (
+            Dimension::Length,
+            "call it clearance_mm or \"clearance [mm]\"",
+        ),
         _ => return Ok(1.0),
-    };
-    let remedy = match expected {
-        Dimension::Frequency => "call it drive_frequency_hz or \"drive_frequency [Hz]\"",
-        _ => "call it clearance_mm or \"clearance [mm]\"",
     };
     let wrong = |message| Wrong {
         message,
