@@ -143,7 +143,13 @@ fn resolve_one(
         threshold: threshold(role, &written.threshold, &key("threshold"), context),
         range: raw_level(&written.range, &key("range"), unit, context),
         ignore_file_unit: value(&written.ignore_file_unit).unwrap_or(false),
-        content: content(role, &written.content, &key("content"), context),
+        content: of_contact(
+            role,
+            &written.content,
+            ("a content", &key("content")),
+            context,
+        )
+        .map_or(ContactContent::Signal, |placed| *placed.get_ref()),
         instrument: value(&written.instrument),
         ..ChannelSetup::plain(role, source(role, placed, context)?)
     };
@@ -289,16 +295,6 @@ fn any_quantity(
         context.fault(Code::InvalidValue, placed, key, message.as_str(), remedy);
     }
     found.ok()
-}
-
-fn content(
-    role: Role,
-    placed: &Placed<ContactContent>,
-    key: &str,
-    context: &mut ResolveContext<'_>,
-) -> ContactContent {
-    let placed = of_contact(role, placed, ("a content", key), context);
-    placed.map_or(ContactContent::Signal, |placed| *placed.get_ref())
 }
 
 fn threshold(
