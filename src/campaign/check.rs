@@ -179,12 +179,10 @@ fn short(fingerprints: &[Fingerprint]) -> Vec<Diagnostic> {
     let lengths = fingerprints.iter().map(|p| p.samples).filter(|n| *n > 0);
     let mut lengths: Vec<usize> = lengths.collect();
     lengths.sort_unstable();
-    let Some(usual) = lengths.get(lengths.len() / 2).copied() else {
-        return Vec::new();
-    };
     if lengths.len() < 3 {
         return Vec::new();
     }
+    let usual = lengths[lengths.len() / 2];
     let short = |p: &&Fingerprint| p.samples > 0 && 10 * p.samples < 8 * usual;
     let diagnostic = |p: &Fingerprint| {
         Diagnostic::new(

@@ -167,13 +167,8 @@ pub(super) fn flag(
 }
 
 fn missing(setup: &ChannelSetup, dataset: &DatasetInfo) -> Flag {
-    let names: Vec<&str> = dataset.channels.iter().map(|c| c.name.as_str()).collect();
-    let shown = names
-        .iter()
-        .take(16)
-        .copied()
-        .collect::<Vec<_>>()
-        .join(", ");
+    let shown = dataset.channels.iter().take(16).map(|c| c.name.as_str());
+    let shown = shown.collect::<Vec<_>>().join(", ");
     let key = setup.source.text();
     let role = setup.role.name();
     flag(
