@@ -35,35 +35,28 @@ pub(super) fn share(
         return Err(file.refuse(at + 8, "dimension 1", dimension.to_string()));
     }
     let count = cursor.u64("the number of samples")?;
-    if device {
-        let device = Some(Arc::new(device_index(file, cursor, digital)?));
-        return Ok(Share {
-            kind,
-            count,
-            bytes: 0,
-            device,
-        });
-    }
+    let device = match device {
+        true => Some(Arc::new(device_index(file, cursor, digital)?)),
+        false => None,
+    };
     let bytes = match kind.bytes() {
+        _ if device.is_some() => Some(0),
         Some(size) => count.checked_mul(size),
         None if kind == Kind::Text => {
             Some(cursor.u64("the bytes of texts")?).filter(|&bytes| bytes / 4 >= count)
         }
         None => None,
     };
-    match bytes {
-        Some(bytes) => Ok(Share {
-            kind,
-            count,
-            bytes,
-            device: None,
-        }),
-        None => Err(file.refuse(
-            at,
-            "a length that fits the type",
-            format!("{count} samples"),
-        )),
-    }
+    let unfit = || {
+        let found = format!("{count} samples");
+        file.refuse(at, "a length that fits the type", found)
+    };
+    Ok(Share {
+        kind,
+        count,
+        bytes: bytes.ok_or_else(unfit)?,
+        device,
+    })
 }
 
 fn device_index(
