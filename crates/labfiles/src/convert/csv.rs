@@ -31,8 +31,7 @@ fn file_name(item: &Item<'_>) -> String {
 /// Write a record to a file that has another name in an error.
 fn one(item: &Item<'_>, path: &Path, named: &Path) -> Result<(), ConvertError> {
     let columns = item.columns()?;
-    write_whole_or(path, |out| rows(item, &columns, out), |e| e).map_err(io(named))?;
-    Ok(())
+    Ok(write_whole_or(path, |out| rows(item, &columns, out), |e| e).map_err(io(named))?)
 }
 
 fn rows(item: &Item<'_>, columns: &[Column], mut out: impl Write) -> std::io::Result<()> {

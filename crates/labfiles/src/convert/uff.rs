@@ -5,7 +5,8 @@
 //! tell their functions apart. Of an even abscissa of time the step is written in the thirteen columns that
 //! the format has for it; a record without a rate has the sample's number as abscissa.
 
-use std::io::Write;
+use std::fs::File;
+use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use chrono::{Datelike, NaiveDateTime};
@@ -38,7 +39,7 @@ pub(super) fn write(
         .iter()
         .map(|item| Ok((item, item.read()?)))
         .collect::<Result<_, ConvertError>>()?;
-    let fill = |mut file: &mut dyn Write| {
+    let fill = |file: &mut BufWriter<File>| {
         for (number, (item, samples)) in read.iter().enumerate() {
             let record = Record {
                 item,
@@ -46,12 +47,11 @@ pub(super) fn write(
                 text,
                 single: options.single_precision,
             };
-            record.write(samples, &mut file)?;
+            record.write(samples, file)?;
         }
         Ok(())
     };
-    write_whole_or(out, |mut file| fill(&mut file), |e: std::io::Error| e).map_err(io(out))?;
-    Ok(())
+    Ok(write_whole_or(out, fill, |e| e).map_err(io(out))?)
 }
 
 /// Notes on what the file cannot hold of a record.
