@@ -118,22 +118,16 @@ impl<'a> Scanner<'a> {
         let text = decode_text(line);
         let name = text.split_whitespace().next().unwrap_or("");
         match name {
-            "58" => self.ascii(at),
-            "58b" => self.binary(at, &text),
-            "151" => {
-                self.sets.model = super::header::model(&self.short_set());
-                Ok(())
-            }
+            "58" => self.ascii(at)?,
+            "58b" => self.binary(at, &text)?,
+            "151" => self.sets.model = super::header::model(&self.short_set()),
             "164" => {
                 let lines = self.short_set();
                 self.sets.systems.extend(System::read(&lines));
-                Ok(())
             }
-            _ => {
-                self.skip_set(name);
-                Ok(())
-            }
+            _ => self.skip_set(name),
         }
+        Ok(())
     }
 
     fn skip_set(&mut self, name: &str) {
