@@ -10,6 +10,7 @@ use std::ops::Range;
 use ::hdf5::{Chunk, Dataset};
 
 use crate::bytes::{read_exact_at, to_usize};
+use crate::hdf5::store::product;
 use crate::inflate::zlib_into;
 
 const DEFLATE: u16 = 1;
@@ -87,18 +88,11 @@ impl Grid {
     }
 
     fn chunk_bytes(&self) -> Option<usize> {
-        let bytes = self
-            .chunk
-            .iter()
-            .try_fold(self.element as u64, |n, &d| n.checked_mul(d));
-        usize::try_from(bytes?).ok()
+        usize::try_from(product(self.element as u64, &self.chunk)?).ok()
     }
 
     fn row_bytes(&self) -> Option<u64> {
-        let inner = self.shape[1..].iter();
-        inner
-            .copied()
-            .try_fold(self.element as u64, u64::checked_mul)
+        product(self.element as u64, &self.shape[1..])
     }
 
     fn meets(&self, chunk: &Chunk, rows: &Range<u64>) -> bool {

@@ -15,7 +15,7 @@ use crate::hdf5::datatype::element;
 use crate::hdf5::legacy::{self, Patch};
 use crate::hdf5::second;
 use crate::hdf5::store::{
-    Array, Attr, Attrs, DEEPEST, MOST_OBJECTS, StoreError, Target, Tree, join,
+    Array, Attr, Attrs, DEEPEST, MOST_OBJECTS, StoreError, Target, Tree, join, product,
 };
 
 /// Bytes of metadata that the library may keep.
@@ -297,10 +297,7 @@ fn chunk_bytes(dataset: &Dataset, array: &Array) -> u64 {
         return 0;
     }
     let bytes = array.element.bytes().max(1) as u64;
-    let by_shape = shape
-        .iter()
-        .try_fold(bytes, |n, &d| n.checked_mul(d))
-        .unwrap_or(u64::MAX);
+    let by_shape = product(bytes, &shape).unwrap_or(u64::MAX);
     // LZF states the size of an unpacked chunk in its own parameters.
     let pipeline = dataset.filter_pipeline();
     let lzf = pipeline

@@ -73,7 +73,7 @@ pub(crate) struct Array {
 impl Array {
     /// Number of elements; `None` if it exceeds 64 bits.
     pub(crate) fn count(&self) -> Option<u64> {
-        self.shape.iter().try_fold(1u64, |n, &d| n.checked_mul(d))
+        product(1, &self.shape)
     }
 
     /// Unpacked bytes that it claims to have, of texts their number.
@@ -82,6 +82,12 @@ impl Array {
         let bytes = self.count().and_then(|n| n.checked_mul(element));
         bytes.unwrap_or(u64::MAX)
     }
+}
+
+/// A number times all dimensions; `None` if it exceeds 64 bits.
+pub(super) fn product(first: u64, dimensions: &[u64]) -> Option<u64> {
+    let mut dimensions = dimensions.iter().copied();
+    dimensions.try_fold(first, u64::checked_mul)
 }
 
 /// A group of the file.
