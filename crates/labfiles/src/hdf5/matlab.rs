@@ -129,13 +129,9 @@ impl Walk<'_> {
         let dims = reversed(&first.shape);
         let mut columns = Vec::new();
         for field in fields {
-            columns.push((field.name.clone(), self.store.targets(field)?));
+            columns.push((&field.name, self.store.targets(field)?.into_iter()));
         }
         let count = columns.iter().map(|(_, t)| t.len()).max().unwrap_or(0);
-        let mut columns: Vec<_> = columns
-            .into_iter()
-            .map(|(n, t)| (n, t.into_iter()))
-            .collect();
         for index in 0..count {
             let element = path.element(index as u64, count as u64, &dims, ['(', ')']);
             for (name, targets) in &mut columns {

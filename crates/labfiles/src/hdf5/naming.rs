@@ -79,12 +79,9 @@ pub(crate) const MOST_CHANNELS: u64 = 4096;
 
 /// The two dimensions of a table that may have further ones of one entry.
 fn dimensions(shape: &[u64]) -> [u64; 2] {
-    match squeezed(shape)[..] {
-        [rows, columns] => [rows, columns],
-        _ => match *shape {
-            [rows, columns] => [rows, columns],
-            _ => [0, 0],
-        },
+    match (&squeezed(shape)[..], shape) {
+        (&[rows, columns], _) | (_, &[rows, columns]) => [rows, columns],
+        _ => [0, 0],
     }
 }
 
