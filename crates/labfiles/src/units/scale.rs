@@ -81,21 +81,14 @@ impl Scale {
                 denominator,
             } => {
                 let per_si = numerator.si / denominator.to_si;
-                if denominator.dimension == unit.dimension {
-                    let to_si = unit.to_si * per_si;
-                    Some(Unit {
-                        dimension: numerator.dimension,
-                        to_si,
-                    })
+                let (dimension, to_si) = if denominator.dimension == unit.dimension {
+                    (numerator.dimension, unit.to_si * per_si)
                 } else if numerator.dimension == unit.dimension {
-                    let to_si = unit.to_si / per_si;
-                    Some(Unit {
-                        dimension: denominator.dimension,
-                        to_si,
-                    })
+                    (denominator.dimension, unit.to_si / per_si)
                 } else {
-                    None
-                }
+                    return None;
+                };
+                Some(Unit { dimension, to_si })
             }
         }
     }
