@@ -155,7 +155,11 @@ pub fn observe(
     };
     if let Some(drive) = &observation.drive {
         if observation.has_no_impact() {
-            observation.response = responses(record, drive);
+            // within less than a period a tone is hardly told from a line
+            let periods = record.duration_s() * drive.frequency_hz;
+            if periods >= 1.0 {
+                observation.response = responses(record, drive);
+            }
         } else if let Some(n) = observation.one_impact_in() {
             observation.folded = Some(Arc::new(fold(record, &detection, drive, n)));
         }
@@ -361,6 +365,22 @@ mod tests {
         // 2.005/2 differs by less than 0.5 %: the stated amplitude stays.
         let amplitudes = all.map(|o| o.setting.drive_amplitude);
         assert_eq!(amplitudes, [0.5, 1.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn the_response_of_less_than_a_drive_period_is_not_measured() {
+        let observed = |samples: u32| {
+            let tone = |i: u32| (std::f64::consts::TAU * 10.0 * f64::from(i) / 2000.0).sin();
+            let values: Vec<f64> = (0..samples).map(tone).collect();
+            let record = Record::of(
+                2000.0,
+                &[(Role::Drive, &values), (Role::VelocityX, &values)],
+            );
+            let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
+            observe(&record, RigKind::Single, &detect, &classify)
+        };
+        assert_eq!(observed(2000).response.len(), 1);
+        assert!(observed(60).response.is_empty());
     }
 
     #[test]
