@@ -6,6 +6,7 @@ use crate::identify::diagnostics::agreement::{agreement, between_methods};
 use crate::identify::diagnostics::beyond;
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::momentum;
+use crate::identify::diagnostics::stated_frequencies;
 use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
 use crate::identify::diagnostics::verdict::{self, Basis};
@@ -93,8 +94,9 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
     let impacts = methods::impacts(&run.selection.blocks, &evidence.nominal, start);
     let start = with_restitution(start, &impacts);
     let mut fits = run.fits(start, resonance, impacts);
-    let mut suspicions = Vec::new();
-    while let Some(odd) = run.odd_gap(&fits, start, suspicions.len()) {
+    let mut suspicions = Vec::from_iter(stated_frequencies::contradicted(evidence.observations));
+    let stated = suspicions.len();
+    while let Some(odd) = run.odd_gap(&fits, start, suspicions.len() - stated) {
         suspicions.push(odd.into());
         if !run.selection.leave_out_gap(odd.stated_m) {
             break;

@@ -52,6 +52,22 @@ pub enum Finding {
         /// How sure.
         z_score: f64,
     },
+    /// The drive runs at one multiple of the stated frequencies in most records.
+    FrequenciesOffAlike {
+        /// Measured over stated frequency.
+        ratio: f64,
+        /// Records in which they contradict each other.
+        records: usize,
+        /// Records in which both are known.
+        of: usize,
+    },
+    /// The drive's frequencies are not the stated ones in most records.
+    FrequenciesOff {
+        /// Records in which they contradict each other.
+        records: usize,
+        /// Records in which both are known.
+        of: usize,
+    },
     /// Two free masses do not change their speeds in the ratio of the stated masses.
     MomentumNotConserved {
         /// `m_y/m_x` as the speeds show it.
@@ -167,6 +183,22 @@ message_table! { Finding, key = template_key;
          [channels.velocity_x] and [channels.velocity_y], or the displacements",
         "alle Daten passen weit besser, wenn die Geschwindigkeiten beider Massen vertauscht sind: \
          [channels.velocity_x] und [channels.velocity_y] tauschen, oder die Wege";
+    Self::FrequenciesOffAlike { ratio, records, of } =>
+        "the drive runs at {ratio} times the stated frequency in {records} of {of} records: check \
+         the sample rate and the time axis of the files, from which $f_0$ follows, or correct the \
+         run table",
+        "die Erregung hat das {ratio}-fache der angegebenen Frequenz in {records} von {of} \
+         Aufzeichnungen: Abtastrate und Zeitachse der Dateien prüfen, aus denen $f_0$ folgt, oder \
+         die Versuchstabelle richtigstellen",
+        ratio = Value::Number(*ratio, 4),
+        records = Value::Count(*records),
+        of = Value::Count(*of);
+    Self::FrequenciesOff { records, of } =>
+        "the drive's frequency is not the stated one in {records} of {of} records: check that \
+         each row of the run table names its own file",
+        "die Frequenz der Erregung ist nicht die angegebene in {records} von {of} Aufzeichnungen: \
+         prüfen, ob jede Zeile der Versuchstabelle ihre eigene Datei nennt",
+        records = Value::Count(*records), of = Value::Count(*of);
     Self::MomentumNotConserved { measured, stated, .. } =>
         "the speeds of both masses change as if $m_y$/$m_x$ were {measured}, the stated masses \
          give {stated}: weigh them again, check the scales of both velocities, and that nothing \

@@ -1,0 +1,78 @@
+//! Whether the drive's frequencies contradict those that the campaign states, in most of its records.
+
+use crate::identify::messages::Finding;
+use crate::motion::Observation;
+use crate::record::FlagCode;
+use crate::signal::robust;
+
+/// Records from which a contradiction is none of single rows of the run table.
+const FEWEST: usize = 3;
+/// Relative spread of the ratios of frequencies that have one cause.
+const ONE_CAUSE: f64 = 5e-3;
+
+/// That more than half of the records that state a frequency are driven at another one.
+pub fn contradicted(observations: &[Observation]) -> Option<Finding> {
+    let ratio = |o: &Observation| Some(o.drive?.frequency_hz / o.setting.stated_frequency_hz?);
+    let compared = observations.iter().filter_map(|o| Some((o, ratio(o)?)));
+    let of = compared.clone().count();
+    let off = |o: &Observation| {
+        let mut flags = o.flags.iter();
+        flags.any(|f| f.code == FlagCode::DriveFrequencyContradicts)
+    };
+    let ratios: Vec<f64> = compared.filter(|(o, _)| off(o)).map(|(_, r)| r).collect();
+    let records = ratios.len();
+    if records < FEWEST || 2 * records <= of {
+        return None;
+    }
+    let ratio = robust::median(&ratios)?;
+    let alike = ratios.iter().all(|r| (r / ratio - 1.0).abs() < ONE_CAUSE);
+    Some(match alike {
+        true => Finding::FrequenciesOffAlike { ratio, records, of },
+        false => Finding::FrequenciesOff { records, of },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::event::DriveTone;
+    use crate::motion::Motion;
+    use crate::record::Flag;
+
+    fn observed(stated_hz: f64, frequency_hz: f64) -> Observation {
+        let mut o = Observation::of("r", stated_hz, Motion::Impactless);
+        o.setting.stated_frequency_hz = Some(stated_hz);
+        o.drive = Some(DriveTone {
+            frequency_hz,
+            frequency_error_hz: 0.0,
+            amplitude: 1.0,
+            phase_rad: 0.0,
+            residual_ratio: 0.0,
+        });
+        if stated_hz != frequency_hz {
+            let code = FlagCode::DriveFrequencyContradicts;
+            o.flags.push(Flag::new(code, None, "", ""));
+        }
+        o
+    }
+
+    #[test]
+    fn frequencies_that_are_off_in_most_records_are_found() {
+        let of = |pairs: &[[f64; 2]]| {
+            let all: Vec<Observation> = pairs.iter().map(|[s, f]| observed(*s, *f)).collect();
+            contradicted(&all)
+        };
+        let one_slip = [[8.0, 8.0], [9.0, 9.0], [10.0, 12.5], [11.0, 11.0]];
+        assert_eq!(of(&one_slip), None);
+        let faster = [[8.0, 10.0], [10.0, 12.5], [12.0, 15.0], [13.0, 13.0]];
+        let alike = Finding::FrequenciesOffAlike {
+            ratio: 1.25,
+            records: 3,
+            of: 4,
+        };
+        assert_eq!(of(&faster), Some(alike));
+        let shuffled = [[8.0, 12.0], [10.0, 8.0], [12.0, 10.0]];
+        let differ = Finding::FrequenciesOff { records: 3, of: 3 };
+        assert_eq!(of(&shuffled), Some(differ));
+    }
+}
