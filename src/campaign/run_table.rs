@@ -74,12 +74,7 @@ pub(super) fn read(path: &Path, faults: &mut FaultCollector) -> Vec<Row> {
         }
     };
     let text = decode(&bytes);
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(delimiter(&text))
-        .flexible(true)
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
+    let mut reader = reader(&text, separator(&text));
     let header = match reader.headers() {
         Ok(names) if names.iter().any(|n| !n.is_empty()) => read_header(&names.clone(), faults),
         _ => {
@@ -109,18 +104,36 @@ pub(super) fn read(path: &Path, faults: &mut FaultCollector) -> Vec<Row> {
     rows
 }
 
-/// UTF-8 with or without mark, else Windows-1252.
+/// Whether a text begins as a run table does: with a header that has the column of files.
+pub(super) fn is_run_table(head: &[u8]) -> bool {
+    let text = decode(head);
+    let mut reader = reader(&text, separator(&text));
+    let names = reader.headers();
+    names.is_ok_and(|names| names.iter().any(|name| name == COLUMNS[0]))
+}
+
+fn reader(text: &str, separator: u8) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new()
+        .delimiter(separator)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes())
+}
+
+/// By its byte-order mark, else UTF-8, else Windows-1252.
 fn decode(bytes: &[u8]) -> String {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => encoding_rs::WINDOWS_1252.decode(bytes).0.into_owned(),
-    }
+    let without_mark = match std::str::from_utf8(bytes) {
+        Ok(_) => encoding_rs::UTF_8,
+        Err(_) => encoding_rs::WINDOWS_1252,
+    };
+    without_mark.decode(bytes).0.into_owned()
 }
 
 /// The separator of the header line: the most frequent of comma, semicolon and tab.
-fn delimiter(text: &str) -> u8 {
-    let line = text.lines().find(|l| !l.starts_with('#')).unwrap_or("");
+fn separator(text: &str) -> u8 {
+    let filled = |l: &&str| !l.starts_with('#') && !l.trim().is_empty();
+    let line = text.lines().find(filled).unwrap_or("");
     let count = |b: &u8| line.bytes().filter(|c| c == b).count();
     [b',', b';', b'\t']
         .into_iter()
@@ -333,5 +346,31 @@ impl Cells<'_> {
             );
         }
         found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_table_is_recognised_by_its_header_whatever_separates_it() {
+        for text in [
+            "file,sweep\n",
+            "sweep;file\n",
+            "# made by hand\n\nsweep\tfile\n",
+            "\u{feff}file;clearance in mm\n",
+            "\"file\";\"note\"\n",
+        ] {
+            assert!(is_run_table(text.as_bytes()), "{text}");
+        }
+        let unicode: Vec<u8> = "\u{feff}file\tsweep\n"
+            .encode_utf16()
+            .flat_map(u16::to_le_bytes)
+            .collect();
+        assert!(is_run_table(&unicode));
+        for text in ["", "t;x\n0;1\n", "profile;file name\n", "1,2\n"] {
+            assert!(!is_run_table(text.as_bytes()), "{text}");
+        }
     }
 }

@@ -4,9 +4,12 @@ mod experiment;
 mod roles;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::discovery::Opener;
+use super::run_table;
 use crate::record::Role;
 use crate::signal::robust;
 use labfiles::{ChannelInfo, DatasetInfo, Samples, Source};
@@ -21,7 +24,7 @@ const DEPTH: usize = 4;
 pub struct FolderContents {
     /// Globs of the record files, relative to the folder.
     pub globs: Vec<String>,
-    /// A CSV table that names files, relative to the folder.
+    /// A table that names files, relative to the folder.
     pub run_table: Option<String>,
     /// Number of record files.
     pub files: usize,
@@ -125,24 +128,18 @@ fn is_other(path: &Path) -> bool {
     ending.is_none_or(|e| OTHER.contains(&e.as_str()))
 }
 
-/// Whether a file is a CSV table with a column `file`.
+/// Bytes at the front of a file that show whether it is a run table.
+const HEAD_BYTES: u64 = 1 << 16;
+
+/// Whether a file is a text table with a column `file`.
 fn is_run_table(path: &Path) -> bool {
-    if path
-        .extension()
-        .is_none_or(|e| !e.eq_ignore_ascii_case("csv"))
-    {
+    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    if !ending.is_some_and(|e| ["csv", "tsv", "txt"].contains(&e.as_str())) {
         return false;
     }
-    let Ok(mut reader) = csv::ReaderBuilder::new()
-        .flexible(true)
-        .comment(Some(b'#'))
-        .from_path(path)
-    else {
-        return false;
-    };
-    reader
-        .headers()
-        .is_ok_and(|h| h.iter().any(|name| name.trim() == "file"))
+    let mut head = Vec::new();
+    let read = File::open(path).and_then(|f| f.take(HEAD_BYTES).read_to_end(&mut head));
+    read.is_ok() && run_table::is_run_table(&head)
 }
 
 fn holds_record(source: &dyn Source) -> bool {
