@@ -211,6 +211,12 @@ pub struct Group<'a>(pub Vec<&'a Diagnostic>);
 /// Places that a summary names.
 const NAMED: usize = 6;
 
+/// The first names of a list.
+pub(super) fn first_of(names: &[String]) -> String {
+    let more = if names.len() > NAMED { ", …" } else { "" };
+    names[..names.len().min(NAMED)].join(", ") + more
+}
+
 impl Group<'_> {
     /// The group as one problem: ranges for the numbers that differ, the number of records (or
     /// lines) and the first of them. `None` for an empty group.
@@ -221,12 +227,11 @@ impl Group<'_> {
             return Some(summary);
         }
         let (noun, names) = self.names();
-        let more = if names.len() > NAMED { ", …" } else { "" };
         summary.message = format!(
-            "{} (in {} {noun}: {}{more})",
+            "{} (in {} {noun}: {})",
             self.message(),
             names.len(),
-            names[..names.len().min(NAMED)].join(", ")
+            first_of(&names)
         );
         summary.place = Place {
             file: self.common_path(),

@@ -1,12 +1,13 @@
 //! The run table: a CSV file with one row per record, units in its header.
 
+use std::collections::HashSet;
 use std::path::Path;
 use std::str::FromStr;
 
 use strum::VariantNames;
 
 use super::context::Wrong;
-use super::diagnostic::{Code, FaultCollector};
+use super::diagnostic::{Code, FaultCollector, first_of};
 use super::read::nearest;
 use super::written::Excitation;
 use crate::record::Sweep;
@@ -24,6 +25,9 @@ const COLUMNS: [&str; 9] = [
     "excitation",
     "specimen",
 ];
+
+/// The columns that hold numbers.
+const NUMBERS: [usize; 3] = [3, 4, 6];
 
 /// One row; `None` where the cell is empty or the column missing.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,7 +78,8 @@ pub(super) fn read(path: &Path, faults: &mut FaultCollector) -> Vec<Row> {
         }
     };
     let text = decode(&bytes);
-    let mut reader = reader(&text, separator(&text));
+    let separator = separator(&text);
+    let mut reader = reader(&text, separator);
     let header = match reader.headers() {
         Ok(names) if names.iter().any(|n| !n.is_empty()) => read_header(&names.clone(), faults),
         _ => {
@@ -93,10 +98,26 @@ pub(super) fn read(path: &Path, faults: &mut FaultCollector) -> Vec<Row> {
         return Vec::new();
     }
     let columns = reader.headers().map_or(0, csv::StringRecord::len);
-    let rows: Vec<Row> = reader
+    let records: Vec<csv::StringRecord> = reader
         .records()
-        .filter_map(|record| read_row(record, columns, &header, faults))
+        .filter_map(|record| whole_row(record, columns, faults))
         .collect();
+    let Some(mark) = decimal_mark(separator, &records, &header, faults) else {
+        return Vec::new();
+    };
+    let mut bad = BadCells::default();
+    let rows: Vec<Row> = records
+        .iter()
+        .filter_map(|record| {
+            let cells = Cells {
+                record,
+                header: &header,
+                mark,
+            };
+            read_row(&cells, &mut bad, faults)
+        })
+        .collect();
+    bad.note(faults);
     if rows.is_empty() && !faults.blocks() {
         let what = "the run table has a header and no records".to_owned();
         faults.fault(Code::Missing, None, "", what, "write one line per record");
@@ -239,12 +260,12 @@ fn line_of(position: &csv::Position) -> Option<usize> {
     usize::try_from(position.line()).ok()
 }
 
-fn read_row(
+/// A row with as many cells as the header.
+fn whole_row(
     record: csv::Result<csv::StringRecord>,
     columns: usize,
-    header: &Header,
     faults: &mut FaultCollector,
-) -> Option<Row> {
+) -> Option<csv::StringRecord> {
     let record = match record {
         Ok(record) => record,
         Err(error) => {
@@ -259,17 +280,58 @@ fn read_row(
             return None;
         }
     };
-    let line = record.position().and_then(line_of).unwrap_or(0);
     if record.len() != columns {
+        let line = record.position().and_then(line_of);
         let what = format!("the row has {} cells, the header {columns}", record.len());
-        faults.fault(Code::Syntax, Some(line), "", what, "fix the row");
+        faults.fault(Code::Syntax, line, "", what, "fix the row");
         return None;
     }
-    let cells = Cells {
-        record: &record,
-        header,
-        line,
+    Some(record)
+}
+
+/// The decimal mark of all numbers of a table; `None`, with a fault, where both are in use.
+fn decimal_mark(
+    separator: u8,
+    records: &[csv::StringRecord],
+    header: &Header,
+    faults: &mut FaultCollector,
+) -> Option<char> {
+    if separator == b',' {
+        return Some('.');
+    }
+    let with = |mark: char| {
+        let cells = records.iter().flat_map(|record| {
+            let line = record.position().and_then(line_of);
+            let columns = NUMBERS.iter().filter_map(|column| header.at[*column]);
+            columns.filter_map(move |at| Some((line, record.get(at)?)))
+        });
+        let mut cells = cells.filter(|(_, cell)| is_of_digits(cell));
+        cells.find(|(_, cell)| cell.contains(mark))
     };
+    match (with('.'), with(',')) {
+        (Some((line, point)), Some((other, comma))) => {
+            let what = format!(
+                "'{point}' has a point and '{comma}' in line {} a comma: which is the decimal \
+                 mark?",
+                other.unwrap_or(0)
+            );
+            let remedy = "write one decimal mark in all numbers, and no mark between thousands";
+            faults.fault(Code::InvalidValue, line, "", what, remedy);
+            None
+        }
+        (None, Some(_)) => Some(','),
+        _ => Some('.'),
+    }
+}
+
+/// Whether a cell holds digits, marks, signs and exponents alone.
+fn is_of_digits(cell: &str) -> bool {
+    let part = |c: char| c.is_ascii_digit() || "+-.,eE".contains(c);
+    cell.contains(|c: char| c.is_ascii_digit()) && cell.chars().all(part)
+}
+
+fn read_row(cells: &Cells<'_>, bad: &mut BadCells, faults: &mut FaultCollector) -> Option<Row> {
+    let line = cells.line();
     let Some(file) = cells.text(0) else {
         faults.fault(
             Code::Missing,
@@ -285,73 +347,127 @@ fn read_row(
         file,
         dataset: cells.text(1),
         record: cells.text(2),
-        drive_frequency_hz: cells.number(3, faults),
-        clearance_m: cells.number(4, faults),
-        sweep: cells.word(5, faults),
-        drive_amplitude: cells.number(6, faults),
-        excitation: cells.word(7, faults),
+        drive_frequency_hz: cells.number(3, bad),
+        clearance_m: cells.number(4, bad),
+        sweep: cells.word(5, bad),
+        drive_amplitude: cells.number(6, bad),
+        excitation: cells.word(7, bad),
         specimen: cells.text(8),
     })
 }
 
+/// The cells of a row.
 struct Cells<'a> {
     record: &'a csv::StringRecord,
     header: &'a Header,
-    line: usize,
+    /// The decimal mark of the table.
+    mark: char,
 }
 
 impl Cells<'_> {
+    fn line(&self) -> usize {
+        self.record.position().and_then(line_of).unwrap_or(0)
+    }
+
     fn text(&self, column: usize) -> Option<String> {
         let cell = self.record.get(self.header.at[column]?)?;
         (!cell.is_empty()).then(|| cell.to_owned())
     }
 
-    fn number(&self, column: usize, faults: &mut FaultCollector) -> Option<f64> {
+    fn number(&self, column: usize, bad: &mut BadCells) -> Option<f64> {
         let cell = self.text(column)?;
-        match cell.parse::<f64>() {
+        match cell.replace(self.mark, ".").parse::<f64>() {
             Ok(value) if value.is_finite() => Some(value * self.header.factor[column]),
             _ => {
-                let what = format!("'{cell}' is not a number");
-                let remedy = match cell.contains(',') {
-                    true => "write a decimal point",
-                    false => "write a number; the unit belongs in the header",
-                };
-                faults.fault(
-                    Code::InvalidValue,
-                    Some(self.line),
-                    COLUMNS[column],
-                    what,
-                    remedy,
-                );
+                bad.0[column].push((self.line(), cell));
                 None
             }
         }
     }
 
-    fn word<T: FromStr + VariantNames>(
-        &self,
-        column: usize,
-        faults: &mut FaultCollector,
-    ) -> Option<T> {
+    fn word<T: FromStr>(&self, column: usize, bad: &mut BadCells) -> Option<T> {
         let cell = self.text(column)?;
         let found = cell.parse().ok();
         if found.is_none() {
-            let what = format!("'{cell}' is not one of {}", T::VARIANTS.join(", "));
-            faults.fault(
-                Code::InvalidValue,
-                Some(self.line),
-                COLUMNS[column],
-                what,
-                "write one of these words",
-            );
+            bad.0[column].push((self.line(), cell));
         }
         found
+    }
+}
+
+/// Lines and texts of the cells of each column that cannot be read.
+#[derive(Debug, Default)]
+struct BadCells([Vec<(usize, String)>; COLUMNS.len()]);
+
+impl BadCells {
+    /// One fault for each column with such cells.
+    fn note(&self, faults: &mut FaultCollector) {
+        for (column, cells) in self.0.iter().enumerate() {
+            let Some((first, _)) = cells.first() else {
+                continue;
+            };
+            let mut texts: Vec<String> = cells.iter().map(|(_, t)| format!("'{t}'")).collect();
+            let mut seen = HashSet::new();
+            texts.retain(|text| seen.insert(text.clone()));
+            let (what, remedy) = expected(column, &texts);
+            let (line, lines) = match cells.len() {
+                1 => (Some(*first), String::new()),
+                count => {
+                    let lines: Vec<String> = cells.iter().map(|(l, _)| l.to_string()).collect();
+                    let lines = first_of(&lines);
+                    (None, format!(" (in {count} lines: {lines})"))
+                }
+            };
+            let what = format!("{} {what}{lines}", first_of(&texts));
+            faults.fault(Code::InvalidValue, line, COLUMNS[column], what, remedy);
+        }
+    }
+}
+
+/// What texts of a column should have been, as the end of a sentence, and what to do.
+fn expected(column: usize, texts: &[String]) -> (String, &'static str) {
+    let one = texts.len() == 1;
+    let verb = if one { "is" } else { "are" };
+    let of = |words: &[&str]| {
+        let what = format!("{verb} not one of {}", words.join(", "));
+        (what, "write one of these words")
+    };
+    match column {
+        5 => of(Sweep::VARIANTS),
+        7 => of(Excitation::VARIANTS),
+        _ => {
+            let what = if one { "a number" } else { "numbers" };
+            let remedy = match texts.iter().any(|text| text.contains(',')) {
+                true => "write a decimal point",
+                false => "write a number; the unit belongs in the header",
+            };
+            (format!("{verb} not {what}"), remedy)
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn read_text(text: &[u8]) -> (Vec<Row>, Vec<String>) {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), text).unwrap();
+        let mut faults = FaultCollector::new(file.path());
+        let rows = read(file.path(), &mut faults);
+        let all = faults.into_diagnostics().0;
+        let said = |d: &super::super::diagnostic::Diagnostic| {
+            let line = d.place.line.map_or(String::new(), |l| format!("{l}: "));
+            format!("{line}{}: {}. {}", d.place.item, d.message, d.remedy)
+        };
+        (rows, all.iter().map(said).collect())
+    }
+
+    fn clearances(text: &str) -> Vec<Option<f64>> {
+        let (rows, faults) = read_text(text.as_bytes());
+        assert_eq!(faults, [""; 0], "{text}");
+        rows.iter().map(|row| row.clearance_m).collect()
+    }
 
     #[test]
     fn a_run_table_is_recognised_by_its_header_whatever_separates_it() {
@@ -372,5 +488,68 @@ mod tests {
         for text in ["", "t;x\n0;1\n", "profile;file name\n", "1,2\n"] {
             assert!(!is_run_table(text.as_bytes()), "{text}");
         }
+    }
+
+    #[test]
+    fn decimal_commas_are_read_where_no_comma_separates() {
+        for text in [
+            "file;clearance [m]\na;8,82\nb;9\nc;\n",
+            "file\tclearance [m]\na\t8,82\nb\t9\nc\t\n",
+            "file;clearance [m]\na;8.82\nb;9\nc;\n",
+            "file;clearance [m];note\na;8.82;1,5\nb;9;\nc;;\n",
+            "file,clearance [m]\na,8.82\nb,9\nc,\n",
+        ] {
+            assert_eq!(clearances(text), [Some(8.82), Some(9.0), None], "{text}");
+        }
+        assert_eq!(clearances("file;clearance_m\na;8,929\n"), [Some(8.929)]);
+        let (rows, _) = read_text(b"file;drive_frequency_hz;drive_amplitude\na;1,5e1;0,5\n");
+        assert_eq!(
+            (rows[0].drive_frequency_hz, rows[0].drive_amplitude),
+            (Some(15.0), Some(0.5))
+        );
+    }
+
+    #[test]
+    fn a_table_with_both_decimal_marks_is_refused_once() {
+        let remedy = "write one decimal mark in all numbers, and no mark between thousands";
+        for (text, what) in [
+            (
+                "file;clearance_mm\na;1\nb;8.82\nc;8,93\nd;8,94\n",
+                "3: : '8.82' has a point and '8,93' in line 4 a comma: which is the decimal mark?",
+            ),
+            (
+                "file;clearance_mm\na;1.234,5\n",
+                "2: : '1.234,5' has a point and '1.234,5' in line 2 a comma: which is the decimal \
+                 mark?",
+            ),
+        ] {
+            let (rows, faults) = read_text(text.as_bytes());
+            assert!(rows.is_empty());
+            assert_eq!(faults, [format!("{what}. {remedy}")]);
+        }
+    }
+
+    #[test]
+    fn cells_that_cannot_be_read_are_one_fault_for_each_column() {
+        let mut text = "file,clearance_mm,drive_frequency_hz,sweep\n".to_owned();
+        for k in 0..8 {
+            text += &format!("r{k},\"8,{k}\",{k} Hz,hoch\n");
+        }
+        let (_, faults) = read_text(text.as_bytes());
+        assert_eq!(
+            faults,
+            [
+                "drive_frequency: '0 Hz', '1 Hz', '2 Hz', '3 Hz', '4 Hz', '5 Hz', … are not numbers \
+                 (in 8 lines: 2, 3, 4, 5, 6, 7, …). write a number; the unit belongs in the header",
+                "clearance: '8,0', '8,1', '8,2', '8,3', '8,4', '8,5', … are not numbers (in 8 lines: \
+                 2, 3, 4, 5, 6, 7, …). write a decimal point",
+                "sweep: 'hoch' is not one of up, down, unknown (in 8 lines: 2, 3, 4, 5, 6, 7, …). \
+                 write one of these words",
+            ]
+        );
+        let (_, faults) = read_text(b"file,clearance_mm\na,1\nb,two\n");
+        let one =
+            "3: clearance: 'two' is not a number. write a number; the unit belongs in the header";
+        assert_eq!(faults, [one]);
     }
 }
