@@ -136,7 +136,11 @@ fn with_unit(name: &str, usual: &str) -> String {
 }
 
 fn channels(text: &mut String, found: &FolderContents) -> std::fmt::Result {
-    writeln!(text, "# The channels of {}:", found.example)?;
+    let values = match found.looked_at {
+        0 | 1 => String::new(),
+        count => format!(", with their values in {count} records looked at"),
+    };
+    writeln!(text, "# The channels of {}{values}:", found.example)?;
     for (index, channel) in found.channels.iter().enumerate() {
         writeln!(text, "#   {index:>2}  {}", describe(channel))?;
     }

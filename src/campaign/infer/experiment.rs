@@ -1,12 +1,12 @@
 //! What was probably measured: a driven rig, free decays, free flights, or the times of impacts.
 
-use super::{FolderContents, InferredChannel};
+use super::{FolderContents, InferredChannel, Place, spread};
 use crate::event::{DetectSettings, Detection, FlightKind, RigKind, detect};
 use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
 use crate::record::{ContactContent, FlagCode, Record, Role, Setting};
 use crate::signal::{decay, onsets};
+use labfiles::DatasetInfo;
 use labfiles::units::{self, Dimension};
-use labfiles::{DatasetInfo, Source};
 
 /// What was probably measured.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -45,15 +45,17 @@ pub(super) fn is_event_list(set: &DatasetInfo) -> bool {
 }
 
 /// Find out what was measured, and set roles and signs for it.
-pub(super) fn infer(sources: &[&dyn Source], found: &mut FolderContents) {
-    let Some(first) = sources.first() else { return };
-    if first.datasets().iter().any(is_event_list) {
+pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
+    let Some(first) = places.first() else { return };
+    if first.source.datasets().iter().any(is_event_list) {
         found.experiment = Experiment::Events(events(&mut found.channels));
         return;
     }
+    let some = spread(places, MOST_RECORDS);
     let moving = |c: &InferredChannel| c.role.is_some_and(Role::is_motion);
     if !found.channels.iter().any(moving) {
-        if first.format() == "wav" && sounds(*first) {
+        let heard = || some.iter().filter(|place| sounds(**place)).count();
+        if first.source.format() == "wav" && 2 * heard() > some.len() {
             found.experiment = Experiment::Events(ContactContent::Sound);
             if let Some(channel) = found.channels.first_mut() {
                 channel.role = Some(Role::Contact);
@@ -64,10 +66,9 @@ pub(super) fn infer(sources: &[&dyn Source], found: &mut FolderContents) {
     if found.channels.iter().any(|c| c.role == Some(Role::Drive)) {
         return;
     }
-    let records: Vec<Record> = sources
+    let records: Vec<Record> = some
         .iter()
-        .take(MOST_RECORDS)
-        .map(|source| read(*source, &found.channels))
+        .map(|place| read(*place, &found.channels))
         .collect();
     let two = found
         .channels
@@ -125,18 +126,11 @@ fn events(channels: &mut [InferredChannel]) -> ContactContent {
 }
 
 /// Whether a sound is one of bounces: each follows the one before sooner.
-fn sounds(source: &dyn Source) -> bool {
-    let Some(rate_hz) = source
-        .datasets()
-        .first()
-        .and_then(DatasetInfo::sample_rate_hz)
-    else {
+fn sounds(place: Place<'_>) -> bool {
+    let Some(rate_hz) = place.set().sample_rate_hz() else {
         return false;
     };
-    let samples = source.read(0, &[0]).ok().and_then(|mut s| s.pop());
-    let Some(values) = samples.and_then(labfiles::Samples::into_real) else {
-        return false;
-    };
+    let values = place.numbers(0);
     let found = onsets::find(&values, rate_hz);
     let flights: Vec<f64> = found.windows(2).map(|w| w[1] - w[0]).collect();
     let shorter = flights.windows(2).filter(|w| w[1] < w[0]).count();
@@ -144,7 +138,7 @@ fn sounds(source: &dyn Source) -> bool {
 }
 
 /// A record by the inferred roles, in SI as far as units are known.
-fn read(source: &dyn Source, channels: &[InferredChannel]) -> Record {
+fn read(place: Place<'_>, channels: &[InferredChannel]) -> Record {
     let setups: Vec<ChannelSetup> = channels
         .iter()
         .filter_map(|c| {
@@ -161,7 +155,7 @@ fn read(source: &dyn Source, channels: &[InferredChannel]) -> Record {
         .collect();
     let setup = RecordSetup {
         id: "",
-        dataset: 0,
+        dataset: place.dataset,
         channels: &setups,
         time: None,
         sample_rate_hz: None,
@@ -169,7 +163,7 @@ fn read(source: &dyn Source, channels: &[InferredChannel]) -> Record {
         driven: false,
         skip_s: 0.0,
     };
-    calibrate(source, &setup)
+    calibrate(place.source, &setup)
 }
 
 fn decays(record: &Record) -> bool {

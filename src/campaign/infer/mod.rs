@@ -34,6 +34,8 @@ pub struct FolderContents {
     pub format: &'static str,
     /// The first record file, relative to the folder.
     pub example: String,
+    /// Number of records whose signals were looked at.
+    pub looked_at: usize,
     /// Its channels.
     pub channels: Vec<InferredChannel>,
     /// Attributes of its first dataset.
@@ -55,7 +57,7 @@ pub struct InferredChannel {
     pub unit: Option<String>,
     /// Number of samples.
     pub samples: u64,
-    /// Least and greatest value.
+    /// Least and greatest value in the records looked at.
     pub range: Option<[f64; 2]>,
     /// Whether it holds the time.
     pub is_time: bool,
@@ -88,13 +90,51 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
     }
     found.files = records.len();
     found.globs = globs(&records.iter().map(|(p, _)| p.clone()).collect::<Vec<_>>());
-    if let Some((path, source)) = records.first() {
+    let places: Vec<Place<'_>> = records
+        .iter()
+        .flat_map(|(_, s)| records_in(s.as_ref()))
+        .collect();
+    if let (Some((path, _)), Some(first)) = (records.first(), places.first()) {
         found.example = slashed(path);
-        describe(source.as_ref(), &mut found);
+        describe(*first, &mut found);
+        found.looked_at = 1 + look_at_others(&places, &mut found.channels);
+        roles::assign(&mut found.channels);
     }
-    let sources: Vec<&dyn Source> = records.iter().map(|(_, s)| s.as_ref()).collect();
-    experiment::infer(&sources, &mut found);
+    experiment::infer(&places, &mut found);
     found
+}
+
+/// A record: a dataset of a file.
+#[derive(Clone, Copy)]
+struct Place<'a> {
+    source: &'a dyn Source,
+    dataset: usize,
+}
+
+impl<'a> Place<'a> {
+    fn set(self) -> &'a DatasetInfo {
+        &self.source.datasets()[self.dataset]
+    }
+
+    /// A channel's numbers; none if it cannot be read or holds others.
+    fn numbers(self, channel: usize) -> Vec<f64> {
+        let samples = self.source.read(self.dataset, &[channel]).ok();
+        let samples = samples.and_then(|mut s| s.pop());
+        samples.and_then(Samples::into_real).unwrap_or_default()
+    }
+}
+
+/// The records of a file.
+fn records_in(source: &dyn Source) -> impl Iterator<Item = Place<'_>> {
+    let sets = source.datasets().iter().enumerate();
+    let records = sets.filter(|(_, set)| is_record(set));
+    records.map(move |(dataset, _)| Place { source, dataset })
+}
+
+/// At most so many of a list, evenly spread over it from the first on.
+fn spread<T: Copy>(all: &[T], most: usize) -> Vec<T> {
+    let count = all.len().min(most);
+    (0..count).map(|k| all[k * all.len() / count]).collect()
 }
 
 fn slashed(path: &Path) -> String {
@@ -172,29 +212,25 @@ fn globs(paths: &[PathBuf]) -> Vec<String> {
     all.into_iter().collect()
 }
 
-fn describe(source: &dyn Source, found: &mut FolderContents) {
-    found.format = source.format();
-    found.datasets = source.datasets().len();
-    let sets = source.datasets().iter().enumerate();
-    let Some((index, set)) = sets.clone().find(|(_, d)| is_record(d)) else {
-        return;
-    };
+fn describe(first: Place<'_>, found: &mut FolderContents) {
+    let set = first.set();
+    found.format = first.source.format();
+    found.datasets = first.source.datasets().len();
     found.attributes = set.attributes.clone();
     found.timed =
         set.time_axis.is_some() || set.channels.iter().any(|c| c.sample_rate_hz.is_some());
-    found.channels = channels(source, index, set);
-    roles::assign(&mut found.channels);
+    found.channels = channels(first);
 }
 
-fn channels(source: &dyn Source, dataset: usize, set: &DatasetInfo) -> Vec<InferredChannel> {
+fn channels(first: Place<'_>) -> Vec<InferredChannel> {
+    let set = first.set();
     let seen = |(i, info): (usize, &ChannelInfo)| {
-        let samples = source.read(dataset, &[i]).ok().and_then(|mut s| s.pop());
-        let values = samples.and_then(Samples::into_real).unwrap_or_default();
+        let values = first.numbers(i);
         InferredChannel {
             name: info.name.clone(),
             unit: info.unit.clone(),
             samples: info.samples,
-            range: robust::range(values.iter().copied()).map(Into::into),
+            range: range(&values),
             is_time: set.time_axis == Some(i),
             role: None,
             levels: two_levels(&values),
@@ -202,6 +238,51 @@ fn channels(source: &dyn Source, dataset: usize, set: &DatasetInfo) -> Vec<Infer
         }
     };
     set.channels.iter().enumerate().map(seen).collect()
+}
+
+/// Records whose signals are looked at, the first among them.
+const MOST_RECORDS: usize = 12;
+/// Most samples of all channels of those after the first.
+const MOST_SAMPLES: u64 = 20_000_000;
+
+/// Add what other records show of the channels of the first: impacts may not be in every record. The
+/// number of records looked at.
+fn look_at_others(places: &[Place<'_>], channels: &mut [InferredChannel]) -> usize {
+    let mut looked_at = 0;
+    let mut left = MOST_SAMPLES;
+    for place in spread(places, MOST_RECORDS).into_iter().skip(1) {
+        let size = place.set().channels.iter().map(|c| c.samples).sum();
+        let Some(rest) = left.checked_sub(size) else {
+            continue;
+        };
+        (left, looked_at) = (rest, looked_at + 1);
+        for channel in channels.iter_mut() {
+            let Some(index) = place.set().channel_index(&channel.name) else {
+                continue;
+            };
+            let values = place.numbers(index);
+            channel.range = hull(channel.range, range(&values));
+            channel.levels = wider(channel.levels, two_levels(&values));
+        }
+    }
+    looked_at
+}
+
+fn range(values: &[f64]) -> Option<[f64; 2]> {
+    robust::range(values.iter().copied()).map(Into::into)
+}
+
+/// The least range that holds both.
+fn hull(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    robust::range(a.into_iter().chain(b).flatten()).map(Into::into)
+}
+
+/// The levels that are farther apart: noise has two as well, where it is coarsely digitised.
+fn wider(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    let apart = |[low, high]: &[f64; 2]| high - low;
+    a.into_iter()
+        .chain(b)
+        .max_by(|x, y| apart(x).total_cmp(&apart(y)))
 }
 
 /// The two levels of a signal that is nearly always at one of them, as a contact.
@@ -303,6 +384,52 @@ mod tests {
         channels.iter_mut().for_each(|c| c.role = None);
         roles::assign(&mut channels);
         assert!(channels[3..].iter().all(|c| c.role.is_none()));
+    }
+
+    /// A folder of records of a generator and an unnamed switch, closed in those of the numbers given.
+    fn folder_of_switches(records: usize, closed: &[usize]) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        for number in 0..records {
+            let pulse = if closed.contains(&number) { 5.0 } else { 0.01 };
+            let row = |i: i32| {
+                let drive = (f64::from(i) * 0.1).sin();
+                // noise of two codes of a converter
+                let noise = if i % 7 < 3 { 0.002 } else { 0.0 };
+                let level = if i % 50 < 3 { pulse } else { 0.01 };
+                format!("{},{drive},{}\n", f64::from(i) * 1e-3, level + noise)
+            };
+            let rows: String = (0..500).map(row).collect();
+            let text = format!("t [s],generator [V],closing contact [V]\n{rows}");
+            std::fs::write(folder.path().join(format!("r{number:02}.csv")), text).unwrap();
+        }
+        folder
+    }
+
+    #[test]
+    fn levels_of_a_contact_are_those_of_any_record_looked_at() {
+        for (records, closed, looked_at, of_pulses) in [
+            (3, &[2][..], 3, true),
+            (30, &[15], 12, true),
+            (3, &[], 3, false),
+        ] {
+            let folder = folder_of_switches(records, closed);
+            let found = inspect_folder(folder.path(), &labfiles::open);
+            assert_eq!(found.looked_at, looked_at);
+            let contact = found
+                .channels
+                .iter()
+                .find(|c| c.role == Some(Role::Contact));
+            let [_, high] = contact.unwrap().levels.unwrap();
+            assert_eq!(high > 4.0, of_pulses, "{records}: {high}");
+        }
+    }
+
+    #[test]
+    fn records_looked_at_are_spread_over_all() {
+        let all: Vec<usize> = (0..30).collect();
+        assert_eq!(spread(&all, 4), [0, 7, 15, 22]);
+        assert_eq!(spread(&all[..3], 4), [0, 1, 2]);
+        assert!(spread::<usize>(&[], 4).is_empty());
     }
 
     #[test]
