@@ -91,8 +91,7 @@ pub fn convert(
     let note = if tables { filled_up } else { texts_left_out };
     let mut notes: Vec<String> = items.iter().filter_map(note).collect();
     if matches!(target, Target::Uff | Target::UffText) {
-        let rounded = |item| uff::notes(item, text, options.single_precision);
-        notes.extend(items.iter().flat_map(rounded));
+        notes.extend(uff::notes(&items, text, options.single_precision));
     }
     items.retain(|item| tables || item.has_numbers());
     if !items.iter().any(Item::has_numbers) {

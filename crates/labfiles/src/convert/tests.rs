@@ -407,7 +407,7 @@ fn universal_files_keep_every_bit_in_binary_and_thirteen_digits_as_text() {
         assert_eq!(done.records, 3);
         assert_eq!(
             done.notes.len(),
-            if digits > 0.0 { 3 } else { 0 },
+            usize::from(digits > 0.0),
             "{:?}",
             done.notes
         );
@@ -416,7 +416,8 @@ fn universal_files_keep_every_bit_in_binary_and_thirteen_digits_as_text() {
         for (d, info) in back.datasets().iter().enumerate() {
             assert_eq!(info.attributes["clearance_m"], "0.0005");
             assert_eq!(info.attributes["sweep"], "up");
-            assert_eq!(info.attributes["id2"], format!("run {}", d + 1));
+            assert_eq!(info.name, format!("run {}", d + 1));
+            assert_eq!(info.attributes["id2"], info.name);
             assert_eq!(info.sample_rate_hz(), (d < 2).then_some(2000.0));
             for name in ["velocity of mass x", "displacement of mass x"] {
                 let index = info.channel_index(name).unwrap();
@@ -460,26 +461,29 @@ fn valid_universal_files_are_those_that_pyuff_has_read() {
 }
 
 #[test]
-fn a_rate_that_the_columns_do_not_hold_is_named() {
+fn a_rate_that_the_columns_do_not_hold_is_named_once() {
     let dir = tempfile::tempdir().unwrap();
     let made = dir.path().join("made.h5");
     let mut writer = CampaignWriter::create(&made);
-    let record = RecordTable {
-        name: "run".to_owned(),
-        sample_rate_hz: Some(44_100.0),
-        channels: vec![ColumnToWrite::numbers("x", "V", vec![1.0, 2.0])],
-        attributes: Vec::new(),
-    };
-    writer.add(record).unwrap();
+    for (name, rate) in [("a", 44_100.0), ("b", 2000.0), ("c", 44_100.0), ("d", 3.0)] {
+        let record = RecordTable {
+            name: name.to_owned(),
+            sample_rate_hz: Some(rate),
+            channels: vec![ColumnToWrite::numbers("x", "V", vec![1.0, 2.0])],
+            attributes: Vec::new(),
+        };
+        writer.add(record).unwrap();
+    }
     writer.finish().unwrap();
     let sources = [open(&made).unwrap()];
     let out = dir.path().join("out.uff");
     let done = convert(&sources, Target::Uff, &out, &Options::default()).unwrap();
-    assert!(
-        done.notes[0].contains("instead of 44100 Hz"),
-        "{:?}",
-        done.notes
-    );
+    let [several, one] = &done.notes[..] else {
+        panic!("{:?}", done.notes)
+    };
+    assert!(several.starts_with("2 records from 'a' on: "), "{several}");
+    assert!(several.contains("instead of 44100 Hz"), "{several}");
+    assert!(one.starts_with("record 'd': "), "{one}");
     let rate = open(&out).unwrap().datasets()[0].sample_rate_hz().unwrap();
     assert!((rate / 44_100.0 - 1.0).abs() < 1e-6);
 }

@@ -54,28 +54,43 @@ pub(super) fn write(
     Ok(write_whole_or(out, fill, |e| e).map_err(io(out))?)
 }
 
-/// Notes on what the file cannot hold of a record.
-pub(super) fn notes(item: &Item<'_>, text: bool, single: bool) -> Vec<String> {
-    let mut notes = Vec::new();
-    let name = &item.name;
-    if let Some(rate) = item.sample_rate_hz() {
-        let step = fitted(rate.recip(), NARROW);
-        let kept = step.trim().parse::<f64>().map_or(0.0, f64::recip);
-        if kept != rate {
-            notes.push(format!(
-                "record '{name}': the file states the sample rate as {kept} Hz instead of {rate} Hz: its \
-                 step has thirteen columns; HDF5 and Parquet keep it"
-            ));
+/// Notes on what the file cannot hold of the records, each once for all that it concerns.
+pub(super) fn notes(items: &[Item<'_>], text: bool, single: bool) -> Vec<String> {
+    let mut rates: Vec<(String, Vec<&str>)> = Vec::new();
+    for item in items {
+        let Some(note) = item.sample_rate_hz().and_then(rounded_rate) else {
+            continue;
+        };
+        match rates.iter_mut().find(|(known, _)| *known == note) {
+            Some((_, names)) => names.push(&item.name),
+            None => rates.push((note, vec![&item.name])),
         }
     }
+    let of = |(note, names): (String, Vec<&str>)| match names[..] {
+        [name] => format!("record '{name}': {note}"),
+        _ => format!("{} records from '{}' on: {note}", names.len(), names[0]),
+    };
+    let mut notes: Vec<String> = rates.into_iter().map(of).collect();
     if text {
         let digits = if single { 6 } else { 13 };
         notes.push(format!(
-            "record '{name}': numbers that need more than about {digits} digits are rounded, as text \
-             has fields of fixed width; the binary form (--to uff) keeps every bit"
+            "numbers that need more than about {digits} digits are rounded, as text has fields of \
+             fixed width; the binary form (--to uff) keeps every bit"
         ));
     }
     notes
+}
+
+/// A note if the step of a rate needs more than the thirteen columns that it has.
+fn rounded_rate(rate: f64) -> Option<String> {
+    let step = fitted(rate.recip(), NARROW);
+    let kept = step.trim().parse::<f64>().map_or(0.0, f64::recip);
+    (kept != rate).then(|| {
+        format!(
+            "the file states the sample rate as {kept} Hz instead of {rate} Hz: its step has \
+             thirteen columns; HDF5 and Parquet keep it"
+        )
+    })
 }
 
 /// A record on its way into the file.

@@ -1,6 +1,6 @@
 //! From the functions of a file to datasets and channels.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::header::{Freedom, Header};
 use super::samples::{self, Side};
@@ -78,7 +78,7 @@ fn names(headers: &[&Header]) -> Vec<String> {
     for kind in kinds {
         let all: Option<Vec<String>> = headers.iter().map(|h| kind(h)).collect();
         if let Some(all) = all {
-            let distinct: std::collections::HashSet<&String> = all.iter().collect();
+            let distinct: HashSet<&String> = all.iter().collect();
             if distinct.len() == all.len() {
                 return all;
             }
@@ -91,12 +91,36 @@ fn names(headers: &[&Header]) -> Vec<String> {
         .collect()
 }
 
+/// Names of the datasets: none for a single one; those that the second lines state, if our own writer put
+/// them there, else numbers.
+fn record_names(sets: &Sets, groups: &[Vec<usize>]) -> Vec<String> {
+    let numbered = (1..=groups.len()).map(|number| number.to_string());
+    match groups {
+        [_] => vec![String::new()],
+        _ => stated_names(sets, groups).unwrap_or_else(|| numbered.collect()),
+    }
+}
+
+/// The second lines as names, where they are names as [`crate::convert`] writes them: one for all functions
+/// of a record and no other, beside the record's number as load case.
+fn stated_names(sets: &Sets, groups: &[Vec<usize>]) -> Option<Vec<String>> {
+    let mut seen = HashSet::new();
+    let numbers = 1i64..;
+    let named = |(members, number): (&Vec<usize>, i64)| {
+        let mut headers = members.iter().map(|&m| &sets.functions[m].header);
+        let name = &sets.functions[members[0]].header.lines[1];
+        let alike = headers.all(|h| h.lines[1] == *name && h.load_case == number);
+        (alike && !name.is_empty() && seen.insert(name)).then(|| name.clone())
+    };
+    groups.iter().zip(numbers).map(named).collect()
+}
+
 /// Arrange the functions of a file as datasets.
 pub(super) fn arrange(file: &FileBytes, sets: &Sets) -> Arranged {
     let groups = group(file, &sets.functions);
-    let single = groups.len() == 1;
+    let record_names = record_names(sets, &groups);
     let mut arranged: Arranged = (Vec::new(), Vec::new());
-    for (number, members) in groups.iter().enumerate() {
+    for ((number, members), name) in groups.iter().enumerate().zip(record_names) {
         let headers: Vec<&Header> = members.iter().map(|&m| &sets.functions[m].header).collect();
         let first = &sets.functions[members[0]];
         let (mut channels, mut origins) = (Vec::new(), Vec::new());
@@ -109,11 +133,6 @@ pub(super) fn arrange(file: &FileBytes, sets: &Sets) -> Arranged {
             origins.push((member, Side::Ordinate));
         }
         let time_axis = (first.header.over_time() && !first.header.even).then_some(0);
-        let name = if single {
-            String::new()
-        } else {
-            (number + 1).to_string()
-        };
         let attributes = attributes(sets, first, number);
         arranged.0.push(DatasetInfo {
             name,

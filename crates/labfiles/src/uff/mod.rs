@@ -5,7 +5,8 @@
 //! - Every function is a channel. Functions that follow each other with the same abscissa (an
 //!   uneven one is compared value by value) form one dataset; a channel that comes again with the
 //!   same names, or at another time (third line) or load case, begins the next. A file of one
-//!   record has a dataset without a name, else datasets are numbered from 1.
+//!   record has a dataset without a name, else datasets are numbered from 1, but for those of
+//!   [`crate::convert`], which are named by their second lines.
 //! - A channel is named by the response's entity name, else node and direction (`3:+Z`), else the
 //!   first line, else the ordinate's label: the first of these that distinguishes the channels of the
 //!   dataset apart. All header fields are properties.

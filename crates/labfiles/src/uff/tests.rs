@@ -417,6 +417,37 @@ fn records_begin_where_a_channel_comes_again() {
     assert_eq!(samples, [Samples::Real(vec![3.0, 4.0])]);
 }
 
+/// Two records of two channels; second lines and load cases as given.
+fn two_records(names: [&str; 4], cases: [i64; 4]) -> Vec<u8> {
+    let functions = names.into_iter().zip(cases).enumerate();
+    let one = |(index, (name, case)): (usize, (&str, i64))| {
+        let written = sweep(["x", "y"][index % 2], &[1.0, 2.0]).ascii();
+        let text = String::from_utf8(written).unwrap();
+        let text = text.replacen("\nNONE\n", &format!("\n{name}\n"), 1);
+        let place = "    1         0    0         0 ";
+        text.replacen(place, &format!("    1         0    0{case:10} "), 1)
+    };
+    functions.flat_map(|f| one(f).into_bytes()).collect()
+}
+
+#[test]
+fn records_are_named_by_their_second_lines_if_those_are_as_we_write_them() {
+    let names = |lines, cases| -> Vec<String> {
+        let source = opened(&two_records(lines, cases)).unwrap();
+        let names = source.datasets().iter().map(|d| d.name.clone());
+        names.collect()
+    };
+    let cases = [1, 1, 2, 2];
+    let stated = ["day/r7", "day/r7", "day/r3", "day/r3"];
+    assert_eq!(names(stated, cases), ["day/r7", "day/r3"]);
+    let numbered = ["1", "2"];
+    assert_eq!(names(["a", "a", "a", "a"], cases), numbered);
+    assert_eq!(names(["a", "a", "NONE", "NONE"], cases), numbered);
+    assert_eq!(names(["a", "b", "c", "c"], cases), numbered);
+    assert_eq!(names(stated, [0, 0, 1, 1]), numbered);
+    assert_eq!(names(["a", "a", "", ""], [1, 1, 1, 1]), [""]);
+}
+
 #[test]
 fn units_follow_from_the_unit_system() {
     let system = b"    -1\n   164\n         1SI: Meter (newton)           2\n  1.0D+00  1.0D+00  1.0D+00\n    -1\n";
