@@ -102,6 +102,8 @@ mod tests {
     fn units_are_split_off_names() {
         assert_eq!(split_unit("clearance [mm]"), ("clearance", Some("mm")));
         assert_eq!(split_unit("clearance_mm"), ("clearance", Some("mm")));
+        assert_eq!(split_unit("clearance in mm"), ("clearance", Some("mm")));
+        assert_eq!(split_unit("laser in use"), ("laser in use", None));
         assert_eq!(
             split_unit("drive_frequency_hz"),
             ("drive_frequency", Some("hz"))

@@ -356,6 +356,23 @@ mod tests {
     }
 
     #[test]
+    fn german_names_of_drive_contact_and_frame_are_known() {
+        let mut channels = vec![
+            seen("Erreger", Some("V")),
+            seen("Kontakt", Some("V")),
+            seen("Rahmen", Some("mm/s")),
+            seen("Gestell rechts y", Some("V")),
+        ];
+        roles::assign(&mut channels);
+        let given: Vec<_> = channels.iter().map(|c| c.role).collect();
+        let roles = [Role::Drive, Role::Contact, Role::FrameX, Role::FrameY];
+        assert_eq!(given, roles.map(Some));
+        let mut channels = vec![seen("Anregung in V", None)];
+        roles::assign(&mut channels);
+        assert_eq!(channels[0].role, Some(Role::Drive));
+    }
+
+    #[test]
     fn like_named_groups_are_the_masses_and_their_forces_no_drive() {
         let mut channels: Vec<InferredChannel> = ["Blue", "Red"]
             .iter()

@@ -89,7 +89,7 @@ enum Kind {
 fn kind(channel: &InferredChannel) -> Kind {
     let words = words(&channel.name);
     let has = |stems: &[&str]| words.iter().any(|w| stems.iter().any(|s| w.starts_with(s)));
-    if has(&["frame", "base", "found", "housing"]) {
+    if has(&["frame", "base", "found", "housing", "rahmen", "gestell"]) {
         return Kind::Frame;
     }
     if has(&["contact", "touch", "switch", "kontakt"]) {
@@ -103,8 +103,11 @@ fn kind(channel: &InferredChannel) -> Kind {
         Some(Dimension::Force) => return Kind::Drive,
         _ => {}
     }
+    const DRIVES: [&str; 9] = [
+        "drive", "gen", "exc", "hammer", "force", "input", "shaker", "erreg", "anreg",
+    ];
     match () {
-        () if has(&["drive", "gen", "exc", "hammer", "force", "input", "shaker"]) => Kind::Drive,
+        () if has(&DRIVES) => Kind::Drive,
         () if has(&["vel", "speed", "laser", "ldv", "vib", "vx", "vy"]) => Kind::Velocity,
         () if has(&["disp", "pos", "dx", "dy"]) => Kind::Displacement,
         () if has(&["acc"]) => Kind::Acceleration,

@@ -151,7 +151,7 @@ fn unwrapped(text: &str) -> &str {
         .trim()
 }
 
-/// A heading such as `velocity_x [mm/s]`, `Position (m) Run 1` or `x / mm` as name and unit.
+/// A heading such as `velocity_x [mm/s]`, `Position (m) Run 1`, `x / mm` or `Zeit in s` as name and unit.
 ///
 /// Empty brackets at its end state that there is no unit: `mass (kg) []`.
 pub(crate) fn name_and_unit(heading: &str) -> (String, Option<String>) {
@@ -172,8 +172,11 @@ pub(crate) fn name_and_unit(heading: &str) -> (String, Option<String>) {
             return (name.trim().to_owned(), Some(unit.to_owned()));
         }
     }
-    if let Some((name, unit)) = heading.rsplit_once(" / ").filter(|(_, unit)| is_unit(unit)) {
-        return (name.trim().to_owned(), Some(unit.trim().to_owned()));
+    for between in [" / ", " in "] {
+        let parts = heading.rsplit_once(between);
+        if let Some((name, unit)) = parts.filter(|(_, unit)| is_unit(unit)) {
+            return (name.trim().to_owned(), Some(unit.trim().to_owned()));
+        }
     }
     (heading.to_owned(), None)
 }
@@ -228,6 +231,11 @@ mod tests {
             ("Position (m) Run 1", "Position Run 1", Some("m")),
             ("Force (Trigger)", "Force (Trigger)", None),
             ("x / mm", "x", Some("mm")),
+            ("Zeit in s", "Zeit", Some("s")),
+            ("mass x in motion in mm/s", "mass x in motion", Some("mm/s")),
+            ("signal in channel 1", "signal in channel 1", None),
+            ("length in", "length in", None),
+            ("in V", "in V", None),
             ("Blue:Acceleration - x", "Blue:Acceleration - x", None),
             ("[V]", "[V]", None),
             ("mass (kg) []", "mass (kg)", None),

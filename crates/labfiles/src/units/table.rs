@@ -155,8 +155,8 @@ pub fn symbols_of(dimension: Dimension) -> Vec<&'static str> {
         .collect()
 }
 
-/// Split the unit off a column's or attribute's name: `clearance [mm]`, `clearance (mm)` or
-/// `clearance_mm` (after an underscore `m_s` means m/s, `m_s2` m/s²). Gives the bare name and
+/// Split the unit off a column's or attribute's name: `clearance [mm]`, `clearance (mm)`, `clearance in mm`
+/// or `clearance_mm` (after an underscore `m_s` means m/s, `m_s2` m/s²). Gives the bare name and
 /// the unit's symbol as written; no symbol if the name has none.
 ///
 /// ```
@@ -171,6 +171,11 @@ pub fn split_unit(name: &str) -> (&str, Option<&str>) {
         if let Some((bare, symbol)) = name.strip_suffix(close).and_then(|n| n.rsplit_once(open)) {
             return (bare.trim(), Some(symbol.trim()));
         }
+    }
+    if let Some((bare, symbol)) = name.rsplit_once(" in ")
+        && parse_unit(symbol).is_some()
+    {
+        return (bare.trim(), Some(symbol.trim()));
     }
     let suffix = name
         .match_indices('_')
