@@ -207,6 +207,30 @@ fn p_value(p: f64) -> String {
     }
 }
 
+/// A p-value behind its name.
+fn p_equals(p: f64) -> String {
+    let equals = if p < LEAST_P { "" } else { "= " };
+    format!("p {equals}{}", p_value(p))
+}
+
+/// By which tests the outcome is decided, in parentheses.
+fn tests(comparison: &Comparison) -> String {
+    let count = comparison.differences.len();
+    let corrected = comparison.p_value().map(|p| match count {
+        1 => p_equals(p),
+        _ => format!("{}, corrected for {count} differences", p_equals(p)),
+    });
+    let together = comparison.unchanged.filter(|_| count > 1).map(|test| {
+        let (f, p) = (test.statistic, p_equals(test.p_value));
+        format!("all together: F = {f:.3}, {p}")
+    });
+    let all: Vec<String> = corrected.into_iter().chain(together).collect();
+    match all.is_empty() {
+        true => String::new(),
+        false => format!(" ({})", all.join("; ")),
+    }
+}
+
 /// The differences as lines.
 fn table(comparison: &Comparison) -> String {
     let mut text = String::new();
@@ -230,17 +254,10 @@ fn table(comparison: &Comparison) -> String {
             p_value(d.p_value)
         );
     }
-    text += &format!("\n{}", comparison.outcome());
-    if let Some(test) = &comparison.unchanged {
-        let (f, p) = (test.statistic, p_value(test.p_value));
-        let equals = if test.p_value < LEAST_P { "" } else { "= " };
-        text += &format!(
-            " ({} differences: F = {f:.3}, p {equals}{p})",
-            test.differences
-        );
-    }
     text += &format!(
-        ".\n{} errors are shared; comparison.json names each with its reason.\n",
+        "\n{}{}.\n{} errors are shared; comparison.json names each with its reason.\n",
+        comparison.outcome(),
+        tests(comparison),
         comparison.shared.len()
     );
     for remark in &comparison.remarks {

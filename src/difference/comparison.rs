@@ -7,7 +7,7 @@ use crate::difference::campaign::Known;
 use crate::difference::distribution::{fisher_tail, student_tail};
 use crate::difference::share::{SeparateNuisance, SharedNuisance, sharing};
 use crate::difference::stack::Stack;
-use crate::difference::{Campaign, Outcome, Remark};
+use crate::difference::{Campaign, Outcome, Remark, decision};
 use crate::event::{FlightKind, RigKind};
 use crate::identify::fit::coordinate::Coordinate;
 use crate::identify::fit::normal::inverse;
@@ -65,16 +65,6 @@ pub struct EqualityTest {
     pub p_value: f64,
 }
 
-/// Probability below which a test says that something changed.
-const LEVEL: f64 = 0.05;
-
-impl EqualityTest {
-    /// Whether it says at the level of 5 % that something changed.
-    pub fn changed(&self) -> bool {
-        self.p_value < LEVEL
-    }
-}
-
 /// The comparison of campaigns: comparison.json.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
@@ -82,7 +72,7 @@ pub struct Comparison {
     pub campaigns: Vec<Summary>,
     /// The differences from the first, campaign by campaign.
     pub differences: Vec<Difference>,
-    /// Whether nothing changed, by all differences together; `None` where that cannot be determined.
+    /// The test of nothing having changed by all differences together; `None` where that cannot be determined.
     pub unchanged: Option<EqualityTest>,
     /// The same by each parameter alone.
     pub unchanged_by_parameter: Vec<(Coordinate, EqualityTest)>,
@@ -95,21 +85,41 @@ pub struct Comparison {
 }
 
 impl Comparison {
+    /// Probability of differences at least as great if nothing changed, by each of them alone and by all
+    /// together, corrected for their number; `None` where that cannot be determined.
+    pub fn p_value(&self) -> Option<f64> {
+        decision::of_no_change(self.unchanged.map(|test| test.p_value), &self.p_values())
+    }
+
     /// Whether anything changed, and what.
     pub fn outcome(&self) -> Outcome {
-        let Some(test) = &self.unchanged else {
+        let Some(p_value) = self.p_value() else {
             return Outcome::Undetermined;
         };
-        if !test.changed() {
+        if !decision::is_significant(p_value) {
             return Outcome::NothingChanged;
         }
-        let alone = self.unchanged_by_parameter.iter();
-        let changed = alone.filter(|(_, test)| test.changed());
-        let parameters: Vec<Coordinate> = changed.map(|(parameter, _)| *parameter).collect();
+        let parameters = self.changed();
         match parameters.is_empty() {
             true => Outcome::ChangedTogether,
             false => Outcome::Changed { parameters },
         }
+    }
+
+    /// The parameters of which a difference alone shows a change.
+    fn changed(&self) -> Vec<Coordinate> {
+        let significant = decision::significant(&self.p_values());
+        let shown = self.differences.iter().zip(significant);
+        let shown: Vec<Coordinate> = shown
+            .filter_map(|(d, significant)| significant.then_some(d.parameter))
+            .collect();
+        let all = Coordinate::PHYSICAL.into_iter();
+        all.filter(|parameter| shown.contains(parameter)).collect()
+    }
+
+    /// Of each difference alone.
+    fn p_values(&self) -> Vec<f64> {
+        self.differences.iter().map(|d| d.p_value).collect()
     }
 }
 

@@ -18,6 +18,7 @@ mod campaign;
 mod chart;
 mod common;
 mod comparison;
+mod decision;
 mod distribution;
 mod message;
 mod share;

@@ -280,6 +280,34 @@ fn valid_the_test_of_one_difference_is_that_of_its_interval() {
 }
 
 #[test]
+fn a_difference_that_is_clear_alone_decides_against_a_test_of_all_without_power() {
+    let far = [simple(0, 0.7, 0.01), simple(1, 0.8, 0.01)];
+    let mut found = compare(&far).expect("comparable");
+    let first = found.differences[0];
+    let of = |parameter, p_value| Difference {
+        parameter,
+        p_value,
+        ..first
+    };
+    found.differences = vec![
+        of(Coordinate::Restitution, 0.0003),
+        of(Coordinate::Frequency, 0.94),
+        of(Coordinate::Damping, 0.60),
+        of(Coordinate::Deflection, 0.98),
+    ];
+    found.unchanged = found.unchanged.map(|test| EqualityTest {
+        p_value: 0.37,
+        ..test
+    });
+    let p = found.p_value().expect("a probability");
+    assert!((p - 0.0024).abs() < 1e-15, "{p}");
+    let parameters = vec![Coordinate::Restitution];
+    assert_eq!(found.outcome(), Outcome::Changed { parameters });
+    found.differences[0].p_value = 0.02;
+    assert_eq!(found.outcome(), Outcome::NothingChanged);
+}
+
+#[test]
 fn only_those_share_that_have_one_instrument_and_one_scale() {
     let with = |number, instrument: &str, scale: f64| {
         let mut campaign = nothing_shared(simple(number, 0.7, 0.01));

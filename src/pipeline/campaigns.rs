@@ -120,10 +120,12 @@ pub fn tell_apart(campaigns: &mut [Campaign], places: &[String]) {
     }
 }
 
-/// comparison.json: the comparison, whether anything changed in words, and versions.
+/// comparison.json: whether anything changed in words, the p-value by which that is decided, the comparison, and
+/// versions.
 #[derive(Serialize)]
 struct Written<'a> {
     outcome: crate::difference::Outcome,
+    p_value: Option<f64>,
     #[serde(flatten)]
     comparison: &'a Comparison,
     versions: BTreeMap<String, String>,
@@ -143,6 +145,7 @@ pub fn files(
     let report = Report::of_campaigns(content, options);
     let written = Written {
         outcome: comparison.outcome(),
+        p_value: comparison.p_value(),
         comparison,
         versions: versions(),
     };

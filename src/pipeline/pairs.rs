@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::difference::{self, Campaign, Common, Comparison};
+use crate::difference::{self, Campaign, Common, Comparison, Outcome};
 use crate::event::{FlightKind, RigKind};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::{GAIN_ROLES, Identification};
@@ -88,9 +88,9 @@ pub struct Pairs {
     pub instruments: Instruments,
     /// By parameter.
     pub parameters: BTreeMap<String, PairScore>,
-    /// Pairs in which nothing changed: how often the test said that something did (5 % of them must).
+    /// Pairs in which nothing changed: how often something was said to have (5 % of them at most).
     pub false_alarms: Tally,
-    /// Pairs in which R changed: how often the test found a change.
+    /// Pairs in which R changed: how often a change was found.
     pub changes_found: Tally,
     /// Pairs that could not be compared.
     pub refused: usize,
@@ -125,9 +125,10 @@ pub fn study(plan: &PairsPlan, progress: Progress<'_>) -> Result<Pairs, Pipeline
     let parameters = Coordinate::PHYSICAL.into_iter();
     let scores = parameters.map(|p| (p.name().to_owned(), score(&pairs, p)));
     let tally = |changed: bool| {
-        let tests = pairs.iter().filter(|p| p.changed == changed);
-        let tests = tests.filter_map(|p| p.comparison.as_ref()?.unchanged);
-        let said: Vec<bool> = tests.map(|t| t.changed()).collect();
+        let chosen = pairs.iter().filter(|p| p.changed == changed);
+        let outcomes = chosen.filter_map(|p| Some(p.comparison.as_ref()?.outcome()));
+        let decided = outcomes.filter(|o| *o != Outcome::Undetermined);
+        let said: Vec<bool> = decided.map(|o| o != Outcome::NothingChanged).collect();
         Tally {
             found: said.iter().filter(|c| **c).count(),
             of: said.len(),

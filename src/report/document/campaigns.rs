@@ -5,7 +5,7 @@ use super::layout_phrases;
 use super::model::{Answer, Block, Document, Front, Rich, Section};
 use super::sections::{paragraph, section};
 use super::tables::{self, p_equals};
-use crate::difference::{Comparison, Difference};
+use crate::difference::{Comparison, Difference, EqualityTest, Outcome};
 use crate::report::content::CampaignsContent;
 use crate::report::figures::Figure;
 use crate::report::locale::Locale;
@@ -34,10 +34,10 @@ pub(in crate::report) fn campaigns(
 fn front(comparison: &Comparison, locale: Locale<'_>) -> Front {
     Front {
         synthetic: comparison.campaigns.iter().any(|c| c.synthetic),
-        verdict: match &comparison.unchanged {
-            Some(test) if test.changed() => "weak",
-            Some(_) => "identified",
-            None => "not_identifiable",
+        verdict: match comparison.outcome() {
+            Outcome::Changed { .. } | Outcome::ChangedTogether => "weak",
+            Outcome::NothingChanged => "identified",
+            Outcome::Undetermined => "not_identifiable",
         },
         headline: Rich::from(locale.message(&comparison.outcome())).plain(),
         summary: Rich::from(summary(comparison, locale)),
@@ -57,17 +57,25 @@ fn front(comparison: &Comparison, locale: Locale<'_>) -> Front {
 }
 
 fn summary(comparison: &Comparison, locale: Locale<'_>) -> String {
-    let Some(test) = &comparison.unchanged else {
-        return String::new();
-    };
-    let values = [
-        ("count", test.differences.to_string()),
-        ("statistic", locale.significant(test.statistic, 3)),
-        ("p", p_equals(test.p_value, locale)),
-    ];
-    let values = values
-        .each_ref()
-        .map(|(name, value)| (*name, value.as_str()));
+    let corrected = comparison.p_value().map(|p| {
+        let count = comparison.differences.len().to_string();
+        let p = p_equals(p, locale);
+        locale.translate_with(Phrase::NoChange, &[("count", &count), ("p", &p)])
+    });
+    let together = comparison.unchanged.as_ref();
+    let sentences = [corrected, together.map(|test| all_together(test, locale))];
+    sentences
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+fn all_together(test: &EqualityTest, locale: Locale<'_>) -> String {
+    let count = test.differences.to_string();
+    let statistic = locale.significant(test.statistic, 3);
+    let p = p_equals(test.p_value, locale);
+    let values = [("count", &*count), ("statistic", &*statistic), ("p", &*p)];
     locale.translate_with(Phrase::TestOfNoChange, &values)
 }
 
