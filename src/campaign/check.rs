@@ -202,7 +202,7 @@ impl Fingerprint {
 }
 
 /// Codes that the discovery of the records has reported already.
-const LISTED: [FlagCode; 3] = [
+pub const LISTED: [FlagCode; 3] = [
     FlagCode::MissingChannel,
     FlagCode::WrongUnit,
     FlagCode::UnitMissing,

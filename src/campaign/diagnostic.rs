@@ -227,18 +227,24 @@ impl Group<'_> {
             return Some(summary);
         }
         let (noun, names) = self.names();
-        summary.message = format!(
-            "{} (in {} {noun}: {})",
-            self.message(),
-            names.len(),
-            first_of(&names)
-        );
+        let (count, named) = (names.len(), first_of(&names));
+        summary.message = format!("{} (in {count} {noun}: {named})", self.message());
         summary.place = Place {
             file: self.common_path(),
             item: first.place.item.clone(),
             ..Place::default()
         };
         Some(summary)
+    }
+
+    /// The item and the message that all share, and the first of the records, lines or files.
+    pub fn headline(&self) -> String {
+        let item = self.0.first().map_or("", |first| &first.place.item);
+        let item = match item {
+            "" => String::new(),
+            item => format!("{item}: "),
+        };
+        format!("{item}{} ({})", self.message(), first_of(&self.names().1))
     }
 
     /// What distinguishes the members: records, lines or files.
@@ -276,6 +282,12 @@ impl Group<'_> {
             range(&words.filter_map(number).collect::<Vec<_>>())
         })
     }
+}
+
+/// The first of some names.
+fn first_of(names: &[String]) -> String {
+    let more = if names.len() > NAMED { ", …" } else { "" };
+    names[..names.len().min(NAMED)].join(", ") + more
 }
 
 /// Numbers as one, or from the least to the greatest.

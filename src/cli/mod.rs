@@ -16,6 +16,7 @@ mod failure;
 mod init;
 mod inspect;
 mod interrupt;
+mod left_out;
 mod live_text;
 mod load;
 mod machine;

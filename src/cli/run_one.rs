@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::details::{print_fits, print_records};
+use super::left_out::print_left_out;
 use super::load::load_campaign;
 use super::progress::{LATER, Progress};
 use super::report_args::{ReportArgs, print_report_paths, quoted};
@@ -74,6 +75,7 @@ pub(super) fn command_line(campaign: &Path, out: &Path, report: &ReportArgs) -> 
 pub(super) fn print_completed(done: &Completed, verbosity: Verbosity) {
     print_records(&done.observations, verbosity);
     print_fits(&done.identification, verbosity);
+    print_left_out(&done.observations, verbosity);
     let verdict = &done.identification.verdict;
     verbosity.info(&verdict.to_string());
     for finding in &verdict.findings {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::details::{print_fits, print_records};
+use super::left_out::print_left_out;
 use super::load::load_campaign;
 use super::progress::Progress;
 use super::report_args::{ReportArgs, print_report_paths, quoted};
@@ -173,6 +174,7 @@ impl Identify {
         pipeline::identify::write(&found, &folder)?;
         drop(bar);
         print_fits(&found.identification, verbosity);
+        print_left_out(&observed.observations, verbosity);
         let verdict = &found.identification.verdict;
         verbosity.info(&verdict.to_string());
         Ok(Exit::of(verdict.kind))

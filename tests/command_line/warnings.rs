@@ -126,3 +126,44 @@ fn run_states_why_no_record_can_be_used_as_check_does() {
         assert!(said.contains("in 3 records: r1, r2, r3"), "{said}");
     }
 }
+
+#[test]
+fn what_is_left_out_for_a_fault_is_named_before_the_answer() {
+    let lab = twelve(|i, text| match i % 2 {
+        0 => text.to_owned(),
+        _ => without_motion(text),
+    });
+    lab.edit("seed = 1", "seed = 1\nexclude = [\"r11\"]");
+    let line = "5 of 12 records are left out: vx: channel 'vx' is constant";
+    let names = "(r1, r3, r5, r7, r9). To do: ";
+    let commands: [&[&str]; 4] = [
+        &["run", "campaign.toml", "--out", "out", "--format", "html"],
+        &["ingest", "campaign.toml", "--out", "stages"],
+        &["classify", "stages"],
+        &["identify", "stages"],
+    ];
+    for (i, command) in commands.iter().enumerate() {
+        let said = lab.run(command).said;
+        let identifies = matches!(i, 0 | 3);
+        assert_eq!(count(&said, line) == 1, identifies, "{command:?}: {said}");
+        assert_eq!(said.contains(names), identifies, "{command:?}: {said}");
+    }
+    let said = lab.run(&["identify", "stages", "-v"]).said;
+    assert!(
+        said.contains("  r3: vx: channel 'vx' is constant"),
+        "{said}"
+    );
+    assert!(!said.contains("r11"), "{said}");
+}
+
+/// A record whose third channel shows nothing.
+fn without_motion(text: &str) -> String {
+    let lines = text.lines().enumerate().map(|(i, line)| {
+        let mut cells: Vec<&str> = line.split(',').collect();
+        if i > 0 {
+            cells[3] = "0.1";
+        }
+        cells.join(",") + "\n"
+    });
+    lines.collect()
+}

@@ -1,0 +1,77 @@
+//! Which records are left out for a fault, as the commands that identify print it.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use super::Verbosity;
+use crate::campaign::check::LISTED;
+use crate::campaign::diagnostic::{Diagnostic, Diagnostics, Group};
+use crate::motion::Observation;
+use crate::record::FlagCode;
+
+/// Print one line for each kind of fault that leaves records out; with `-v` each record too.
+pub(super) fn print_left_out(observations: &[Observation], verbosity: Verbosity) {
+    let faults = faults(observations);
+    for group in faults.groups() {
+        verbosity.info(&line(&group, observations.len()));
+        for one in &group.0 {
+            verbosity.detail(&format!("  {}", one.headline()));
+        }
+    }
+}
+
+/// The faults that leave records out. None are those of records that campaign.toml excludes, and none that
+/// were reported when the campaign was read.
+fn faults(observations: &[Observation]) -> Diagnostics {
+    let wanted = |o: &&Observation| !o.flags.iter().any(|f| f.code == FlagCode::Excluded);
+    let each = observations.iter().filter(wanted).flat_map(|o| {
+        let excluding = o.flags.iter().filter(|f| f.excludes);
+        let faults = excluding.filter(|f| !LISTED.contains(&f.code));
+        faults.map(|f| Diagnostic::of_flag(Path::new(""), &o.record, f))
+    });
+    Diagnostics(each.collect())
+}
+
+/// One kind of fault: in how many records, which one, the first of them, and what to do.
+fn line(group: &Group<'_>, records: usize) -> String {
+    let named = group.0.iter().filter_map(|d| d.place.record.as_deref());
+    let count = named.collect::<BTreeSet<_>>().len();
+    let verb = if count == 1 { "is" } else { "are" };
+    let remedy = group.0.first().map_or("", |first| &first.remedy);
+    format!(
+        "{count} of {records} records {verb} left out: {}. To do: {remedy}",
+        group.headline()
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Flag;
+
+    #[test]
+    fn a_line_counts_the_records_of_one_fault_and_names_the_first() {
+        let of = |record: &str, jumps: usize| {
+            let message = format!("{jumps} jumps go up");
+            let remedy = "turn the sign";
+            let code = FlagCode::JumpsPointTheWrongWay;
+            let flag = Flag::new(code, Some("laser_x"), message, remedy);
+            Diagnostic::of_flag(Path::new(""), record, &flag)
+        };
+        let lines = |all: Vec<Diagnostic>| -> Vec<String> {
+            let all = Diagnostics(all);
+            all.groups().iter().map(|g| line(g, 9)).collect()
+        };
+        assert_eq!(
+            lines(vec![of("r1", 5), of("r2", 7)]),
+            [
+                "2 of 9 records are left out: laser_x: 5 to 7 jumps go up (r1, r2). To do: turn the \
+              sign"
+            ]
+        );
+        assert_eq!(
+            lines(vec![of("r3", 5)]),
+            ["1 of 9 records is left out: laser_x: 5 jumps go up (r3). To do: turn the sign"]
+        );
+    }
+}
