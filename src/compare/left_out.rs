@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::message::Message;
 use crate::motion::{Motion, Observation, Undetermined};
 use crate::record::FlagCode;
 
@@ -24,26 +25,31 @@ impl UnusableReason {
     }
 }
 
-/// Records that cannot be used for one reason.
+/// Records that cannot be used for one kind of reason.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unusable {
-    /// The flag, or why the motion is undetermined at the first of them.
+    /// The flag, or why the motion is undetermined, with the details of the first of them.
     pub reason: UnusableReason,
     /// The channel concerned, if one is.
     pub channel: Option<String>,
     /// The records' names, in the order of acquisition.
     pub records: Vec<String>,
-    /// Whether the details differ among them.
+    /// Whether the details (numbers) differ among them.
     pub differ: bool,
 }
 
-/// Records excluded by a flag or without a determined motion, sorted by reason.
+/// Records excluded by a flag or without a determined motion, sorted by kind of reason.
 pub(super) fn unusable(observations: &[Observation]) -> Vec<Unusable> {
     let mut by_reason: BTreeMap<String, Unusable> = BTreeMap::new();
     for o in observations {
-        for (reason, channel) in reasons(o) {
+        for Found {
+            reason,
+            channel,
+            kind,
+        } in reasons(o)
+        {
             let name = reason.name().replace('_', " ");
-            let key = format!("{name} {}", channel.unwrap_or_default());
+            let key = format!("{name} {} {kind}", channel.unwrap_or_default());
             let entry = by_reason.entry(key).or_insert_with(|| Unusable {
                 reason: reason.clone(),
                 channel: channel.map(str::to_owned),
@@ -57,19 +63,32 @@ pub(super) fn unusable(observations: &[Observation]) -> Vec<Unusable> {
     by_reason.into_values().collect()
 }
 
-/// Why a record cannot be used: flag, channel and details of each reason.
-fn reasons(o: &Observation) -> Vec<(UnusableReason, Option<&str>)> {
+/// One reason why a record cannot be used.
+struct Found<'a> {
+    reason: UnusableReason,
+    channel: Option<&'a str>,
+    /// What is the same in reasons of one kind: a flag's remedy, why a motion is undetermined.
+    kind: &'a str,
+}
+
+/// Why a record cannot be used.
+fn reasons(o: &Observation) -> Vec<Found<'_>> {
     let excluding = o.flags.iter().filter(|f| f.excludes);
-    let flags = excluding.map(|f| {
-        let reason = UnusableReason::Flag(f.code, f.message.clone());
-        (reason, f.channel.as_deref())
+    let flags = excluding.map(|f| Found {
+        reason: UnusableReason::Flag(f.code, f.message.clone()),
+        channel: f.channel.as_deref(),
+        kind: &f.remedy,
     });
     let mut reasons: Vec<_> = flags.collect();
     if let Motion::Undetermined { reason } = &o.classification.motion
         && reasons.is_empty()
         && o.drive.is_some()
     {
-        reasons.push((UnusableReason::Undetermined(reason.clone()), None));
+        reasons.push(Found {
+            reason: UnusableReason::Undetermined(reason.clone()),
+            channel: None,
+            kind: reason.kind(),
+        });
     }
     reasons
 }

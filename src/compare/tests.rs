@@ -2,9 +2,9 @@
 
 use super::fixture::{decay, decays, nothing_touches, whole};
 use super::left_out::{UnusableReason, unusable};
-use crate::event::{DetectSettings, RigKind};
+use crate::event::{DetectSettings, DriveTone, RigKind};
 use crate::identify::Method;
-use crate::motion::{BoundaryKind, ClassifySettings, Motion, observe};
+use crate::motion::{BoundaryKind, ClassifySettings, Motion, Undetermined, observe};
 use crate::record::{Flag, FlagCode};
 
 #[test]
@@ -127,4 +127,37 @@ fn unusable_records_are_grouped_by_flag_and_channel() {
     assert_eq!(found[1].records, ["r1", "r3"]);
     let clipped = UnusableReason::Flag(FlagCode::Clipped, "at 5 V".to_owned());
     assert_eq!((&found[1].reason, found[1].differ), (&clipped, true));
+}
+
+#[test]
+fn records_are_grouped_by_why_their_motion_is_undetermined() {
+    let of = |record: &str, reason| {
+        let (detecting, classifying) = (DetectSettings::default(), ClassifySettings::default());
+        let decay = decay(record, 0, 11.0);
+        let mut one = observe(&decay, RigKind::Single, &detecting, &classifying);
+        one.drive = Some(DriveTone {
+            frequency_hz: 11.0,
+            frequency_error_hz: 0.0,
+            amplitude: 1.0,
+            phase_rad: 0.0,
+            residual_ratio: 0.0,
+        });
+        one.flags.clear();
+        one.classification.motion = Motion::Undetermined { reason };
+        one
+    };
+    let found = unusable(&[
+        of("r1", Undetermined::FewerThanTwoPeriods),
+        of("r2", Undetermined::NearlyCloses { periods_n: 2 }),
+        of("r3", Undetermined::FewerThanTwoPeriods),
+        of("r4", Undetermined::NearlyCloses { periods_n: 3 }),
+    ]);
+    let groups: Vec<(Vec<&str>, bool)> = found
+        .iter()
+        .map(|u| (u.records.iter().map(String::as_str).collect(), u.differ))
+        .collect();
+    assert_eq!(
+        groups,
+        [(vec!["r1", "r3"], false), (vec!["r2", "r4"], true)]
+    );
 }
