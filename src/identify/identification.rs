@@ -103,8 +103,10 @@ impl Message for Agreement {
 
 impl std::fmt::Display for Agreement {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let headline = Sentence::on_agreement(self.agree);
-        write!(f, "{headline} {}", sentence(&plain(self)))
+        if self.agree.is_some() {
+            write!(f, "{} ", Sentence::on_agreement(self.agree))?;
+        }
+        f.write_str(&sentence(&plain(self)))
     }
 }
 

@@ -224,6 +224,8 @@ pub fn verdict(basis: &Basis<'_>) -> Verdict {
         VerdictKind::Identified
     };
     let values: Vec<StatedValue> = estimates.iter().filter_map(stated_value).collect();
+    let is_compared = basis.agreement.agree.is_some() || !values.is_empty();
+    let second = is_compared.then(|| Sentence::on_agreement(basis.agreement.agree));
     let first = match kind {
         VerdictKind::DoesNotFit => Sentence::DoesNotFit,
         VerdictKind::NotIdentifiable if estimates.is_empty() => Sentence::NothingUsable,
@@ -240,10 +242,9 @@ pub fn verdict(basis: &Basis<'_>) -> Verdict {
         },
         VerdictKind::Identified => Sentence::Identified { values },
     };
-    let second = Sentence::on_agreement(basis.agreement.agree);
     Verdict {
         kind,
-        sentences: vec![first, second],
+        sentences: std::iter::once(first).chain(second).collect(),
         findings: findings(basis, &estimates),
     }
 }
@@ -324,6 +325,26 @@ mod tests {
         result.parameters.restitution = of(Coordinate::Restitution, 0.8, restitution);
         result.parameters.natural_frequency_hz = of(Coordinate::Frequency, 12f64.ln(), frequency);
         result
+    }
+
+    #[test]
+    fn that_one_method_determines_each_parameter_is_said_of_parameters_alone() {
+        let alone = |joint: &MethodResult| {
+            verdict(&Basis {
+                beyond: &[],
+                joint,
+                methods: &BTreeMap::new(),
+                agreement: &Agreement::default(),
+                suspicions: &[],
+            })
+        };
+        assert_eq!(
+            alone(&MethodResult::default()).sentences,
+            [Sentence::NothingUsable]
+        );
+        // no parameter is identifiable with these errors, and one is with the others
+        assert_eq!(alone(&joint(0.2, 0.09)).sentences.len(), 1);
+        assert_eq!(alone(&joint(0.2, 0.001)).sentences[1], Sentence::OneMethod);
     }
 
     fn judged(joint: &MethodResult, methods: &[(Method, MethodResult)], agree: bool) -> Verdict {
