@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::record::consistency::mistaken;
+use crate::record::consistency::{Compared, mistaken};
 use crate::record::{Flag, FlagCode, Record, Role};
 use crate::signal::tone;
 
@@ -90,7 +90,7 @@ fn contradiction(
             format!(
                 "the drive channel shows {:.4} Hz, the campaign states {stated:.4} Hz{}",
                 drive.frequency_hz,
-                mistaken(stated / drive.frequency_hz)
+                mistaken(stated / drive.frequency_hz, Compared::Frequency)
                     .map_or(String::new(), |m| format!(": the factor {m}"))
             ),
             "the measured frequency is used; correct the run table or the file's name",
@@ -138,6 +138,9 @@ mod tests {
             flags[0].message
         );
         assert!(!flags[0].excludes);
+        stated.setting.stated_frequency_hz = Some(12.6 * std::f64::consts::SQRT_2);
+        let (_, flags) = measure(&stated, 5e-3);
+        assert!(!flags[0].message.contains("factor"), "{}", flags[0].message);
         stated.setting.stated_frequency_hz = Some(12.62);
         assert!(measure(&stated, 5e-3).1.is_empty());
     }

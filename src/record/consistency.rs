@@ -12,16 +12,40 @@ const SAME: f64 = 0.9;
 /// Ratio of scales from which one of them must be wrong.
 const SCALE_RATIO: f64 = 1.5;
 
-/// Factors between two units or conventions that are often mistaken for each other.
-const MISTAKEN: [(f64, &str); 6] = [
-    (1000.0, "between m and mm"),
-    (std::f64::consts::TAU, "between Hz and rad/s"),
-    (labfiles::units::STANDARD_GRAVITY_M_S2, "between g and m/s²"),
-    (std::f64::consts::SQRT_2, "between RMS and peak"),
-    (25.4, "between inch and mm"),
+/// What two numbers that are compared measure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Compared {
+    /// A displacement and the integral of a velocity.
+    Displacement,
+    /// A velocity and the integral of an acceleration.
+    Velocity,
+    /// Two frequencies.
+    Frequency,
+}
+
+/// Units of length and conventions of amplitude concern both motions.
+const MOTIONS: &[Compared] = &[Compared::Displacement, Compared::Velocity];
+
+/// Factors between two units or conventions that are often mistaken for each other, and where they can be.
+const MISTAKEN: [(f64, &str, &[Compared]); 7] = [
+    (1000.0, "between m and mm", MOTIONS),
+    (1000.0, "between Hz and kHz", &[Compared::Frequency]),
+    (
+        std::f64::consts::TAU,
+        "between Hz and rad/s",
+        &[Compared::Frequency],
+    ),
+    (
+        labfiles::units::STANDARD_GRAVITY_M_S2,
+        "between g and m/s²",
+        &[Compared::Velocity],
+    ),
+    (std::f64::consts::SQRT_2, "between RMS and peak", MOTIONS),
+    (25.4, "between inch and mm", MOTIONS),
     (
         2.0 * std::f64::consts::SQRT_2,
         "between RMS and peak to peak",
+        MOTIONS,
     ),
 ];
 
@@ -29,11 +53,12 @@ const MISTAKEN: [(f64, &str); 6] = [
 const MISTAKEN_WITHIN: f64 = 0.02;
 
 /// The units or conventions that a ratio of two numbers, or its reciprocal, suggests.
-pub fn mistaken(ratio: f64) -> Option<&'static str> {
+pub fn mistaken(ratio: f64, compared: Compared) -> Option<&'static str> {
     let near = |factor: f64| (ratio.abs() / factor - 1.0).abs() < MISTAKEN_WITHIN;
     MISTAKEN
         .iter()
-        .find(|(factor, _)| near(*factor) || near(1.0 / factor))
+        .filter(|(_, _, of)| of.contains(&compared))
+        .find(|(factor, ..)| near(*factor) || near(1.0 / factor))
         .map(|m| m.1)
 }
 
@@ -231,12 +256,12 @@ fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag
             ),
         ));
     }
-    let suspected = mistaken(found.gain);
-    let off = found.gain > SCALE_RATIO || found.gain < 1.0 / SCALE_RATIO || suspected.is_some();
-    let moves = match d {
-        Role::DisplacementX | Role::DisplacementY => "moves",
-        _ => "changes",
+    let (compared, moves) = match d {
+        Role::DisplacementX | Role::DisplacementY => (Compared::Displacement, "moves"),
+        _ => (Compared::Velocity, "changes"),
     };
+    let suspected = mistaken(found.gain, compared);
+    let off = found.gain > SCALE_RATIO || found.gain < 1.0 / SCALE_RATIO || suspected.is_some();
     let factor = suspected.map_or(String::new(), |m| format!(": the factor {m}"));
     (found.correlation > SAME && off).then(|| {
         flag(
@@ -288,18 +313,35 @@ mod tests {
 
     #[test]
     fn factors_between_units_are_named() {
-        for (ratio, named) in [
-            (1000.0, "between m and mm"),
-            (0.001, "between m and mm"),
-            (9.81, "between g and m/s²"),
-            (-0.1592, "between Hz and rad/s"),
-            (1.41, "between RMS and peak"),
+        use Compared::{Displacement, Frequency, Velocity};
+        for (ratio, compared, named) in [
+            (1000.0, Displacement, "between m and mm"),
+            (0.001, Velocity, "between m and mm"),
+            (1000.0, Frequency, "between Hz and kHz"),
+            (9.81, Velocity, "between g and m/s²"),
+            (-0.1592, Frequency, "between Hz and rad/s"),
+            (1.41, Displacement, "between RMS and peak"),
         ] {
-            assert_eq!(mistaken(ratio), Some(named), "{ratio}");
+            assert_eq!(mistaken(ratio, compared), Some(named), "{ratio}");
         }
-        assert_eq!(mistaken(1.0), None);
-        assert_eq!(mistaken(1.2), None);
-        assert_eq!(mistaken(f64::NAN), None);
+        for ratio in [1.0, 1.2, f64::NAN] {
+            assert_eq!(mistaken(ratio, Velocity), None);
+        }
+    }
+
+    #[test]
+    fn factors_that_the_quantities_compared_cannot_have_are_not_named() {
+        use Compared::{Displacement, Frequency, Velocity};
+        for (ratio, compared) in [
+            (10.0, Displacement),
+            (std::f64::consts::TAU, Displacement),
+            (std::f64::consts::TAU, Velocity),
+            (std::f64::consts::SQRT_2, Frequency),
+            (9.81, Frequency),
+            (25.4, Frequency),
+        ] {
+            assert_eq!(mistaken(ratio, compared), None, "{ratio} {compared:?}");
+        }
     }
 
     fn codes(signals: &[(Role, &dyn Fn(f64) -> f64)]) -> Vec<&'static str> {
