@@ -1,6 +1,5 @@
 //! Which records are left out for a fault, as the commands that identify print it.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::Verbosity;
@@ -20,22 +19,21 @@ pub(super) fn print_left_out(observations: &[Observation], verbosity: Verbosity)
     }
 }
 
-/// The faults that leave records out. None are those of records that campaign.toml excludes, and none that
-/// were reported when the campaign was read.
+/// The first fault of each record that leaves it out: others may only follow from it. None are those of records
+/// that campaign.toml excludes, and none that were reported when the campaign was read.
 fn faults(observations: &[Observation]) -> Diagnostics {
     let wanted = |o: &&Observation| !o.flags.iter().any(|f| f.code == FlagCode::Excluded);
-    let each = observations.iter().filter(wanted).flat_map(|o| {
-        let excluding = o.flags.iter().filter(|f| f.excludes);
-        let faults = excluding.filter(|f| !LISTED.contains(&f.code));
-        faults.map(|f| Diagnostic::of_flag(Path::new(""), &o.record, f))
+    let each = observations.iter().filter(wanted).filter_map(|o| {
+        let first = o.flags.iter().find(|f| f.excludes)?;
+        let is_new = !LISTED.contains(&first.code);
+        is_new.then(|| Diagnostic::of_flag(Path::new(""), &o.record, first))
     });
     Diagnostics(each.collect())
 }
 
 /// One kind of fault: in how many records, which one, the first of them, and what to do.
 fn line(group: &Group<'_>, records: usize) -> String {
-    let named = group.0.iter().filter_map(|d| d.place.record.as_deref());
-    let count = named.collect::<BTreeSet<_>>().len();
+    let count = group.0.len();
     let verb = if count == 1 { "is" } else { "are" };
     let remedy = group.0.first().map_or("", |first| &first.remedy);
     format!(
