@@ -224,8 +224,10 @@ pub fn verdict(basis: &Basis<'_>) -> Verdict {
         VerdictKind::Identified
     };
     let values: Vec<StatedValue> = estimates.iter().filter_map(stated_value).collect();
-    let is_compared = basis.agreement.agree.is_some() || !values.is_empty();
-    let second = is_compared.then(|| Sentence::on_agreement(basis.agreement.agree));
+    // x_st, which scales the lengths, is no answer by itself
+    let answers = |v: &StatedValue| v.parameter != Coordinate::Deflection;
+    let says_something = basis.agreement.agree.is_some() || values.iter().any(answers);
+    let second = says_something.then(|| Sentence::on_agreement(basis.agreement.agree));
     let first = match kind {
         VerdictKind::DoesNotFit => Sentence::DoesNotFit,
         VerdictKind::NotIdentifiable if estimates.is_empty() => Sentence::NothingUsable,
@@ -343,7 +345,11 @@ mod tests {
             [Sentence::NothingUsable]
         );
         // no parameter is identifiable with these errors, and one is with the others
-        assert_eq!(alone(&joint(0.2, 0.09)).sentences.len(), 1);
+        let mut unknown = joint(0.2, 0.09);
+        assert_eq!(alone(&unknown).sentences.len(), 1);
+        let deflection = estimate(Coordinate::Deflection, -7.0, 0.01, None);
+        unknown.parameters.static_deflection_m = Some(deflection);
+        assert_eq!(alone(&unknown).sentences.len(), 1);
         assert_eq!(alone(&joint(0.2, 0.001)).sentences[1], Sentence::OneMethod);
     }
 
