@@ -284,12 +284,6 @@ impl Group<'_> {
     }
 }
 
-/// The first of some names.
-fn first_of(names: &[String]) -> String {
-    let more = if names.len() > NAMED { ", …" } else { "" };
-    names[..names.len().min(NAMED)].join(", ") + more
-}
-
 /// Numbers as one, or from the least to the greatest.
 fn range(numbers: &[&str]) -> String {
     let value = |text: &&&str| text.parse::<f64>().unwrap_or(f64::NAN);

@@ -55,19 +55,22 @@ impl Plan {
         } else if !verbosity.is_quiet() {
             print_table(&found);
         }
-        if found.proposals.is_empty() {
-            verbosity.info(
-                "Nothing can be proposed: R was not fitted from velocities or displacements.",
-            );
-            return Ok(Exit::AnswerIsNo);
-        }
-        Ok(Exit::Done)
+        Ok(match &found.obstacle {
+            Some(obstacle) => {
+                verbosity.info(&format!("Nothing can be proposed: {obstacle}."));
+                Exit::AnswerIsNo
+            }
+            None => Exit::Done,
+        })
     }
 }
 
 fn print_table(found: &plan::Plan) {
     if let (Some(r), Some(error)) = (found.restitution, found.restitution_error_now) {
         println!("R = {r:.6}, standard error now {error:.2e}");
+    }
+    if found.proposals.is_empty() {
+        return;
     }
     println!(
         "{:>4} {:>12} {:>13} {:>8} {:>8} {:>6} {:>15}",

@@ -197,6 +197,6 @@ pub(super) fn residuals(campaign: &Campaign, state: &State, job: &Job) -> Result
 pub(super) fn proposals(campaign: &Campaign, job: &Job) -> Result<(), Stop> {
     let evidence = evidence(&campaign.resolved, &campaign.observed);
     let joint = campaign.identification.joint_fit.as_ref();
-    let found = propose(&evidence, joint, PROPOSALS);
+    let found = propose(&evidence, joint, PROPOSALS).unwrap_or_default();
     Ok(job.send(job.frame("proposals").with("proposals", found))?)
 }

@@ -18,6 +18,7 @@ use crate::motion::{Folded, FoldedChannel, FoldedPoint};
 use crate::record::Role;
 use crate::signal::robust;
 use crate::signal::whole;
+use crate::{message_table, messages};
 use impact_oscillator::model::orbit::{Orbit, stable_orbit};
 
 /// A setting to measure, with what a record there would bring.
@@ -38,6 +39,48 @@ pub struct Proposal {
     pub restitution_error_after: f64,
 }
 
+/// Why no setting can be proposed.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::EnumIter, strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "snake_case")]
+#[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
+pub enum Obstacle {
+    /// No record has a drive frequency.
+    NoFrequency,
+    /// No record states a clearance.
+    NoClearance,
+    /// No waveform of a velocity or a displacement was folded.
+    NoWaveform,
+    /// R is no unknown of a joint fit.
+    RestitutionNotFitted,
+    /// No record at any setting would inform R.
+    NothingGained,
+}
+
+messages!(Obstacle);
+
+message_table! { Obstacle;
+    Self::NoFrequency =>
+        "no record has a drive frequency, measured or stated",
+        "keine Aufzeichnung hat eine Erregerfrequenz, gemessen oder angegeben";
+    Self::NoClearance =>
+        "no record states a clearance",
+        "keine Aufzeichnung gibt ein Spiel an";
+    Self::NoWaveform =>
+        "no record shows a motion with one impact in n drive periods by its velocity or \
+         displacement",
+        "keine Aufzeichnung zeigt mit Geschwindigkeit oder Weg eine Bewegung mit einem Stoß in n \
+         Erregerperioden";
+    Self::RestitutionNotFitted =>
+        "$R$ was not fitted",
+        "$R$ wurde nicht angepasst";
+    Self::NothingGained =>
+        "within the frequencies and clearances of the campaign no record would tell more about $R$",
+        "innerhalb der Frequenzen und Spiele der Messreihe würde keine Aufzeichnung mehr über $R$ \
+         aussagen";
+}
+
 /// The settings that a rig can reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Reach {
@@ -48,13 +91,14 @@ struct Reach {
 }
 
 impl Reach {
-    /// Where the campaign has been; `None` where no record states both.
-    fn of(observations: &[Observation]) -> Option<Self> {
+    /// Where the campaign has been.
+    fn of(observations: &[Observation]) -> Result<Self, Obstacle> {
         let all = observations.iter();
-        let clearances = all.clone().filter_map(|o| o.setting.clearance_m);
-        Some(Self {
-            frequency_hz: robust::range(all.filter_map(Observation::frequency_hz))?.into(),
-            clearance_m: robust::range(clearances)?.into(),
+        let clearances = robust::range(all.clone().filter_map(|o| o.setting.clearance_m));
+        let frequencies = robust::range(all.filter_map(Observation::frequency_hz));
+        Ok(Self {
+            frequency_hz: frequencies.ok_or(Obstacle::NoFrequency)?.into(),
+            clearance_m: clearances.ok_or(Obstacle::NoClearance)?.into(),
         })
     }
 }
@@ -64,21 +108,24 @@ const GRID: [usize; 2] = [40, 24];
 /// Longest motion z = 1/n considered.
 const MOST_PERIODS: u32 = 3;
 
-/// Propose so many settings, the best first; each takes those before it as measured. Empty without a
-/// joint fit, or where R was not fitted or no velocity or displacement was recorded.
+/// Propose so many settings, the best first; each takes those before it as measured.
 ///
 /// What R's interval allows for beyond the covariance (scatter between groups, first order of the
 /// effects, disagreement of methods) stays in the errors stated: one more record takes none of it away.
-pub fn propose(evidence: &Evidence<'_>, joint: Option<&JointFit>, count: usize) -> Vec<Proposal> {
+///
+/// # Errors
+/// The [`Obstacle`] where there is none to propose.
+pub fn propose(
+    evidence: &Evidence<'_>,
+    joint: Option<&JointFit>,
+    count: usize,
+) -> Result<Vec<Proposal>, Obstacle> {
+    let reach = Reach::of(evidence.observations)?;
+    let usual = UsualRecord::of(evidence.observations).ok_or(Obstacle::NoWaveform)?;
     let restitution = |c: &Coordinate| *c == Coordinate::Restitution;
     let place = |fit: &JointFit| fit.fit.free.iter().position(restitution);
-    let (Some((joint, at)), Some(reach), Some(usual)) = (
-        joint.and_then(|fit| Some((fit, place(fit)?))),
-        Reach::of(evidence.observations),
-        UsualRecord::of(evidence.observations),
-    ) else {
-        return Vec::new();
-    };
+    let fitted = joint.and_then(|fit| Some((fit, place(fit)?)));
+    let (joint, at) = fitted.ok_or(Obstacle::RestitutionNotFitted)?;
     let candidates = candidates(evidence, &joint.fit, reach, &usual);
     let variance_of = |covariance: &DMatrix<f64>| covariance[(at, at)] * joint.variance_factor;
     let mut covariance = joint.fit.covariance.clone();
@@ -105,7 +152,10 @@ pub fn propose(evidence: &Evidence<'_>, joint: Option<&JointFit>, count: usize) 
         });
         covariance = after;
     }
-    chosen
+    match chosen.is_empty() && count > 0 {
+        true => Err(Obstacle::NothingGained),
+        false => Ok(chosen),
+    }
 }
 
 /// Whether a candidate lies so near to a chosen setting that it would only repeat it.
@@ -190,6 +240,7 @@ struct UsualRecord {
 const BINS: usize = 64;
 
 impl UsualRecord {
+    /// `None` where no velocity or displacement was folded.
     fn of(observations: &[Observation]) -> Option<Self> {
         let folded: Vec<(&Observation, &Folded)> = observations
             .iter()
@@ -212,6 +263,9 @@ impl UsualRecord {
             .into_iter()
             .filter_map(|r| Some((r, noise(r)?)))
             .collect();
+        if channels.is_empty() {
+            return None;
+        }
         Some(Self {
             samples: median(&|o| o.duration_s * o.sample_rate_hz)?,
             channels,

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::identify::plan::{Proposal, propose};
+use crate::identify::plan::{Obstacle, Proposal, propose};
 use crate::motion::Motion;
 use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, report};
@@ -20,6 +20,9 @@ pub struct Plan {
     pub restitution_error_now: Option<f64>,
     /// The settings, the best first.
     pub proposals: Vec<Proposal>,
+    /// Why there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub obstacle: Option<Obstacle>,
 }
 
 /// Name of the result.
@@ -41,11 +44,16 @@ pub fn plan(
     let found = identify::identify(campaign, &observed, None)?;
     let evidence = identify::evidence(campaign, &observed);
     let proposals = propose(&evidence, found.identification.joint_fit.as_ref(), count);
+    let (proposals, obstacle) = match proposals {
+        Ok(proposals) => (proposals, None),
+        Err(obstacle) => (Vec::new(), Some(obstacle)),
+    };
     let now = found.identification.joint.parameters.restitution.as_ref();
     let plan = Plan {
         restitution: now.and_then(|r| r.value),
         restitution_error_now: now.and_then(|r| r.standard_error),
         proposals,
+        obstacle,
     };
     progress("map", 0, 1);
     make_folder(out)?;

@@ -221,3 +221,42 @@ fn valid_r_without_clearances_allows_for_contacts_and_delays() {
         );
     }
 }
+
+#[test]
+fn without_clearances_nothing_is_proposed_and_that_is_the_reason() {
+    let rig = rig();
+    let folder = rig.join("unstated");
+    fs::create_dir_all(&folder).expect("a folder");
+    for entry in fs::read_dir(rig.join("before")).expect("the campaign") {
+        let file = entry.expect("an entry").path();
+        let name = file.file_name().expect("a name");
+        if file.is_file() {
+            fs::copy(&file, folder.join(name)).expect("a copy");
+        }
+    }
+    without_column(&folder.join("runs.csv"), "clearance");
+    let ran = impactid(rig, &["plan", "unstated/campaign.toml", "--out", "none"]);
+    assert_eq!(ran.code, 1, "{}", ran.said);
+    assert!(
+        ran.said
+            .contains("Nothing can be proposed: no record states a clearance."),
+        "{}",
+        ran.said
+    );
+    assert!(!ran.said.contains("error of R then"), "{}", ran.said);
+    let plan = json(&rig.join("none/plan.json"));
+    assert_eq!(plan["obstacle"]["kind"], "no_clearance");
+}
+
+/// Remove the column of a run table whose name begins so.
+fn without_column(table: &Path, name: &str) {
+    let text = fs::read_to_string(table).expect("a run table");
+    let heads = text.lines().next().expect("a head").split(',');
+    let column = heads.clone().position(|h| h.starts_with(name)).expect(name);
+    let rest = |line: &str| {
+        let cells = line.split(',').enumerate();
+        let cells = cells.filter(|(i, _)| *i != column).map(|(_, cell)| cell);
+        cells.collect::<Vec<_>>().join(",") + "\n"
+    };
+    fs::write(table, text.lines().map(rest).collect::<String>()).expect("a run table");
+}

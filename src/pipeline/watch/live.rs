@@ -40,7 +40,8 @@ impl Live {
         let found = identify::identify(&campaign, &observed, None)?;
         let identified = meter.read();
         let evidence = identify::evidence(&campaign, &observed);
-        let next = propose(&evidence, found.identification.joint_fit.as_ref(), 1).pop();
+        let next = propose(&evidence, found.identification.joint_fit.as_ref(), 1);
+        let next = next.ok().and_then(|mut all| all.pop());
         let live = Self {
             campaign,
             observed,
