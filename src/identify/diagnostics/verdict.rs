@@ -313,7 +313,7 @@ fn stated_value((parameter, estimate): &(Coordinate, &Estimate)) -> Option<State
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::estimate::estimate_within;
+    use crate::identify::estimate::{estimate, estimate_within};
     use crate::identify::messages::PairAgreement;
     use crate::identify::uncertainty::scatter::Spread;
 
@@ -347,7 +347,7 @@ mod tests {
         // no parameter is identifiable with these errors, and one is with the others
         let mut unknown = joint(0.2, 0.09);
         assert_eq!(alone(&unknown).sentences.len(), 1);
-        let deflection = estimate(Coordinate::Deflection, -7.0, 0.01, None);
+        let deflection = estimate(Coordinate::Deflection, -7.0, 0.01);
         unknown.parameters.static_deflection_m = Some(deflection);
         assert_eq!(alone(&unknown).sentences.len(), 1);
         assert_eq!(alone(&joint(0.2, 0.001)).sentences[1], Sentence::OneMethod);
