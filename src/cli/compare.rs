@@ -255,7 +255,7 @@ fn table(comparison: &Comparison) -> String {
         );
     }
     text += &format!(
-        "\n{}{}.\n{} errors are shared; comparison.json names each with its reason.\n",
+        "\n{}{}.\nShared errors: {}; comparison.json names each with its reason.\n",
         comparison.outcome(),
         tests(comparison),
         comparison.shared.len()

@@ -8,6 +8,7 @@ use super::load::load_campaign;
 use super::progress::{LATER, Progress};
 use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::{Failure, Verbosity, interrupt};
+use crate::identify::{Finding, Identification, VerdictKind};
 use crate::pipeline::{self, Completed, Destination, checkpoint};
 use labfiles::output::Lock;
 
@@ -76,9 +77,52 @@ pub(super) fn print_completed(done: &Completed, verbosity: Verbosity) {
     print_records(&done.observations, verbosity);
     print_fits(&done.identification, verbosity);
     print_left_out(&done.observations, verbosity);
-    let verdict = &done.identification.verdict;
+    print_verdict(&done.identification, verbosity);
+}
+
+/// Print the verdict and its findings.
+pub(super) fn print_verdict(identification: &Identification, verbosity: Verbosity) {
+    let verdict = &identification.verdict;
     verbosity.info(&verdict.to_string());
     for finding in &verdict.findings {
         verbosity.info(&format!("  - {finding}"));
+        if let Some(first) = first_of_specimen(finding, identification) {
+            verbosity.info(&format!("      {first}"));
+        }
+    }
+}
+
+/// What was found first of a specimen that the model does not fit, where a finding is the verdict on it.
+fn first_of_specimen<'a>(finding: &Finding, found: &'a Identification) -> Option<&'a Finding> {
+    let Finding::Specimen { specimen, .. } = finding else {
+        return None;
+    };
+    let verdict = &found.specimens.get(specimen)?.verdict;
+    let fits = verdict.kind != VerdictKind::DoesNotFit;
+    verdict.findings.first().filter(|_| !fits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::fixture;
+
+    #[test]
+    fn a_specimen_that_does_not_fit_shows_its_first_finding() {
+        let mut found = fixture::decays().identification.clone();
+        let (name, result) = found.specimens.iter_mut().next().expect("specimens");
+        let (name, kept) = (name.clone(), result.verdict.kind);
+        let finding = Finding::Specimen {
+            specimen: name.clone(),
+            verdict: Vec::new(),
+        };
+        let first = Finding::PrintedDampingFits { printed: 0.07 };
+        result.verdict.findings = vec![first.clone()];
+        assert_ne!(kept, VerdictKind::DoesNotFit);
+        assert_eq!(first_of_specimen(&finding, &found), None);
+        let result = found.specimens.get_mut(&name).expect("the specimen");
+        result.verdict.kind = VerdictKind::DoesNotFit;
+        assert_eq!(first_of_specimen(&finding, &found), Some(&first));
+        assert_eq!(first_of_specimen(&first, &found), None);
     }
 }

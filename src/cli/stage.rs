@@ -11,6 +11,7 @@ use super::left_out::print_left_out;
 use super::load::load_campaign;
 use super::progress::Progress;
 use super::report_args::{ReportArgs, print_report_paths, quoted};
+use super::run_one::print_verdict;
 use super::stdout::print;
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::{self, store};
@@ -175,9 +176,8 @@ impl Identify {
         drop(bar);
         print_fits(&found.identification, verbosity);
         print_left_out(&observed.observations, verbosity);
-        let verdict = &found.identification.verdict;
-        verbosity.info(&verdict.to_string());
-        Ok(Exit::of(verdict.kind))
+        print_verdict(&found.identification, verbosity);
+        Ok(Exit::of(found.identification.verdict.kind))
     }
 }
 

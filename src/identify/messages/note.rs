@@ -102,8 +102,8 @@ message_table! { Note;
         "no damping ratio gives all of these motions",
         "kein Dämpfungsgrad ergibt alle diese Bewegungen";
     Self::NoStart { observations } =>
-        "the model has no such motion at the starting values for {count} observations",
-        "das Modell hat bei den Startwerten für {count} Beobachtungen keine solche Bewegung",
+        "the model has no such motion at the starting values for {count} of the observations",
+        "das Modell hat bei den Startwerten für {count} der Beobachtungen keine solche Bewegung",
         count = Value::Count(*observations);
     Self::NothingToFit =>
         "there are no observations to fit",

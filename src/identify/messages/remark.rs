@@ -338,10 +338,10 @@ message_table! { Remark;
          Rauschen: Es gibt eine weitere Eigenschwingung, oder die Dämpfung ist nicht zäh",
         share = Value::Percent(*share, 1), structure = Value::Percent(*structure, 1);
     Self::DecaysDrift { count, first_hz, last_hz, intervals } =>
-        "in {count} decays the frequency drifts, at most from {first} Hz in the first quarter to \
-         {last} Hz in the last, {intervals} times half its interval: the spring is not linear, or \
+        "the frequency drifts in {count} of the decays, at most from {first} Hz in the first quarter \
+         to {last} Hz in the last, {intervals} times half its interval: the spring is not linear, or \
          the mass moves in another direction too",
-        "in {count} Ausschwingversuchen wandert die Frequenz, am meisten von {first} Hz im ersten \
+        "die Frequenz wandert in {count} der Ausschwingversuche, am meisten von {first} Hz im ersten \
          Viertel auf {last} Hz im letzten, um das {intervals}-Fache ihres halben Intervalls: Die \
          Feder ist nicht linear, oder die Masse bewegt sich auch anders",
         count = Value::Count(*count),
