@@ -210,8 +210,10 @@ fn note_roles(roles: &mut Vec<ChannelSetup>, record: &Record) {
 pub fn classify(out: &Path, progress: Progress<'_>) -> Result<Observed, PipelineError> {
     let ingested: Ingested = read_json(&of_stage(out, INGESTED_CAMPAIGN, "calibrated records")?)?;
     let mut observed = Observed::of(&ingested.campaign, progress)?;
+    // what was found in the record itself is first: it has the channels' own names
     for (observation, flags) in observed.observations.iter_mut().zip(ingested.flags) {
-        for flag in flags {
+        let again = std::mem::replace(&mut observation.flags, flags);
+        for flag in again {
             if !observation.flags.contains(&flag) {
                 observation.flags.push(flag);
             }
