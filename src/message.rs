@@ -158,6 +158,12 @@ pub fn plain(message: &dyn Message) -> String {
     Plain.print(message)
 }
 
+/// A number of things with their noun, which is in the plural but for one: `3 records`.
+pub fn counted<N: Display + From<u8> + PartialEq>(count: N, noun: &str) -> String {
+    let plural = if count == N::from(1) { "" } else { "s" };
+    format!("{count} {noun}{plural}")
+}
+
 /// A text as a sentence: a capital at its start, a full stop at its end.
 pub fn sentence(text: &str) -> String {
     let text = text.trim();

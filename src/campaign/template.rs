@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::infer::{Experiment, FolderContents, InferredChannel};
+use crate::message::counted;
 use crate::record::{ContactContent, Role};
 use labfiles::units::{self, Dimension};
 
@@ -40,7 +41,7 @@ fn head(text: &mut String, name: &str, found: &FolderContents) -> std::fmt::Resu
     };
     writeln!(
         text,
-        "# A campaign for impactid, inferred from {} {} ({}); check every line.\n\
+        "# A campaign for impactid, inferred from {} ({}); check every line.\n\
          # Every quantity with a dimension is written with its unit in quotes: \"1.0 mm\".\n\
          # Then: impactid check campaign.toml; impactid run campaign.toml --out results\n\n\
          [campaign]\n\
@@ -48,8 +49,7 @@ fn head(text: &mut String, name: &str, found: &FolderContents) -> std::fmt::Resu
          machine = \"{machine}\"            # \"double\": two masses; \"single\": one mass against a stop\n\
          flight = \"{flight}\"           # \"harmonic\": springs and a drive; \"constant_force\": free flights, \
          as of balls and carts\n",
-        found.files,
-        if found.files == 1 { "file" } else { "files" },
+        counted(found.files, "file"),
         found.format,
         quoted(name)
     )

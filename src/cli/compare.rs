@@ -214,7 +214,7 @@ fn p_equals(p: f64) -> String {
 }
 
 /// By which tests the outcome is decided, in parentheses.
-fn tests(comparison: &Comparison) -> String {
+fn decided_by(comparison: &Comparison) -> String {
     let count = comparison.differences.len();
     let corrected = comparison.p_value().map(|p| match count {
         1 => p_equals(p),
@@ -257,7 +257,7 @@ fn table(comparison: &Comparison) -> String {
     text += &format!(
         "\n{}{}.\nShared errors: {}; comparison.json names each with its reason.\n",
         comparison.outcome(),
-        tests(comparison),
+        decided_by(comparison),
         comparison.shared.len()
     );
     for remark in &comparison.remarks {

@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::read_log::ReadLog;
 use super::{Exit, Failure, Verbosity, interrupt};
+use crate::message::counted;
 use labfiles::ReadError;
 use labfiles::convert::{self, ConvertError, Options, Target};
 
@@ -110,11 +111,8 @@ impl Convert {
         } else {
             self.out
         };
-        let records = if count == 1 { "record" } else { "records" };
-        verbosity.info(&format!(
-            "{count} {records} written to {}",
-            written.display()
-        ));
+        let records = counted(count, "record");
+        verbosity.info(&format!("{records} written to {}", written.display()));
         Ok(Exit::Done)
     }
 }

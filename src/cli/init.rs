@@ -7,6 +7,7 @@ use clap::Args;
 use super::{Exit, Failure, Verbosity};
 use crate::campaign::infer::{self, FolderContents};
 use crate::campaign::template;
+use crate::message::counted;
 use labfiles::open;
 use labfiles::output;
 
@@ -78,11 +79,10 @@ fn print_summary(path: &Path, found: &FolderContents, verbosity: Verbosity) {
     }
     let assigned = found.channels.iter().filter(|c| c.role.is_some()).count();
     verbosity.info(&format!(
-        "{}: {} {} ({}), {assigned} of {} channels assigned to a role. Complete it, then run: impactid \
+        "{}: {} ({}), {assigned} of {} channels assigned to a role. Complete it, then run: impactid \
          check {}",
         path.display(),
-        found.files,
-        if found.files == 1 { "file" } else { "files" },
+        counted(found.files, "file"),
         found.format,
         found.channels.len(),
         path.display()

@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::sparkline::sparkline;
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity};
+use crate::message::counted;
 use labfiles::open;
 use labfiles::summary::{Summary, summarise};
 use labfiles::{DatasetInfo, ReadError, Samples, Source};
@@ -192,11 +193,10 @@ fn inspected(source: &dyn Source, dataset: usize) -> Inspected {
 }
 
 fn heading(source: &dyn Source, text: &mut String) {
-    let count = source.datasets().len();
-    let plural = if count == 1 { "" } else { "s" };
+    let datasets = counted(source.datasets().len(), "dataset");
     let _ = writeln!(
         text,
-        "{}: {}, {count} dataset{plural}",
+        "{}: {}, {datasets}",
         source.path().display(),
         source.format()
     );
@@ -213,12 +213,6 @@ fn one_line(info: &DatasetInfo, text: &mut String) {
     let channels = counted(info.channels.len(), "channel");
     let samples = counted(samples, "sample");
     let _ = writeln!(text, "  {}: {channels}, {samples}{rate}", info.name);
-}
-
-/// A number of things, with their noun.
-fn counted<N: std::fmt::Display + From<u8> + PartialEq>(count: N, noun: &str) -> String {
-    let plural = if count == N::from(1) { "" } else { "s" };
-    format!("{count} {noun}{plural}")
 }
 
 /// A rate to a thousandth, below 1 Hz to a millionth, without trailing zeros.

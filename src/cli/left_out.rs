@@ -22,7 +22,7 @@ pub(super) fn print_left_out(observations: &[Observation], verbosity: Verbosity)
 /// The first fault of each record that leaves it out: others may only follow from it. None are those of records
 /// that campaign.toml excludes, and none that were reported when the campaign was read.
 fn faults(observations: &[Observation]) -> Diagnostics {
-    let wanted = |o: &&Observation| !o.flags.iter().any(|f| f.code == FlagCode::Excluded);
+    let wanted = |o: &&Observation| !o.has_flag(FlagCode::Excluded);
     let each = observations.iter().filter(wanted).filter_map(|o| {
         let first = o.flags.iter().find(|f| f.excludes)?;
         let is_new = !LISTED.contains(&first.code);

@@ -7,6 +7,7 @@ use super::estimate_text::with_error;
 use crate::identify::Identification;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::plan::Proposal;
+use crate::message::counted;
 use crate::motion::{Bracket, Motion, Observation};
 use crate::pipeline::watch::{Live, NewsKind, Outline, Watcher};
 use crate::report::budget_source;
@@ -155,10 +156,9 @@ fn newest_bracket(brackets: &[Bracket]) -> String {
     let Some(newest) = brackets.last() else {
         return "no bracket yet\n".to_owned();
     };
-    let count = brackets.len();
-    let s = if count == 1 { "" } else { "s" };
     format!(
-        "{count} bracket{s}; newest: {} of z = {}, {:.3} mm, {:.3} to {:.3} Hz, {}\n",
+        "{}; newest: {} of z = {}, {:.3} mm, {:.3} to {:.3} Hz, {}\n",
+        counted(brackets.len(), "bracket"),
         newest.kind.name(),
         newest.from,
         1e3 * newest.clearance_m,
@@ -220,7 +220,7 @@ fn counts(outline: &Outline, last: Option<&Live>, waiting: usize) -> String {
     let taken = outline.records.len();
     let out = outline.records.iter().filter(|o| o.excluded()).count();
     let fitted = last.map_or(0, |live| live.observed.observations.len());
-    let mut text = format!("{taken} record{}", if taken == 1 { "" } else { "s" });
+    let mut text = counted(taken, "record");
     if out > 0 {
         text += &format!(", {out} left out");
     }

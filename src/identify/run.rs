@@ -94,16 +94,17 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
     let impacts = methods::impacts(&run.selection.blocks, &evidence.nominal, start);
     let start = with_restitution(start, &impacts);
     let mut fits = run.fits(start, resonance, impacts);
-    let mut suspicions = Vec::from_iter(stated_frequencies::contradicted(evidence.observations));
-    let stated = suspicions.len();
-    while let Some(odd) = run.odd_gap(&fits, start, suspicions.len() - stated) {
-        suspicions.push(odd.into());
+    let mut odd_gaps: Vec<Finding> = Vec::new();
+    while let Some(odd) = run.odd_gap(&fits, start, odd_gaps.len()) {
+        odd_gaps.push(odd.into());
         if !run.selection.leave_out_gap(odd.stated_m) {
             break;
         }
         fits = run.fits(start, fits.alone.resonance, fits.alone.impacts);
     }
     fits = run.without_influential(fits);
+    let mut suspicions = Vec::from_iter(stated_frequencies::contradicted(evidence.observations));
+    suspicions.extend(odd_gaps);
     suspicions.extend(run.other_suspicions(&fits));
     let of_masses = momentum::momentum(&run.selection.blocks.impact, evidence);
     suspicions.extend(of_masses.and_then(|m| m.1));

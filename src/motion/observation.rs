@@ -83,6 +83,11 @@ impl Observation {
         self.flags.iter().any(|f| f.excludes)
     }
 
+    /// Whether it has a flag of a code.
+    pub fn has_flag(&self, code: FlagCode) -> bool {
+        self.flags.iter().any(|f| f.code == code)
+    }
+
     /// The observation without what takes room: impacts, amplitudes, responses, waveform and decay.
     #[must_use]
     pub fn outline(&self) -> Self {

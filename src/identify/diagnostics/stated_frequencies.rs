@@ -15,10 +15,7 @@ pub fn contradicted(observations: &[Observation]) -> Option<Finding> {
     let ratio = |o: &Observation| Some(o.drive?.frequency_hz / o.setting.stated_frequency_hz?);
     let compared = observations.iter().filter_map(|o| Some((o, ratio(o)?)));
     let of = compared.clone().count();
-    let off = |o: &Observation| {
-        let mut flags = o.flags.iter();
-        flags.any(|f| f.code == FlagCode::DriveFrequencyContradicts)
-    };
+    let off = |o: &Observation| o.has_flag(FlagCode::DriveFrequencyContradicts);
     let ratios: Vec<f64> = compared.filter(|(o, _)| off(o)).map(|(_, r)| r).collect();
     let records = ratios.len();
     if records < FEWEST || 2 * records <= of {

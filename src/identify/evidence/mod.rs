@@ -131,9 +131,8 @@ pub fn impact_bias(block: &ImpactBlock, waveforms: &Fit, effects: Effects) -> f6
         false => waveforms.parameters.effect(length),
     };
     let noticed = (contact_ms / SHORT_CONTACT_MS).clamp(-1.0, 1.0);
-    let delays_s = waveforms.parameters.delays_s.into_iter();
-    let [first, last] = [f64::min, f64::max].map(|of| delays_s.clone().reduce(of));
-    let apart_ms = 1e3 * (last.unwrap_or(0.0) - first.unwrap_or(0.0));
+    let delays_s = robust::range(waveforms.parameters.delays_s);
+    let apart_ms = delays_s.map_or(0.0, |(first, last)| 1e3 * (last - first));
     IMPACT_BIAS
         .hypot(CONTACT_BIAS * noticed)
         .hypot(CONTACT_BIAS_PER_MS * contact_ms)

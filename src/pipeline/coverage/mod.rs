@@ -64,8 +64,8 @@ struct Seen {
 
 impl Seen {
     fn flag(&self, code: FlagCode) -> bool {
-        let count = |o: &&Observation| o.flags.iter().any(|f| f.code == code);
-        2 * self.observations.iter().filter(count).count() > self.observations.len()
+        let flagged = |o: &&Observation| o.has_flag(code);
+        2 * self.observations.iter().filter(flagged).count() > self.observations.len()
     }
 }
 
