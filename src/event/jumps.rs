@@ -166,7 +166,8 @@ impl<'a> JumpSearch<'a> {
     }
 
     /// Numbers of significant jumps upward and downward. Of neighbours only the strongest counts,
-    /// because the scan swings back beside a jump.
+    /// because the scan swings back beside a jump. The steepest step tells the direction: where a contact
+    /// takes longer than a window, its ends seem to jump back.
     pub(super) fn directions(&self) -> (usize, usize) {
         let mut all = self.candidates(SIGNIFICANT, 1.0);
         all.extend(self.candidates(SIGNIFICANT, -1.0));
@@ -185,8 +186,19 @@ impl<'a> JumpSearch<'a> {
                 kept.push(i);
             }
         }
-        let upward = kept.iter().filter(|i| self.scan[**i] > 0.0).count();
+        let upward = kept.iter().filter(|i| self.steepest_step(**i) > 0.0);
+        let upward = upward.count();
         (upward, kept.len() - upward)
+    }
+
+    /// The greatest change between neighbouring samples of the windows beside a place.
+    fn steepest_step(&self, left: usize) -> f64 {
+        let values = &self.velocity.values;
+        let last = (left + self.gap + self.window).min(values.len() - 1);
+        let beside = &values[left.saturating_sub(self.window)..=last];
+        let steps = beside.windows(2).map(|pair| pair[1] - pair[0]);
+        let steepest = steps.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+        steepest.unwrap_or(0.0)
     }
 
     /// The most significant jump whose left sample is in `first..=last` and whose significance
