@@ -241,20 +241,37 @@ fn opposite_masses(record: &Record) -> Option<Flag> {
     })
 }
 
+/// How far from 1 the scales of two channels may be together where only a sign is wrong.
+const ONLY_SIGN: f64 = 0.1;
+
+/// A quantity that falls as the integral of its rate rises. Of a harmonic motion, so do a rate and the integral
+/// of its quantity: channels that are swapped look alike, but for their scales.
+fn opposite(record: &Record, gain: f64, d: Role, v: Role) -> Flag {
+    let [d_name, v_name] = [d, v].map(Role::name);
+    let (apart, swapped) = match (gain.abs() - 1.0).abs() < ONLY_SIGN {
+        true => (String::new(), String::new()),
+        false => (
+            format!(", and their scales differ by a factor of {:.3}", gain.abs()),
+            format!(
+                "swap [channels.{d_name}] and [channels.{v_name}] if each holds the other, or "
+            ),
+        ),
+    };
+    flag(
+        record,
+        v,
+        FlagCode::OppositeSign,
+        format!("{d_name} and {v_name} have opposite signs{apart}"),
+        format!(
+            "{swapped}turn the sign in [channels.{v_name}] or in [channels.{d_name}] (sign = -1, or 1 \
+             if it is -1): both count toward the other mass"
+        ),
+    )
+}
+
 fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag> {
     if found.correlation < -SAME {
-        return Some(flag(
-            record,
-            v,
-            FlagCode::OppositeSign,
-            format!("{} and {} have opposite signs", d.name(), v.name()),
-            format!(
-                "turn the sign in [channels.{}] or in [channels.{}] (sign = -1, or 1 if it is \
-                 -1): both count toward the other mass",
-                v.name(),
-                d.name()
-            ),
-        ));
+        return Some(opposite(record, found.gain, d, v));
     }
     let (compared, moves) = match d {
         Role::DisplacementX | Role::DisplacementY => (Compared::Displacement, "moves"),
