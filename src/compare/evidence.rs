@@ -254,7 +254,9 @@ pub(super) fn residuals(input: &Input<'_>) -> Vec<ResidualSet> {
     let reasons = input.record_reasons();
     let left_out = |i: usize| reasons.contains_key(&i);
     let found = residuals_of_methods(&evidence(input), parameters, left_out);
-    found.into_iter().map(|m| residual_set(input, m)).collect()
+    let used = &input.identification.methods;
+    let found = found.into_iter().filter(|m| used.contains_key(&m.method));
+    found.map(|m| residual_set(input, m)).collect()
 }
 
 fn residual_set(input: &Input<'_>, found: MethodResiduals) -> ResidualSet {

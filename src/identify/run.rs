@@ -6,6 +6,7 @@ use crate::identify::diagnostics::agreement::{agreement, between_methods};
 use crate::identify::diagnostics::beyond;
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::momentum;
+use crate::identify::diagnostics::stated_clearances;
 use crate::identify::diagnostics::stated_frequencies;
 use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
@@ -16,7 +17,7 @@ use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Precision, Problem};
 use crate::identify::identification::{Allowed, Identification, JointFit, MethodResult};
 use crate::identify::joint::{self, Weights};
-use crate::identify::messages::{Finding, LeftOut, Reason, Remark};
+use crate::identify::messages::{Finding, Item, LeftOut, Reason, Remark};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult, succeeded};
 use crate::identify::selection::Selection;
@@ -90,6 +91,10 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         posterior: None,
     };
     let resonance = run.selection.resonance();
+    let fitted = succeeded(&resonance).map(|f| &f.fit.parameters);
+    if let Some(contradicted) = fitted.and_then(|f| stated_clearances::contradicted(evidence, f)) {
+        return without_clearances(evidence, contradicted);
+    }
     let start = start(evidence, &resonance);
     let impacts = methods::impacts(&run.selection.blocks, &evidence.nominal, start);
     let start = with_restitution(start, &impacts);
@@ -104,6 +109,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
     }
     fits = run.without_influential(fits);
     let mut suspicions = Vec::from_iter(stated_frequencies::contradicted(evidence.observations));
+    suspicions.extend(stated_frequencies::no_drive(evidence.observations));
     suspicions.extend(odd_gaps);
     suspicions.extend(run.other_suspicions(&fits));
     let of_masses = momentum::momentum(&run.selection.blocks.impact, evidence);
@@ -151,6 +157,28 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         joint_fit,
         specimens: BTreeMap::new(),
     }
+}
+
+/// Identify as if no clearance were stated, as all of them are `contradicted`.
+fn without_clearances(evidence: &Evidence<'_>, contradicted: Finding) -> Identification {
+    let mut observations = evidence.observations.to_vec();
+    for o in &mut observations {
+        o.setting.clearance_m = None;
+    }
+    let mut found = identify(&Evidence {
+        observations: &observations,
+        brackets: &[],
+        ..*evidence
+    });
+    let brackets = evidence.brackets.iter().enumerate();
+    let left_out = brackets.map(|(index, bracket)| LeftOut {
+        item: Item::bracket(index, bracket),
+        reason: Reason::GapNotAsStated,
+    });
+    found.left_out.extend(left_out);
+    found.verdict.findings.insert(0, contradicted.clone());
+    found.suspicions.insert(0, contradicted);
+    found
 }
 
 /// Whether no record has a drive, so that R rests on the impacts alone.

@@ -66,13 +66,7 @@ impl<'a> Selection<'a> {
     fn note_bracket(&mut self, bracket: &Bracket, reason: Reason) {
         let all = self.evidence.brackets;
         if let Some(index) = all.iter().position(|b| b == bracket) {
-            let item = Item::Bracket {
-                index,
-                boundary: bracket.kind,
-                frequency_low_hz: bracket.frequency_low_hz,
-                frequency_high_hz: bracket.frequency_high_hz,
-                clearance_m: bracket.clearance_m,
-            };
+            let item = Item::bracket(index, bracket);
             self.left_out.push(LeftOut { item, reason });
         }
     }

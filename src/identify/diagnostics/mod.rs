@@ -7,6 +7,7 @@ pub mod contact_law;
 pub mod contradicting_gap;
 pub mod influence;
 pub mod momentum;
+pub mod stated_clearances;
 pub mod stated_frequencies;
 pub mod structure;
 pub mod suspicion;

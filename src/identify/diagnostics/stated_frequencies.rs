@@ -1,4 +1,5 @@
-//! Whether the drive's frequencies contradict those that the campaign states, in most of its records.
+//! Whether the drive's frequencies contradict those that the campaign states, in most of its records, or no
+//! drive was measured.
 
 use crate::identify::messages::Finding;
 use crate::motion::Observation;
@@ -9,6 +10,16 @@ use crate::signal::robust;
 const FEWEST: usize = 3;
 /// Relative spread of the ratios of frequencies that have one cause.
 const ONE_CAUSE: f64 = 5e-3;
+
+/// That no record that states a frequency shows its drive.
+pub fn no_drive(observations: &[Observation]) -> Option<Finding> {
+    let stating = observations
+        .iter()
+        .filter(|o| o.setting.stated_frequency_hz.is_some());
+    let records = stating.clone().count();
+    let none = records > 0 && stating.into_iter().all(|o| o.drive.is_none());
+    none.then_some(Finding::DriveNotMeasured { records })
+}
 
 /// That more than half of the records that state a frequency are driven at another one.
 pub fn contradicted(observations: &[Observation]) -> Option<Finding> {
@@ -68,6 +79,11 @@ mod tests {
             of: 4,
         };
         assert_eq!(of(&faster), Some(alike));
+        assert_eq!(no_drive(&[observed(8.0, 8.0)]), None);
+        let mut unseen = observed(8.0, 8.0);
+        unseen.drive = None;
+        let none = Finding::DriveNotMeasured { records: 1 };
+        assert_eq!(no_drive(&[unseen]), Some(none));
         let shuffled = [[8.0, 12.0], [10.0, 8.0], [12.0, 10.0]];
         let differ = Finding::FrequenciesOff { records: 3, of: 3 };
         assert_eq!(of(&shuffled), Some(differ));

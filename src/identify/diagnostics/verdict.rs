@@ -16,6 +16,7 @@ use crate::identify::messages::{
 };
 use crate::identify::method::Method;
 use crate::identify::uncertainty::quantile::NORMAL_975;
+use crate::motion::Observation;
 use crate::signal::robust;
 
 /// Relative deviation of responses from which one degree of freedom does not fit.
@@ -88,6 +89,27 @@ pub fn judge_impacts(
     judge_law(result, block, evidence);
     if let Some(grouping) = structure {
         judge_structure(result, grouping);
+    }
+}
+
+/// Share of the impacts with speeds whose speeds can be used from which they stand for all.
+const USABLE: f64 = 0.25;
+/// Impacts below which a share says nothing.
+const FEWEST_IMPACTS: usize = 20;
+
+/// Judge whether the impacts that R rests on stand for all.
+pub fn judge_contacts(result: &mut MethodResult, observations: &[Observation]) {
+    let usable = observations.iter().filter(|o| !o.excluded());
+    let impacts = usable.flat_map(|o| &o.impacts);
+    let with_speeds = impacts.filter(|i| {
+        i.approach_speed_before_m_s
+            .and(i.approach_speed_after_m_s)
+            .is_some()
+    });
+    let (used, of) = (result.observations, with_speeds.count());
+    if of >= FEWEST_IMPACTS && (used as f64) < USABLE * of as f64 {
+        result.fits = Some(false);
+        result.remarks.push(Remark::FewUsable { used, of });
     }
 }
 

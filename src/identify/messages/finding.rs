@@ -68,6 +68,32 @@ pub enum Finding {
         /// Records in which both are known.
         of: usize,
     },
+    /// A drive's frequency is stated, and no record shows its drive.
+    DriveNotMeasured {
+        /// Records that state a frequency.
+        records: usize,
+    },
+    /// The stated clearances are all about twice those that the motions show; none of them is used.
+    WholeGapsStated {
+        /// Clearance by the motions over the stated one.
+        ratio: f64,
+        /// Records in which they were compared.
+        records: usize,
+    },
+    /// The clearances that the motions show are one multiple of the stated ones; none of them is used.
+    ClearancesOffAlike {
+        /// Clearance by the motions over the stated one.
+        ratio: f64,
+        /// Records in which they were compared.
+        records: usize,
+    },
+    /// The clearances that the motions show are the stated ones and one length; none of them is used.
+    ClearancesShifted {
+        /// What has to be added to each, m.
+        added_m: f64,
+        /// Records in which they were compared.
+        records: usize,
+    },
     /// Two free masses do not change their speeds in the ratio of the stated masses.
     MomentumNotConserved {
         /// `m_y/m_x` as the speeds show it.
@@ -199,6 +225,39 @@ message_table! { Finding, key = template_key;
         "die Frequenz der Erregung ist nicht die angegebene in {records} von {of} Aufzeichnungen: \
          prüfen, ob jede Zeile der Versuchstabelle ihre eigene Datei nennt",
         records = Value::Count(*records), of = Value::Count(*of);
+    Self::DriveNotMeasured { records } =>
+        "no drive was measured in the {records} records that state its frequency, so no motion is \
+         named, and neither $f_0$, $β$ nor $x_st$ follow: record the generator or its current, and \
+         name that channel in [channels.drive]",
+        "in den {records} Aufzeichnungen, die ihre Frequenz angeben, ist keine Erregung gemessen; \
+         daher wird keine Bewegung benannt, und weder $f_0$ noch $β$ noch $x_st$ folgen: den \
+         Generator oder seinen Strom aufzeichnen und den Kanal in [channels.drive] nennen",
+        records = Value::Count(*records);
+    Self::WholeGapsStated { ratio, records } =>
+        "the masses hit as if the clearances were {ratio} times the stated ones in {records} \
+         records: whole gaps are stated, a clearance is half of one; no clearance is used until the \
+         run table is corrected",
+        "die Massen stoßen in {records} Aufzeichnungen, als wären die Spiele das {ratio}-fache der \
+         angegebenen: Angegeben sind ganze Abstände, ein Spiel ist die Hälfte davon; bis die \
+         Versuchstabelle richtiggestellt ist, wird kein Spiel verwendet",
+        ratio = Value::Number(*ratio, 2), records = Value::Count(*records);
+    Self::ClearancesOffAlike { ratio, records } =>
+        "the masses hit as if the clearances were {ratio} times the stated ones in {records} \
+         records: check their unit in the run table, that each is half of the gap between the \
+         masses, and the scales of the motion channels; no clearance is used until then",
+        "die Massen stoßen in {records} Aufzeichnungen, als wären die Spiele das {ratio}-fache der \
+         angegebenen: prüfen, welche Einheit sie in der Versuchstabelle haben, ob jedes die Hälfte \
+         des Abstands der Massen ist, und die Maßstäbe der Bewegungskanäle; bis dahin wird kein \
+         Spiel verwendet",
+        ratio = Value::Shortest(two_digits(*ratio)), records = Value::Count(*records);
+    Self::ClearancesShifted { added_m, records } =>
+        "the masses hit as if {added_mm} mm had to be added to every clearance in {records} \
+         records: count them from where the masses touch; no clearance is used until the run table \
+         is corrected",
+        "die Massen stoßen in {records} Aufzeichnungen, als wäre zu jedem Spiel {added_mm} mm zu \
+         addieren: von der Berührung der Massen an zählen; bis die Versuchstabelle \
+         richtiggestellt ist, wird kein Spiel verwendet",
+        added_mm = Value::Number(1e3 * added_m, 2), records = Value::Count(*records);
     Self::MomentumNotConserved { measured, stated, .. } =>
         "the speeds of both masses change as if $m_y$/$m_x$ were {measured}, the stated masses \
          give {stated}: weigh them again, check the scales of both velocities, and that nothing \
@@ -261,6 +320,11 @@ fn template_key(finding: &Finding) -> String {
 
 fn millimetres(metres: f64) -> Value<'static> {
     Value::Number(1e3 * metres, 4)
+}
+
+/// Rounded to two significant digits.
+fn two_digits(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
 }
 
 /// From the strength of an effect to the number in its text: per cent, or milliseconds.

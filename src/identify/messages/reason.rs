@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::method::Method;
 use crate::message::Value;
-use crate::motion::BoundaryKind;
+use crate::motion::{BoundaryKind, Bracket};
 use crate::{message_table, messages};
 
 /// Something that a fit may leave out. Indices count from 0: records in the order of acquisition, the
@@ -44,6 +44,19 @@ pub enum Item {
         /// Time since the record's first sample, s.
         time_s: f64,
     },
+}
+
+impl Item {
+    /// A bracket by its index.
+    pub fn bracket(index: usize, bracket: &Bracket) -> Self {
+        Self::Bracket {
+            index,
+            boundary: bracket.kind,
+            frequency_low_hz: bracket.frequency_low_hz,
+            frequency_high_hz: bracket.frequency_high_hz,
+            clearance_m: bracket.clearance_m,
+        }
+    }
 }
 
 /// Why something was left out.

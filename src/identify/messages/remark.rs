@@ -146,6 +146,13 @@ pub enum Remark {
         /// Length of a contact, samples.
         samples: f64,
     },
+    /// The speeds of most impacts cannot be used.
+    FewUsable {
+        /// Impacts whose speeds are used.
+        used: usize,
+        /// Impacts with speeds.
+        of: usize,
+    },
     /// R changes from bounce to bounce.
     RestitutionByBounce {
         /// R of the first, the second … bounce.
@@ -297,6 +304,14 @@ message_table! { Remark;
         last = Value::Number(faster.restitution, 3),
         fast = Value::Number(faster.speed_m_s, 3),
         count = Value::Number(*samples, 0);
+    Self::FewUsable { used, of } =>
+        "the speeds of only {used} of {of} impacts can be used, as in the others the masses stay \
+         together or the next one follows at once: contacts take too long, or none of them is an \
+         impact",
+        "nur von {used} der {of} Stöße sind die Geschwindigkeiten verwendbar, da bei den anderen \
+         die Massen beisammen bleiben oder gleich der nächste folgt: Die Kontakte dauern zu lange, \
+         oder sie sind keine Stöße",
+        used = Value::Count(*used), of = Value::Count(*of);
     Self::RestitutionByBounce { points } =>
         "$R$ changes from bounce to bounce, and with it the speed: {points}; one constant does not \
          describe it",
