@@ -10,11 +10,12 @@ use crate::identify::diagnostics::stated_clearances;
 use crate::identify::diagnostics::stated_frequencies;
 use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
+use crate::identify::diagnostics::undeclared_high_pass;
 use crate::identify::diagnostics::verdict::{self, Basis};
 use crate::identify::estimate::ParameterSet;
-use crate::identify::evidence::{Blocks, Evidence, impact_bias};
+use crate::identify::evidence::{Blocks, Evidence, Nominal, impact_bias};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Precision, Problem};
+use crate::identify::fit::{Fit, Precision, Problem};
 use crate::identify::identification::{Allowed, Identification, JointFit, MethodResult};
 use crate::identify::joint::{self, Weights};
 use crate::identify::messages::{Finding, Item, LeftOut, Reason, Remark};
@@ -529,7 +530,25 @@ impl IdentificationRun<'_> {
             return vec![found];
         }
         let nominal = &self.evidence.nominal;
-        suspicion::channels(&joint.fit, joint.factor, nominal)
+        let mut found = undeclared_high_pass::undeclared(&self.selection.blocks, &|blocks| {
+            self.resonance_with_wide_corners(blocks, start)
+        });
+        found.extend(suspicion::channels(&joint.fit, joint.factor, nominal));
+        found
+    }
+
+    /// The resonance curve alone, the corners of all channels hardly known.
+    fn resonance_with_wide_corners(&self, blocks: &Blocks, start: Parameters) -> Option<Fit> {
+        let nominal = Nominal {
+            corner_uncertainty: undeclared_high_pass::WIDE,
+            ..self.evidence.nominal
+        };
+        let alone = Weights::from([(Method::Resonance, 1.0)]);
+        let problem = Problem {
+            precision: Precision::Start,
+            ..joint::problem(blocks, start, &alone, &nominal, None)?
+        };
+        problem.fit(start).ok()
     }
 
     /// What was left out: records and brackets by the selection, outlying impacts.

@@ -7,6 +7,9 @@ use std::sync::OnceLock;
 
 use serde_json::Value;
 
+/// Mistakes that act on a whole campaign.
+mod mistakes;
+
 struct Ran {
     code: i32,
     said: String,

@@ -12,4 +12,5 @@ pub mod stated_frequencies;
 pub mod structure;
 pub mod suspicion;
 pub mod swapped_channels;
+pub mod undeclared_high_pass;
 pub mod verdict;

@@ -47,6 +47,15 @@ pub enum Finding {
         /// How sure.
         z_score: f64,
     },
+    /// A channel has passed a high-pass that is not stated.
+    UndeclaredHighPass {
+        /// The channel.
+        channel: Role,
+        /// Its corner as it fits, Hz.
+        corner_hz: f64,
+        /// How sure.
+        z_score: f64,
+    },
     /// The velocities of both masses are swapped.
     SwappedChannels {
         /// How sure.
@@ -204,6 +213,15 @@ message_table! { Finding, key = template_key;
         channel = Value::Name(channel.name()),
         share = Value::Percent(deviation.abs(), 0),
         direction = direction(*deviation);
+    Self::UndeclaredHighPass { channel, corner_hz, .. } =>
+        "{channel} fits far better behind a high-pass of about {corner} Hz, and none is stated: look \
+         up what sensors, amplifiers and converters of all channels have, and state it as high_pass \
+         in [channels.{channel}] and theirs",
+        "{channel} passt weit besser hinter einem Hochpass von etwa {corner} Hz, und keiner ist \
+         angegeben: nachsehen, was Aufnehmer, Verstärker und Wandler aller Kanäle haben, und als \
+         high_pass in [channels.{channel}] und den anderen angeben",
+        channel = Value::Name(channel.name()),
+        corner = Value::Shortest(two_digits(*corner_hz));
     Self::SwappedChannels { .. } =>
         "all data fit far better with the velocities of both masses swapped: swap \
          [channels.velocity_x] and [channels.velocity_y], or the displacements",

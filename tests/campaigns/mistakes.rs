@@ -1,0 +1,153 @@
+//! Mistakes of a laboratory that act on a whole campaign: each is named, and R holds or is said not to be known.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::{impactid, json};
+
+/// A simulated campaign with R = 0.75 in the folder `rig`, and the text of one of its files.
+struct Simulated {
+    folder: tempfile::TempDir,
+}
+
+impl Simulated {
+    fn of(rig: &str) -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let truth = ["--restitution", "0.75", "--seed", "31", "--records", "100"];
+        let command = ["-q", "simulate", "campaign", "--out", "rig", "--rig", rig];
+        let simulated = impactid(folder.path(), &[&command[..], &truth].concat());
+        assert_eq!(simulated.code, 0, "{}", simulated.said);
+        Self { folder }
+    }
+
+    fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// What is found when a file of the campaign is changed; afterwards it is as before.
+    fn found_with(&self, file: &str, change: impl Fn(&str) -> String) -> Value {
+        let file = self.path().join("rig").join(file);
+        let before = fs::read_to_string(&file).expect("a file of the campaign");
+        let after = change(&before);
+        assert_ne!(before, after);
+        fs::write(&file, after).expect("the changed file");
+        let run = ["-q", "run", "rig/campaign.toml", "--out", "out"];
+        let ran = impactid(self.path(), &run);
+        // 1 says that not all is identified
+        assert!(ran.code <= 1, "{}", ran.said);
+        fs::write(&file, before).expect("the file as before");
+        json(&self.path().join("out/identification.json"))
+    }
+}
+
+fn interval_of_r(found: &Value) -> [f64; 2] {
+    let end = |i: usize| found["joint"]["restitution"]["interval95"][i].as_f64();
+    [0, 1].map(|i| end(i).expect("an interval"))
+}
+
+fn first_suspicion(found: &Value) -> &str {
+    found["suspicions"][0]["kind"].as_str().unwrap_or("none")
+}
+
+#[test]
+fn valid_clearances_that_are_off_alike_are_named_and_not_used() {
+    let simulated = Simulated::of("realistic");
+    let clearances = |change: &dyn Fn(f64) -> f64| {
+        simulated.found_with("runs.csv", |table| {
+            let mut lines = table.lines();
+            let heads = lines.next().expect("a head");
+            let column = heads.split(',').position(|h| h.starts_with("clearance"));
+            let column = column.expect("clearances");
+            let changed = lines.map(|line| {
+                let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+                if let Ok(clearance) = cells[column].parse() {
+                    cells[column] = change(clearance).to_string();
+                }
+                cells.join(",")
+            });
+            let all: Vec<String> = std::iter::once(heads.to_owned()).chain(changed).collect();
+            all.join("\n") + "\n"
+        })
+    };
+    let whole = clearances(&|mm| 2.0 * mm);
+    let inch = clearances(&|mm| mm / 25.4);
+    let shifted = clearances(&|mm| mm + 4.0);
+    for (found, kind) in [
+        (&whole, "whole_gaps_stated"),
+        (&inch, "clearances_off_alike"),
+        (&shifted, "clearances_shifted"),
+    ] {
+        assert_eq!(first_suspicion(found), kind);
+        assert_eq!(found["verdict"]["findings"][0]["kind"], kind);
+        assert!(found["methods"]["trajectories"].is_null(), "{kind}");
+        let [low, high] = interval_of_r(found);
+        assert!(
+            low < 0.75 && 0.75 < high && high - low < 0.03,
+            "{kind}: {low} {high}"
+        );
+        let brackets = found["left_out"].as_array().expect("a list").iter();
+        assert!(
+            brackets
+                .filter(|l| l["reason"]["kind"] == "gap_not_as_stated")
+                .count()
+                > 4
+        );
+    }
+    let added = shifted["suspicions"][0]["added_m"]
+        .as_f64()
+        .expect("a length");
+    assert!((added + 4e-3).abs() < 0.3e-3, "{added}");
+}
+
+#[test]
+fn valid_a_high_pass_that_is_not_stated_is_named() {
+    let without = |toml: &str| {
+        let lines = toml.lines().filter(|line| !line.starts_with("high_pass"));
+        lines.map(|line| format!("{line}\n")).collect()
+    };
+    let found = Simulated::of("exact").found_with("campaign.toml", without);
+    let [low, high] = interval_of_r(&found);
+    assert!(low < 0.75 && 0.75 < high, "{low} {high}");
+    let suspicions = found["suspicions"].as_array().expect("a list").iter();
+    let named: Vec<&Value> = suspicions
+        .filter(|s| s["kind"] == "undeclared_high_pass")
+        .collect();
+    assert!(!named.is_empty(), "{}", found["suspicions"]);
+    for finding in named {
+        assert_ne!(finding["channel"], "velocity_x", "the laser has none");
+        let corner_hz = finding["corner_hz"].as_f64().expect("a frequency");
+        assert!((0.3..0.7).contains(&corner_hz), "{corner_hz}");
+    }
+}
+
+#[test]
+fn valid_a_drive_that_was_not_recorded_is_named_and_r_holds() {
+    let without = |toml: &str| {
+        let (head, rest) = toml.split_once("[channels.drive]").expect("the drive");
+        let (_, others) = rest.split_once("\n\n").expect("other channels");
+        format!("{head}{others}")
+    };
+    let found = Simulated::of("realistic").found_with("campaign.toml", without);
+    assert_eq!(first_suspicion(&found), "drive_not_measured");
+    let [low, high] = interval_of_r(&found);
+    assert!(
+        low < 0.75 && 0.75 < high && high - low < 0.05,
+        "{low} {high}"
+    );
+    assert_eq!(found["left_out"].as_array().map(Vec::len), Some(0));
+}
+
+#[test]
+fn valid_contacts_of_two_milliseconds_are_impacts_and_those_of_ten_give_no_r() {
+    let as_is = |toml: &str| format!("{toml}\n");
+    let short = Simulated::of("contact=2").found_with("campaign.toml", as_is);
+    let [low, high] = interval_of_r(&short);
+    assert!(
+        low < 0.75 && 0.75 < high && high - low < 0.02,
+        "{low} {high}"
+    );
+    let long = Simulated::of("contact=10").found_with("campaign.toml", as_is);
+    assert_ne!(long["verdict"]["kind"], "identified");
+}
