@@ -44,13 +44,17 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
         Ok(text) => return Some(text),
         Err(error) => error,
     };
-    faults.fault(
-        Code::UnreadableFile,
-        None,
-        "",
-        format!("campaign.toml cannot be read: {error}"),
-        "name the right file; `impactid init DIR` writes one",
-    );
+    let (message, remedy) = match path.is_dir() {
+        true => (
+            "it is a folder".to_owned(),
+            "name the campaign.toml in it; `impactid init DIR` writes one",
+        ),
+        false => (
+            format!("campaign.toml cannot be read: {error}"),
+            "name the right file; `impactid init DIR` writes one",
+        ),
+    };
+    faults.fault(Code::UnreadableFile, None, "", message, remedy);
     None
 }
 
