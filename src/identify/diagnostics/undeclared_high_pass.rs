@@ -21,8 +21,7 @@ const CLEARLY: f64 = 1.5;
 /// The channels without a stated high-pass of which the resonance curve shows one, by the least cost of a fit
 /// of it in which corners are [`WIDE`] open.
 pub fn undeclared(blocks: &Blocks, fit: &dyn Fn(&Blocks) -> Option<Fit>) -> Vec<Finding> {
-    let mut now = blocks.clone();
-    now.trajectory.records.clear();
+    let mut now = blocks.with_trajectory(blocks.trajectory.with_records(Vec::new()));
     now.resonance = blocks.resonance.few(FEW);
     now.resonance.allow(LEAST_ALLOWANCE);
     let frequencies = now.resonance.points.iter().map(|p| p.frequency_hz);
