@@ -66,7 +66,6 @@ pub fn impacts(
         result.impact_groups = Some(structure::groups(&ratios, evidence.observations));
     }
     verdict::judge_impacts(&mut result, block, evidence, structure::structure(&ratios));
-    verdict::judge_contacts(&mut result, evidence.observations);
     result
 }
 

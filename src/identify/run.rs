@@ -288,6 +288,20 @@ fn start(evidence: &Evidence<'_>, resonance: &Option<FitResult>) -> Parameters {
     ))
 }
 
+/// A fit of some methods that is close enough to tell which of two arrangements fits.
+fn rough_fit(
+    blocks: &Blocks,
+    start: Parameters,
+    weights: &Weights,
+    nominal: &Nominal,
+) -> Option<Fit> {
+    let problem = Problem {
+        precision: Precision::Start,
+        ..joint::problem(blocks, start, weights, nominal, None)?
+    };
+    problem.fit(start).ok()
+}
+
 struct IdentificationRun<'a> {
     evidence: &'a Evidence<'a>,
     selection: Selection<'a>,
@@ -494,12 +508,7 @@ impl IdentificationRun<'_> {
         let uncertainty_m = self.evidence.nominal.clearance_uncertainty_m;
         let both = Weights::from([(Method::Resonance, 1.0), (Method::Trajectories, 1.0)]);
         let fit = |blocks: &Blocks| {
-            let nominal = &self.evidence.nominal;
-            let problem = Problem {
-                precision: Precision::Start,
-                ..joint::problem(blocks, start, &both, nominal, None)?
-            };
-            let found = problem.fit(start).ok()?;
+            let found = rough_fit(blocks, start, &both, &self.evidence.nominal)?;
             let mean_square = found.cost / found.residuals.max(1) as f64;
             Some((found.parameters, mean_square))
         };
@@ -530,25 +539,15 @@ impl IdentificationRun<'_> {
             return vec![found];
         }
         let nominal = &self.evidence.nominal;
-        let mut found = undeclared_high_pass::undeclared(&self.selection.blocks, &|blocks| {
-            self.resonance_with_wide_corners(blocks, start)
-        });
+        let open = Nominal {
+            corner_uncertainty: undeclared_high_pass::WIDE,
+            ..*nominal
+        };
+        let curve = Weights::from([(Method::Resonance, 1.0)]);
+        let fit = |blocks: &Blocks| rough_fit(blocks, start, &curve, &open);
+        let mut found = undeclared_high_pass::undeclared(&self.selection.blocks, &fit);
         found.extend(suspicion::channels(&joint.fit, joint.factor, nominal));
         found
-    }
-
-    /// The resonance curve alone, the corners of all channels hardly known.
-    fn resonance_with_wide_corners(&self, blocks: &Blocks, start: Parameters) -> Option<Fit> {
-        let nominal = Nominal {
-            corner_uncertainty: undeclared_high_pass::WIDE,
-            ..self.evidence.nominal
-        };
-        let alone = Weights::from([(Method::Resonance, 1.0)]);
-        let problem = Problem {
-            precision: Precision::Start,
-            ..joint::problem(blocks, start, &alone, &nominal, None)?
-        };
-        problem.fit(start).ok()
     }
 
     /// What was left out: records and brackets by the selection, outlying impacts.

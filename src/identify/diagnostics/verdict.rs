@@ -79,7 +79,8 @@ pub fn judge_trajectories(result: &mut MethodResult, block: &TrajectoryBlock, fi
 }
 
 /// Judge whether impacts are instantaneous with one R: first by a structure over bounces and records,
-/// then by the contact law; the records of the impacts that it rests on say how long a contact lasts.
+/// then by the contact law; the records of the impacts that it rests on say how long a contact lasts. Then
+/// whether they stand for all impacts.
 pub fn judge_impacts(
     result: &mut MethodResult,
     block: &ImpactBlock,
@@ -90,6 +91,7 @@ pub fn judge_impacts(
     if let Some(grouping) = structure {
         judge_structure(result, grouping);
     }
+    judge_contacts(result, evidence.observations);
 }
 
 /// Share of the impacts with speeds whose speeds can be used from which they stand for all.
@@ -98,7 +100,7 @@ const USABLE: f64 = 0.25;
 const FEWEST_IMPACTS: usize = 20;
 
 /// Judge whether the impacts that R rests on stand for all.
-pub fn judge_contacts(result: &mut MethodResult, observations: &[Observation]) {
+fn judge_contacts(result: &mut MethodResult, observations: &[Observation]) {
     let usable = observations.iter().filter(|o| !o.excluded());
     let impacts = usable.flat_map(|o| &o.impacts);
     let with_speeds = impacts.filter(|i| {
