@@ -3,10 +3,10 @@
 use super::input::{Input, thinned};
 use crate::identify::diagnostics::contact_law::Law;
 use crate::identify::evidence::impacts::SpeedPair;
+use crate::identify::evidence::impacts_of_bulk;
 use crate::identify::evidence::resonance::predicted;
-use crate::identify::evidence::{Evidence, Nominal, impacts_of_bulk};
 use crate::identify::fit::parameters::Coordinate;
-use crate::identify::residuals::{MethodResiduals, residuals as residuals_of_methods};
+use crate::identify::residuals::MethodResiduals;
 use crate::identify::{Method, MethodResult, SpecimenResult};
 use crate::motion::Observation;
 use crate::motion::Response;
@@ -117,8 +117,6 @@ const CURVE_POINTS: usize = 240;
 const FEWEST_POINTS: usize = 3;
 /// Most resonance curves: one for each mass.
 const MOST_CURVES: usize = 2;
-/// Most residuals of one method.
-const MOST_RESIDUALS: usize = 4000;
 /// Most impacts, and most points of a resonance curve.
 const MOST_POINTS: usize = 20_000;
 
@@ -176,18 +174,6 @@ fn fitted(input: &Input<'_>, role: Role, points: &[ResonancePoint]) -> Vec<[f64;
     };
     let frequencies = even((first.frequency_hz, last.frequency_hz, CURVE_POINTS));
     frequencies.into_iter().map(at).collect()
-}
-
-/// What the methods' blocks are made of; nominal values have no weight here.
-fn evidence<'a>(input: &Input<'a>) -> Evidence<'a> {
-    Evidence {
-        rig: input.rig,
-        observations: input.observations,
-        brackets: input.brackets,
-        nominal: Nominal::default(),
-        uncertainty: Default::default(),
-        progress: None,
-    }
 }
 
 /// Speeds before and after impact; each specimen by itself if there are several.
@@ -248,18 +234,11 @@ fn law_curve(method: &MethodResult) -> Vec<[f64; 2]> {
 
 /// The residuals of each method at the fitted parameters.
 pub(super) fn residuals(input: &Input<'_>) -> Vec<ResidualSet> {
-    let Some(parameters) = input.parameters() else {
-        return Vec::new();
-    };
-    let reasons = input.record_reasons();
-    let left_out = |i: usize| reasons.contains_key(&i);
-    let found = residuals_of_methods(&evidence(input), parameters, left_out);
-    let used = &input.identification.methods;
-    let found = found.into_iter().filter(|m| used.contains_key(&m.method));
-    found.map(|m| residual_set(input, m)).collect()
+    let found = input.identification.residuals.iter();
+    found.map(|of| residual_set(input, of)).collect()
 }
 
-fn residual_set(input: &Input<'_>, found: MethodResiduals) -> ResidualSet {
+fn residual_set(input: &Input<'_>, found: &MethodResiduals) -> ResidualSet {
     let point = |(owner, residual): &(usize, f64)| {
         let o = &input.observations[*owner];
         ResidualPoint {
@@ -269,12 +248,11 @@ fn residual_set(input: &Input<'_>, found: MethodResiduals) -> ResidualSet {
             clearance_m: o.setting.clearance_m,
         }
     };
-    let points = thinned(&found.residuals, MOST_RESIDUALS).map(point);
     ResidualSet {
         method: found.method,
-        total: found.residuals.len(),
-        points: points.collect(),
-        autocorrelation: found.autocorrelation,
+        points: found.residuals.iter().map(point).collect(),
+        total: found.total,
+        autocorrelation: found.autocorrelation.clone(),
     }
 }
 

@@ -11,6 +11,7 @@ use crate::identify::fit::parameters::Coordinate;
 use crate::identify::fit::{Fit, FitReport, Prior};
 use crate::identify::messages::{Finding, LeftOut, PairAgreement, Remark, Sentence};
 use crate::identify::method::Method;
+use crate::identify::residuals::MethodResiduals;
 use crate::identify::uncertainty::Uncertainty;
 use crate::message::{Message, Value, plain, plain_all, sentence};
 use crate::serialised_with_text;
@@ -265,6 +266,10 @@ pub struct Identification {
     /// The joint fit; `None` without one.
     #[serde(default)]
     pub joint_fit: Option<JointFit>,
+    /// The residuals of the methods in the joint fit; none where each specimen was fitted by itself.
+    /// They have a file of their own.
+    #[serde(skip)]
+    pub residuals: Vec<MethodResiduals>,
     /// Results for each specimen, if the campaign holds several.
     #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
     pub specimens: BTreeMap<String, SpecimenResult>,

@@ -1,6 +1,9 @@
 //! The weighted residuals of each method at the fitted parameters, and how they hang together.
 
-use crate::identify::evidence::{Blocks, Evidence};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::identify::evidence::Blocks;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::method::Method;
@@ -10,58 +13,68 @@ use crate::signal::robust;
 const LAGS: usize = 20;
 /// Fewer residuals tell nothing.
 const FEWEST: usize = 5;
+/// Most residuals of one method that are kept.
+const MOST: usize = 4000;
 
 /// The residuals of one method.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct MethodResiduals {
     /// The method: resonance, trajectories or impacts.
     pub method: Method,
-    /// Each residual over its standard error, with the index of its observation.
+    /// Each residual over its standard error, with the index of its observation; of more than 4000
+    /// every second, third …
     pub residuals: Vec<(usize, f64)>,
+    /// Number of residuals.
+    pub total: usize,
     /// Their autocorrelation at lags 0, 1, 2 … up to twenty.
     pub autocorrelation: Vec<f64>,
 }
 
-/// Residuals at the fitted parameters of the methods that have five or more, without those of
-/// observations that the fit left out.
-pub fn residuals(
-    evidence: &Evidence<'_>,
-    fitted: &Parameters,
-    left_out: impl Fn(usize) -> bool,
-) -> Vec<MethodResiduals> {
-    let mut evidence = *evidence;
-    // effects of no strength change no residual
-    evidence.nominal.effects = fitted.effects_present();
-    let mut blocks = Blocks::new(&evidence);
-    blocks.weigh(fitted);
+impl MethodResiduals {
+    /// Of a block at parameters, whose items are of these observations; `None` of too few.
+    fn of(
+        (method, block, owners): (Method, &dyn Block, Vec<usize>),
+        at: &Parameters,
+    ) -> Option<Self> {
+        let items = owners.into_par_iter().enumerate();
+        let of_items: Vec<(usize, Vec<f64>)> = items
+            .filter_map(|(item, owner)| Some((owner, block.residuals(item, at)?)))
+            .collect();
+        let each = of_items.iter();
+        let all: Vec<(usize, f64)> = each
+            .flat_map(|(owner, list)| list.iter().map(|r| (*owner, *r)))
+            .collect();
+        let values: Vec<f64> = all.iter().map(|r| r.1).collect();
+        let every = all.len().div_ceil(MOST).max(1);
+        (all.len() >= FEWEST).then(|| Self {
+            method,
+            residuals: all.iter().step_by(every).copied().collect(),
+            total: all.len(),
+            autocorrelation: autocorrelation(&values),
+        })
+    }
+}
+
+/// Residuals of the resonance curve, the trajectories and the impacts at the fitted parameters, with
+/// the weights of the fit; without a method that has fewer than five.
+pub(super) fn residuals(blocks: &Blocks, fitted: &Parameters) -> Vec<MethodResiduals> {
     let resonance = blocks.resonance.points.iter().map(|p| p.observation);
     let trajectory = blocks.trajectory.records.iter().map(|r| r.observation);
     let impact = blocks.impact.pairs.iter().map(|p| p.observation);
-    let of = |method, block: &dyn Block, owners: Vec<usize>| {
-        let items = owners.into_iter().enumerate();
-        let kept = items.filter(|(_, owner)| !left_out(*owner));
-        let residuals: Vec<(usize, f64)> = kept
-            .filter_map(|(item, owner)| Some((owner, block.residuals(item, fitted)?)))
-            .flat_map(|(owner, list)| list.into_iter().map(move |r| (owner, r)))
-            .collect();
-        let values: Vec<f64> = residuals.iter().map(|r| r.1).collect();
-        MethodResiduals {
-            method,
-            residuals,
-            autocorrelation: autocorrelation(&values),
-        }
-    };
-    let all = [
-        of(Method::Resonance, &blocks.resonance, resonance.collect()),
-        of(
+    let all: [(Method, &dyn Block, Vec<usize>); 3] = [
+        (Method::Resonance, &blocks.resonance, resonance.collect()),
+        (
             Method::Trajectories,
             &blocks.trajectory,
             trajectory.collect(),
         ),
-        of(Method::Impacts, &blocks.impact, impact.collect()),
+        (Method::Impacts, &blocks.impact, impact.collect()),
     ];
-    let enough = |m: &MethodResiduals| m.residuals.len() >= FEWEST;
-    all.into_iter().filter(enough).collect()
+    let found = all
+        .into_iter()
+        .filter_map(|of| MethodResiduals::of(of, fitted));
+    found.collect()
 }
 
 /// Autocorrelation at lags 0, 1, 2 …: Σ `r_i` r_(i+k) over Σ `r_i²`, mean removed, which of n white

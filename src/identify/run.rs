@@ -21,11 +21,12 @@ use crate::identify::joint::{self, Weights};
 use crate::identify::messages::{Finding, Item, LeftOut, Reason, Remark};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult, succeeded};
+use crate::identify::residuals::MethodResiduals;
 use crate::identify::selection::Selection;
 use crate::identify::uncertainty::budget;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
-use crate::identify::{decay, estimate, flight_times, results};
+use crate::identify::{decay, estimate, flight_times, residuals, results};
 use crate::motion::Observation;
 
 /// Identify from observations and brackets, as records of one specimen.
@@ -154,6 +155,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         suspicions,
         left_out: run.left_out(),
         used_by: run.used_by(&methods),
+        residuals: run.residuals(&fits, &methods),
         methods,
         joint_fit,
         specimens: BTreeMap::new(),
@@ -573,6 +575,20 @@ impl IdentificationRun<'_> {
             (*method, records)
         });
         fitted.collect()
+    }
+
+    /// The residuals of the methods that gave a result, at the joint fit.
+    fn residuals(
+        &self,
+        fits: &Fits,
+        methods: &BTreeMap<Method, MethodResult>,
+    ) -> Vec<MethodResiduals> {
+        let Some(joint) = succeeded(&fits.joint) else {
+            return Vec::new();
+        };
+        let mut found = residuals::residuals(&self.selection.blocks, &joint.fit.parameters);
+        found.retain(|of| methods.contains_key(&of.method));
+        found
     }
 
     /// What each method found.

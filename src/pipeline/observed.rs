@@ -47,6 +47,13 @@ impl Observed {
         Self::from_observations(observations)
     }
 
+    /// Forget the folded waveforms of all records.
+    pub(super) fn drop_waveforms(&mut self) {
+        for observation in &mut self.observations {
+            observation.folded = None;
+        }
+    }
+
     /// What was observed, with the brackets in it.
     ///
     /// # Errors

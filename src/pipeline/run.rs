@@ -33,7 +33,7 @@ pub struct Destination<'a> {
 /// What a run found, all of it written already.
 #[derive(Debug, Clone)]
 pub struct Completed {
-    /// The records; none for published speeds.
+    /// The records without their waveforms; none for published speeds.
     pub observations: Vec<Observation>,
     /// The parameters.
     pub identification: Identification,
@@ -71,7 +71,7 @@ pub fn run(
 /// As [`run`].
 pub(super) fn complete(
     campaign: &ResolvedCampaign,
-    (observed, found): (Observed, Option<IdentificationFile>),
+    (mut observed, found): (Observed, Option<IdentificationFile>),
     destination: &Destination<'_>,
     progress: Progress<'_>,
 ) -> Result<Completed, PipelineError> {
@@ -83,6 +83,8 @@ pub(super) fn complete(
     };
     progress("report", 0, 1);
     let content = report::content(campaign, &observed, &found, destination.command_line)?;
+    // nothing looks at the waveforms any more, and the document takes room
+    observed.drop_waveforms();
     let (report, tables) = rayon::join(
         || report::render(&content, campaign, destination.also),
         || tables::files(&observed),

@@ -4,6 +4,8 @@
 use std::path::{Path, PathBuf};
 
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
+use crate::identify::Identification;
+use crate::identify::residuals::MethodResiduals;
 use crate::motion::{Observation, brackets};
 use crate::pipeline::identify::IdentificationFile;
 use crate::pipeline::json::{read_json, store_error, write_json};
@@ -18,6 +20,7 @@ const RESOLVED: &str = "campaign.resolved.json";
 const INGESTED: &str = "ingested.h5";
 const INGESTED_CAMPAIGN: &str = "ingested.json";
 const OBSERVATIONS: &str = "observations.json.gz";
+const RESIDUALS: &str = "residuals.json.gz";
 
 /// Write the resolved campaign beside the results.
 ///
@@ -244,7 +247,24 @@ fn of_stage(out: &Path, name: &str, what: &str) -> Result<PathBuf, PipelineError
     Ok(path)
 }
 
-/// What stage three left.
+/// Keep the residuals for the report's stage, beside identification.json.
+///
+/// # Errors
+/// If they cannot be written.
+pub fn write_residuals(found: &Identification, out: &Path) -> Result<(), PipelineError> {
+    Ok(gzip_json::write(&out.join(RESIDUALS), &found.residuals)?)
+}
+
+/// The residuals of stage 3.
+///
+/// # Errors
+/// If they are missing or unreadable.
+pub fn read_residuals(out: &Path) -> Result<Vec<MethodResiduals>, PipelineError> {
+    let path = of_stage(out, RESIDUALS, "residuals")?;
+    gzip_json::read(&path).map_err(|e| store_error(&path, e))
+}
+
+/// What stage three left, without the residuals.
 ///
 /// # Errors
 /// Where it is missing or unreadable.

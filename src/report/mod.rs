@@ -108,7 +108,11 @@ impl Report {
             Format::Png => each("png", &png::png),
             Format::FigurePdf => each("pdf", &picture::pdf),
             Format::Tex => Ok(latex::tables(&self.document)),
-            Format::Csv => each("csv", &|f| Ok(f.csv.clone().into_bytes())),
+            Format::Csv => {
+                let mut files = each("csv", &|f| Ok(f.csv.clone().into_bytes()))?;
+                files.retain(|(_, data)| !data.is_empty());
+                Ok(files)
+            }
         }
     }
 

@@ -325,10 +325,14 @@ impl<'a> Map<'a> {
     }
 
     fn finish(self, locale: Locale<'_>) -> Figure {
-        let csv = data::csv(&self.content.compared);
         let (name, title) = match self.size {
             MapSize::Full => ("map", Phrase::RegionsSimulatedAndMeasured),
             MapSize::Small => ("map_small", Phrase::MotionsAndBoundaries),
+        };
+        // the small map shows the data of the full one
+        let csv = match self.size {
+            MapSize::Full => data::csv(&self.content.compared),
+            MapSize::Small => String::new(),
         };
         Figure::new(name, &locale.translate(title), self.canvas, csv)
     }
