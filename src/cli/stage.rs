@@ -191,7 +191,7 @@ impl Report {
         let (folder, _lock) = folder.take()?;
         let mut campaign = store::read_resolved(&folder)?;
         self.options.apply(&mut campaign.report, verbosity)?;
-        let observed = store::read_observed(&folder)?;
+        let observed = store::read_without_waveforms(&folder)?;
         let mut found = store::read_identification(&folder)?;
         found.identification.residuals = store::read_residuals(&folder)?;
         let command = commands(&campaign.file, &folder, &self.options);

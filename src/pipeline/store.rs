@@ -2,10 +2,12 @@
 //! observations.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
 use crate::identify::Identification;
 use crate::identify::residuals::MethodResiduals;
+use crate::motion::Folded;
 use crate::motion::{Observation, brackets};
 use crate::pipeline::identify::IdentificationFile;
 use crate::pipeline::json::{read_json, store_error, write_json};
@@ -20,6 +22,7 @@ const RESOLVED: &str = "campaign.resolved.json";
 const INGESTED: &str = "ingested.h5";
 const INGESTED_CAMPAIGN: &str = "ingested.json";
 const OBSERVATIONS: &str = "observations.json.gz";
+const WAVEFORMS: &str = "waveforms.json.gz";
 const RESIDUALS: &str = "residuals.json.gz";
 
 /// Write the resolved campaign beside the results.
@@ -206,7 +209,8 @@ fn note_roles(roles: &mut Vec<ChannelSetup>, record: &Record) {
     }
 }
 
-/// Stage 2: observe the calibrated records and write the observations.
+/// Stage 2: observe the calibrated records and write the observations, which come back without
+/// their waveforms.
 ///
 /// # Errors
 /// If the files of stage 1 are missing or the outputs cannot be written.
@@ -224,8 +228,22 @@ pub fn classify(out: &Path, progress: Progress<'_>) -> Result<Observed, Pipeline
     }
     observed.brackets = brackets(&observed.observations);
     super::tables::write(&super::tables::files(&observed)?, out)?;
-    gzip_json::write(&out.join(OBSERVATIONS), &observed.observations)?;
+    write_observed(&mut observed, out)?;
     Ok(observed)
+}
+
+/// Write the observations, and their waveforms, which the report does not need, into a file of their
+/// own. While there are new waveforms there are no old observations.
+fn write_observed(observed: &mut Observed, out: &Path) -> Result<(), PipelineError> {
+    let path = out.join(OBSERVATIONS);
+    if path.exists() {
+        std::fs::remove_file(&path).map_err(|e| store_error(&path, e))?;
+    }
+    let each = observed.observations.iter();
+    let waveforms: Vec<Option<&Folded>> = each.map(|o| o.folded.as_deref()).collect();
+    gzip_json::write(&out.join(WAVEFORMS), &waveforms)?;
+    observed.drop_waveforms();
+    Ok(gzip_json::write(&path, &observed.observations)?)
 }
 
 /// A file of a previous stage.
@@ -277,6 +295,21 @@ pub fn read_identification(out: &Path) -> Result<IdentificationFile, PipelineErr
 /// # Errors
 /// If they are missing or unreadable.
 pub fn read_observed(out: &Path) -> Result<Observed, PipelineError> {
+    let mut observed = read_without_waveforms(out)?;
+    let path = of_stage(out, WAVEFORMS, "waveforms")?;
+    let waveforms: Vec<Option<Folded>> =
+        gzip_json::read(&path).map_err(|e| store_error(&path, e))?;
+    for (observation, folded) in observed.observations.iter_mut().zip(waveforms) {
+        observation.folded = folded.map(Arc::new);
+    }
+    Ok(observed)
+}
+
+/// The observations of stage 2 without their waveforms.
+///
+/// # Errors
+/// If they are missing or unreadable.
+pub fn read_without_waveforms(out: &Path) -> Result<Observed, PipelineError> {
     let path = of_stage(out, OBSERVATIONS, "observations")?;
     let observations: Vec<Observation> =
         gzip_json::read(&path).map_err(|e| store_error(&path, e))?;
