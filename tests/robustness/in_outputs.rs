@@ -167,6 +167,16 @@ fn folders() -> Vec<Case> {
             &["campaign.toml cannot be read", "impactid init"],
         ),
         case(
+            "a folder in place of campaign.toml",
+            |_| {},
+            &["check", "."],
+            &[
+                "it is a folder",
+                "name the campaign.toml in it",
+                "impactid init",
+            ],
+        ),
+        case(
             "explore --watch on a folder",
             |_| {},
             &["explore", "--watch", "."],
