@@ -76,7 +76,10 @@ fn every_format_is_written_and_every_figure_has_its_data() {
     let drawn = stems(&figures, "svg");
     assert!(drawn.contains("map") && drawn.contains("comparison_A"));
     assert_eq!(drawn, stems(&figures, "png"));
-    assert_eq!(drawn, stems(&figures, "csv"));
+    // the small map shows the data of the full one
+    let small = BTreeSet::from(["map_small".to_owned()]);
+    let with_data: BTreeSet<String> = drawn.difference(&small).cloned().collect();
+    assert_eq!(with_data, stems(&figures, "csv"));
     let map = fs::read_to_string(figures.join("map.csv")).expect("the map's data");
     for layer in [
         "record,",
