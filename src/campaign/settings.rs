@@ -231,10 +231,9 @@ pub(super) fn note_settings(entries: &[RecordEntry], context: &mut ResolveContex
                 .faults
                 .extend([Diagnostic::new(what, place, message, remedy)]);
         };
-        // what is left of the conversion to metres is not printed
-        let clearance_m = setting.clearance_m.map(|c| (1e9 * c).round() / 1e9);
-        if let Some(c) = clearance_m.filter(|c| c.abs() > 1.0) {
-            let message = format!("a clearance of {c} m");
+        if let Some(c) = setting.clearance_m.filter(|c| c.abs() > 1.0) {
+            // what is left of the conversion to metres is not printed
+            let message = format!("a clearance of {} m", (1e9 * c).round() / 1e9);
             note(
                 Severity::Record,
                 "clearance",
@@ -242,7 +241,7 @@ pub(super) fn note_settings(entries: &[RecordEntry], context: &mut ResolveContex
                 "check its unit: mm?",
             );
         }
-        if let Some(c) = clearance_m.filter(|c| *c <= 0.0) {
+        if let Some(c) = setting.clearance_m.filter(|c| *c <= 0.0) {
             let message = format!("a clearance of {c} m: a preload, or a typing error");
             let remedy = "nothing, if the rig was preloaded like this";
             note(Severity::Note, "clearance", message, remedy);

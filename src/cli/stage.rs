@@ -172,8 +172,7 @@ impl Identify {
         let observed = store::read_observed(&folder)?;
         let bar = Progress::new(verbosity, "identify", 1);
         let found = pipeline::identify::identify(&campaign, &observed, Some(bar.fits()))?;
-        store::write_residuals(&found.identification, &folder)?;
-        pipeline::identify::write(&found, &folder)?;
+        store::write_identified(&found, &folder)?;
         drop(bar);
         print_fits(&found.identification, verbosity);
         print_left_out(&observed.observations, verbosity);
@@ -192,8 +191,7 @@ impl Report {
         let mut campaign = store::read_resolved(&folder)?;
         self.options.apply(&mut campaign.report, verbosity)?;
         let observed = store::read_without_waveforms(&folder)?;
-        let mut found = store::read_identification(&folder)?;
-        found.identification.residuals = store::read_residuals(&folder)?;
+        let found = store::read_identified(&folder)?;
         let command = commands(&campaign.file, &folder, &self.options);
         let bar = Progress::new(verbosity, "report", 1);
         let report = pipeline::report::files(&campaign, &observed, &found, &command)?;

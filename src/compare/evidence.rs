@@ -1,6 +1,6 @@
 //! What each method used: resonance curves, speeds at impacts, residuals, correlation.
 
-use super::input::{Input, thinned};
+use super::input::Input;
 use crate::identify::diagnostics::contact_law::Law;
 use crate::identify::evidence::impacts::SpeedPair;
 use crate::identify::evidence::impacts_of_bulk;
@@ -11,6 +11,7 @@ use crate::identify::{Method, MethodResult, SpecimenResult};
 use crate::motion::Observation;
 use crate::motion::Response;
 use crate::record::Role;
+use crate::signal::thinning::thinned;
 use impact_oscillator::atlas::map::even;
 use labfiles::units::Dimension;
 

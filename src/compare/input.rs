@@ -65,8 +65,3 @@ pub(super) fn place(parameters: &Parameters, o: &Observation) -> (Option<f64>, O
     let scale = parameters.static_deflection_m * o.setting.drive_amplitude;
     (eta, o.setting.clearance_m.map(|c| c / scale))
 }
-
-/// Every second, third … of points that are more than `most`.
-pub(super) fn thinned<T>(points: &[T], most: usize) -> impl Iterator<Item = &T> {
-    points.iter().step_by(points.len().div_ceil(most).max(1))
-}

@@ -8,6 +8,7 @@ use crate::identify::fit::Block;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::method::Method;
 use crate::signal::robust;
+use crate::signal::thinning::thinned;
 
 /// Lags of the autocorrelation.
 const LAGS: usize = 20;
@@ -46,10 +47,9 @@ impl MethodResiduals {
             .flat_map(|(owner, list)| list.iter().map(|r| (*owner, *r)))
             .collect();
         let values: Vec<f64> = all.iter().map(|r| r.1).collect();
-        let every = all.len().div_ceil(MOST).max(1);
         (all.len() >= FEWEST).then(|| Self {
             method,
-            residuals: all.iter().step_by(every).copied().collect(),
+            residuals: thinned(&all, MOST).copied().collect(),
             total: all.len(),
             autocorrelation: autocorrelation(&values),
         })

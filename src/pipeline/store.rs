@@ -5,11 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
-use crate::identify::Identification;
-use crate::identify::residuals::MethodResiduals;
-use crate::motion::Folded;
-use crate::motion::{Observation, brackets};
-use crate::pipeline::identify::IdentificationFile;
+use crate::motion::{Folded, Observation, brackets};
+use crate::pipeline::identify::{self, IdentificationFile};
 use crate::pipeline::json::{read_json, store_error, write_json};
 use crate::pipeline::observe::each_record;
 use crate::pipeline::{Observed, PipelineError, Progress, RefusedRecord, gzip_json};
@@ -233,17 +230,25 @@ pub fn classify(out: &Path, progress: Progress<'_>) -> Result<Observed, Pipeline
 }
 
 /// Write the observations, and their waveforms, which the report does not need, into a file of their
-/// own. While there are new waveforms there are no old observations.
+/// own. While there are new waveforms there are no old observations; residuals of others, which state
+/// their records by index, go with them.
 fn write_observed(observed: &mut Observed, out: &Path) -> Result<(), PipelineError> {
+    remove(&out.join(RESIDUALS))?;
     let path = out.join(OBSERVATIONS);
-    if path.exists() {
-        std::fs::remove_file(&path).map_err(|e| store_error(&path, e))?;
-    }
+    remove(&path)?;
     let each = observed.observations.iter();
     let waveforms: Vec<Option<&Folded>> = each.map(|o| o.folded.as_deref()).collect();
     gzip_json::write(&out.join(WAVEFORMS), &waveforms)?;
     observed.drop_waveforms();
     Ok(gzip_json::write(&path, &observed.observations)?)
+}
+
+/// Remove a file that no longer holds, if it is there.
+fn remove(path: &Path) -> Result<(), PipelineError> {
+    match std::fs::remove_file(path) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(store_error(path, e)),
+        _ => Ok(()),
+    }
 }
 
 /// A file of a previous stage.
@@ -252,7 +257,7 @@ fn write_observed(observed: &mut Observed, out: &Path) -> Result<(), PipelineErr
 /// [`PipelineError::NoResults`] if it is missing from results of `impactid run`, which writes none.
 fn of_stage(out: &Path, name: &str, what: &str) -> Result<PathBuf, PipelineError> {
     let path = out.join(name);
-    if !path.exists() && out.join(super::identify::FILE).exists() {
+    if !path.exists() && out.join(identify::FILE).exists() {
         return Err(PipelineError::NoResults {
             path: out.display().to_string(),
             reason: format!("there are no {what}: `impactid run` does not keep them"),
@@ -265,29 +270,35 @@ fn of_stage(out: &Path, name: &str, what: &str) -> Result<PathBuf, PipelineError
     Ok(path)
 }
 
-/// Keep the residuals for the report's stage, beside identification.json.
+/// Stage 3: write identification.json, and the residuals, which the report needs, into a file of their
+/// own. While there is a new identification there are no old residuals.
 ///
 /// # Errors
 /// If they cannot be written.
-pub fn write_residuals(found: &Identification, out: &Path) -> Result<(), PipelineError> {
-    Ok(gzip_json::write(&out.join(RESIDUALS), &found.residuals)?)
+pub fn write_identified(found: &IdentificationFile, out: &Path) -> Result<(), PipelineError> {
+    let path = out.join(RESIDUALS);
+    remove(&path)?;
+    identify::write(found, out)?;
+    Ok(gzip_json::write(&path, &found.identification.residuals)?)
 }
 
-/// The residuals of stage 3.
+/// What stage 3 left.
 ///
 /// # Errors
-/// If they are missing or unreadable.
-pub fn read_residuals(out: &Path) -> Result<Vec<MethodResiduals>, PipelineError> {
+/// Where it is missing or unreadable.
+pub fn read_identified(out: &Path) -> Result<IdentificationFile, PipelineError> {
+    let mut found = read_identification(out)?;
     let path = of_stage(out, RESIDUALS, "residuals")?;
-    gzip_json::read(&path).map_err(|e| store_error(&path, e))
+    found.identification.residuals = gzip_json::read(&path).map_err(|e| store_error(&path, e))?;
+    Ok(found)
 }
 
-/// What stage three left, without the residuals.
+/// The identification of stage 3 or of a run, without the residuals.
 ///
 /// # Errors
 /// Where it is missing or unreadable.
 pub fn read_identification(out: &Path) -> Result<IdentificationFile, PipelineError> {
-    read_json(&out.join(super::identify::FILE))
+    read_json(&out.join(identify::FILE))
 }
 
 /// The observations of stage 2.
@@ -323,15 +334,47 @@ pub fn read_without_waveforms(out: &Path) -> Result<Observed, PipelineError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identify::residuals::MethodResiduals;
+    use crate::identify::{Identification, Method, Provenance};
 
     #[test]
     fn results_of_a_run_are_refused_with_the_remedy() {
         let folder = tempfile::tempdir().unwrap();
         let store = |e: PipelineError| matches!(e, PipelineError::Store { .. });
         assert!(read_observed(folder.path()).is_err_and(store));
-        std::fs::write(folder.path().join(super::super::identify::FILE), "{}").unwrap();
+        std::fs::write(folder.path().join(identify::FILE), "{}").unwrap();
         let error = read_observed(folder.path()).err().unwrap();
         assert!(error.to_string().ends_with("does not keep them"), "{error}");
+        assert!(
+            error
+                .remedy()
+                .contains("ingest, classify, identify, report")
+        );
+    }
+
+    #[test]
+    fn new_observations_leave_no_residuals_of_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path();
+        let mut found = IdentificationFile {
+            identification: Identification::default(),
+            provenance: Provenance::default(),
+        };
+        found.identification.residuals = vec![MethodResiduals {
+            method: Method::Impacts,
+            residuals: vec![(7, 0.5)],
+            total: 1,
+            autocorrelation: vec![1.0],
+        }];
+        write_identified(&found, out).unwrap();
+        let kept = read_identified(out).unwrap().identification;
+        assert_eq!(kept.residuals, found.identification.residuals);
+        let mut none = Observed {
+            observations: Vec::new(),
+            brackets: Vec::new(),
+        };
+        write_observed(&mut none, out).unwrap();
+        let error = read_identified(out).err().unwrap();
         assert!(
             error
                 .remedy()

@@ -10,6 +10,7 @@ pub mod local_fit;
 pub mod onsets;
 pub mod robust;
 mod spectrum;
+pub(crate) mod thinning;
 pub mod tone;
 pub(crate) mod turns;
 pub mod whole;

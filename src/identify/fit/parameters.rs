@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 pub use super::coordinate::Coordinate;
 use super::gap_errors::GapErrors;
 use crate::event::{CornerShift, RigKind};
-use crate::identify::fit::effect::{Effect, Effects};
+use crate::identify::fit::effect::Effect;
 use crate::record::Role;
 use impact_oscillator::model::params::{
     Contact, Flight, Machine, Oscillator, Restitution, Setting,
@@ -120,12 +120,6 @@ impl Parameters {
     /// Strength of an effect beyond the model.
     pub fn effect(&self, effect: Effect) -> f64 {
         self.effects[effect.place()]
-    }
-
-    /// The kinds of the effects beyond the model that have a strength.
-    pub fn effects_present(&self) -> Effects {
-        let present = Effect::ALL.iter().filter(|e| self.effect(**e) != 0.0);
-        Effects::of(&present.map(|e| e.kind()).collect::<Vec<_>>())
     }
 
     /// Delay of a channel against the drive's, s; 0 for channels that carry none.

@@ -15,7 +15,7 @@ pub(crate) struct Figure {
     pub width: f64,
     /// Height, points.
     pub height: f64,
-    /// Its data.
+    /// Its data; empty where another figure has them.
     pub csv: String,
     /// Points with a text that is shown on hovering.
     pub spots: Vec<Spot>,

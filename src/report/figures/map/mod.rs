@@ -325,14 +325,13 @@ impl<'a> Map<'a> {
     }
 
     fn finish(self, locale: Locale<'_>) -> Figure {
-        let (name, title) = match self.size {
-            MapSize::Full => ("map", Phrase::RegionsSimulatedAndMeasured),
-            MapSize::Small => ("map_small", Phrase::MotionsAndBoundaries),
-        };
-        // the small map shows the data of the full one
-        let csv = match self.size {
-            MapSize::Full => data::csv(&self.content.compared),
-            MapSize::Small => String::new(),
+        let (name, title, csv) = match self.size {
+            MapSize::Full => {
+                let csv = data::csv(&self.content.compared);
+                ("map", Phrase::RegionsSimulatedAndMeasured, csv)
+            }
+            // shows the data of the full one
+            MapSize::Small => ("map_small", Phrase::MotionsAndBoundaries, String::new()),
         };
         Figure::new(name, &locale.translate(title), self.canvas, csv)
     }
