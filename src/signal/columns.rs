@@ -12,7 +12,12 @@ pub(crate) fn sum(values: &[f64]) -> f64 {
     for x in wide {
         sums = std::array::from_fn(|i| sums[i] + x[i]);
     }
-    total(sums) + rest.iter().sum::<f64>()
+    let (fours, last) = rest.as_chunks::<4>();
+    let mut sums = folded(sums);
+    for x in fours {
+        sums = std::array::from_fn(|i| sums[i] + x[i]);
+    }
+    last.iter().fold(total(sums), |sum, x| sum + x)
 }
 
 /// Inner product, in sixteen sums that do not wait for each other.
@@ -23,25 +28,32 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     for (x, y) in a.iter().zip(b) {
         sums = std::array::from_fn(|i| sums[i] + x[i] * y[i]);
     }
-    let rest: f64 = rest_a.iter().zip(rest_b).map(|(x, y)| x * y).sum();
-    total(sums) + rest
+    let ((a, last_a), (b, last_b)) = (rest_a.as_chunks::<4>(), rest_b.as_chunks::<4>());
+    let mut sums = folded(sums);
+    for (x, y) in a.iter().zip(b) {
+        sums = std::array::from_fn(|i| sums[i] + x[i] * y[i]);
+    }
+    let last = last_a.iter().zip(last_b);
+    last.fold(total(sums), |sum, (x, y)| sum + x * y)
+}
+
+/// Four sums of sixteen.
+#[inline(always)]
+fn folded(sums: [f64; 16]) -> [f64; 4] {
+    // opaque, so that the sums stay in vectors as wide as the processor's while they are formed
+    let sums = std::hint::black_box(sums);
+    std::array::from_fn(|i| (sums[i] + sums[i + 8]) + (sums[i + 4] + sums[i + 12]))
 }
 
 #[inline(always)]
-fn total(sums: [f64; 16]) -> f64 {
-    let fours: [f64; 4] =
-        std::array::from_fn(|i| (sums[i] + sums[i + 8]) + (sums[i + 4] + sums[i + 12]));
-    (fours[0] + fours[2]) + (fours[1] + fours[3])
+fn total([a, b, c, d]: [f64; 4]) -> f64 {
+    (a + c) + (b + d)
 }
 
 /// Subtract a multiple of another column.
 #[multiversion(targets("x86_64+avx2"))]
 pub(crate) fn subtract(from: &mut [f64], share: f64, column: &[f64]) {
-    let ((wide, rest), (others, other_rest)) = (from.as_chunks_mut::<8>(), column.as_chunks::<8>());
-    for (x, y) in wide.iter_mut().zip(others) {
-        *x = std::array::from_fn(|i| x[i] - share * y[i]);
-    }
-    for (x, y) in rest.iter_mut().zip(other_rest) {
+    for (x, y) in from.iter_mut().zip(column) {
         *x -= share * y;
     }
 }

@@ -42,9 +42,12 @@ impl LocalFit {
         let values = &samples[first..last];
         let mut right = Row::default();
         for (powers, value) in basis.powers.iter().zip(values) {
-            right = std::array::from_fn(|k| right[k] + powers[k] * value);
+            for (sum, power) in right.iter_mut().zip(powers) {
+                *sum += power * value;
+            }
         }
-        let coefficients = basis.covariance.map(|row| product(&row, &right));
+        let [a, b, c, d] = &basis.covariance;
+        let coefficients = [a, b, c, d].map(|row| product(row, &right));
         let residual = |(powers, value): (&Row, &f64)| value - product(&coefficients, powers);
         let residuals = basis.powers.iter().zip(values).map(residual);
         let residual_squares = residuals.map(|r| r * r).sum();

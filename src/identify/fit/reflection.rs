@@ -1,5 +1,6 @@
 //! Householder reflections that fold rows into an upper triangle (Golub and Van Loan, Matrix
-//! Computations, chapter 5), two at a time: each column is read and written once for both.
+//! Computations, chapter 5), two at a time, of two columns at a time: each column is read and written once
+//! for both reflections, and the reflections are read once for both columns.
 //!
 //! The same arithmetic, in the same order, on vectors of any width: no bit depends on the processor.
 
@@ -89,8 +90,9 @@ fn fold_panel<const N: usize>(
         let column = &mut column[..filled];
         let heads = &mut triangle[(first + k) * width + first..][..=k];
         for (i, pivot) in before.chunks_exact(high).enumerate() {
-            let pivot = [&pivot[..filled]];
-            reflect([reflections[i]], [[0.0]], pivot, &mut heads[i..=i], column);
+            let rows = &mut *column;
+            let heads = &mut heads[i..=i];
+            reflect([reflections[i]], [[0.0]], [pivot], [Column { heads, rows }]);
         }
         reflections[k] = Reflection::of(&mut heads[k], column);
         for (i, pivot) in before.chunks_exact(high).enumerate() {
@@ -101,10 +103,26 @@ fn fold_panel<const N: usize>(
         return;
     }
     let pivots = std::array::from_fn(|k| &panel[k * high..][..filled]);
-    for (i, column) in later.chunks_exact_mut(high).enumerate() {
-        let heads = &mut triangle[(first + N + i) * width + first..][..N];
-        reflect(reflections, products, pivots, heads, &mut column[..filled]);
+    let heads = triangle[(first + N) * width..].chunks_exact_mut(width);
+    let mut columns = later
+        .chunks_exact_mut(high)
+        .zip(heads)
+        .map(|(rows, heads)| {
+            let (rows, heads) = (&mut rows[..filled], &mut heads[first..][..N]);
+            Column { heads, rows }
+        });
+    while let Some(column) = columns.next() {
+        match columns.next() {
+            Some(next) => reflect(reflections, products, pivots, [column, next]),
+            None => reflect(reflections, products, pivots, [column]),
+        }
     }
+}
+
+/// Entries of a column: those of the triangle above the pivots, and the new rows.
+struct Column<'a> {
+    heads: &'a mut [f64],
+    rows: &'a mut [Lanes],
 }
 
 /// I − scale·vvᵀ with v = (lead, pivot); a scale of zero reflects nothing.
@@ -133,35 +151,57 @@ impl Reflection {
     }
 }
 
-/// Reflect a column N times; `products` are those of the pivots with each other.
+/// Reflect M columns N times; `products` are those of the pivots with each other.
 #[inline(always)]
-fn reflect<const N: usize>(
+fn reflect<const N: usize, const M: usize>(
     reflections: [Reflection; N],
     products: [[f64; N]; N],
     pivots: [&[Lanes]; N],
-    heads: &mut [f64],
-    column: &mut [Lanes],
+    mut columns: [Column<'_>; M],
 ) {
-    let pivots: [&[Lanes]; N] = pivots.map(|pivot| &pivot[..column.len()]);
-    let mut sums = [[0.0; LANES]; N];
-    for (i, x) in column.iter().enumerate() {
+    let sums = inner_products(pivots, &columns);
+    let mut shares = [[0.0; N]; M];
+    for (m, Column { heads, .. }) in columns.iter_mut().enumerate() {
         for k in 0..N {
-            sums[k] = std::array::from_fn(|l| sums[k][l] + pivots[k][i][l] * x[l]);
+            // what the reflections before this one take away from the column's product with its pivot
+            let taken: f64 = (0..k).map(|i| shares[m][i] * products[i][k]).sum();
+            let Reflection { lead, scale } = reflections[k];
+            shares[m][k] = scale * (lead * heads[k] + (sums[m][k] - taken));
+            heads[k] -= shares[m][k] * lead;
         }
     }
-    let mut shares = [0.0; N];
-    for k in 0..N {
-        // what the reflections before this one take away from the column's product with its pivot
-        let taken: f64 = (0..k).map(|i| shares[i] * products[i][k]).sum();
-        let Reflection { lead, scale } = reflections[k];
-        shares[k] = scale * (lead * heads[k] + (total(sums[k]) - taken));
-        heads[k] -= shares[k] * lead;
-    }
-    for (i, x) in column.iter_mut().enumerate() {
-        for k in 0..N {
-            *x = std::array::from_fn(|l| x[l] - shares[k] * pivots[k][i][l]);
+    for i in 0..columns[0].rows.len() {
+        for (m, Column { rows, .. }) in columns.iter_mut().enumerate() {
+            for k in 0..N {
+                let (x, pivot) = (&mut rows[i], &pivots[k][i]);
+                *x = std::array::from_fn(|l| x[l] - shares[m][k] * pivot[l]);
+            }
         }
     }
+}
+
+/// Inner products of the new rows of M columns with N pivots.
+#[inline(always)]
+fn inner_products<const N: usize, const M: usize>(
+    pivots: [&[Lanes]; N],
+    columns: &[Column<'_>; M],
+) -> [[f64; N]; M] {
+    let mut sums = [[[0.0; LANES]; N]; M];
+    for i in 0..columns[0].rows.len() {
+        for m in 0..M {
+            for k in 0..N {
+                let (x, pivot) = (&columns[m].rows[i], &pivots[k][i]);
+                sums[m][k] = std::array::from_fn(|l| sums[m][k][l] + pivot[l] * x[l]);
+            }
+        }
+    }
+    let mut products = [[0.0; N]; M];
+    for m in 0..M {
+        for k in 0..N {
+            products[m][k] = total(sums[m][k]);
+        }
+    }
+    products
 }
 
 #[inline(always)]
@@ -175,6 +215,8 @@ fn inner(a: &[Lanes], b: &[Lanes]) -> f64 {
 
 #[inline(always)]
 fn total(sums: Lanes) -> f64 {
-    let [a, b, c, d, e, f, g, h] = sums;
-    ((a + e) + (c + g)) + ((b + f) + (d + h))
+    // opaque, so that the sums stay in vectors as wide as the processor's while they are formed
+    let sums = std::hint::black_box(sums);
+    let [a, b, c, d]: [f64; LANES / 2] = std::array::from_fn(|i| sums[i] + sums[i + LANES / 2]);
+    (a + c) + (b + d)
 }

@@ -79,15 +79,18 @@ fn periodic<T: ComplexField<RealField = f64> + Copy, const N: usize>(
     let mut z = [T::zero(); N];
     out.push(z);
     for pair in p.windows(2) {
-        let gained = |k: usize| earlier.scale(pair[0][k]) + later.scale(pair[1][k]);
-        z = std::array::from_fn(|k| decay * z[k] + gained(k));
+        for (z, (a, b)) in z.iter_mut().zip(pair[0].iter().zip(&pair[1])) {
+            *z = decay * *z + (earlier.scale(*a) + later.scale(*b));
+        }
         out.push(z);
     }
     let returned = lambda.scale(h * grid.intervals as f64).exp();
     let mut start = z.map(|z| z / (T::one() - returned));
     for z in &mut out {
-        *z = std::array::from_fn(|k| z[k] + start[k]);
-        start = start.map(|start| start * decay);
+        for (z, start) in z.iter_mut().zip(&mut start) {
+            *z += *start;
+            *start *= decay;
+        }
     }
     out
 }
@@ -110,32 +113,38 @@ impl<const N: usize> Sampled<N> {
             [&self.values[k], &self.values[k + 1]],
             [&self.slopes[k], &self.slopes[k + 1]],
         );
-        std::array::from_fn(|i| {
-            let (a, b) = (a[i], b[i]);
-            let (da, db) = (h * da[i], h * db[i]);
+        let mut values = [0.0; N];
+        let ends = a.iter().zip(b).zip(da.iter().zip(db));
+        for (value, ((a, b), (da, db))) in values.iter_mut().zip(ends) {
+            let (da, db) = (h * da, h * db);
             let (c, d) = (3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db);
-            a + s * (da + s * (c + s * d))
-        })
+            *value = a + s * (da + s * (c + s * d));
+        }
+        values
     }
 
     /// Behind a first-order high-pass y' + cy = x' of a corner c.
     #[must_use]
     pub fn high_passed(&self, corner: f64) -> Self {
         // y = x − w with w' = −cw + cx.
-        let fed = self.values.iter().map(|x| x.map(|x| corner * x));
-        let lost = periodic(-corner, self.grid, &fed.collect::<Vec<_>>());
-        let values = self.values.iter().zip(&lost);
-        let values: Vec<[f64; N]> = values
-            .map(|(x, w)| std::array::from_fn(|i| x[i] - w[i]))
-            .collect();
-        let slopes = self.slopes.iter().zip(&values);
-        let slopes = slopes.map(|(d, y)| std::array::from_fn(|i| d[i] - corner * y[i]));
+        let mut fed = self.values.clone();
+        fed.as_flattened_mut().iter_mut().for_each(|x| *x *= corner);
+        let lost = periodic(-corner, self.grid, &fed);
+        let values = less(&self.values, 1.0, &lost);
         Self {
             grid: self.grid,
-            slopes: slopes.collect(),
+            slopes: less(&self.slopes, corner, &values),
             values,
         }
     }
+}
+
+/// Values less a share of others.
+fn less<const N: usize>(values: &[[f64; N]], share: f64, others: &[[f64; N]]) -> Vec<[f64; N]> {
+    let mut out = values.to_vec();
+    let pairs = out.as_flattened_mut().iter_mut().zip(others.as_flattened());
+    pairs.for_each(|(value, other)| *value -= share * other);
+    out
 }
 
 /// Periodic responses of one mass to N extra accelerations, each alone.
@@ -152,15 +161,17 @@ impl<const N: usize> PeriodicResponses<N> {
     pub fn new(oscillator: &Oscillator, grid: Grid, accelerations: &[[f64; N]]) -> Self {
         let lambda = exponent(oscillator);
         let z = periodic(lambda, grid, accelerations);
-        let of = |factor: C64, z: &[C64; N]| z.map(|z| (factor * z).im / lambda.im);
-        let part = |factor: C64| z.iter().map(move |z| of(factor, z));
-        let own = part(lambda * lambda).zip(accelerations);
-        let own = own.map(|(a, p)| std::array::from_fn(|i| a[i] + p[i]));
+        let part = |factor: C64| {
+            let mut values = vec![[0.0; N]; z.len()];
+            let pairs = values.as_flattened_mut().iter_mut().zip(z.as_flattened());
+            pairs.for_each(|(value, z)| *value = (factor * z).im / lambda.im);
+            values
+        };
         Self {
             grid,
-            positions: part(C64::new(1.0, 0.0)).collect(),
-            velocities: part(lambda).collect(),
-            accelerations: own.collect(),
+            positions: part(C64::new(1.0, 0.0)),
+            velocities: part(lambda),
+            accelerations: less(&part(lambda * lambda), -1.0, accelerations),
         }
     }
 
