@@ -10,14 +10,22 @@ pub(crate) fn sum(values: &[f64]) -> f64 {
     let (wide, rest) = values.as_chunks::<16>();
     let mut sums = [0.0; 16];
     for x in wide {
-        sums = std::array::from_fn(|i| sums[i] + x[i]);
+        for (sum, x) in sums.iter_mut().zip(x) {
+            *sum += x;
+        }
     }
     let (fours, last) = rest.as_chunks::<4>();
     let mut sums = folded(sums);
     for x in fours {
-        sums = std::array::from_fn(|i| sums[i] + x[i]);
+        for (sum, x) in sums.iter_mut().zip(x) {
+            *sum += x;
+        }
     }
-    last.iter().fold(total(sums), |sum, x| sum + x)
+    let mut sum = total(sums);
+    for x in last {
+        sum += x;
+    }
+    sum
 }
 
 /// Inner product, in sixteen sums that do not wait for each other.
@@ -26,15 +34,27 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<16>(), b.as_chunks::<16>());
     let mut sums = [0.0; 16];
     for (x, y) in a.iter().zip(b) {
-        sums = std::array::from_fn(|i| sums[i] + x[i] * y[i]);
+        add_products(&mut sums, x, y);
     }
     let ((a, last_a), (b, last_b)) = (rest_a.as_chunks::<4>(), rest_b.as_chunks::<4>());
     let mut sums = folded(sums);
     for (x, y) in a.iter().zip(b) {
-        sums = std::array::from_fn(|i| sums[i] + x[i] * y[i]);
+        add_products(&mut sums, x, y);
     }
     let last = last_a.iter().zip(last_b);
-    last.fold(total(sums), |sum, (x, y)| sum + x * y)
+    let mut sum = total(sums);
+    for (x, y) in last {
+        sum += x * y;
+    }
+    sum
+}
+
+// a closure here would at times be compiled without the vectors of the processor
+#[inline(always)]
+fn add_products<const N: usize>(sums: &mut [f64; N], a: &[f64; N], b: &[f64; N]) {
+    for (sum, (x, y)) in sums.iter_mut().zip(a.iter().zip(b)) {
+        *sum += x * y;
+    }
 }
 
 /// Four sums of sixteen.
@@ -42,7 +62,11 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 fn folded(sums: [f64; 16]) -> [f64; 4] {
     // opaque, so that the sums stay in vectors as wide as the processor's while they are formed
     let sums = std::hint::black_box(sums);
-    std::array::from_fn(|i| (sums[i] + sums[i + 8]) + (sums[i + 4] + sums[i + 12]))
+    let mut fours = [0.0; 4];
+    for (i, sum) in fours.iter_mut().enumerate() {
+        *sum = (sums[i] + sums[i + 8]) + (sums[i + 4] + sums[i + 12]);
+    }
+    fours
 }
 
 #[inline(always)]
@@ -69,7 +93,11 @@ pub(crate) fn add_difference(to: &mut [f64], share: f64, [more, less]: [&[f64]; 
 /// Product of two columns, element by element.
 #[multiversion(targets("x86_64+avx2"))]
 pub(crate) fn products(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(x, y)| x * y).collect()
+    let mut products = a[..a.len().min(b.len())].to_vec();
+    for (x, y) in products.iter_mut().zip(b) {
+        *x *= y;
+    }
+    products
 }
 
 /// Whether all are numbers, none infinite.

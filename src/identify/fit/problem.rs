@@ -188,12 +188,12 @@ impl Problem<'_> {
     pub fn groups(&self, parameters: &Parameters) -> (BTreeMap<Group, Normal>, Normal) {
         let n = self.free.len();
         let (mut groups, mut rest) = (BTreeMap::new(), Normal::zeros(n));
-        for (group, part) in self.evaluated(parameters).blocks.iter().flatten() {
+        for (group, normal) in self.normals(parameters).into_iter().flatten() {
             let sum = match group {
-                Some(group) => groups.entry(*group).or_insert_with(|| Normal::zeros(n)),
+                Some(group) => groups.entry(group).or_insert_with(|| Normal::zeros(n)),
                 None => &mut rest,
             };
-            sum.add(&part.normal(n));
+            sum.add(&normal);
         }
         rest.add(&self.priors_normal(parameters));
         (groups, rest)
@@ -201,16 +201,27 @@ impl Problem<'_> {
 
     /// Normal equations of each block, over the items that have a model, then those of all priors.
     pub fn parts(&self, parameters: &Parameters) -> Vec<Normal> {
-        let n = self.free.len();
-        let evaluated = self.evaluated(parameters);
-        let sum = |groups: &Vec<(Option<Group>, Part)>| {
-            let mut sum = Normal::zeros(n);
-            groups.iter().for_each(|(_, part)| sum.add(&part.normal(n)));
+        let sum = |groups: Vec<(Option<Group>, Normal)>| {
+            let mut sum = Normal::zeros(self.free.len());
+            groups.iter().for_each(|(_, normal)| sum.add(normal));
             sum
         };
-        let mut parts: Vec<Normal> = evaluated.blocks.iter().map(sum).collect();
+        let mut parts: Vec<Normal> = self.normals(parameters).into_iter().map(sum).collect();
         parts.push(self.priors_normal(parameters));
         parts
+    }
+
+    /// Normal equations of each group of each block, over the items that have a model.
+    fn normals(&self, parameters: &Parameters) -> Vec<Vec<(Option<Group>, Normal)>> {
+        let n = self.free.len();
+        let evaluated = self.evaluated(parameters);
+        let of_block = |groups: &Vec<(Option<Group>, Part)>| {
+            let normals = groups
+                .par_iter()
+                .map(|(group, part)| (*group, part.normal(n)));
+            normals.collect()
+        };
+        evaluated.blocks.iter().map(of_block).collect()
     }
 
     /// Normal equations of a block with its weight, over the items that have a model.

@@ -173,8 +173,7 @@ fn reflect<const N: usize, const M: usize>(
     for i in 0..columns[0].rows.len() {
         for (m, Column { rows, .. }) in columns.iter_mut().enumerate() {
             for k in 0..N {
-                let (x, pivot) = (&mut rows[i], &pivots[k][i]);
-                *x = std::array::from_fn(|l| x[l] - shares[m][k] * pivot[l]);
+                rows[i] = plus_products(rows[i], &pivots[k][i], &[-shares[m][k]; LANES]);
             }
         }
     }
@@ -190,8 +189,7 @@ fn inner_products<const N: usize, const M: usize>(
     for i in 0..columns[0].rows.len() {
         for m in 0..M {
             for k in 0..N {
-                let (x, pivot) = (&columns[m].rows[i], &pivots[k][i]);
-                sums[m][k] = std::array::from_fn(|l| sums[m][k][l] + pivot[l] * x[l]);
+                sums[m][k] = plus_products(sums[m][k], &pivots[k][i], &columns[m].rows[i]);
             }
         }
     }
@@ -208,15 +206,32 @@ fn inner_products<const N: usize, const M: usize>(
 fn inner(a: &[Lanes], b: &[Lanes]) -> f64 {
     let mut sums = [0.0; LANES];
     for (x, y) in a.iter().zip(b) {
-        sums = std::array::from_fn(|l| sums[l] + x[l] * y[l]);
+        sums = plus_products(sums, x, y);
     }
     total(sums)
+}
+
+/// x + ab, lane by lane. Written out: closures and loops over the lanes are at times compiled without the
+/// vectors of the processor that a function is for.
+#[inline(always)]
+fn plus_products(x: Lanes, a: &Lanes, b: &Lanes) -> Lanes {
+    [
+        x[0] + a[0] * b[0],
+        x[1] + a[1] * b[1],
+        x[2] + a[2] * b[2],
+        x[3] + a[3] * b[3],
+        x[4] + a[4] * b[4],
+        x[5] + a[5] * b[5],
+        x[6] + a[6] * b[6],
+        x[7] + a[7] * b[7],
+    ]
 }
 
 #[inline(always)]
 fn total(sums: Lanes) -> f64 {
     // opaque, so that the sums stay in vectors as wide as the processor's while they are formed
     let sums = std::hint::black_box(sums);
-    let [a, b, c, d]: [f64; LANES / 2] = std::array::from_fn(|i| sums[i] + sums[i + LANES / 2]);
-    (a + c) + (b + d)
+    let (low, high) = sums.split_at(LANES / 2);
+    let half = |i: usize| low[i] + high[i];
+    (half(0) + half(2)) + (half(1) + half(3))
 }

@@ -19,6 +19,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::group::{Group, PARTITIONS};
@@ -153,7 +154,7 @@ impl Whole {
     /// How much groups scatter in each coordinate.
     fn excess(&self, groups: &[Normal], free: &[Coordinate]) -> impl Iterator<Item = Excess> {
         let moves: Vec<(Vec<f64>, Vec<f64>)> = groups
-            .iter()
+            .par_iter()
             .filter_map(|group| left_out(&self.all, group, &self.covariance))
             .collect();
         free.iter().enumerate().filter_map(move |(i, coordinate)| {

@@ -80,23 +80,18 @@ impl Regions<'_> {
 
     /// How much free area surrounds a text of a half size at a place: `None` if it leaves the region.
     fn room(&self, region: usize, at: Point, half: Point, taken: &Occupancy) -> Option<f64> {
+        // the corners of the text's box and the middles of its sides
         let inside = |grow: f64| {
             let (w, h) = (half.0 + grow, half.1 + grow);
-            [
-                (-w, -h),
-                (0.0, -h),
-                (w, -h),
-                (-w, 0.0),
-                (w, 0.0),
-                (-w, h),
-                (0.0, h),
-                (w, h),
-            ]
-            .into_iter()
-            .all(|(dx, dy)| {
-                self.cell_at((at.0 + dx, at.1 + dy))
-                    .is_some_and(|c| self.region[c] == region)
-            })
+            let columns = [-w, 0.0, w].map(|dx| self.column_at(at.0 + dx));
+            let rows = [-h, 0.0, h].map(|dy| self.row_at(at.1 + dy));
+            let is_here = |i: usize, j: usize| {
+                let (Some(column), Some(row)) = (columns[i], rows[j]) else {
+                    return false;
+                };
+                self.region[self.cell(column, row)] == region
+            };
+            (0..9).all(|k| k == 4 || is_here(k % 3, k / 3))
         };
         if !inside(0.0) {
             return None;

@@ -255,17 +255,25 @@ impl<'a> Regions<'a> {
     }
 
     fn cell_at(&self, (x, y): Point) -> Option<usize> {
-        let r = &self.panel.rect;
-        if !r.contains((x, y)) {
-            return None;
-        }
-        let across =
-            self.panel.x.low + (x - r.left) / r.width() * (self.panel.x.high - self.panel.x.low);
-        let up =
-            self.panel.y.low + (r.bottom - y) / r.height() * (self.panel.y.high - self.panel.y.low);
-        let i = nearest(&self.map.x, across)?;
-        let j = nearest(&self.map.y, up)?;
-        Some(self.cell(i, j))
+        Some(self.cell(self.column_at(x)?, self.row_at(y)?))
+    }
+
+    /// The column of cells at a place across the paper.
+    fn column_at(&self, x: f64) -> Option<isize> {
+        let (r, axis) = (&self.panel.rect, &self.panel.x);
+        let share = (r.left..=r.right)
+            .contains(&x)
+            .then(|| (x - r.left) / r.width())?;
+        nearest(&self.map.x, axis.low + share * (axis.high - axis.low))
+    }
+
+    /// The row of cells at a place down the paper.
+    fn row_at(&self, y: f64) -> Option<isize> {
+        let (r, axis) = (&self.panel.rect, &self.panel.y);
+        let share = (r.top..=r.bottom)
+            .contains(&y)
+            .then(|| (r.bottom - y) / r.height())?;
+        nearest(&self.map.y, axis.low + share * (axis.high - axis.low))
     }
 }
 
