@@ -14,6 +14,7 @@ pub mod identify;
 pub mod inputs;
 mod json;
 pub mod layout;
+mod memory;
 pub mod observe;
 pub mod observed;
 pub mod pairs;

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::error::{PipelineError, Progress};
 use super::identify::IdentificationFile;
 use super::observed::Observed;
-use super::{checkpoint, identify, published, report, store, tables};
+use super::{checkpoint, identify, memory, published, report, store, tables};
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::Identification;
 use crate::identify::fit::FitProgress;
@@ -85,6 +85,7 @@ pub(super) fn complete(
     let content = report::content(campaign, &observed, &found, destination.command_line)?;
     // nothing looks at the waveforms any more, and the document takes room
     observed.drop_waveforms();
+    memory::release();
     let (report, tables) = rayon::join(
         || report::render(&content, campaign, destination.also),
         || tables::files(&observed),

@@ -28,9 +28,11 @@ pub(crate) fn sum(values: &[f64]) -> f64 {
     sum
 }
 
-/// Inner product, in sixteen sums that do not wait for each other.
+/// Inner product, as far as both columns go, in sixteen sums that do not wait for each other.
 #[multiversion(targets("x86_64+avx2"))]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let common = a.len().min(b.len());
+    let (a, b) = (&a[..common], &b[..common]);
     let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<16>(), b.as_chunks::<16>());
     let mut sums = [0.0; 16];
     for (x, y) in a.iter().zip(b) {
@@ -41,9 +43,8 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     for (x, y) in a.iter().zip(b) {
         add_products(&mut sums, x, y);
     }
-    let last = last_a.iter().zip(last_b);
     let mut sum = total(sums);
-    for (x, y) in last {
+    for (x, y) in last_a.iter().zip(last_b) {
         sum += x * y;
     }
     sum
@@ -154,7 +155,36 @@ fn lesser(value: f64, least: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
     use super::*;
+
+    #[test]
+    fn prop_columns_of_any_length_are_added_and_multiplied_as_far_as_both_go() {
+        let mut random = ChaCha8Rng::seed_from_u64(11);
+        for length in 0..70 {
+            let mut column = |more: usize| -> Vec<f64> {
+                let values = 0..length + more;
+                values.map(|_| random.random_range(-1.0..1.0)).collect()
+            };
+            for (a, b) in [
+                (column(0), column(0)),
+                (column(5), column(0)),
+                (column(0), column(23)),
+            ] {
+                let wanted: Vec<f64> = a.iter().zip(&b).map(|(x, y)| x * y).collect();
+                assert_eq!(products(&a, &b), wanted);
+                let close = |found: f64, wanted: f64| (found - wanted).abs() < 1e-13;
+                assert!(close(sum(&wanted), wanted.iter().sum()), "{length}");
+                assert!(close(dot(&a, &b), wanted.iter().sum()), "{length}");
+                let mut left = a.clone();
+                subtract(&mut left, 0.5, &b);
+                let apart = |i: usize| a[i] - b.get(i).map_or(0.0, |y| 0.5 * y);
+                assert!((0..a.len()).all(|i| left[i] == apart(i)), "{length}");
+            }
+        }
+    }
 
     #[test]
     fn extremes_and_steps_are_found_wherever_they_lie() {

@@ -187,16 +187,16 @@ fn inner_products<const N: usize, const M: usize>(
 ) -> [[f64; N]; M] {
     let mut sums = [[[0.0; LANES]; N]; M];
     for i in 0..columns[0].rows.len() {
-        for m in 0..M {
-            for k in 0..N {
-                sums[m][k] = plus_products(sums[m][k], &pivots[k][i], &columns[m].rows[i]);
+        for (sums, column) in sums.iter_mut().zip(columns) {
+            for (sum, pivot) in sums.iter_mut().zip(&pivots) {
+                *sum = plus_products(*sum, &pivot[i], &column.rows[i]);
             }
         }
     }
     let mut products = [[0.0; N]; M];
-    for m in 0..M {
-        for k in 0..N {
-            products[m][k] = total(sums[m][k]);
+    for (products, sums) in products.iter_mut().zip(sums) {
+        for (product, sum) in products.iter_mut().zip(sums) {
+            *product = total(sum);
         }
     }
     products
