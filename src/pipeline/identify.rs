@@ -100,9 +100,12 @@ pub fn identify(
         progress,
         ..evidence(campaign, observed)
     };
+    // a large file takes as long to hash as a fit
+    let (identification, provenance) =
+        rayon::join(|| identify_campaign(&evidence), || provenance(campaign));
     Ok(IdentificationFile {
-        identification: identify_campaign(&evidence),
-        provenance: provenance(campaign)?,
+        identification,
+        provenance: provenance?,
     })
 }
 

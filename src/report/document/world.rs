@@ -57,7 +57,11 @@ impl MemoryWorld {
         };
         typst::comemo::evict(0);
         let bytes = typst_pdf::pdf(&pages, &options).map_err(|e| Unset::Pages(self.first(&e)));
-        typst::comemo::evict(0);
+        // nobody waits for the memory
+        rayon::spawn(move || {
+            drop(pages);
+            typst::comemo::evict(0);
+        });
         bytes
     }
 
