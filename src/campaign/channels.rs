@@ -130,7 +130,7 @@ fn resolve_one(
         scale: scale.unwrap_or(Scale::Factor(1.0)),
         offset: raw_level(&written.offset, &key("offset"), unit, context).unwrap_or(0.0),
         sign: sign(&written.sign, &key("sign"), context),
-        high_pass_hz: context.positive(&written.high_pass, &key("high_pass"), Dimension::Frequency),
+        high_pass_hz: high_pass(&written.high_pass, &key("high_pass"), context),
         delay_s: context
             .within(&written.delay, &key("delay"), Dimension::Time, [-1.0, 1.0])
             .unwrap_or(0.0),
@@ -173,6 +173,16 @@ fn source(
         return None;
     };
     Some(channel.get_ref().0.clone())
+}
+
+/// The corner of a high-pass; at 0 Hz there is none.
+fn high_pass(
+    placed: &Placed<Quantity>,
+    key: &str,
+    context: &mut ResolveContext<'_>,
+) -> Option<f64> {
+    let corner = context.within(placed, key, Dimension::Frequency, [0.0, f64::INFINITY]);
+    corner.filter(|hz| *hz > 0.0)
 }
 
 fn unit(placed: &Placed<String>, key: &str, context: &mut ResolveContext<'_>) -> Option<Unit> {

@@ -65,9 +65,10 @@ impl ResolveContext<'_> {
         }
         let symbol = dimension.si_symbol();
         let message = format!("{value} {symbol} is out of range");
+        let zero = if range[0] == 0.0 { "0 or " } else { "" };
         let remedy = match range[1].is_finite() {
             true => format!("write a value from {} to {} {symbol}", range[0], range[1]),
-            false => format!("write a positive value, in {symbol} or a multiple of it"),
+            false => format!("write {zero}a positive value, in {symbol} or a multiple of it"),
         };
         if let Some(placed) = placed {
             self.fault(Code::OutOfRange, placed, key, message, &remedy);

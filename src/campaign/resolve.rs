@@ -298,4 +298,19 @@ mod tests {
         assert!(!faults.is_empty());
         assert!(faults.iter().all(|f| f.code == Code::Syntax), "{faults:?}");
     }
+
+    #[test]
+    fn a_channel_may_state_that_it_has_no_high_pass() {
+        let folder = tempfile::tempdir().unwrap();
+        let toml = folder.path().join("campaign.toml");
+        for (corner, refused) in [("0 Hz", false), ("0.5 Hz", false), ("-0.5 Hz", true)] {
+            let text = format!(
+                "[campaign]\nmachine = \"double\"\n[records]\nfiles = \"*.csv\"\n\
+                 [channels.velocity_x]\nchannel = \"v\"\nhigh_pass = \"{corner}\"\n"
+            );
+            std::fs::write(&toml, text).unwrap();
+            let found = format!("{:?}", load(&toml, &labfiles::open).diagnostics.0);
+            assert_eq!(found.contains("high_pass"), refused, "{found}");
+        }
+    }
 }

@@ -275,7 +275,10 @@ fn channels() -> Vec<Case> {
         refused(
             "a negative high-pass corner",
             |lab| lab.edit("\"0.5 Hz\"", "\"-0.5 Hz\""),
-            &["channels.velocity_x.high_pass", "write a positive value"],
+            &[
+                "channels.velocity_x.high_pass",
+                "write 0 or a positive value",
+            ],
         ),
         refused(
             "a threshold for a velocity",
