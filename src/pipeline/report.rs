@@ -17,7 +17,7 @@ use crate::report::{
     CampaignFacts, Format, LivePage, Logo, NominalValue, Report, ReportContent, ReportOptions,
     Subject,
 };
-use labfiles::output::{make_folder, write_bytes};
+use labfiles::output::{make_folder, write_together};
 
 /// Name of the report's file.
 pub const FILE: &str = "report.pdf";
@@ -81,19 +81,16 @@ pub(super) fn page(
     Ok(Report::new(content, &options).html()?)
 }
 
-/// Write the report's files into the results' folder.
+/// Write the report's files into the results' folder: all appear, or none.
 ///
 /// # Errors
 /// If one cannot be written.
 pub fn write(files: &[ReportFile], out: &Path) -> Result<(), PipelineError> {
-    for (name, bytes) in files {
-        let path = out.join(name);
-        if let Some(folder) = path.parent() {
-            make_folder(folder)?;
-        }
-        write_bytes(&path, bytes)?;
-    }
-    Ok(())
+    let paths = files.iter().map(|(name, bytes)| (out.join(name), bytes));
+    let files: Vec<(PathBuf, &Vec<u8>)> = paths.collect();
+    let folders: BTreeSet<&Path> = files.iter().filter_map(|(path, _)| path.parent()).collect();
+    folders.into_iter().try_for_each(make_folder)?;
+    Ok(write_together(&files)?)
 }
 
 /// What the report shows, as plain data.

@@ -4,9 +4,12 @@
 //! The lock and the temporary names carry the name of impactid, the program that this crate was
 //! made for.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
 
 /// Name of the lock in an output folder.
 const LOCK_NAME: &str = ".impactid.lock";
@@ -95,15 +98,36 @@ impl Drop for Part {
 }
 
 impl Part {
+    fn of(target: &Path) -> Self {
+        Self {
+            path: hidden_beside(target),
+            placed: false,
+        }
+    }
+
+    /// A part with these bytes, flushed to the disk.
+    fn holding(bytes: &[u8], target: &Path) -> io::Result<Self> {
+        let part = Self::of(target);
+        let mut file = File::create(&part.path)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        Ok(part)
+    }
+
     /// Flush all that was written to the disk, then give the file its name.
-    fn place(mut self, writer: BufWriter<File>, target: &Path) -> io::Result<()> {
+    fn place(self, writer: BufWriter<File>, target: &Path) -> io::Result<()> {
         let file = writer
             .into_inner()
             .map_err(io::IntoInnerError::into_error)?;
         file.sync_all()?;
+        self.rename(target)?;
+        target.parent().map_or(Ok(()), sync_folder)
+    }
+
+    fn rename(mut self, target: &Path) -> io::Result<()> {
         fs::rename(&self.path, target)?;
         self.placed = true;
-        target.parent().map_or(Ok(()), sync_folder)
+        Ok(())
     }
 }
 
@@ -159,10 +183,7 @@ pub(crate) fn write_whole_or<E>(
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,
     from_io: impl Fn(io::Error) -> E,
 ) -> Result<(), E> {
-    let part = Part {
-        path: hidden_beside(path),
-        placed: false,
-    };
+    let part = Part::of(path);
     let file = File::create(&part.path).map_err(&from_io)?;
     let mut writer = BufWriter::with_capacity(1 << 16, file);
     fill(&mut writer)?;
@@ -223,6 +244,38 @@ impl Drop for PartFolder {
 /// As [`write_whole`].
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     write_whole(path, |writer| writer.write_all(bytes))
+}
+
+/// Write files together: they appear under their names when all are on the disk. If one cannot be written there,
+/// none appears.
+///
+/// ```
+/// use labfiles::output::write_together;
+/// let folder = tempfile::tempdir()?;
+/// let [a, absent] = ["a.txt", "absent/b.txt"].map(|name| folder.path().join(name));
+/// assert!(write_together(&[(a.clone(), b"a"), (absent, b"b")]).is_err());
+/// assert!(!a.exists());
+/// write_together(&[(a.clone(), b"a")])?;
+/// assert_eq!(std::fs::read(&a)?, b"a");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`OutputError::File`] with the system's error.
+pub fn write_together<B: AsRef<[u8]> + Sync>(files: &[(PathBuf, B)]) -> Result<(), OutputError> {
+    let failed = |path: &Path| {
+        let path = path.to_path_buf();
+        |source| OutputError::File { path, source }
+    };
+    let part =
+        |(path, bytes): &(PathBuf, B)| Part::holding(bytes.as_ref(), path).map_err(failed(path));
+    let parts: Vec<Part> = files.par_iter().map(part).collect::<Result<_, _>>()?;
+    for (part, (path, _)) in parts.into_iter().zip(files) {
+        part.rename(path).map_err(failed(path))?;
+    }
+    let folders: BTreeSet<&Path> = files.iter().filter_map(|(path, _)| path.parent()).collect();
+    let mut folders = folders.into_iter();
+    folders.try_for_each(|folder| sync_folder(folder).map_err(failed(folder)))
 }
 
 /// Write a value as JSON on one line, as [`write_whole`] does.
