@@ -11,7 +11,7 @@ use labfiles::{ChannelInfo, DatasetInfo};
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ChannelKey {
-    /// By name; a name without its group is accepted if only one channel ends with it.
+    /// By name; one without its group or its unit, or with its unit, is accepted if only one channel has it.
     Name(String),
     /// By index in the dataset, from 0.
     Index(usize),
@@ -37,21 +37,19 @@ impl ChannelKey {
 
 fn find_name(name: &str, dataset: &DatasetInfo) -> Option<usize> {
     let exact = dataset.channels.iter().position(|c| c.name == name);
+    let bare = |c: &ChannelInfo| units::split_unit(&c.name).0 == name && !name.is_empty();
+    // as the column is headed in the file, whose reader splits the unit off
+    let (headed, unit) = units::split_unit(name);
+    let with_unit =
+        |c: &ChannelInfo| unit.is_some() && c.name == headed && c.unit.as_deref() == unit;
     exact
-        .or_else(|| only_one(dataset, |c| c.rsplit('/').next() == Some(name)))
-        .or_else(|| {
-            only_one(dataset, |c| {
-                units::split_unit(c).0 == name && !name.is_empty()
-            })
-        })
+        .or_else(|| only_one(dataset, |c| c.name.rsplit('/').next() == Some(name)))
+        .or_else(|| only_one(dataset, bare))
+        .or_else(|| only_one(dataset, with_unit))
 }
 
-fn only_one(dataset: &DatasetInfo, fits: impl Fn(&str) -> bool) -> Option<usize> {
-    let mut all = dataset
-        .channels
-        .iter()
-        .enumerate()
-        .filter(|(_, c)| fits(&c.name));
+fn only_one(dataset: &DatasetInfo, fits: impl Fn(&ChannelInfo) -> bool) -> Option<usize> {
+    let mut all = dataset.channels.iter().enumerate().filter(|(_, c)| fits(c));
     let first = all.next()?.0;
     all.next().is_none().then_some(first)
 }
@@ -290,5 +288,41 @@ fn serves(role: Role, found: Dimension) -> bool {
         Role::Contact => matches!(found, Voltage | Force | Number),
         Role::FrameX | Role::FrameY => matches!(found, Length | Velocity | Acceleration),
         _ => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use labfiles::StoredType;
+
+    use super::*;
+
+    #[test]
+    fn a_channel_is_found_with_its_unit_as_its_column_is_headed() {
+        let channel = |name: &str, unit: &str| ChannelInfo {
+            name: name.into(),
+            unit: Some(unit.into()),
+            stored: StoredType::Float(64),
+            samples: 100,
+            sample_rate_hz: None,
+            start_time: None,
+            properties: BTreeMap::new(),
+        };
+        let dataset = DatasetInfo {
+            channels: vec![
+                channel("time", "s"),
+                channel("generator", "V"),
+                channel("x", "mm"),
+            ],
+            ..DatasetInfo::default()
+        };
+        let find = |name: &str| ChannelKey::Name(name.into()).find(&dataset);
+        assert_eq!(find("generator"), Some(1));
+        assert_eq!(find("generator in V"), Some(1));
+        assert_eq!(find("x [mm]"), Some(2));
+        assert_eq!(find("x [m]"), None);
+        assert_eq!(find("y"), None);
     }
 }
