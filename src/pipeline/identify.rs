@@ -100,7 +100,7 @@ pub fn identify(
         progress,
         ..evidence(campaign, observed)
     };
-    // a large file takes as long to hash as a fit
+    // the fit does not need the hashes of the inputs, which take a pass over all files
     let (identification, provenance) =
         rayon::join(|| identify_campaign(&evidence), || provenance(campaign));
     Ok(IdentificationFile {

@@ -9,7 +9,7 @@ use crate::identify::plan::{Obstacle, Proposal, propose};
 use crate::motion::Motion;
 use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, report};
-use labfiles::output::{make_folder, write_bytes};
+use labfiles::output::write_together;
 
 /// What is written as plan.json.
 #[derive(Debug, Clone, Serialize)]
@@ -56,14 +56,12 @@ pub fn plan(
         obstacle,
     };
     progress("map", 0, 1);
-    make_folder(out)?;
     let mut content = report::content(campaign, &observed, &found, "")?;
     content.compared.comparisons.clear();
     content.proposals.clone_from(&plan.proposals);
-    for (name, bytes) in crate::report::plan_map(&content, campaign.report.decimal_comma)? {
-        write_bytes(&out.join(name), &bytes)?;
-    }
-    write_bytes(&out.join("plan.csv"), csv(&plan.proposals).as_bytes())?;
+    let mut files = crate::report::plan_map(&content, campaign.report.decimal_comma)?;
+    files.push(("plan.csv".to_owned(), csv(&plan.proposals).into_bytes()));
+    write_together(out, &files)?;
     write_json(&out.join(FILE), &plan)?;
     Ok(plan)
 }

@@ -17,7 +17,7 @@ use crate::report::{
     CampaignFacts, Format, LivePage, Logo, NominalValue, Report, ReportContent, ReportOptions,
     Subject,
 };
-use labfiles::output::{make_folder, write_together};
+use labfiles::output::write_together;
 
 /// Name of the report's file.
 pub const FILE: &str = "report.pdf";
@@ -86,11 +86,7 @@ pub(super) fn page(
 /// # Errors
 /// If one cannot be written.
 pub fn write(files: &[ReportFile], out: &Path) -> Result<(), PipelineError> {
-    let paths = files.iter().map(|(name, bytes)| (out.join(name), bytes));
-    let files: Vec<(PathBuf, &Vec<u8>)> = paths.collect();
-    let folders: BTreeSet<&Path> = files.iter().filter_map(|(path, _)| path.parent()).collect();
-    folders.into_iter().try_for_each(make_folder)?;
-    Ok(write_together(&files)?)
+    Ok(write_together(out, files)?)
 }
 
 /// What the report shows, as plain data.

@@ -8,7 +8,7 @@ use crate::motion::{Bracket, Motion, Observation};
 use crate::pipeline::table::{Get, Table};
 use crate::pipeline::{Observed, PipelineError};
 use crate::record::Role;
-use labfiles::output::write_bytes;
+use labfiles::output::write_together;
 
 fn amplitude(o: &Observation, role: Role) -> Option<f64> {
     o.amplitudes
@@ -251,15 +251,12 @@ const RECORDS_FILE: &str = "records.parquet";
 const IMPACTS_FILE: &str = "impacts.parquet";
 const BOUNDARIES_FILE: &str = "boundaries.csv";
 
-/// Write what [`files`] gave.
+/// Write what [`files`] gave: all appear, or none.
 ///
 /// # Errors
 /// If a file cannot be written.
 pub fn write(files: &[(&str, Vec<u8>)], out: &Path) -> Result<(), PipelineError> {
-    for (name, bytes) in files {
-        write_bytes(&out.join(name), bytes)?;
-    }
-    Ok(())
+    Ok(write_together(out, files)?)
 }
 
 fn parquet(

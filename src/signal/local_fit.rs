@@ -46,8 +46,8 @@ impl LocalFit {
                 *sum += power * value;
             }
         }
-        let [a, b, c, d] = &basis.covariance;
-        let coefficients = [a, b, c, d].map(|row| product(row, &right));
+        let rows = basis.covariance.each_ref();
+        let coefficients = rows.map(|row| product(row, &right));
         let residual = |(powers, value): (&Row, &f64)| value - product(&coefficients, powers);
         let residuals = basis.powers.iter().zip(values).map(residual);
         let residual_squares = residuals.map(|r| r * r).sum();

@@ -246,34 +246,41 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     write_whole(path, |writer| writer.write_all(bytes))
 }
 
-/// Write files together: they appear under their names when all are on the disk. If one cannot be written there,
-/// none appears.
+/// Write files, by their paths in a folder, together: they appear under their names when all are on the disk. If
+/// one cannot be written there, none appears.
 ///
 /// ```
 /// use labfiles::output::write_together;
 /// let folder = tempfile::tempdir()?;
-/// let [a, absent] = ["a.txt", "absent/b.txt"].map(|name| folder.path().join(name));
-/// assert!(write_together(&[(a.clone(), b"a"), (absent, b"b")]).is_err());
-/// assert!(!a.exists());
-/// write_together(&[(a.clone(), b"a")])?;
-/// assert_eq!(std::fs::read(&a)?, b"a");
+/// let too_long = "b".repeat(300);
+/// assert!(write_together(folder.path(), &[("a.txt", b"a"), (&too_long, b"b")]).is_err());
+/// assert!(!folder.path().join("a.txt").exists());
+/// write_together(folder.path(), &[("a.txt", b"a"), ("figures/b.txt", b"b")])?;
+/// assert_eq!(std::fs::read(folder.path().join("figures/b.txt"))?, b"b");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// [`OutputError::File`] with the system's error.
-pub fn write_together<B: AsRef<[u8]> + Sync>(files: &[(PathBuf, B)]) -> Result<(), OutputError> {
+/// [`OutputError`] with the system's error.
+pub fn write_together<N: AsRef<Path>, B: AsRef<[u8]>>(
+    folder: &Path,
+    files: &[(N, B)],
+) -> Result<(), OutputError> {
     let failed = |path: &Path| {
         let path = path.to_path_buf();
         |source| OutputError::File { path, source }
     };
-    let part =
-        |(path, bytes): &(PathBuf, B)| Part::holding(bytes.as_ref(), path).map_err(failed(path));
+    let files = files.iter();
+    let files: Vec<(PathBuf, &[u8])> = files
+        .map(|(name, bytes)| (folder.join(name), bytes.as_ref()))
+        .collect();
+    let folders: BTreeSet<&Path> = files.iter().filter_map(|(path, _)| path.parent()).collect();
+    folders.iter().try_for_each(|folder| make_folder(folder))?;
+    let part = |(path, bytes): &(PathBuf, &[u8])| Part::holding(bytes, path).map_err(failed(path));
     let parts: Vec<Part> = files.par_iter().map(part).collect::<Result<_, _>>()?;
-    for (part, (path, _)) in parts.into_iter().zip(files) {
+    for (part, (path, _)) in parts.into_iter().zip(&files) {
         part.rename(path).map_err(failed(path))?;
     }
-    let folders: BTreeSet<&Path> = files.iter().filter_map(|(path, _)| path.parent()).collect();
     let mut folders = folders.into_iter();
     folders.try_for_each(|folder| sync_folder(folder).map_err(failed(folder)))
 }
