@@ -144,9 +144,9 @@ impl Atlas {
             .folder()
             .join(format!("part-{number}-of-{of}.json"));
         labfiles::output::make_folder(self.out.folder())?;
+        interrupt::watch(self.out.folder().to_path_buf());
         // many parts of an array of jobs may share the folder: the lock is the part's own
         let _lock = Lock::take(&self.out.folder().join(format!(".part-{number}")))?;
-        interrupt::watch(self.out.folder().to_path_buf());
         let part = computed(study, plan, (number, of))?;
         write_json_line(&file, &part)?;
         drop(_lock);

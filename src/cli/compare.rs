@@ -14,7 +14,6 @@ use crate::pipeline::campaigns;
 use crate::pipeline::{self, Observed};
 use crate::report::catalog::Catalog;
 use crate::report::{CampaignsContent, Format, Paper, ReportOptions};
-use labfiles::output::Lock;
 
 /// Arguments of `impactid compare`.
 #[derive(Debug, Args)]
@@ -79,8 +78,7 @@ impl Compare {
     /// # Errors
     /// [`Failure`] where a campaign cannot be used, they cannot be compared or an output cannot be written.
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
-        let _lock = Lock::take(&self.out)?;
-        interrupt::watch(self.out.clone());
+        let _lock = interrupt::lock(&self.out)?;
         let mut all = Vec::new();
         for (number, path) in self.campaigns.iter().enumerate() {
             self.refuse_twice(number)?;

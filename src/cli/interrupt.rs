@@ -5,6 +5,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use labfiles::output::{Lock, OutputError};
+
 /// Exit code of a program that the user interrupted (128 + SIGINT).
 const INTERRUPTED: i32 = 130;
 
@@ -20,6 +22,17 @@ pub(super) fn give_way() {
 
 /// The folders that are written into, in the order in which they were named.
 static FOLDERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// The right to write into a folder, created where it is not there. From now on Ctrl-C removes its
+/// partial files, prints a message and ends the program.
+///
+/// # Errors
+/// Those of [`Lock::take`].
+pub(super) fn lock(folder: &Path) -> Result<Lock, OutputError> {
+    // first: a signal that comes in between must not end the program without its message
+    watch(folder.to_path_buf());
+    Lock::take(folder)
+}
 
 /// From now on Ctrl-C removes the partial files in `folder` too, prints a message and ends the program.
 pub(super) fn watch(folder: PathBuf) {

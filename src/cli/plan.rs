@@ -8,7 +8,6 @@ use super::stdout::print_json;
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
 use crate::motion::Motion;
 use crate::pipeline::plan;
-use labfiles::output::Lock;
 
 /// Arguments of `impactid plan`.
 #[derive(Debug, Args)]
@@ -44,8 +43,7 @@ impl Plan {
     /// [`Failure`] where the campaign cannot be used or an output cannot be written.
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let campaign = super::load::load_campaign(&self.campaign, verbosity)?;
-        let _lock = Lock::take(&self.out)?;
-        interrupt::watch(self.out.clone());
+        let _lock = interrupt::lock(&self.out)?;
         let bar = Progress::new(verbosity, "observe", campaign.records.len() as u64);
         let step = |stage: &'static str, done, total| bar.step(stage, done, total);
         let found = plan::plan(&campaign, self.settings, &self.out, &step)?;

@@ -10,7 +10,6 @@ use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::{Failure, Verbosity, interrupt};
 use crate::identify::{Finding, Identification, VerdictKind};
 use crate::pipeline::{self, Completed, Destination, checkpoint};
-use labfiles::output::Lock;
 
 /// From how many records on checkpoints are written; `IMPACTID_KEEP_FROM` sets another number, for
 /// trials with small campaigns.
@@ -42,8 +41,7 @@ impl RunOptions<'_> {
     ) -> Result<Completed, Failure> {
         let mut resolved = load_campaign(campaign, verbosity)?;
         self.report.apply(&mut resolved.report, verbosity)?;
-        let _lock = Lock::take(out)?;
-        interrupt::watch(out.to_path_buf());
+        let _lock = interrupt::lock(out)?;
         let records = resolved.records.len() as u64;
         let bar = Progress::new(verbosity, "observe", records).with_later(LATER);
         let destination = Destination {

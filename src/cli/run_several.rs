@@ -9,7 +9,6 @@ use super::{Exit, Failure, Verbosity, interrupt};
 use crate::identify::VerdictKind;
 use crate::pipeline::summary::{Fault, Found, Outcome, Row, Summary};
 use crate::pipeline::{campaign_folders, layout, summary};
-use labfiles::output::Lock;
 
 /// The campaigns as typed; a pattern that the shell has left as it is stands for the files that match
 /// it, and one that is named twice is there once.
@@ -53,9 +52,8 @@ pub(super) fn run(
     options: RunOptions<'_>,
     verbosity: Verbosity,
 ) -> Result<Exit, Failure> {
-    let _lock = Lock::take(out)?;
+    let _lock = interrupt::lock(out)?;
     layout::check(out)?;
-    interrupt::watch(out.to_path_buf());
     let folders = campaign_folders::names(campaigns);
     let mut worst = Exit::Done;
     let mut rows = Vec::new();

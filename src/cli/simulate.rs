@@ -12,7 +12,6 @@ use crate::synthetic::truth::draw_asymmetry;
 use crate::synthetic::{Faults, RigSpec, Truth};
 use impact_oscillator::atlas::portrait::{PortraitPlan, Soft};
 use impact_oscillator::model::Setting;
-use labfiles::output::Lock;
 
 /// Arguments of `impactid simulate`.
 #[derive(Debug, Args)]
@@ -215,14 +214,13 @@ impl Simulate {
 
 impl Campaign {
     fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
-        let _lock = Lock::take(&self.out)?;
+        let _lock = interrupt::lock(&self.out)?;
         if self.out.join("campaign.toml").exists() && !self.force {
             return Err(Failure::new(
                 format!("{} holds a campaign already", self.out.display()),
                 "name another folder with --out, or add --force",
             ));
         }
-        interrupt::watch(self.out.clone());
         let faults = if self.ideal {
             Faults::none()
         } else {

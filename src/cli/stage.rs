@@ -59,8 +59,7 @@ impl Folder {
                  `impactid ingest campaign.toml --out DIR`",
             ));
         }
-        let lock = Lock::take(folder)?;
-        interrupt::watch(folder.clone());
+        let lock = interrupt::lock(folder)?;
         Ok((folder.clone(), lock))
     }
 }
@@ -132,8 +131,7 @@ fn commands(campaign: &Path, folder: &Path, options: &ReportArgs) -> String {
 impl Ingest {
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let campaign = load_campaign(&self.campaign, verbosity)?;
-        let _lock = Lock::take(&self.out)?;
-        interrupt::watch(self.out.clone());
+        let _lock = interrupt::lock(&self.out)?;
         let bar = Progress::new(verbosity, "ingest", campaign.records.len() as u64);
         let usable = store::ingest(&campaign, &self.out, &|_, done, total| bar.set(done, total))?;
         drop(bar);

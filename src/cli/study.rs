@@ -10,7 +10,7 @@ use super::pairs::Pairs;
 use super::theory::{COPY, in_folder};
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::theory::{self, Study as Written};
-use labfiles::output::{Lock, write_bytes};
+use labfiles::output::write_bytes;
 
 /// Arguments of `impactid study`.
 #[derive(Debug, Args)]
@@ -65,8 +65,7 @@ impl Study {
             .iter()
             .map(|file| read(file))
             .collect::<Result<Vec<_>, _>>()?;
-        let _lock = Lock::take(&out)?;
-        interrupt::watch(out.clone());
+        let _lock = interrupt::lock(&out)?;
         for (file, (study, text)) in files.iter().zip(studies) {
             let name = name(file);
             let folder = out.join(&name);

@@ -8,7 +8,7 @@ use clap::Args;
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
 use crate::pipeline::block_cache::BlockCache;
 use crate::pipeline::theory::{Pictures, Study, StudyContext, run};
-use labfiles::output::{Lock, write_bytes};
+use labfiles::output::write_bytes;
 
 /// Where results go.
 #[derive(Debug, Clone, Args)]
@@ -59,8 +59,7 @@ impl OutArgs {
         work: impl FnOnce(&StudyContext<'_>) -> Result<(), Failure>,
     ) -> Result<Exit, Failure> {
         let folder = self.folder();
-        let _lock = Lock::take(folder)?;
-        interrupt::watch(folder.to_path_buf());
+        let _lock = interrupt::lock(folder)?;
         in_folder((folder, key, self.resume), what, verbosity, work)?;
         let copy = folder.join(COPY);
         write_bytes(&copy, study.as_bytes())?;

@@ -111,8 +111,8 @@ impl Watch {
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let mut watcher = Watcher::new(&self.campaign, self.pace.pace())?;
         layout::check(&self.out)?;
-        let _lock = Lock::take(&self.out)?;
         let stop = interrupt::asked(self.out.clone());
+        let _lock = Lock::take(&self.out)?;
         let mut screen = Screen::new(verbosity);
         screen.say("Ctrl-C ends the watch with the results complete.");
         let begin = Instant::now();

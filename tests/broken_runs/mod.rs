@@ -4,6 +4,7 @@
 mod changing_inputs;
 mod disk;
 mod kills;
+#[cfg(unix)]
 mod signals;
 mod threads;
 
