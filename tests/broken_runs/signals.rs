@@ -2,9 +2,9 @@
 
 use std::fs;
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use rustix::process::{Pid, Signal, kill_process};
+use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process, waitid};
 
 use super::{RUN, campaign, hidden, outputs, program};
 use crate::support::Lab;
@@ -13,32 +13,43 @@ fn send(child: &Child, signal: Signal) {
     kill_process(Pid::from_child(child), signal).expect("a signal is sent");
 }
 
-/// Start a command and halt it as soon as `reached` holds: what the test does meanwhile may take as
-/// long as a busy machine needs. A command that was done first is started again, after `again`.
+/// Whether the program now stands still; `false` where it has ended.
+fn halt(child: &Child) -> bool {
+    send(child, Signal::STOP);
+    let either = WaitIdOptions::STOPPED | WaitIdOptions::EXITED | WaitIdOptions::NOWAIT;
+    let state = waitid(WaitId::Pid(Pid::from_child(child)), either).expect("its state");
+    state.expect("it stands still or has ended").stopped()
+}
+
+/// Start a command and halt it as soon as `reached` holds while it stands still: what the test does
+/// meanwhile may take as long as a busy machine needs. A command that was done first is started
+/// again, after `again`.
 fn halted_when(mut command: Command, reached: impl Fn() -> bool, again: impl Fn()) -> Child {
     for _ in 0..20 {
         let mut child = command.spawn().expect("the program starts");
-        let begin = Instant::now();
-        let is_running = |child: &mut Child| matches!(child.try_wait(), Ok(None));
-        while !reached() && is_running(&mut child) && begin.elapsed() < Duration::from_secs(60) {
+        while halt(&child) {
+            if reached() {
+                return child;
+            }
+            send(&child, Signal::CONT);
             std::thread::sleep(Duration::from_millis(1));
         }
-        send(&child, Signal::STOP);
-        if reached() && is_running(&mut child) {
-            return child;
-        }
-        send(&child, Signal::CONT);
         child.wait().expect("it ends");
         again();
     }
     panic!("the command was done each time before it could be halted");
 }
 
+/// Whether a program holds the right to write into the results' folder.
+fn is_locked(lab: &Lab) -> bool {
+    let lock = fs::File::open(lab.path("out/.impactid.lock"));
+    lock.is_ok_and(|file| matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock)))
+}
+
 #[test]
 fn a_second_run_into_the_same_folder_is_refused() {
     let lab = campaign(66);
-    let has_its_folder = || lab.path("out/.impactid.lock").exists();
-    let mut first = halted_when(program(&lab, RUN), has_its_folder, || ());
+    let mut first = halted_when(program(&lab, RUN), || is_locked(&lab), || ());
     let second = lab.run(RUN);
     let stage = lab.run(&["-q", "classify", "out"]);
     send(&first, Signal::CONT);
@@ -77,10 +88,7 @@ fn ctrl_c_is_reported_ends_with_130_and_loses_nothing() {
     of_yesterday();
     for signal in [Signal::INT, Signal::TERM] {
         let command = speaking(&lab, &["run", "campaign.toml", "--out", "out"]);
-        // a program that was ended leaves its lock, released
-        let _ = fs::remove_file(lab.path("out/.impactid.lock"));
-        let has_its_folder = || lab.path("out/.impactid.lock").exists();
-        let run = halted_when(command, has_its_folder, of_yesterday);
+        let run = halted_when(command, || is_locked(&lab), of_yesterday);
         send(&run, signal);
         send(&run, Signal::CONT);
         let (said, code) = spoken(run);
