@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::kernel::{Cell, Feed, Outcome, run};
 use super::map::{
-    End, Kernel, MapGrid, MapSettings, Start, UnitMass, check, march_from, march_grid,
+    End, MapGrid, MapSettings, Start, UnitMass, available, check, march_from, march_grid,
 };
+use super::watched::watch_again;
 use crate::model::{Initial, Machine, ModelError};
 use crate::parallel;
 
@@ -99,8 +100,7 @@ impl Feed for Chains<'_> {
 /// Continue motions from column to column in the marching kernel.
 fn carried_in_lanes(unit: UnitMass, grid: &MapGrid, settings: &MapSettings) -> [Vec<End>; 2] {
     let (columns, course) = (grid.eta.len(), unit.course(settings));
-    let kernel = settings.kernel.filter(|k| k.is_available());
-    let kernel = kernel.unwrap_or_else(Kernel::of_this_machine);
+    let kernel = available(settings.kernel);
     let first = |number: usize| Start {
         at: grid.at(place(grid, number).1),
         initial: settings.start,
@@ -123,11 +123,9 @@ fn carried_in_lanes(unit: UnitMass, grid: &MapGrid, settings: &MapSettings) -> [
     let chunks: Vec<&[(usize, Cell)]> = rows.chunks(share).collect();
     let mut done: Vec<(usize, Outcome)> = parallel::map(&chunks, march).concat();
     done.sort_unstable_by_key(|d| place(grid, d.0));
-    let judged = |(_, outcome): &(usize, Outcome)| End {
-        motion: unit.judge(outcome, &settings.watch),
-        ..unit.end(outcome)
-    };
-    let mut rising: Vec<End> = parallel::map(&done, judged);
+    let mut outcomes: Vec<Outcome> = done.into_iter().map(|d| d.1).collect();
+    watch_again(&unit, &mut outcomes, settings);
+    let mut rising: Vec<End> = outcomes.iter().map(|o| unit.end(o)).collect();
     let falling = rising.split_off(grid.len());
     [rising, falling]
 }

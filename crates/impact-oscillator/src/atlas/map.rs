@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 pub use super::kernel::Kernel;
 use super::kernel::{Cell, Course, Feed, Outcome, run};
+use super::watched::watch_again;
 use crate::model::recurrence::observe;
 use crate::model::{
     Flight, Impact, Initial, Machine, ModelError, Oscillator, Setting, SettledMotion, Simulator,
@@ -185,12 +186,9 @@ pub fn march_from(
     match UnitMass::of(machine) {
         Some(unit) if starts.iter().all(|s| together(&s.initial)) => {
             let cells: Vec<Cell> = starts.iter().map(|s| unit.cell(s)).collect();
-            let outcomes = march_all(&unit.course(settings), &cells, settings.kernel);
-            let end = |o: &Outcome| End {
-                motion: unit.judge(o, &settings.watch),
-                ..unit.end(o)
-            };
-            Ok(parallel::map(&outcomes, end))
+            let mut outcomes = march_all(&unit.course(settings), &cells, settings.kernel);
+            watch_again(&unit, &mut outcomes, settings);
+            Ok(outcomes.iter().map(|o| unit.end(o)).collect())
         }
         _ => parallel::map(starts, |s| exact_cell(machine, s, settings))
             .into_iter()
@@ -305,23 +303,6 @@ impl UnitMass {
         }
     }
 
-    /// The motion of an outcome. One without recurrence in the kernel is watched once more by
-    /// the exact simulator: it may converge slowly, or beat.
-    pub(super) fn judge(&self, outcome: &Outcome, watch: &Watch) -> SettledMotion {
-        if outcome.motion != SettledMotion::Chaotic {
-            return outcome.motion;
-        }
-        let (end, machine) = (outcome.end, self.machine());
-        let setting = Setting::new(end.eta, end.rho).at_phase(end.phase);
-        let start = Initial {
-            x: end.x.min(end.rho),
-            vx: end.v,
-            ..Initial::rest()
-        };
-        Simulator::new(&machine, setting, start)
-            .map_or(outcome.motion, |mut s| observe(&mut s, setting, watch).0)
-    }
-
     /// The course of a map.
     pub fn course(&self, settings: &MapSettings) -> Course {
         Course {
@@ -332,28 +313,42 @@ impl UnitMass {
             leave_early: settings.leave_early,
             tight: 1e-11,
             loose: settings.watch.tolerance,
+            every_impact: false,
         }
     }
 }
 
 /// Cells shared by the threads, each of which takes the next.
-struct Shared<'a> {
+#[derive(Clone)]
+pub(super) struct Shared<'a> {
     cells: &'a [Cell],
     next: &'a AtomicUsize,
     block: std::ops::Range<usize>,
-    done: Vec<(usize, Outcome)>,
 }
 
 /// Cells a thread takes at a time.
 const BLOCK: usize = 8;
 
-impl Feed for Shared<'_> {
-    fn next(&mut self) -> Option<(usize, Cell)> {
+impl Shared<'_> {
+    /// A cell that no thread has taken.
+    pub(super) fn take(&mut self) -> Option<(usize, Cell)> {
         if self.block.is_empty() {
             let first = self.next.fetch_add(BLOCK, Ordering::Relaxed);
             self.block = first..(first + BLOCK).min(self.cells.len());
         }
         self.block.next().map(|i| (i, self.cells[i]))
+    }
+}
+
+/// A thread's march, and what became of its cells.
+struct March<'a> {
+    cells: Shared<'a>,
+    done: Vec<(usize, Outcome)>,
+}
+
+impl Feed for March<'_> {
+    fn next(&mut self) -> Option<(usize, Cell)> {
+        self.cells.take()
     }
     fn done(&mut self, index: usize, outcome: Outcome) {
         self.done.push((index, outcome));
@@ -362,22 +357,37 @@ impl Feed for Shared<'_> {
 
 /// March cells on all threads of the pool; outcomes in the cells' order.
 pub fn march_all(course: &Course, cells: &[Cell], kernel: Option<Kernel>) -> Vec<Outcome> {
-    let kernel = kernel
-        .filter(|k| k.is_available())
-        .unwrap_or_else(Kernel::of_this_machine);
-    let next = AtomicUsize::new(0);
-    let workers: Vec<usize> = (0..parallel::threads()).collect();
-    let march = |_: &usize| {
-        let mut shared = Shared {
-            cells,
-            next: &next,
-            block: 0..0,
+    let kernel = available(kernel);
+    on_all_threads(cells, |shared| {
+        let mut march = March {
+            cells: shared,
             done: Vec::new(),
         };
-        run(kernel, course, &mut shared);
-        shared.done
+        run(kernel, course, &mut march);
+        march.done
+    })
+}
+
+/// The kernel that is asked for, or the widest where it is not to be had.
+pub(super) fn available(kernel: Option<Kernel>) -> Kernel {
+    kernel
+        .filter(|k| k.is_available())
+        .unwrap_or_else(Kernel::of_this_machine)
+}
+
+/// What becomes of cells that all threads share, in the cells' order.
+pub(super) fn on_all_threads<T: Send + Clone>(
+    cells: &[Cell],
+    march: impl Fn(Shared<'_>) -> Vec<(usize, T)> + Sync,
+) -> Vec<T> {
+    let next = AtomicUsize::new(0);
+    let shared = Shared {
+        cells,
+        next: &next,
+        block: 0..0,
     };
-    let mut all: Vec<(usize, Outcome)> = parallel::map(&workers, march).concat();
+    let workers: Vec<usize> = (0..parallel::threads()).collect();
+    let mut all = parallel::map(&workers, |_| march(shared.clone())).concat();
     all.sort_unstable_by_key(|p| p.0);
     all.into_iter().map(|p| p.1).collect()
 }

@@ -19,6 +19,7 @@ mod resting;
 mod settings;
 pub mod shard;
 pub mod sweep;
+mod watched;
 
 pub use agreement::{Agreement, Cause, Differing};
 pub use basins::{BasinGrid, Basins, Starts, basins};

@@ -62,9 +62,9 @@ pub fn settle(
 
 /// An impact with the displacement at which it came, which closes the state of two masses.
 #[derive(Debug, Clone, Copy)]
-struct Return {
-    impact: Impact,
-    x: f64,
+pub(crate) struct Return {
+    pub(crate) impact: Impact,
+    pub(crate) x: f64,
 }
 
 #[derive(Default)]
@@ -95,22 +95,37 @@ pub(crate) fn observe(
     let mut returns = Returns::default();
     simulator.advance(watch.watch_periods * setting.period(), &mut returns);
     let impacts: Vec<Impact> = returns.list.iter().map(|r| r.impact).collect();
-    let motion = if impacts.is_empty() {
-        let still = stuck_before && simulator.is_sticking();
-        if still {
-            SettledMotion::Sticking
-        } else if stays_clear(simulator.machine(), setting) {
-            SettledMotion::Impactless
-        } else {
-            SettledMotion::Beat
-        }
-    } else if simulator.is_sticking() && impacts.last().is_some_and(|i| i.dead_zone.is_infinite()) {
+    let still = match impacts.last() {
+        None => stuck_before,
+        Some(last) => last.dead_zone.is_infinite(),
+    };
+    let motion = if still && simulator.is_sticking() {
         SettledMotion::Sticking
     } else {
-        recurring(&returns.list, setting.period(), watch)
-            .unwrap_or_else(|| irregular(&impacts, start, simulator.tau(), setting.period()))
+        let interval = (start, simulator.tau());
+        of_returns(
+            &returns.list,
+            simulator.machine(),
+            (setting, interval),
+            watch,
+        )
     };
     (motion, impacts)
+}
+
+/// The motion of a machine that had these impacts in an interval of time, and does not stay at rest.
+pub(crate) fn of_returns(
+    list: &[Return],
+    machine: &Machine,
+    (setting, interval): (Setting, (f64, f64)),
+    watch: &Watch,
+) -> SettledMotion {
+    match list {
+        [] if stays_clear(machine, setting) => SettledMotion::Impactless,
+        [] => SettledMotion::Beat,
+        _ => recurring(list, setting.period(), watch)
+            .unwrap_or_else(|| irregular(list, interval, setting.period())),
+    }
 }
 
 /// Whether the impactless motion never strikes: else a watch without impacts lay between two.
@@ -174,9 +189,9 @@ fn closure(a: &Return, b: &Return, period: f64) -> f64 {
 }
 
 /// Chaotic, or a beat where runs of impacts are separated by long impactless stretches.
-fn irregular(impacts: &[Impact], start: f64, end: f64, period: f64) -> SettledMotion {
+fn irregular(list: &[Return], (start, end): (f64, f64), period: f64) -> SettledMotion {
     let mut times = vec![start];
-    times.extend(impacts.iter().map(|i| i.tau));
+    times.extend(list.iter().map(|r| r.impact.tau));
     times.push(end);
     let quiet = times
         .windows(2)

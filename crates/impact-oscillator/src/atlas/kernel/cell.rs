@@ -43,6 +43,17 @@ pub struct Course {
     pub tight: f64,
     /// Closure by which an orbit recurs in the watch.
     pub loose: f64,
+    /// Watch from the start, to the end, and hand over every impact; nothing is recognised.
+    pub every_impact: bool,
+}
+
+/// An impact of a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::atlas) struct Strike {
+    /// Time since the cell's start.
+    pub(in crate::atlas) t: f64,
+    /// x' after it.
+    pub(in crate::atlas) v_after: f64,
 }
 
 /// Source of cells and receiver of outcomes.
@@ -51,4 +62,8 @@ pub(in crate::atlas) trait Feed {
     fn next(&mut self) -> Option<(usize, Cell)>;
     /// A cell is done.
     fn done(&mut self, index: usize, outcome: Outcome);
+    /// A cell has an impact, where [`Course::every_impact`] asks for them.
+    fn impact(&mut self, _index: usize, _strike: Strike) {}
+    /// The mass of such a cell comes to rest at the stop.
+    fn rests(&mut self, _index: usize) {}
 }

@@ -1,7 +1,7 @@
 //! Events of a lane between its steps: an orbit that recurs, a mass that rests at the stop, the
 //! end of settling and watch, a cell that is done.
 
-use super::cell::{Cell, Course, Feed, Outcome};
+use super::cell::{Cell, Course, Feed, Outcome, Strike};
 use super::lane::{Anchor, Lane, forget, place, where_is};
 use super::step::{Events, Group};
 use crate::atlas::lanes::Lanes;
@@ -98,7 +98,9 @@ pub(super) fn serve<V: Lanes>(
             t: s.t.get(lane) - h,
             hits: s.hits.get(lane),
         };
-        if raised(e.recurs) && is_same(s, info, lane, &here) {
+        if course.every_impact {
+            feed.impact(info.index, strike(course, info, here.t, e.after.get(lane)));
+        } else if raised(e.recurs) && is_same(s, info, lane, &here) {
             recognise(s, info, lane, &here);
         } else if raised(e.anew) {
             set_anchor(s, info, lane, here, e.after.get(lane));
@@ -106,6 +108,7 @@ pub(super) fn serve<V: Lanes>(
     }
     let mut finished = info.found.is_some() && course.leave_early;
     if raised(e.rest) && !finished {
+        feed.rests(info.index);
         let phase = where_is(course, s, info, lane).2;
         let at = (s.t.get(lane) - h, phase - info.cell.eta * h);
         let stays = come_to_rest(course, s, info, lane, at);
@@ -138,6 +141,19 @@ pub(super) fn serve<V: Lanes>(
         );
     }
     finished
+}
+
+/// The impact at a time, from z's imaginary part after it.
+fn strike(course: &Course, info: &Lane, t: f64, zi: f64) -> Strike {
+    let beta = course.damping_ratio;
+    let (f0r, f0i) = info.forced;
+    let (sin, cos) = (info.cell.phase + info.cell.eta * t).sin_cos();
+    let (fr, fi) = (f0r * cos - f0i * sin, f0r * sin + f0i * cos);
+    let omega = (1.0 - beta * beta).sqrt();
+    Strike {
+        t,
+        v_after: -beta * (info.cell.rho - fr) - omega * zi - info.cell.eta * fi,
+    }
 }
 
 /// Least difference of phases, rad, that the times of impacts resolve.

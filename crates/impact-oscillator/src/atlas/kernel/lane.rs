@@ -140,6 +140,12 @@ pub(super) fn load<V: Lanes>(
         vector.set(lane, value);
     }
     forget(s, info, lane, 0.0);
+    if course.every_impact {
+        info.watching = true;
+        s.t_next.set(lane, course.watch_periods * period);
+        s.tolerance.set(lane, -1.0);
+        s.reach.set(lane, 0.0);
+    }
     place(
         course,
         s,

@@ -58,6 +58,9 @@ fn refill<V: Lanes>(
     while let Some((index, cell)) = feed.next() {
         load(course, s, info, lane, (index, cell));
         let rests = cell.x >= cell.rho && cell.v.abs() <= 1e-12;
+        if rests {
+            feed.rests(index);
+        }
         if !rests || !come_to_rest(course, s, info, lane, (0.0, cell.phase)) {
             return 1 << lane;
         }

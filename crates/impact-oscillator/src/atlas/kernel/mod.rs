@@ -15,7 +15,7 @@ mod lane;
 mod march;
 mod step;
 
-pub(super) use cell::Feed;
 pub use cell::{Cell, Course, Outcome};
+pub(super) use cell::{Feed, Strike};
 pub use dispatch::Kernel;
 pub(super) use dispatch::run;

@@ -1,0 +1,267 @@
+//! Cells in which the kernel recognised no orbit, watched once more with their impacts: they may
+//! converge slowly, beat, or be chaotic.
+
+use super::kernel::{Cell, Course, Feed, Outcome, Strike, run};
+use super::map::{MapSettings, Shared, UnitMass, available, on_all_threads};
+use crate::model::recurrence::{Return, observe, of_returns};
+use crate::model::{
+    Impact, ImpactKind, Initial, Machine, Setting, SettledMotion, Simulator, Watch,
+};
+use crate::parallel;
+
+/// A thread's cells that are watched, each with its impacts so far.
+struct Watching<'a> {
+    cells: Shared<'a>,
+    machine: &'a Machine,
+    watch: &'a Watch,
+    open: Vec<Open>,
+    done: Vec<(usize, Option<SettledMotion>)>,
+}
+
+/// A cell that is being watched.
+struct Open {
+    index: usize,
+    start: Cell,
+    returns: Vec<Return>,
+    rests: bool,
+}
+
+impl Watching<'_> {
+    fn open(&mut self, index: usize) -> Option<&mut Open> {
+        self.open.iter_mut().find(|cell| cell.index == index)
+    }
+
+    /// The motion of a cell; `None` where the mass rested, which the kernel's impacts do not tell.
+    fn motion(&self, cell: &Open) -> Option<SettledMotion> {
+        let setting = Setting::new(cell.start.eta, cell.start.rho);
+        let interval = (0.0, self.watch.watch_periods * setting.period());
+        let motion = || of_returns(&cell.returns, self.machine, (setting, interval), self.watch);
+        (!cell.rests).then(motion)
+    }
+}
+
+impl Feed for Watching<'_> {
+    fn next(&mut self) -> Option<(usize, Cell)> {
+        let (index, start) = self.cells.take()?;
+        self.open.push(Open {
+            index,
+            start,
+            returns: Vec::new(),
+            rests: false,
+        });
+        Some((index, start))
+    }
+
+    fn impact(&mut self, index: usize, strike: Strike) {
+        let restitution = self.machine.restitution().constant().unwrap_or_default();
+        if let Some(cell) = self.open(index) {
+            let struck = bounce(&cell.start, restitution, strike);
+            cell.returns.push(struck);
+        }
+    }
+
+    fn rests(&mut self, index: usize) {
+        if let Some(cell) = self.open(index) {
+            cell.rests = true;
+        }
+    }
+
+    fn done(&mut self, index: usize, _: Outcome) {
+        if let Some(place) = self.open.iter().position(|cell| cell.index == index) {
+            let cell = self.open.swap_remove(place);
+            self.done.push((index, self.motion(&cell)));
+        }
+    }
+}
+
+/// An impact of one mass against the stop, as the simulator has it.
+fn bounce(start: &Cell, restitution: f64, strike: Strike) -> Return {
+    let separation_speed = -strike.v_after;
+    let approach_speed = separation_speed / restitution;
+    let phase = start.phase + start.eta * strike.t;
+    Return {
+        impact: Impact {
+            tau: strike.t,
+            phase: phase.rem_euclid(std::f64::consts::TAU),
+            vx_before: approach_speed,
+            vx_after: strike.v_after,
+            vy_before: 0.0,
+            vy_after: 0.0,
+            approach_speed,
+            separation_speed,
+            kind: ImpactKind::Bounce,
+            dead_zone: 0.0,
+        },
+        x: start.rho,
+    }
+}
+
+/// Watch the outcomes without a recognised motion once more, in the kernel, and where a mass comes to
+/// rest in the exact simulator.
+pub(super) fn watch_again(unit: &UnitMass, outcomes: &mut [Outcome], settings: &MapSettings) {
+    let is_open = |o: &Outcome| o.motion == SettledMotion::Chaotic;
+    let mut open: Vec<&mut Outcome> = outcomes.iter_mut().filter(|o| is_open(o)).collect();
+    let ends: Vec<Cell> = open.iter().map(|o| o.end).collect();
+    let (machine, watch) = (unit.machine(), &settings.watch);
+    let found = if machine.restitution().constant() > Some(0.0) {
+        let course = Course {
+            leave_early: false,
+            every_impact: true,
+            ..unit.course(settings)
+        };
+        let kernel = available(settings.kernel);
+        on_all_threads(&ends, |cells| {
+            let mut watching = Watching {
+                cells,
+                machine: &machine,
+                watch,
+                open: Vec::new(),
+                done: Vec::new(),
+            };
+            run(kernel, &course, &mut watching);
+            watching.done
+        })
+    } else {
+        vec![None; ends.len()]
+    };
+    let ends: Vec<(Cell, Option<SettledMotion>)> = ends.into_iter().zip(found).collect();
+    let motion = |(end, found): &(Cell, Option<SettledMotion>)| {
+        found.unwrap_or_else(|| observed(&machine, end, watch))
+    };
+    for (outcome, motion) in open.iter_mut().zip(parallel::map(&ends, motion)) {
+        outcome.motion = motion;
+    }
+}
+
+/// The motion from a cell's end on, in the exact simulator.
+fn observed(machine: &Machine, end: &Cell, watch: &Watch) -> SettledMotion {
+    let setting = Setting::new(end.eta, end.rho).at_phase(end.phase);
+    let start = Initial {
+        x: end.x.min(end.rho),
+        vx: end.v,
+        ..Initial::rest()
+    };
+    Simulator::new(machine, setting, start).map_or(SettledMotion::Chaotic, |mut simulator| {
+        observe(&mut simulator, setting, watch).0
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::atlas::map::{Kernel, MapGrid, Start, march_all};
+
+    /// Where cells of a map end, taken for unrecognised whatever they are.
+    fn ends(unit: &UnitMass, settings: &MapSettings) -> Vec<Outcome> {
+        let grid = MapGrid::even((0.7, 1.5, 17), (0.2, 5.0, 13));
+        let course = unit.course(settings);
+        let start = |i: usize| {
+            unit.cell(&Start {
+                at: grid.at(i),
+                initial: settings.start,
+                phase: 0.0,
+            })
+        };
+        let cells: Vec<Cell> = (0..grid.len()).map(start).collect();
+        let mut outcomes = march_all(&course, &cells, settings.kernel);
+        for outcome in &mut outcomes {
+            outcome.motion = SettledMotion::Chaotic;
+        }
+        outcomes
+    }
+
+    #[test]
+    fn valid_the_kernel_s_watch_sees_what_the_exact_simulator_sees() {
+        let irregular =
+            |m: &SettledMotion| matches!(m, SettledMotion::Chaotic | SettledMotion::Beat);
+        let cases = [(0.07, 0.9, None), (0.03, 0.6, None), (0.07, 0.0, None)];
+        let scalar = (0.07, 0.9, Some(Kernel::Scalar));
+        for (damping_ratio, restitution, kernel) in cases.into_iter().chain([scalar]) {
+            let settings = MapSettings {
+                kernel,
+                ..MapSettings::default()
+            };
+            let machine = Machine::single(damping_ratio, restitution);
+            let unit = UnitMass::of(&machine).expect("one mass");
+            let mut outcomes = ends(&unit, &settings);
+            let exact: Vec<SettledMotion> = outcomes
+                .iter()
+                .map(|o| observed(&machine, &o.end, &settings.watch))
+                .collect();
+            watch_again(&unit, &mut outcomes, &settings);
+            let mut kinds = [0; 3];
+            for (outcome, exact) in outcomes.iter().zip(&exact) {
+                // a chaotic motion is another after a few impacts
+                let both = irregular(&outcome.motion) && irregular(exact);
+                assert!(both || outcome.motion == *exact, "{:?}", outcome.end);
+                kinds[match exact {
+                    SettledMotion::Periodic { .. } => 0,
+                    SettledMotion::Impactless => 1,
+                    _ => 2,
+                }] += 1;
+            }
+            assert!(kinds[0] > 30 && kinds[1] > 30, "{kinds:?}");
+        }
+    }
+
+    #[test]
+    fn valid_the_first_impacts_of_a_chaotic_motion_are_those_of_the_exact_simulator() {
+        let (eta, rho) = (0.8, 0.9);
+        let machine = Machine::single(0.02, 0.8);
+        let unit = UnitMass::of(&machine).expect("one mass");
+        let start = Cell {
+            eta,
+            rho,
+            x: 0.0,
+            v: 3.0,
+            phase: 0.4,
+        };
+        let watch = Watch::default();
+        let course = Course {
+            leave_early: false,
+            every_impact: true,
+            ..unit.course(&MapSettings::default())
+        };
+        let mut collected = Collected {
+            start: Some(start),
+            returns: Vec::new(),
+        };
+        run(available(None), &course, &mut collected);
+        let setting = Setting::new(eta, rho).at_phase(0.4);
+        let initial = Initial {
+            vx: 3.0,
+            ..Initial::rest()
+        };
+        let mut simulator = Simulator::new(&machine, setting, initial).expect("a simulator");
+        let (_, exact) = observe(&mut simulator, setting, &watch);
+        assert!(exact.len() > 20 && collected.returns.len().abs_diff(exact.len()) < 10);
+        for (found, exact) in collected.returns.iter().zip(&exact).take(12) {
+            assert!((found.impact.tau - exact.tau).abs() < 1e-8);
+            assert!((found.impact.vx_before - exact.vx_before).abs() < 1e-8);
+            assert!((found.impact.vx_after - exact.vx_after).abs() < 1e-8);
+            assert!((found.impact.phase - exact.phase).abs() < 1e-8);
+        }
+    }
+
+    struct Collected {
+        start: Option<Cell>,
+        returns: Vec<Return>,
+    }
+
+    impl Feed for Collected {
+        fn next(&mut self) -> Option<(usize, Cell)> {
+            Some((0, self.start.take()?))
+        }
+        fn impact(&mut self, _: usize, strike: Strike) {
+            let cell = Cell {
+                eta: 0.8,
+                rho: 0.9,
+                x: 0.0,
+                v: 3.0,
+                phase: 0.4,
+            };
+            self.returns.push(bounce(&cell, 0.8, strike));
+        }
+        fn done(&mut self, _: usize, _: Outcome) {}
+    }
+}
