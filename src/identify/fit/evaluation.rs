@@ -33,7 +33,7 @@ impl Evaluation {
         };
         Self {
             at: *at,
-            blocks: blocks.iter().map(of_block).collect(),
+            blocks: blocks.par_iter().map(of_block).collect(),
         }
     }
 }
@@ -95,21 +95,17 @@ impl Part {
                     }
                 }
                 let mut share = Factor::empty(places.len());
-                share.add(rows.iter().map(|(rows, own)| (rows, own.as_slice())));
+                share.add(&Vec::from_iter(
+                    rows.iter().map(|(rows, own)| (rows, own.as_slice())),
+                ));
                 (share, missing)
             })
             .collect();
-        let all: Vec<usize> = (0..places.len()).collect();
-        let whole = shares.into_iter().reduce(|mut whole, (share, without)| {
-            whole.0.add([(share.rows(), all.as_slice())]);
-            whole.1.extend(without);
-            whole
-        });
-        let (factor, missing) = whole.unwrap_or_else(|| (Factor::empty(places.len()), Vec::new()));
+        let (factors, missing): (Vec<Factor>, Vec<Vec<usize>>) = shares.into_iter().unzip();
         Self {
-            factor,
+            factor: Factor::stacked(places.len(), factors),
             places,
-            missing,
+            missing: missing.concat(),
         }
     }
 

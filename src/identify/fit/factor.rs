@@ -5,10 +5,14 @@
 //! digits. Rows are folded in by reflections, so that factors of parts stack into that of the whole.
 
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 
 use crate::identify::fit::reflection::NewRows;
 use crate::identify::fit::rows::{BLOCK, Rows};
 use crate::signal::columns::dot;
+
+/// Rows with the places of their unknowns among those of a factor.
+pub(super) type Placed<'a> = (&'a Rows, &'a [usize]);
 
 /// Upper triangular factor R of the rows [J r] of some residuals, with their cost and number.
 #[derive(Debug, Clone)]
@@ -24,35 +28,67 @@ impl Factor {
     pub fn of(residuals: &[f64], slopes: &[Vec<f64>]) -> Self {
         let places: Vec<usize> = (0..slopes.len()).collect();
         let mut factor = Self::empty(slopes.len());
-        factor.add([(&Rows::of(residuals, slopes, 1.0), places.as_slice())]);
+        factor.add(&[(&Rows::of(residuals, slopes, 1.0), places.as_slice())]);
         factor
     }
 
-    /// Add rows whose unknowns are those at the given places among this factor's.
-    pub fn add<'a>(&mut self, parts: impl IntoIterator<Item = (&'a Rows, &'a [usize])>) {
-        let mut block: Vec<(&Rows, &[usize])> = Vec::new();
-        let mut height = 0;
-        for (rows, places) in parts {
-            if height > 0 && height + rows.height() > BLOCK {
-                self.fold(&block, height);
-                block.clear();
-                height = 0;
-            }
-            height += rows.height();
-            block.push((rows, places));
-        }
-        self.fold(&block, height);
+    /// That of many parts, rows whose unknowns are those at the given places among n. They are folded
+    /// on all threads, in blocks of fixed size, so that the number of threads changes nothing.
+    pub(super) fn joined(unknowns: usize, parts: &[Placed<'_>]) -> Self {
+        let of_block = |block: &&[Placed<'_>]| {
+            let mut factor = Self::empty(unknowns);
+            factor.fold(block);
+            factor
+        };
+        let blocks = blocks(parts).par_iter().map(of_block).collect();
+        Self::stacked(unknowns, blocks)
     }
 
-    /// Fold rows, so many in all, into the triangle.
-    fn fold(&mut self, parts: &[(&Rows, &[usize])], height: usize) {
-        let mut new = NewRows::zeros(self.unknowns() + 1, height);
-        let mut end = 0;
-        for (rows, places) in parts {
-            let start = end;
-            end += rows.height();
-            for (i, to) in places.iter().chain([&self.unknowns()]).enumerate() {
-                new.column_mut(*to)[start..end].copy_from_slice(rows.column(i));
+    /// That of factors over the same n unknowns.
+    pub(super) fn stacked(unknowns: usize, factors: Vec<Self>) -> Self {
+        let mut factors = factors.into_iter();
+        let mut whole = factors.next().unwrap_or_else(|| Self::empty(unknowns));
+        let rest: Vec<Self> = factors.collect();
+        let all: Vec<usize> = (0..unknowns).collect();
+        let rest = rest.iter().map(|factor| (factor.rows(), &all[..]));
+        whole.add(&Vec::from_iter(rest));
+        whole
+    }
+
+    /// Add rows whose unknowns are those at the given places among this factor's.
+    pub(super) fn add(&mut self, parts: &[Placed<'_>]) {
+        for block in blocks(parts) {
+            self.fold(block);
+        }
+    }
+
+    /// Fold rows into the triangle: those first that have slopes over the first unknowns, so that each
+    /// column has entries in its first rows alone.
+    fn fold(&mut self, parts: &[Placed<'_>]) {
+        if parts.is_empty() {
+            return;
+        }
+        let unknowns = self.unknowns();
+        let mut starts = vec![0; unknowns + 2];
+        let firsts: Vec<Vec<usize>> = parts.iter().map(|part| firsts(*part, unknowns)).collect();
+        for first in firsts.iter().flatten() {
+            starts[first + 1] += 1;
+        }
+        for i in 0..=unknowns {
+            starts[i + 1] += starts[i];
+        }
+        let mut new = NewRows::zeros(unknowns + 1, starts[unknowns + 1]);
+        for ((rows, places), firsts) in parts.iter().zip(firsts) {
+            let to_row = firsts.into_iter().map(|first| {
+                starts[first] += 1;
+                starts[first] - 1
+            });
+            let to_row: Vec<usize> = to_row.collect();
+            for (i, to) in places.iter().chain([&unknowns]).enumerate() {
+                let column = new.column_mut(*to);
+                for (row, entry) in to_row.iter().zip(rows.column(i)) {
+                    column[*row] = *entry;
+                }
             }
             self.0.cost += rows.cost;
             self.0.count += rows.count;
@@ -144,6 +180,35 @@ impl Factor {
     }
 }
 
+/// Of each row of a part the place of its first slope that is not zero; n for none.
+fn firsts((rows, places): Placed<'_>, unknowns: usize) -> Vec<usize> {
+    let mut firsts = vec![unknowns; rows.height()];
+    for (i, place) in places.iter().enumerate() {
+        for (first, slope) in firsts.iter_mut().zip(rows.column(i)) {
+            if *slope != 0.0 {
+                *first = (*first).min(*place);
+            }
+        }
+    }
+    firsts
+}
+
+/// Parts one after the other, of so many rows together as are folded at once.
+fn blocks<'a, 'p>(parts: &'p [Placed<'a>]) -> Vec<&'p [Placed<'a>]> {
+    let mut height = 0;
+    let mut start = 0;
+    let mut blocks = Vec::new();
+    for (i, (rows, _)) in parts.iter().enumerate() {
+        if i > start && height + rows.height() > BLOCK {
+            blocks.push(&parts[start..i]);
+            (start, height) = (i, 0);
+        }
+        height += rows.height();
+    }
+    blocks.push(&parts[start..]);
+    blocks
+}
+
 #[cfg(test)]
 mod tests {
     use rand::{Rng, SeedableRng};
@@ -181,7 +246,8 @@ mod tests {
                 .collect();
             let mut factor = Factor::empty(7);
             let pairs = parts.iter().zip(&places);
-            factor.add(pairs.map(|(rows, places)| (rows, places.as_slice())));
+            let pairs: Vec<Placed<'_>> = pairs.map(|(rows, p)| (rows, p.as_slice())).collect();
+            factor.add(&pairs);
             let mut sum = Normal::zeros(7);
             let pairs = parts.iter().zip(&places);
             pairs.for_each(|(rows, places)| sum.add(&rows.normal(places, 7)));
@@ -226,7 +292,7 @@ mod tests {
             let slopes = [vec![1.0, 2.0, 3.0], vec![tiny, -tiny, tiny]];
             let mut factor = Factor::of(&[0.1, 0.2, -0.1], &slopes);
             let other = Factor::of(&[0.3, 0.1, 0.2], &slopes);
-            factor.add([(other.rows(), [0, 1].as_slice())]);
+            factor.add(&[(other.rows(), [0, 1].as_slice())]);
             let is_finite = |i| factor.0.column(i).iter().all(|x| x.is_finite());
             assert!((0..3).all(is_finite), "{tiny:e}");
         }

@@ -241,20 +241,21 @@ impl Problem<'_> {
 
     /// Factor over the items that have a model, and those (block, item) that have none.
     fn known_factor(&self, parameters: &Parameters) -> (Factor, Vec<(usize, usize)>) {
-        let mut total = Factor::empty(self.free.len());
-        let mut missing = Vec::new();
-        for (b, groups) in self.evaluated(parameters).blocks.iter().enumerate() {
+        let evaluation = self.evaluated(parameters);
+        let (mut parts, mut missing) = (Vec::new(), Vec::new());
+        for (b, groups) in evaluation.blocks.iter().enumerate() {
             for (_, part) in groups {
-                total.add([(part.factor.rows(), part.places.as_slice())]);
+                parts.push((part.factor.rows(), part.places.as_slice()));
                 missing.extend(part.missing.iter().map(|i| (b, *i)));
             }
         }
+        let mut total = Factor::joined(self.free.len(), &parts);
         for prior in &self.priors {
             let place = self.free.iter().position(|c| *c == prior.coordinate);
             let slopes = place.map(|_| vec![prior.deviation.recip()]);
             let residual = prior_residual(prior, parameters);
             let row = Rows::of(&[residual], slopes.as_slice(), 1.0);
-            total.add([(&row, place.as_slice())]);
+            total.add(&[(&row, place.as_slice())]);
         }
         missing.sort_unstable();
         (total, missing)

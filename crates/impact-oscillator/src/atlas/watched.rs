@@ -22,7 +22,7 @@ struct Watching<'a> {
 struct Open {
     index: usize,
     start: Cell,
-    returns: Vec<Return>,
+    strikes: Vec<Strike>,
     rests: bool,
 }
 
@@ -35,8 +35,15 @@ impl Watching<'_> {
     fn motion(&self, cell: &Open) -> Option<SettledMotion> {
         let setting = Setting::new(cell.start.eta, cell.start.rho);
         let interval = (0.0, self.watch.watch_periods * setting.period());
-        let motion = || of_returns(&cell.returns, self.machine, (setting, interval), self.watch);
-        (!cell.rests).then(motion)
+        if cell.rests {
+            return None;
+        }
+        let restitution = self.machine.restitution().constant()?;
+        let strikes = cell.strikes.iter();
+        let returns = strikes.map(|strike| bounce(&cell.start, restitution, *strike));
+        let returns: Vec<Return> = returns.collect();
+        let at = (setting, interval);
+        Some(of_returns(&returns, self.machine, at, self.watch))
     }
 }
 
@@ -46,17 +53,15 @@ impl Feed for Watching<'_> {
         self.open.push(Open {
             index,
             start,
-            returns: Vec::new(),
+            strikes: Vec::new(),
             rests: false,
         });
         Some((index, start))
     }
 
     fn impact(&mut self, index: usize, strike: Strike) {
-        let restitution = self.machine.restitution().constant().unwrap_or_default();
         if let Some(cell) = self.open(index) {
-            let struck = bounce(&cell.start, restitution, strike);
-            cell.returns.push(struck);
+            cell.strikes.push(strike);
         }
     }
 
