@@ -3,11 +3,14 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use ::hdf5::{
     AttrValue, ChunkCacheConfig, Dataset, FileAccessProperties, FormatError, Group, Layout,
     MetadataCacheConfig, Object,
 };
+
+use rayon::prelude::*;
 
 use crate::bytes::{read_exact_at, to_usize};
 use crate::hdf5::chunked;
@@ -93,9 +96,9 @@ fn walk(source: Positional) -> Result<(Tree, bool), StoreError> {
         .with_metadata_cache(MetadataCacheConfig::new(METADATA_CACHE_BYTES))
         .with_chunk_cache(ChunkCacheConfig::disabled());
     let file = ::hdf5::File::from_source_with_options(source, access)?;
-    let mut walk = Walk::default();
+    let walk = Walk::default();
     let tree = walk.group(&file.root(), String::new(), 0)?;
-    Ok((tree, walk.old))
+    Ok((tree, walk.old.load(Ordering::Relaxed)))
 }
 
 fn has_old_layout(dataset: &Dataset) -> bool {
@@ -109,13 +112,13 @@ fn has_old_layout(dataset: &Dataset) -> bool {
 
 #[derive(Default)]
 struct Walk {
-    objects: usize,
+    objects: AtomicUsize,
     /// Whether a dataset has a layout older than the library reads.
-    old: bool,
+    old: AtomicBool,
 }
 
 impl Walk {
-    fn group(&mut self, group: &Group, path: String, depth: usize) -> Result<Tree, StoreError> {
+    fn group(&self, group: &Group, path: String, depth: usize) -> Result<Tree, StoreError> {
         if depth > DEEPEST {
             return Err(StoreError::TooDeep(path));
         }
@@ -126,7 +129,8 @@ impl Walk {
         };
         for (name, dataset) in group.iter_datasets()? {
             self.count()?;
-            self.old |= has_old_layout(&dataset);
+            self.old
+                .fetch_or(has_old_layout(&dataset), Ordering::Relaxed);
             match describe(dataset, join(&tree.path, &name), name) {
                 Ok(array) => tree.arrays.push(array),
                 // One dataset that cannot be described does not hide the others.
@@ -136,17 +140,19 @@ impl Walk {
                 Err(fault) => return Err(fault),
             }
         }
-        for (name, child) in group.iter_groups()? {
+        let children: Vec<(String, Group)> = group.iter_groups()?.collect();
+        let below = |(name, child): &(String, Group)| {
             self.count()?;
-            let path = join(&tree.path, &name);
-            tree.groups.push(self.group(&child, path, depth + 1)?);
-        }
+            self.group(child, join(&tree.path, name), depth + 1)
+        };
+        // of several faults the first in the file is told
+        let groups: Vec<Result<Tree, StoreError>> = children.par_iter().map(below).collect();
+        tree.groups = groups.into_iter().collect::<Result<_, _>>()?;
         Ok(tree)
     }
 
-    fn count(&mut self) -> Result<(), StoreError> {
-        self.objects += 1;
-        if self.objects > MOST_OBJECTS {
+    fn count(&self) -> Result<(), StoreError> {
+        if self.objects.fetch_add(1, Ordering::Relaxed) >= MOST_OBJECTS {
             return Err(StoreError::TooMany);
         }
         Ok(())

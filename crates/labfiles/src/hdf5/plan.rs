@@ -7,6 +7,8 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use crate::attribute;
 use crate::bytes::to_usize;
 use crate::hdf5::element::Element;
@@ -63,27 +65,31 @@ pub(crate) struct Plans {
 
 /// Make records of a tree.
 pub(crate) fn plan(store: &Store, tree: &Tree) -> Plans {
-    let mut plans = Plans::default();
-    plans.group(store, tree, &Attrs::new());
-    plans
+    Plans::of_group(store, tree, &Attrs::new())
 }
 
 impl Plans {
-    fn group(&mut self, store: &Store, tree: &Tree, inherited: &Attrs) {
+    fn of_group(store: &Store, tree: &Tree, inherited: &Attrs) -> Self {
+        let mut plans = Self::default();
         let mut attributes = merged(inherited, &tree.attributes);
-        let sorted = self.sort(store, tree, &mut attributes);
-        self.tables(&sorted, tree, &attributes);
+        let sorted = plans.sort(store, tree, &mut attributes);
+        plans.tables(&sorted, tree, &attributes);
         for array in &sorted.slabs {
-            self.slabs(array, &attributes);
+            plans.slabs(array, &attributes);
         }
         for array in &sorted.compounds {
-            self.compound(array, &attributes);
+            plans.compound(array, &attributes);
         }
         let mut groups: Vec<&Tree> = tree.groups.iter().collect();
         groups.sort_by(|a, b| natural(&a.path, &b.path));
-        for group in groups {
-            self.group(store, group, &attributes);
+        let below = groups.par_iter();
+        let below = below.map(|group| Self::of_group(store, group, &attributes));
+        for group in below.collect::<Vec<_>>() {
+            plans.datasets.extend(group.datasets);
+            plans.plans.extend(group.plans);
+            plans.notes.extend(group.notes);
         }
+        plans
     }
 
     /// Sort a group's arrays by what they are good for; small ones become attributes.

@@ -1,5 +1,7 @@
 //! The table of all records.
 
+use rayon::prelude::*;
+
 use super::{Column, arrow, table};
 use crate::compare::RecordRow;
 use crate::motion::Motion;
@@ -99,9 +101,11 @@ fn crowded(table: Table) -> Table {
         let cells = table.rows.iter().map(|row| width(&row[i]));
         (cells.fold(width(&table.heads[i]), f64::max) + PADDING).ceil()
     };
-    let rest: f64 = (1..table.heads.len()).map(|i| need(&table, i)).sum();
+    let columns = (0..table.heads.len()).into_par_iter();
+    let mut needs: Vec<f64> = columns.map(|i| need(&table, i)).collect();
+    let rest: f64 = needs.iter().skip(1).sum();
     let half = 0.5 * (look::FULL_WIDTH - GUTTER);
-    let side_by_side = if need(&table, 0) + rest <= half { 2 } else { 1 };
+    let side_by_side = if needs[0] + rest <= half { 2 } else { 1 };
     let room = if side_by_side == 2 {
         half
     } else {
@@ -111,9 +115,10 @@ fn crowded(table: Table) -> Table {
     for row in &mut table.rows {
         row[0] = shortened(&row[0], room, SIZE);
     }
-    let widths = (0..table.heads.len())
-        .map(|i| u16::try_from(whole::count(need(&table, i))).unwrap_or(u16::MAX))
-        .collect();
+    needs[0] = need(&table, 0);
+    let widths = needs.iter();
+    let widths = widths.map(|need| u16::try_from(whole::count(*need)).unwrap_or(u16::MAX));
+    let widths = widths.collect();
     Table {
         size: SIZE,
         side_by_side,
