@@ -288,6 +288,14 @@ pub fn write_identified(found: &IdentificationFile, out: &Path) -> Result<(), Pi
 /// Where it is missing or unreadable.
 pub fn read_identified(out: &Path) -> Result<IdentificationFile, PipelineError> {
     let mut found = read_identification(out)?;
+    let is_missing = |name: &str| !out.join(name).exists();
+    if is_missing(RESIDUALS) && !is_missing(OBSERVATIONS) {
+        return Err(PipelineError::NoResults {
+            path: out.display().to_string(),
+            reason: "the records were classified after they were identified".to_owned(),
+            remedy: "run impactid identify on the folder again".to_owned(),
+        });
+    }
     let path = of_stage(out, RESIDUALS, "residuals")?;
     found.identification.residuals = gzip_json::read(&path).map_err(|e| store_error(&path, e))?;
     Ok(found)
@@ -375,10 +383,7 @@ mod tests {
         };
         write_observed(&mut none, out).unwrap();
         let error = read_identified(out).err().unwrap();
-        assert!(
-            error
-                .remedy()
-                .contains("ingest, classify, identify, report")
-        );
+        assert!(error.to_string().contains("after they were identified"));
+        assert!(error.remedy().contains("impactid identify"));
     }
 }
