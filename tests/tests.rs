@@ -49,6 +49,7 @@ mod report;
 mod theory;
 
 /// Campaigns whose records are still arriving.
+#[cfg(unix)]
 mod watch;
 
 /// The tutorial as it stands, the script that reads the results, manual pages, completions.

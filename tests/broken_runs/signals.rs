@@ -1,17 +1,14 @@
 //! Ctrl-C, and two runs into one folder.
 
+use std::cell::Cell;
 use std::fs;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process, waitid};
+use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, waitid};
 
 use super::{RUN, campaign, hidden, outputs, program};
-use crate::support::Lab;
-
-fn send(child: &Child, signal: Signal) {
-    kill_process(Pid::from_child(child), signal).expect("a signal is sent");
-}
+use crate::support::{Lab, send};
 
 /// Whether the program now stands still; `false` where it has ended.
 fn halt(child: &Child) -> bool {
@@ -88,7 +85,13 @@ fn ctrl_c_is_reported_ends_with_130_and_loses_nothing() {
     of_yesterday();
     for signal in [Signal::INT, Signal::TERM] {
         let command = speaking(&lab, &["run", "campaign.toml", "--out", "out"]);
-        let run = halted_when(command, || is_locked(&lab), of_yesterday);
+        // in the middle of the run: it goes on for a while after it took its folder
+        let looks = Cell::new(0);
+        let is_under_way = || {
+            looks.set(looks.get() + usize::from(is_locked(&lab)));
+            is_locked(&lab) && looks.get() > 100
+        };
+        let run = halted_when(command, is_under_way, of_yesterday);
         send(&run, signal);
         send(&run, Signal::CONT);
         let (said, code) = spoken(run);

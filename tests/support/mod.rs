@@ -59,6 +59,13 @@ paper = "a4"
 pub(crate) const RUNS: &str = "file,drive_frequency_hz,clearance_mm,sweep\n\
     r1.csv,11,1.0,up\nr2.csv,12,1.0,up\nr3.csv,13,1.0,down\n";
 
+/// Send a program a signal.
+#[cfg(unix)]
+pub(crate) fn send(program: &std::process::Child, signal: rustix::process::Signal) {
+    let id = rustix::process::Pid::from_child(program);
+    rustix::process::kill_process(id, signal).expect("a signal is sent");
+}
+
 /// What a program run left behind.
 pub(crate) struct Ran {
     /// Both output streams.

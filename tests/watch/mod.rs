@@ -11,7 +11,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::explore::server::Explorer;
-use crate::support::{Lab, files};
+use crate::support::{Lab, files, send};
 
 const WATCH: &[&str] = &[
     "watch",
@@ -97,9 +97,7 @@ fn wait_until(what: &str, is_so: impl Fn() -> bool) {
 
 /// Ctrl-C; the exit code and what was said.
 fn end(mut watch: Child) -> (Option<i32>, String) {
-    let id = watch.id().to_string();
-    let sent = Command::new("kill").args(["-INT", &id]).status();
-    assert!(sent.expect("kill").success());
+    send(&watch, rustix::process::Signal::INT);
     let mut said = String::new();
     let words = watch.stderr.as_mut().expect("its words");
     words.read_to_string(&mut said).expect("text");

@@ -228,7 +228,8 @@ mod tests {
             ..unit.course(&MapSettings::default())
         };
         let mut collected = Collected {
-            start: Some(start),
+            cell: start,
+            is_taken: false,
             returns: Vec::new(),
         };
         run(available(None), &course, &mut collected);
@@ -249,23 +250,17 @@ mod tests {
     }
 
     struct Collected {
-        start: Option<Cell>,
+        cell: Cell,
+        is_taken: bool,
         returns: Vec<Return>,
     }
 
     impl Feed for Collected {
         fn next(&mut self) -> Option<(usize, Cell)> {
-            Some((0, self.start.take()?))
+            (!std::mem::replace(&mut self.is_taken, true)).then_some((0, self.cell))
         }
         fn impact(&mut self, _: usize, strike: Strike) {
-            let cell = Cell {
-                eta: 0.8,
-                rho: 0.9,
-                x: 0.0,
-                v: 3.0,
-                phase: 0.4,
-            };
-            self.returns.push(bounce(&cell, 0.8, strike));
+            self.returns.push(bounce(&self.cell, 0.8, strike));
         }
         fn done(&mut self, _: usize, _: Outcome) {}
     }

@@ -64,6 +64,6 @@ pub(in crate::atlas) trait Feed {
     fn done(&mut self, index: usize, outcome: Outcome);
     /// A cell has an impact, where [`Course::every_impact`] asks for them.
     fn impact(&mut self, _index: usize, _strike: Strike) {}
-    /// The mass of such a cell comes to rest at the stop.
+    /// The mass of a cell comes to rest at the stop.
     fn rests(&mut self, _index: usize) {}
 }

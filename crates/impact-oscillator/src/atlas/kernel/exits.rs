@@ -146,9 +146,7 @@ pub(super) fn serve<V: Lanes>(
 /// The impact at a time, from z's imaginary part after it.
 fn strike(course: &Course, info: &Lane, t: f64, zi: f64) -> Strike {
     let beta = course.damping_ratio;
-    let (f0r, f0i) = info.forced;
-    let (sin, cos) = (info.cell.phase + info.cell.eta * t).sin_cos();
-    let (fr, fi) = (f0r * cos - f0i * sin, f0r * sin + f0i * cos);
+    let (fr, fi) = info.forced_at(info.cell.phase + info.cell.eta * t);
     let omega = (1.0 - beta * beta).sqrt();
     Strike {
         t,
@@ -217,7 +215,7 @@ fn start_watch<V: Lanes>(course: &Course, s: &mut Group<V>, info: &mut Lane, lan
     }
 }
 
-/// Motion of a cell whose orbit did not recur; chaos is a guess that `map` follows up. Without an
+/// Motion of a cell whose orbit did not recur; chaos is a guess that `watched` follows up. Without an
 /// impact in the watch it is impactless where that motion stays clear of the stop, else between
 /// two impacts that are farther apart than the watch is long.
 fn unrecognised<V: Lanes>(s: &Group<V>, info: &Lane, lane: usize) -> SettledMotion {

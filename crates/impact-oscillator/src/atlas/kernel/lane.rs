@@ -40,6 +40,15 @@ pub(super) struct Lane {
     pub(super) anchor: Anchor,
 }
 
+impl Lane {
+    /// The forced response at a phase of the drive, complex.
+    pub(super) fn forced_at(&self, phase: f64) -> (f64, f64) {
+        let (sin, cos) = phase.sin_cos();
+        let (re, im) = self.forced;
+        (re * cos - im * sin, re * sin + im * cos)
+    }
+}
+
 pub(super) const IDLE: Lane = Lane {
     index: 0,
     cell: Cell {
@@ -179,9 +188,7 @@ pub(super) fn place<V: Lanes>(
     at: (f64, f64, f64, f64),
 ) {
     let (t, x, v, phase) = at;
-    let (sin, cos) = phase.sin_cos();
-    let (f0r, f0i) = info.forced;
-    let (fr, fi) = (f0r * cos - f0i * sin, f0r * sin + f0i * cos);
+    let (fr, fi) = info.forced_at(phase);
     let beta = course.damping_ratio;
     let omega = (1.0 - beta * beta).sqrt();
     let (zr, vh) = (x - fr, v + info.cell.eta * fi);
