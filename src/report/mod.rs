@@ -104,9 +104,9 @@ impl Report {
                 format!("{}.html", self.name),
                 self.html()?.into_bytes(),
             )]),
-            Format::Svg => each("svg", &|f| Ok(f.svg.clone().into_bytes())),
+            Format::Svg => each("svg", &|f| Ok(f.svg().into_bytes())),
             Format::Png => each("png", &png::png),
-            Format::FigurePdf => each("pdf", &picture::pdf),
+            Format::FigurePdf => each("pdf", &|f| picture::pdf(f, self.options.spoken())),
             Format::Tex => Ok(latex::tables(&self.document)),
             Format::Csv => {
                 let mut files = each("csv", &|f| Ok(f.csv.clone().into_bytes()))?;

@@ -24,7 +24,7 @@ pub(super) fn png(figure: &Figure) -> Result<Vec<u8>, ReportError> {
         fontdb: fonts_of_figures(),
         ..Options::default()
     };
-    let tree = Tree::from_str(&figure.svg, &options).map_err(|e| failed(e.to_string()))?;
+    let tree = Tree::from_str(&figure.svg(), &options).map_err(|e| failed(e.to_string()))?;
     let scale = RESOLUTION_DPI / UNITS_PER_INCH;
     let size = tree.size();
     let (width, height) = (

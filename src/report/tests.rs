@@ -210,7 +210,8 @@ fn decimal_comma_reaches_text_and_figures() {
         .iter()
         .find(|f| f.name == "map")
         .expect("a map");
-    assert!(map.svg.contains("\n1,5\n") && !map.svg.contains("\n1.5\n"));
+    let svg = map.svg();
+    assert!(svg.contains("\n1,5\n") && !svg.contains("\n1.5\n"));
 }
 
 #[test]

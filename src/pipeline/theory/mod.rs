@@ -83,7 +83,7 @@ impl StudyContext<'_> {
         };
         match self.pictures {
             Pictures::None => Ok(()),
-            Pictures::Svg => self.bytes(&format!("{}.svg", figure.name), figure.svg.as_bytes()),
+            Pictures::Svg => self.bytes(&format!("{}.svg", figure.name), figure.svg().as_bytes()),
             Pictures::All => {
                 let files = pictures(figure)?;
                 let mut files = files.iter();

@@ -18,8 +18,8 @@ impl Drawn<'_> {
         let figure = self.figures.iter().find(|f| f.name == name)?;
         Some(FigureRef {
             name: figure.name.clone(),
-            width: figure.width,
-            height: figure.height,
+            width: figure.drawing.width,
+            height: figure.drawing.height,
             number: None,
             caption: Rich::from(caption),
             alt: richtext::plain(&figure.title),

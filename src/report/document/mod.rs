@@ -9,6 +9,7 @@ mod front;
 mod layout_phrases;
 pub(super) mod model;
 mod pdf;
+mod placed;
 mod sections;
 mod settings;
 mod tables;

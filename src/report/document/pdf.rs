@@ -20,8 +20,9 @@ pub(crate) fn pdf(
     options: &ReportOptions,
 ) -> Result<Vec<u8>, ReportError> {
     let template = options.template.as_deref().unwrap_or(TEMPLATE);
-    let files = files(document, figures, options)?;
-    let world = MemoryWorld::new(template, files).ok_or(ReportError::FileName)?;
+    let files = files(document, options)?;
+    let world = MemoryWorld::new(template, figures, options.spoken(), files)
+        .ok_or(ReportError::FileName)?;
     world.pdf(&document.title).map_err(|e| match e {
         Unset::Template(why) => ReportError::Template(why),
         Unset::Pages(why) => ReportError::Pdf(why),
@@ -30,7 +31,6 @@ pub(crate) fn pdf(
 
 fn files(
     document: &Document,
-    figures: &[Figure],
     options: &ReportOptions,
 ) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
     let mut data = serde_json::to_value(document).map_err(ReportError::Data)?;
@@ -47,10 +47,5 @@ fn files(
     if let Some(logo) = &options.logo {
         files.push((format!("logo.{}", logo.extension), logo.bytes.clone()));
     }
-    files.extend(
-        figures
-            .iter()
-            .map(|f| (format!("{}.svg", f.name), f.svg.clone().into_bytes())),
-    );
     Ok(files)
 }

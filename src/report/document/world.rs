@@ -7,32 +7,44 @@ use std::sync::OnceLock;
 use typst::diag::{FileError, FileResult, SourceDiagnostic};
 use typst::foundations::{Bytes, Datetime, Duration, Smart};
 use typst::syntax::{FileId, RootedPath, Source, VirtualPath, VirtualRoot};
-use typst::text::{Font, FontBook};
+use typst::text::{Font, FontBook, Lang};
 use typst::utils::LazyHash;
 use typst::{Library, LibraryExt, World, WorldExt};
 use typst_layout::PagedDocument;
 use typst_pdf::PdfOptions;
 
-use crate::report::figures::fonts;
+use super::placed::{self, Placed};
+use crate::report::figures::{Figure, fonts};
 
 /// Files in memory; there is no clock and no access to the disk.
 pub(crate) struct MemoryWorld {
     main: Source,
     files: HashMap<FileId, Bytes>,
+    figures: Placed,
 }
 
 impl MemoryWorld {
-    /// A world of a template and further files by their paths.
+    /// A world of a template, of figures that it places as `image("NAME.svg")`, and of further files
+    /// by their paths. `language` is that of the figures' texts (ISO 639-1).
     pub(crate) fn new(
         template: &str,
+        figures: &[Figure],
+        language: &str,
         files: impl IntoIterator<Item = (String, Vec<u8>)>,
     ) -> Option<Self> {
         let main = Source::new(id("main.typ")?, template.to_owned());
+        let figure = |f: &Figure| (format!("{}.svg", f.name), placed::stand_in(f));
+        let files = files.into_iter().map(|(path, b)| (path, Bytes::new(b)));
         let files = files
-            .into_iter()
-            .map(|(path, bytes)| Some((id(&path)?, Bytes::new(bytes))))
+            .chain(figures.iter().map(figure))
+            .map(|(path, bytes)| Some((id(&path)?, bytes)))
             .collect::<Option<_>>()?;
-        Some(Self { main, files })
+        let figures = Placed::new(figures, language.parse().unwrap_or(Lang::ENGLISH));
+        Some(Self {
+            main,
+            files,
+            figures,
+        })
     }
 }
 
@@ -56,6 +68,7 @@ impl MemoryWorld {
             ..PdfOptions::default()
         };
         typst::comemo::evict(0);
+        let pages = self.figures.in_pages(pages);
         let bytes = typst_pdf::pdf(&pages, &options).map_err(|e| Unset::Pages(self.first(&e)));
         // nobody waits for the memory
         rayon::spawn(move || {

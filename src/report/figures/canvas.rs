@@ -1,51 +1,12 @@
-//! A drawing in points, recorded in layers and rendered through plotters' SVG backend.
+//! Where a figure is drawn, in points and in layers.
 
-use plotters::coord::Shift;
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::BLACK;
 
-use super::compact;
-use super::fonts::{FAMILY, Face};
+pub(crate) use super::drawing::{Colour, Stroke};
+use super::drawing::{Drawing, Shape, TextShape};
+use super::fonts::Face;
 pub(crate) use super::path::Point;
 use super::richtext;
-use crate::signal::whole;
-
-/// Drawing units in a point: plotters counts in whole units, these are fine enough for a curve.
-const UNITS_PER_POINT: f64 = 20.0;
-
-/// A colour.
-pub(crate) type Colour = RGBColor;
-
-/// How a line is drawn.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Stroke {
-    /// Colour.
-    pub colour: Colour,
-    /// Width in points.
-    pub width: f64,
-    /// Lengths of dash and gap in points, by turns; empty: solid.
-    pub dash: &'static [f64],
-}
-
-impl Stroke {
-    /// A solid line.
-    pub(crate) const fn solid(colour: Colour, width: f64) -> Self {
-        Self {
-            colour,
-            width,
-            dash: &[],
-        }
-    }
-
-    /// A dashed line.
-    pub(crate) const fn dashed(colour: Colour, width: f64, dash: &'static [f64]) -> Self {
-        Self {
-            colour,
-            width,
-            dash,
-        }
-    }
-}
 
 /// Which point of a text its position names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -94,21 +55,6 @@ impl TextLook {
     pub(crate) const fn face(self, face: Face) -> Self {
         Self { face, ..self }
     }
-}
-
-enum Shape {
-    Line(Vec<Point>, Stroke),
-    Fill(Vec<Point>, Colour),
-    Disc(Point, f64, Colour),
-    Ring(Point, f64, Stroke),
-    Text {
-        at: Point,
-        text: String,
-        size: f64,
-        face: Face,
-        colour: Colour,
-        upward: bool,
-    },
 }
 
 /// A point of a figure with a text.
@@ -218,17 +164,14 @@ impl Canvas {
                 (x + along, y + down)
             };
             along += super::fonts::width(&run.text, face, size);
-            let (colour, upward) = (look.colour, look.upward);
-            // SVG drops spaces at either end of a text, but not those that do not break.
-            let text = run.text.replace(' ', "\u{a0}");
-            self.push(Shape::Text {
+            self.push(Shape::Text(TextShape {
                 at,
-                text,
+                text: run.text,
                 size,
                 face,
-                colour,
-                upward,
-            });
+                colour: look.colour,
+                upward: look.upward,
+            }));
         }
     }
 
@@ -243,152 +186,25 @@ impl Canvas {
 
     /// Texts that reach beyond the drawing's edges: there should be none.
     pub(crate) fn overfull(&self) -> Vec<String> {
-        let inside = |x: f64, y: f64| {
+        let inside = |(x, y): Point| {
             (-0.5..=self.width + 0.5).contains(&x) && (-0.5..=self.height + 0.5).contains(&y)
         };
         let texts = self.shapes.iter().filter_map(|(_, shape)| match shape {
-            Shape::Text {
-                at,
-                text,
-                size,
-                face,
-                upward,
-                ..
-            } => {
-                let along = super::fonts::width(text, *face, *size);
-                let (rise, drop) = (0.72 * size, 0.22 * size);
-                let (x, y) = *at;
-                let corners = if *upward {
-                    [(x - rise, y), (x + drop, y - along)]
-                } else {
-                    [(x, y - rise), (x + along, y + drop)]
-                };
-                (!corners.iter().all(|c| inside(c.0, c.1))).then(|| text.clone())
+            Shape::Text(text) => {
+                (!text.corners().into_iter().all(inside)).then(|| text.text.clone())
             }
             _ => None,
         });
         texts.collect()
     }
 
-    /// The drawing as SVG text: its width and height in points, its fonts by name.
-    pub(crate) fn into_svg(mut self, title: &str) -> String {
+    /// What was drawn, lower layers first.
+    pub(crate) fn finish(mut self) -> Drawing {
         self.shapes.sort_by_key(|(layer, _)| *layer);
-        let size = (
-            units(self.width).unsigned_abs(),
-            units(self.height).unsigned_abs(),
-        );
-        let mut svg = String::new();
-        {
-            let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
-            for (_, shape) in &self.shapes {
-                draw(&root, shape);
-            }
-            // A string buffer cannot fail to be written.
-            let _ = root.present();
+        Drawing {
+            width: self.width,
+            height: self.height,
+            shapes: self.shapes.into_iter().map(|(_, shape)| shape).collect(),
         }
-        self.finish_root(&svg, size, title)
     }
-
-    /// Puts the size in points and what all elements share on the root element.
-    fn finish_root(&self, svg: &str, size: (u32, u32), title: &str) -> String {
-        let old = format!("<svg width=\"{}\" height=\"{}\"", size.0, size.1);
-        let new = format!(
-            "<svg width=\"{}pt\" height=\"{}pt\" stroke-linejoin=\"round\" role=\"img\"",
-            self.width, self.height
-        );
-        let title = escape(&richtext::plain(title));
-        let svg = svg
-            .replacen(&old, &new, 1)
-            .replacen(">\n", &format!("><title>{title}</title>\n"), 1)
-            .replace(" opacity=\"1\"", "");
-        compact::marks(&svg)
-    }
-}
-
-/// Text made safe for XML.
-pub(crate) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
-}
-
-fn units(points: f64) -> i32 {
-    whole::integer((points * UNITS_PER_POINT).round())
-}
-
-fn at((x, y): Point) -> (i32, i32) {
-    (units(x), units(y))
-}
-
-fn line_style(stroke: &Stroke) -> ShapeStyle {
-    let width = whole::count((stroke.width * UNITS_PER_POINT).round().max(1.0));
-    ShapeStyle {
-        color: stroke.colour.to_rgba(),
-        filled: false,
-        stroke_width: width,
-    }
-}
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
-/// Draws one shape; a string buffer cannot fail to be written, so there is no error to pass on.
-fn draw(root: &Area<'_>, shape: &Shape) {
-    let _ = match shape {
-        Shape::Line(points, stroke) => root.draw(&PathElement::new(
-            points.iter().map(|&p| at(p)).collect::<Vec<_>>(),
-            line_style(stroke),
-        )),
-        Shape::Fill(points, colour) => root.draw(&Polygon::new(
-            points.iter().map(|&p| at(p)).collect::<Vec<_>>(),
-            colour.filled(),
-        )),
-        Shape::Disc(centre, radius, colour) => {
-            root.draw(&Circle::new(at(*centre), units(*radius), colour.filled()))
-        }
-        Shape::Ring(centre, radius, stroke) => root.draw(&Circle::new(
-            at(*centre),
-            units(*radius),
-            line_style(stroke),
-        )),
-        Shape::Text {
-            at: position,
-            text,
-            size,
-            face,
-            colour,
-            upward,
-        } => root.draw(&text_element(
-            *position,
-            text,
-            (*size, *face),
-            (*colour, *upward),
-        )),
-    };
-}
-
-/// The backend divides sizes by 1.24 and hangs a text's top 0.76 em above its baseline.
-fn text_element(
-    (x, y): Point,
-    text: &str,
-    (size, face): (f64, Face),
-    (colour, upward): (Colour, bool),
-) -> Text<'static, (i32, i32), String> {
-    let style = match face {
-        Face::Regular => FontStyle::Normal,
-        Face::Italic => FontStyle::Italic,
-        Face::Bold => FontStyle::Bold,
-    };
-    let font = (FAMILY, size * UNITS_PER_POINT * 1.24)
-        .into_font()
-        .style(style);
-    let rise = 0.76 * size;
-    let (font, position) = if upward {
-        (font.transform(FontTransform::Rotate270), (x - rise, y))
-    } else {
-        (font, (x, y - rise))
-    };
-    let mut style = TextStyle::from(font).pos(Pos::new(HPos::Left, VPos::Top));
-    style.color = colour.to_backend_color();
-    Text::new(text.to_owned(), at(position), style)
 }

@@ -3,6 +3,8 @@
 
 use std::fmt::{self, Display, Formatter, Write};
 
+use super::drawing::twice_the_area;
+
 /// The same drawing with neighbours of one kind and look as one path: filled polygons, dots and lines.
 pub(super) fn marks(svg: &str) -> String {
     let mut out = String::with_capacity(svg.len());
@@ -162,15 +164,6 @@ fn polygon(line: &str) -> Option<Mark<'_>> {
         look: Look::Area { fill },
         points,
     })
-}
-
-/// Twice the area within points, negative where they turn the other way.
-fn twice_the_area(points: &[(i32, i32)]) -> i64 {
-    let next = points.iter().cycle().skip(1);
-    let sides = points.iter().zip(next);
-    sides
-        .map(|(a, b)| i64::from(a.0) * i64::from(b.1) - i64::from(b.0) * i64::from(a.1))
-        .sum()
 }
 
 /// A filled disc, or a circle.

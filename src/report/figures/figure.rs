@@ -1,6 +1,10 @@
 //! A finished figure.
 
+use typst::layout::Frame;
+use typst::text::Lang;
+
 use super::canvas::{Canvas, Spot};
+use super::drawing::Drawing;
 
 /// A finished figure.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,11 +14,7 @@ pub(crate) struct Figure {
     /// What it shows, with markup.
     pub title: String,
     /// The drawing.
-    pub svg: String,
-    /// Width, points.
-    pub width: f64,
-    /// Height, points.
-    pub height: f64,
+    pub drawing: Drawing,
     /// Its data; empty where another figure has them.
     pub csv: String,
     /// Points with a text that is shown on hovering.
@@ -34,21 +34,26 @@ impl Figure {
         mut canvas: Canvas,
         csv: String,
     ) -> Self {
-        let (width, height) = (canvas.width, canvas.height);
         let overfull = canvas.overfull();
         let spots = fewer(std::mem::take(&mut canvas.spots));
-        let svg = canvas.into_svg(title);
-        let (name, title) = (name.into(), title.to_owned());
         Self {
-            name,
-            title,
-            svg,
-            width,
-            height,
+            name: name.into(),
+            title: title.to_owned(),
+            drawing: canvas.finish(),
             csv,
             spots,
             overfull,
         }
+    }
+
+    /// The drawing as SVG, for pages and for drawing programs.
+    pub(crate) fn svg(&self) -> String {
+        super::svg::svg(&self.drawing, &self.title)
+    }
+
+    /// The drawing as part of a page of typst's, its texts marked as of a language.
+    pub(crate) fn frame(&self, lang: Lang) -> Frame {
+        super::frame::frame(&self.drawing, lang)
     }
 }
 

@@ -55,11 +55,40 @@ fn instance(face: Face) -> Option<&'static FontInstance> {
 }
 
 fn instantiate(face: Face) -> Option<FontInstance> {
-    let (font, info) = find(face)?;
-    Some(
-        font.clone()
-            .instantiate(info.variant, Abs::pt(10.0), &FontVariations::default()),
-    )
+    find(face).map(usable)
+}
+
+fn usable((font, info): &(Font, FontInfo)) -> FontInstance {
+    font.clone()
+        .instantiate(info.variant, Abs::pt(10.0), &FontVariations::default())
+}
+
+/// A text in pieces, each with a font: that of the face, and for characters that it lacks another
+/// of the embedded fonts that has them. Nothing where no font is embedded.
+pub(super) fn runs(text: &str, face: Face) -> Vec<(FontInstance, &str)> {
+    let Some(own) = instance(face) else {
+        return Vec::new();
+    };
+    let font_of = |c: char| {
+        let lacks = own.ttf().glyph_index(c).is_none();
+        let has = |(_, info): &&(Font, FontInfo)| info.coverage.contains(c.into());
+        lacks
+            .then(|| embedded().iter().position(|f| has(&f)))
+            .flatten()
+    };
+    let mut pieces: Vec<(Option<usize>, usize)> = Vec::new();
+    for (start, c) in text.char_indices() {
+        let font = font_of(c);
+        if pieces.last().is_none_or(|(last, _)| *last != font) {
+            pieces.push((font, start));
+        }
+    }
+    let ends = pieces.iter().skip(1).map(|(_, start)| *start);
+    let ends: Vec<usize> = ends.chain([text.len()]).collect();
+    let font = |index: Option<usize>| index.map_or_else(|| own.clone(), |i| usable(&embedded()[i]));
+    let each = pieces.into_iter().zip(ends);
+    each.map(|((index, start), end)| (font(index), &text[start..end]))
+        .collect()
 }
 
 fn find(face: Face) -> Option<&'static (Font, FontInfo)> {

@@ -1,4 +1,4 @@
-//! The figures, one file each: from content to SVG, its data as CSV, its points for hovering.
+//! The figures, one file each: its drawing, its data as CSV, its points for hovering.
 
 pub(super) mod axis;
 pub(super) mod boundaries;
@@ -10,9 +10,11 @@ pub(super) mod correlation;
 pub(crate) mod csv;
 pub(super) mod decays;
 pub(super) mod dots;
+mod drawing;
 pub(super) mod estimates;
 pub(super) mod figure;
 pub(super) mod fonts;
+mod frame;
 pub(super) mod impacts;
 pub(super) mod legend;
 pub(super) mod look;
@@ -27,10 +29,12 @@ pub(super) mod regions;
 pub(super) mod residuals;
 pub(super) mod resonance;
 pub(super) mod richtext;
+mod svg;
 pub(super) mod trend;
 pub(super) mod units;
 
 pub(crate) use figure::{Figure, numbered};
+pub(crate) use svg::escape;
 
 use rayon::prelude::*;
 

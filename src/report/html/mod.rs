@@ -9,7 +9,7 @@ use base64::prelude::BASE64_STANDARD;
 use super::document::model::Document;
 use super::error::ReportError;
 use super::figures::Figure;
-use super::figures::canvas::escape;
+use super::figures::escape;
 use super::figures::fonts::{self, FAMILY, Face};
 use super::options::ReportOptions;
 use super::phrase::Phrase;

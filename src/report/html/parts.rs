@@ -3,7 +3,7 @@
 use crate::report::document::model::*;
 use crate::report::error::ReportError;
 use crate::report::figures::Figure;
-use crate::report::figures::canvas::escape;
+use crate::report::figures::escape;
 use crate::report::figures::look;
 use crate::report::figures::richtext::Level;
 use crate::report::phrase::Phrase;
@@ -121,7 +121,7 @@ impl<'a> Parts<'a> {
     }
 
     fn figure(&self, reference: &FigureRef, figure: &Figure) -> Result<String, ReportError> {
-        let class = if figure.width > look::NARROW {
+        let class = if figure.drawing.width > look::NARROW {
             " class=\"wide\""
         } else {
             ""
@@ -129,8 +129,8 @@ impl<'a> Parts<'a> {
         let mut text = format!(
             "<figure{class}>\n<div class=\"drawing\" data-name=\"{}\" data-width=\"{}\">\n{}",
             escape(&figure.name),
-            figure.width,
-            figure.svg
+            figure.drawing.width,
+            figure.svg()
         );
         if !figure.spots.is_empty() {
             let spots = serde_json::to_string(&figure.spots).map_err(ReportError::Data)?;

@@ -1,0 +1,224 @@
+//! A drawing as a frame of typst's pages: its paths and texts become part of the page without a
+//! picture file between them, which would be written only to be read again.
+
+use rustybuzz::UnicodeBuffer;
+use typst::layout::{Abs, Angle, Em, Frame, FrameItem, GroupItem, Point, Ratio, Size, Transform};
+use typst::syntax::Span;
+use typst::text::{FontInstance, Glyph, Lang, TextItem};
+use typst::visualize::{
+    Color, Curve, CurveItem, FixedStroke, Geometry, LineCap, LineJoin, Paint, Shape as PageShape,
+};
+
+use super::drawing::{
+    Colour, Drawing, Shape, TextShape, UNITS_PER_POINT, at, line_units, twice_the_area, units,
+};
+use super::fonts;
+
+/// The drawing in its own size, its texts marked as of a language.
+pub(crate) fn frame(drawing: &Drawing, lang: Lang) -> Frame {
+    let size = Size::new(Abs::pt(drawing.width), Abs::pt(drawing.height));
+    let mut inner = Frame::hard(size * UNITS_PER_POINT);
+    let mut path = Path::default();
+    for shape in &drawing.shapes {
+        match shape {
+            Shape::Text(text) => {
+                path.close(&mut inner);
+                text_items(text, lang, &mut inner);
+            }
+            shape => path.add(shape, &mut inner),
+        }
+    }
+    path.close(&mut inner);
+    let mut group = GroupItem::new(inner);
+    group.transform = Transform::scale(
+        Ratio::new(1.0 / UNITS_PER_POINT),
+        Ratio::new(1.0 / UNITS_PER_POINT),
+    );
+    let mut outer = Frame::hard(size);
+    outer.push(Point::zero(), FrameItem::Group(group));
+    outer
+}
+
+/// How a path is painted.
+#[derive(Clone, Copy, PartialEq)]
+enum Look {
+    Area(Colour),
+    Line { colour: Colour, width: u32 },
+    // lines without length whose ends are round
+    Dot { colour: Colour, width: u32 },
+}
+
+impl Look {
+    fn of(shape: &Shape) -> Option<Self> {
+        Some(match shape {
+            Shape::Fill(_, colour) => Self::Area(*colour),
+            Shape::Line(_, stroke) | Shape::Ring(_, _, stroke) => Self::Line {
+                colour: stroke.colour,
+                width: line_units(stroke),
+            },
+            Shape::Disc(_, radius, colour) => Self::Dot {
+                colour: *colour,
+                width: 2 * units(*radius).unsigned_abs(),
+            },
+            Shape::Text(_) => return None,
+        })
+    }
+
+    fn painted(self, curve: Curve) -> PageShape {
+        let (colour, width, cap) = match self {
+            Self::Area(colour) => return Geometry::Curve(curve).filled(paint(colour)),
+            Self::Line { colour, width } => (colour, width, LineCap::Butt),
+            Self::Dot { colour, width } => match only_place(&curve) {
+                // a path without any extent is not exported
+                Some(centre) => return disc(centre, width).filled(paint(colour)),
+                None => (colour, width, LineCap::Round),
+            },
+        };
+        Geometry::Curve(curve).stroked(FixedStroke {
+            paint: paint(colour),
+            thickness: Abs::pt(width.into()),
+            cap,
+            join: LineJoin::Round,
+            ..FixedStroke::default()
+        })
+    }
+}
+
+fn paint(colour: Colour) -> Paint {
+    Color::from_u8(colour.0, colour.1, colour.2, 255).into()
+}
+
+/// Neighbours of one look are one path.
+#[derive(Default)]
+struct Path {
+    look: Option<Look>,
+    curve: Curve,
+}
+
+impl Path {
+    fn add(&mut self, shape: &Shape, frame: &mut Frame) {
+        let look = Look::of(shape);
+        if self.look != look {
+            self.close(frame);
+            self.look = look;
+        }
+        match shape {
+            Shape::Line(points, _) => self.line(points.iter().map(|&p| at(p))),
+            Shape::Fill(points, _) => self.area(points.iter().map(|&p| at(p)).collect()),
+            Shape::Disc(centre, _, _) => self.line([at(*centre); 2].into_iter()),
+            Shape::Ring(centre, radius, _) => self.ring(at(*centre), units(*radius)),
+            Shape::Text(_) => {}
+        }
+    }
+
+    fn line(&mut self, mut points: impl Iterator<Item = (i32, i32)>) {
+        if let Some(first) = points.next() {
+            self.curve.move_(point(first));
+        }
+        points.for_each(|p| self.curve.line(point(p)));
+    }
+
+    /// All areas turn the same way, so that where two overlap nothing is cut out.
+    fn area(&mut self, mut points: Vec<(i32, i32)>) {
+        if twice_the_area(&points) < 0 {
+            points.reverse();
+        }
+        self.line(points.into_iter());
+        self.curve.close();
+    }
+
+    fn ring(&mut self, centre: (i32, i32), radius: i32) {
+        self.curve
+            .0
+            .append(&mut circle(point(centre), Abs::pt(radius.into())).0);
+    }
+
+    /// Ends the path and hands it to the frame.
+    fn close(&mut self, frame: &mut Frame) {
+        let curve = std::mem::take(&mut self.curve);
+        if let Some(look) = self.look.take() {
+            let shape = look.painted(curve);
+            frame.push(Point::zero(), FrameItem::Shape(shape, Span::detached()));
+        }
+    }
+}
+
+/// The place of dots that lie in one place.
+fn only_place(dots: &Curve) -> Option<Point> {
+    let mut places = dots.0.iter().filter_map(|item| match item {
+        CurveItem::Move(place) => Some(*place),
+        _ => None,
+    });
+    let first = places.next()?;
+    places.all(|place| place == first).then_some(first)
+}
+
+fn disc(centre: Point, width: u32) -> Geometry {
+    Geometry::Curve(circle(centre, Abs::pt(width.into()) / 2.0))
+}
+
+fn circle(centre: Point, radius: Abs) -> Curve {
+    let mut circle = Curve::ellipse(Size::splat(2.0 * radius));
+    circle.translate(centre - Point::splat(radius));
+    circle.close();
+    circle
+}
+
+/// A position in drawing units.
+fn point((x, y): (i32, i32)) -> Point {
+    Point::new(Abs::pt(x.into()), Abs::pt(y.into()))
+}
+
+/// A text, in as many items as it needs fonts.
+fn text_items(shape: &TextShape, lang: Lang, frame: &mut Frame) {
+    let size = Abs::pt(shape.size * UNITS_PER_POINT);
+    let mut line = Frame::soft(Size::zero());
+    let mut along = Abs::zero();
+    for (font, text) in fonts::runs(&shape.text, shape.face) {
+        let item = TextItem {
+            glyphs: glyphs(&font, text),
+            font,
+            size,
+            fill: paint(shape.colour),
+            stroke: None,
+            lang,
+            region: None,
+            text: text.into(),
+        };
+        let width = item.width();
+        line.push(Point::with_x(along), FrameItem::Text(item));
+        along += width;
+    }
+    let start = point(at(shape.at));
+    if shape.upward {
+        let mut group = GroupItem::new(line);
+        group.transform = Transform::rotate(Angle::deg(-90.0));
+        frame.push(start, FrameItem::Group(group));
+    } else {
+        frame.push_frame(start, line);
+    }
+}
+
+/// The glyphs of a text in one font, with its kerning and ligatures.
+fn glyphs(font: &FontInstance, text: &str) -> Vec<Glyph> {
+    let mut buffer = UnicodeBuffer::new();
+    buffer.push_str(text);
+    let shaped = rustybuzz::shape(font.rusty(), &[], buffer);
+    let starts: Vec<u32> = shaped.glyph_infos().iter().map(|i| i.cluster).collect();
+    let ends = |start: u32| starts.iter().copied().filter(|s| *s > start).min();
+    let narrow = |byte: u32| u16::try_from(byte).unwrap_or(u16::MAX);
+    let each = shaped.glyph_infos().iter().zip(shaped.glyph_positions());
+    each.map(|(info, position)| {
+        let end = ends(info.cluster).map_or(text.len(), |end| end as usize);
+        Glyph {
+            id: narrow(info.glyph_id),
+            x_advance: font.to_em(position.x_advance),
+            x_offset: font.to_em(position.x_offset),
+            y_advance: Em::zero(),
+            y_offset: font.to_em(position.y_offset),
+            range: narrow(info.cluster)..u16::try_from(end).unwrap_or(u16::MAX),
+            span: (Span::detached(), 0),
+        }
+    })
+    .collect()
+}
