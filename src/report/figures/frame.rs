@@ -2,7 +2,7 @@
 //! picture file between them, which would be written only to be read again.
 
 use rustybuzz::UnicodeBuffer;
-use typst::layout::{Abs, Angle, Em, Frame, FrameItem, GroupItem, Point, Ratio, Size, Transform};
+use typst::layout::{Abs, Angle, Em, Frame, FrameItem, GroupItem, Point, Size, Transform};
 use typst::syntax::Span;
 use typst::text::{FontInstance, Glyph, Lang, TextItem};
 use typst::visualize::{
@@ -17,26 +17,19 @@ use super::fonts;
 /// The drawing in its own size, its texts marked as of a language.
 pub(crate) fn frame(drawing: &Drawing, lang: Lang) -> Frame {
     let size = Size::new(Abs::pt(drawing.width), Abs::pt(drawing.height));
-    let mut inner = Frame::hard(size * UNITS_PER_POINT);
+    let mut frame = Frame::hard(size);
     let mut path = Path::default();
     for shape in &drawing.shapes {
         match shape {
             Shape::Text(text) => {
-                path.close(&mut inner);
-                text_items(text, lang, &mut inner);
+                path.close(&mut frame);
+                text_items(text, lang, &mut frame);
             }
-            shape => path.add(shape, &mut inner),
+            shape => path.add(shape, &mut frame),
         }
     }
-    path.close(&mut inner);
-    let mut group = GroupItem::new(inner);
-    group.transform = Transform::scale(
-        Ratio::new(1.0 / UNITS_PER_POINT),
-        Ratio::new(1.0 / UNITS_PER_POINT),
-    );
-    let mut outer = Frame::hard(size);
-    outer.push(Point::zero(), FrameItem::Group(group));
-    outer
+    path.close(&mut frame);
+    frame
 }
 
 /// How a path is painted.
@@ -76,7 +69,7 @@ impl Look {
         };
         Geometry::Curve(curve).stroked(FixedStroke {
             paint: paint(colour),
-            thickness: Abs::pt(width.into()),
+            thickness: length(width),
             cap,
             join: LineJoin::Round,
             ..FixedStroke::default()
@@ -130,7 +123,7 @@ impl Path {
     fn ring(&mut self, centre: (i32, i32), radius: i32) {
         self.curve
             .0
-            .append(&mut circle(point(centre), Abs::pt(radius.into())).0);
+            .append(&mut circle(point(centre), length(radius)).0);
     }
 
     /// Ends the path and hands it to the frame.
@@ -154,7 +147,7 @@ fn only_place(dots: &Curve) -> Option<Point> {
 }
 
 fn disc(centre: Point, width: u32) -> Geometry {
-    Geometry::Curve(circle(centre, Abs::pt(width.into()) / 2.0))
+    Geometry::Curve(circle(centre, length(width) / 2.0))
 }
 
 fn circle(centre: Point, radius: Abs) -> Curve {
@@ -164,14 +157,19 @@ fn circle(centre: Point, radius: Abs) -> Curve {
     circle
 }
 
+/// A length in drawing units.
+fn length(units: impl Into<f64>) -> Abs {
+    Abs::pt(units.into() / UNITS_PER_POINT)
+}
+
 /// A position in drawing units.
 fn point((x, y): (i32, i32)) -> Point {
-    Point::new(Abs::pt(x.into()), Abs::pt(y.into()))
+    Point::new(length(x), length(y))
 }
 
 /// A text, in as many items as it needs fonts.
 fn text_items(shape: &TextShape, lang: Lang, frame: &mut Frame) {
-    let size = Abs::pt(shape.size * UNITS_PER_POINT);
+    let size = Abs::pt(shape.size);
     let mut line = Frame::soft(Size::zero());
     let mut along = Abs::zero();
     for (font, text) in fonts::runs(&shape.text, shape.face) {
