@@ -11,8 +11,8 @@ use crate::signal::robust::range;
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::atlas::{MapGrid, MapSettings, region_map as simulate_map};
 use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
-use impact_oscillator::model::orbit::stable_orbit;
-use impact_oscillator::model::params::{Initial, Machine, Setting};
+use impact_oscillator::model::orbit::Branch;
+use impact_oscillator::model::params::{Initial, Machine};
 
 /// A simulated boundary in the (η, ρ) plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -215,25 +215,35 @@ pub(super) fn region_map(input: &Input<'_>) -> Option<RegionMap> {
         start: Initial::both(0.0, LIVELY_SPEED),
         ..MapSettings::default()
     })?;
+    let branches: Vec<Vec<Branch>> = grid
+        .eta
+        .iter()
+        .map(|eta| branches(&machine, *eta))
+        .collect();
     let other = |i: usize| match rest[i] == lively[i] {
-        true => coexisting(&machine, grid.at(i), &rest[i]).unwrap_or_else(|| rest[i].clone()),
+        true => {
+            let (column, row) = (i % grid.eta.len(), i / grid.eta.len());
+            let found = coexisting(&machine, &branches[column], grid.rho[row], &rest[i]);
+            found.unwrap_or_else(|| rest[i].clone())
+        }
         false => lively[i].clone(),
     };
     let second: Vec<Motion> = (0..grid.len()).into_par_iter().map(other).collect();
     Some(RegionMap::new(grid.eta, grid.rho, &rest, &second))
 }
 
+/// z = 1/n at η, for every n that is looked for.
+fn branches(machine: &Machine, eta: f64) -> Vec<Branch> {
+    let of = |n| Branch::new(machine, eta, n);
+    (1..=MOST_PERIODS).map(of).collect()
+}
+
 /// A stable z = 1/n motion that exists beside another one.
-fn coexisting(machine: &Machine, (eta, rho): (f64, f64), beside: &Motion) -> Option<Motion> {
-    let setting = Setting::new(eta, rho);
-    let stable = |n: &u32| {
-        let orbit = stable_orbit(machine, setting, *n).ok().flatten();
-        orbit.is_some()
-    };
-    (1..=MOST_PERIODS)
-        .filter(|n| *beside != Motion::periodic(1, *n))
-        .find(stable)
-        .map(|n| Motion::periodic(1, n))
+fn coexisting(machine: &Machine, branches: &[Branch], rho: f64, beside: &Motion) -> Option<Motion> {
+    let motions = branches.iter().map(|b| (b, Motion::periodic(1, b.n)));
+    let others = motions.filter(|(_, motion)| motion != beside);
+    let mut stable = others.filter(|(branch, _)| branch.stable_orbit(machine, rho).is_some());
+    stable.next().map(|(_, motion)| motion)
 }
 
 #[cfg(test)]

@@ -3,8 +3,8 @@
 /// A position in points from the upper left corner.
 pub(crate) type Point = (f64, f64);
 
-/// Largest distance in points by which thinning may move a line.
-const THINNING_TOLERANCE: f64 = 0.04;
+/// Largest distance in points by which thinning may move a line: no more than drawing units are apart.
+const THINNING_TOLERANCE: f64 = 0.05;
 
 /// A rectangle in points.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -131,6 +131,8 @@ pub struct Branch {
     pub returned: C64,
     /// η
     pub eta: f64,
+    /// Drive periods in one period of the motion.
+    pub n: u32,
 }
 
 impl Branch {
@@ -163,6 +165,42 @@ impl Branch {
             velocity,
             returned,
             eta,
+            n,
+        }
+    }
+
+    /// The stable, existing orbit at a clearance, if there is one (at most one of the two roots is).
+    pub fn stable_orbit(&self, machine: &Machine, clearance: f64) -> Option<Orbit> {
+        let judged = |w: f64| {
+            let mut orbit = self.unjudged_orbit(machine, clearance, w);
+            orbit.multipliers = multipliers(machine, &orbit);
+            if !orbit.is_stable() {
+                return None;
+            }
+            orbit.existence = existence(machine, &orbit);
+            orbit.exists().then_some(orbit)
+        };
+        let speeds = approach_speeds(machine, self, machine.gap(clearance));
+        speeds.into_iter().find_map(judged)
+    }
+
+    /// The orbit that closes with a speed w, without its multipliers and with its existence assumed.
+    fn unjudged_orbit(&self, machine: &Machine, clearance: f64, w: f64) -> Orbit {
+        let (eta, n) = (self.eta, self.n);
+        let r = machine.restitution().at(w);
+        let phase = self.phase(r, machine.gap(clearance), w);
+        let drive = Drive { eta, phase };
+        let (before, after) = states_at_impact(machine, drive, n, (1.0 + r) * w);
+        Orbit {
+            n,
+            setting: Setting::new(eta, clearance).at_phase(phase),
+            phase_at_impact: phase,
+            approach_speed: w,
+            before,
+            after,
+            multipliers: Vec::new(),
+            existence: Existence::Exists,
+            flight: free_flight(machine, drive, &after),
         }
     }
 
@@ -226,14 +264,14 @@ impl Branch {
 /// # Errors
 /// [`ModelError`] where a parameter is out of range or the flight is not harmonic.
 pub fn orbits(machine: &Machine, setting: Setting, n: u32) -> Result<Vec<Orbit>, ModelError> {
-    let speeds = speeds_of_orbits(machine, setting, n)?.into_iter();
-    Ok(speeds
-        .map(|w| orbit_with_speed(machine, setting, n, w))
-        .collect())
+    let branch = checked_branch(machine, setting, n)?;
+    let speeds = approach_speeds(machine, &branch, machine.gap(setting.clearance));
+    let orbit = |w: f64| orbit_with_speed(machine, setting, n, w);
+    Ok(speeds.into_iter().map(orbit).collect())
 }
 
-/// Approach speeds of all z = 1/n orbits.
-fn speeds_of_orbits(machine: &Machine, setting: Setting, n: u32) -> Result<Vec<f64>, ModelError> {
+/// What all z = 1/n orbits at the setting's η have in common.
+fn checked_branch(machine: &Machine, setting: Setting, n: u32) -> Result<Branch, ModelError> {
     machine.check()?;
     setting.check()?;
     if machine.flight != Flight::Harmonic || n == 0 {
@@ -241,9 +279,7 @@ fn speeds_of_orbits(machine: &Machine, setting: Setting, n: u32) -> Result<Vec<f
             "periodic orbits z = 1/n need the harmonic flight and n of at least 1",
         ));
     }
-    let branch = Branch::new(machine, setting.frequency_ratio, n);
-    let gap = machine.gap(setting.clearance);
-    Ok(approach_speeds(machine, &branch, gap))
+    Ok(Branch::new(machine, setting.frequency_ratio, n))
 }
 
 /// The stable, existing z = 1/n orbit, if there is one (at most one of the two roots is).
@@ -267,17 +303,8 @@ pub fn stable_orbit(
     setting: Setting,
     n: u32,
 ) -> Result<Option<Orbit>, ModelError> {
-    let judged = |w: f64| {
-        let mut orbit = unjudged_orbit(machine, setting, n, w);
-        orbit.multipliers = multipliers(machine, &orbit);
-        if !orbit.is_stable() {
-            return None;
-        }
-        orbit.existence = existence(machine, &orbit);
-        orbit.exists().then_some(orbit)
-    };
-    let mut speeds = speeds_of_orbits(machine, setting, n)?.into_iter();
-    Ok(speeds.find_map(judged))
+    let branch = checked_branch(machine, setting, n)?;
+    Ok(branch.stable_orbit(machine, setting.clearance))
 }
 
 fn approach_speeds(machine: &Machine, branch: &Branch, gap: f64) -> Vec<f64> {
@@ -327,33 +354,11 @@ pub(super) fn bisect(f: impl Fn(f64) -> f64, mut lo: f64, mut hi: f64) -> f64 {
 
 /// The orbit that closes with a speed w solving the quadratic.
 pub fn orbit_with_speed(machine: &Machine, setting: Setting, n: u32, w: f64) -> Orbit {
-    let mut orbit = unjudged_orbit(machine, setting, n, w);
+    let branch = Branch::new(machine, setting.frequency_ratio, n);
+    let mut orbit = branch.unjudged_orbit(machine, setting.clearance, w);
     orbit.multipliers = multipliers(machine, &orbit);
     orbit.existence = existence(machine, &orbit);
     orbit
-}
-
-/// As [`orbit_with_speed`], without its multipliers and with its existence assumed.
-fn unjudged_orbit(machine: &Machine, setting: Setting, n: u32, w: f64) -> Orbit {
-    let eta = setting.frequency_ratio;
-    let branch = Branch::new(machine, eta, n);
-    let r = machine.restitution().at(w);
-    let phase = branch.phase(r, machine.gap(setting.clearance), w);
-    let drive = Drive { eta, phase };
-    let (before, after) = states_at_impact(machine, drive, n, (1.0 + r) * w);
-    let flight = free_flight(machine, drive, &after);
-    let setting = setting.at_phase(phase);
-    Orbit {
-        n,
-        setting,
-        phase_at_impact: phase,
-        approach_speed: w,
-        before,
-        after,
-        multipliers: Vec::new(),
-        existence: Existence::Exists,
-        flight,
-    }
 }
 
 /// States just before the impact, forced response plus Green's functions, and just after it.

@@ -47,25 +47,33 @@ impl Regions<'_> {
             0.5 * fonts::width(&text, Face::Bold, size) + 3.0,
             0.5 * size + 1.5,
         );
-        let columns = self.map.x.len();
-        let best = self
-            .region
-            .iter()
-            .enumerate()
-            .filter(|(_, r)| **r == region)
-            .filter_map(|(index, _)| {
-                let at = self.centre((index % columns) as isize, (index / columns) as isize);
-                Some((self.room(region, at, half, occupancy)?, at))
-            })
-            .max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let (x, y) = best.1;
+        let (x, y) = self.roomiest(region, half, occupancy)?;
         occupancy.take_rect(&Rect::new(
             x - half.0,
             y - half.1,
             2.0 * half.0,
             2.0 * half.1,
         ));
-        Some((text, best.1))
+        Some((text, (x, y)))
+    }
+
+    /// Where a region has most room for a text of a half size.
+    fn roomiest(&self, region: usize, half: Point, taken: &Occupancy) -> Option<Point> {
+        let columns = self.map.x.len();
+        let here = self
+            .region
+            .iter()
+            .enumerate()
+            .filter(|(_, r)| **r == region);
+        let mut best: Option<(f64, Point)> = None;
+        for (index, _) in here {
+            let at = self.centre((index % columns) as isize, (index / columns) as isize);
+            let least = best.map_or(f64::NEG_INFINITY, |(room, _)| room);
+            if let Some(room) = self.room((region, at), half, taken, least) {
+                best = Some((room, at));
+            }
+        }
+        best.map(|(_, at)| at)
     }
 
     fn name(&self, cell: usize, locale: Locale<'_>) -> String {
@@ -78,8 +86,16 @@ impl Regions<'_> {
         }
     }
 
-    /// How much free area surrounds a text of a half size at a place: `None` if it leaves the region.
-    fn room(&self, region: usize, at: Point, half: Point, taken: &Occupancy) -> Option<f64> {
+    /// How much free area surrounds a text of a half size at a place: `None` if it leaves the region,
+    /// or if the area is below the least.
+    fn room(
+        &self,
+        (region, at): (usize, Point),
+        half: Point,
+        taken: &Occupancy,
+        least: f64,
+    ) -> Option<f64> {
+        const STEPS: [f64; 5] = [3.0, 6.0, 10.0, 15.0, 22.0];
         // the corners of the text's box and the middles of its sides
         let inside = |grow: f64| {
             let (w, h) = (half.0 + grow, half.1 + grow);
@@ -93,15 +109,16 @@ impl Regions<'_> {
             };
             (0..9).all(|k| k == 4 || is_here(k % 3, k / 3))
         };
-        if !inside(0.0) {
+        // most places fail at the step that would be needed
+        let steps = STEPS.iter().zip(0..);
+        let needed = steps.take_while(|(_, k)| f64::from(*k) < least).last();
+        if needed.is_some_and(|(step, _)| !inside(*step)) || !inside(0.0) {
             return None;
         }
-        let free = [3.0, 6.0, 10.0, 15.0, 22.0]
-            .into_iter()
-            .take_while(|g| inside(*g))
-            .count();
+        let free = STEPS.into_iter().take_while(|g| inside(*g)).count();
         let rect = Rect::new(at.0 - half.0, at.1 - half.1, 2.0 * half.0, 2.0 * half.1);
         let covered = taken.taken(&rect) as f64;
-        (covered <= 0.08 * rect.width() * rect.height()).then_some(free as f64 - 0.5 * covered)
+        let room = free as f64 - 0.5 * covered;
+        (covered <= 0.08 * rect.width() * rect.height() && room >= least).then_some(room)
     }
 }

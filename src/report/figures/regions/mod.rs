@@ -222,13 +222,18 @@ impl<'a> Regions<'a> {
         }
         let r = self.panel.rect;
         let lines = whole::index((r.width() + r.height()) / 5.0);
+        let mut segments = Vec::new();
         for line in 0..lines {
             let start = (r.left + 5.0 * line as f64 - r.height(), r.bottom);
-            self.hatch_line(canvas, start, r.height());
+            self.hatch_line(&mut segments, start, r.height());
+        }
+        segments.sort_by_key(|(colour, _)| order(*colour));
+        for (colour, [from, to]) in segments {
+            canvas.segment(from, to, Stroke::solid(colour, 0.35));
         }
     }
 
-    fn hatch_line(&self, canvas: &mut Canvas, (x0, y0): Point, length: f64) {
+    fn hatch_line(&self, segments: &mut Vec<(Colour, [Point; 2])>, (x0, y0): Point, length: f64) {
         let steps = whole::index(length.floor());
         let second_at = |k: usize| {
             let cell = self.cell_at((x0 + k as f64, y0 - k as f64))?;
@@ -249,7 +254,7 @@ impl<'a> Regions<'a> {
                 0.45,
             );
             let point = |k: usize| (x0 + k as f64, y0 - k as f64);
-            canvas.segment(point(k), point(end), Stroke::solid(colour, 0.35));
+            segments.push((colour, [point(k), point(end)]));
             k = end.max(k + 1);
         }
     }
@@ -323,7 +328,7 @@ impl Mixed {
     }
 }
 
-/// In which order tints are drawn.
-fn order(tint: Colour) -> [u8; 3] {
-    [tint.0, tint.1, tint.2]
+/// In which order colours are drawn: those of one colour together.
+fn order(colour: Colour) -> [u8; 3] {
+    [colour.0, colour.1, colour.2]
 }
