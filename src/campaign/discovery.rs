@@ -244,21 +244,21 @@ fn list_rows_of(
         places.entry(bare(&set.name)).or_default().push(index);
     }
     let every: Vec<usize> = (0..sets.len()).collect();
-    let mut all = Vec::new();
-    for row in rows {
+    let found = rows.par_iter().flat_map_iter(|row| {
         let wanted = match &row.dataset {
             Some(name) => places.get(bare(name)),
             None => Some(&every).filter(|every| !every.is_empty()),
         };
-        match wanted {
-            Some(wanted) => all.extend(wanted.iter().map(|index| {
-                let row = Some((*row).clone());
-                listed(path, *index, &sets[*index], row, shared)
-            })),
-            None => all.push(failed(path, Some((*row).clone()), no_dataset(row, sets))),
-        }
-    }
-    all
+        let Some(wanted) = wanted else {
+            return vec![failed(path, Some((*row).clone()), no_dataset(row, sets))];
+        };
+        let each = wanted.iter().map(|index| {
+            let row = Some((*row).clone());
+            listed(path, *index, &sets[*index], row, shared)
+        });
+        each.collect()
+    });
+    found.collect()
 }
 
 /// A dataset's name without the slash that HDF5 begins it with.

@@ -38,14 +38,17 @@ impl ChannelKey {
 fn find_name(name: &str, dataset: &DatasetInfo) -> Option<usize> {
     let exact = dataset.channels.iter().position(|c| c.name == name);
     let bare = |c: &ChannelInfo| units::split_unit(&c.name).0 == name && !name.is_empty();
-    // as the column is headed in the file, whose reader splits the unit off
-    let (headed, unit) = units::split_unit(name);
-    let with_unit =
-        |c: &ChannelInfo| unit.is_some() && c.name == headed && c.unit.as_deref() == unit;
     exact
         .or_else(|| only_one(dataset, |c| c.name.rsplit('/').next() == Some(name)))
         .or_else(|| only_one(dataset, bare))
-        .or_else(|| only_one(dataset, with_unit))
+        .or_else(|| find_headed(name, dataset))
+}
+
+/// The channel whose column is headed so in the file, whose reader splits the unit off.
+fn find_headed(name: &str, dataset: &DatasetInfo) -> Option<usize> {
+    let (headed, unit) = units::split_unit(name);
+    unit?;
+    only_one(dataset, |c| c.name == headed && c.unit.as_deref() == unit)
 }
 
 fn only_one(dataset: &DatasetInfo, fits: impl Fn(&ChannelInfo) -> bool) -> Option<usize> {

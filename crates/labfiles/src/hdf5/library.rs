@@ -127,11 +127,16 @@ impl Walk {
             path,
             ..Tree::default()
         };
-        for (name, dataset) in group.iter_datasets()? {
+        let datasets: Vec<(String, Dataset)> = group.iter_datasets()?.collect();
+        let described = datasets.into_par_iter().map(|(name, dataset)| {
             self.count()?;
             self.old
                 .fetch_or(has_old_layout(&dataset), Ordering::Relaxed);
-            match describe(dataset, join(&tree.path, &name), name) {
+            describe(dataset, join(&tree.path, &name), name)
+        });
+        // of several faults the first in the file is told
+        for described in described.collect::<Vec<_>>() {
+            match described {
                 Ok(array) => tree.arrays.push(array),
                 // One dataset that cannot be described does not hide the others.
                 Err(fault @ StoreError::Dataset { .. }) if !fault.is_cut_off() => {
@@ -145,7 +150,6 @@ impl Walk {
             self.count()?;
             self.group(child, join(&tree.path, name), depth + 1)
         };
-        // of several faults the first in the file is told
         let groups: Vec<Result<Tree, StoreError>> = children.par_iter().map(below).collect();
         tree.groups = groups.into_iter().collect::<Result<_, _>>()?;
         Ok(tree)

@@ -1,5 +1,7 @@
 //! Names, scales and orientation of a table's channels, from its attributes.
 
+use std::collections::BTreeMap;
+
 use crate::bytes::to_usize;
 use crate::hdf5::store::{Array, Attr, Attrs};
 use crate::numbers::Spacing;
@@ -32,11 +34,10 @@ impl Orientation {
     /// The names decide; without names a few long rows are channels.
     pub(crate) fn of(table: &Array, inherited: &Attrs) -> Self {
         let [rows, columns] = dimensions(&table.shape);
-        let attributes = merged(inherited, &table.attributes);
-        if names(&attributes, columns).is_some() {
+        let scope = Scope::within(inherited, &table.attributes);
+        if names(scope, columns).is_some() {
             Self::Columns
-        } else if names(&attributes, rows).is_some()
-            || (rows <= MOST_ROW_CHANNELS && columns > 4 * rows)
+        } else if names(scope, rows).is_some() || (rows <= MOST_ROW_CHANNELS && columns > 4 * rows)
         {
             Self::Rows
         } else {
@@ -90,30 +91,60 @@ pub(crate) fn squeezed(shape: &[u64]) -> Vec<u64> {
     shape.iter().copied().filter(|&d| d != 1).collect()
 }
 
-/// Attributes with those inherited; own ones win.
-pub(crate) fn merged(inherited: &Attrs, own: &Attrs) -> Attrs {
-    let mut all = inherited.clone();
-    all.extend(own.clone());
-    all
+/// Attributes of an object and those that it inherits; own ones win.
+#[derive(Clone, Copy)]
+pub(crate) struct Scope<'a> {
+    inherited: &'a Attrs,
+    own: &'a Attrs,
+}
+
+impl<'a> Scope<'a> {
+    /// An object's own attributes and inherited ones.
+    pub(crate) fn within(inherited: &'a Attrs, own: &'a Attrs) -> Self {
+        Self { inherited, own }
+    }
+
+    /// Attributes alone.
+    pub(crate) fn of(own: &'a Attrs) -> Self {
+        static NONE: Attrs = Attrs::new();
+        Self::within(&NONE, own)
+    }
+
+    fn get(self, key: &str) -> Option<&'a Attr> {
+        self.own.get(key).or_else(|| self.inherited.get(key))
+    }
+
+    /// All of them.
+    pub(crate) fn merged(self) -> Attrs {
+        let mut all = self.inherited.clone();
+        all.extend(self.own.clone());
+        all
+    }
+
+    /// All of them as texts.
+    pub(crate) fn texts(self) -> BTreeMap<String, String> {
+        let all = self.inherited.iter().chain(self.own);
+        all.map(|(key, value)| (key.clone(), value.text()))
+            .collect()
+    }
 }
 
 /// The channels' names, where an attribute lists as many as there are.
-pub(crate) fn names(attributes: &Attrs, channels: u64) -> Option<Vec<String>> {
-    lists(attributes, &NAME_KEYS)
-        .find(|l| l.len() as u64 == channels && l.iter().all(|n| !n.is_empty()))
+pub(crate) fn names(scope: Scope<'_>, channels: u64) -> Option<Vec<String>> {
+    lists(scope, &NAME_KEYS).find(|l| l.len() as u64 == channels && l.iter().all(|n| !n.is_empty()))
 }
 
 /// The channels' units: a list of as many, or one for all.
-pub(crate) fn units(attributes: &Attrs, channels: usize) -> Vec<Option<String>> {
-    let of_length = |length: usize| lists(attributes, &UNIT_KEYS).find(|l| l.len() == length);
+pub(crate) fn units(scope: Scope<'_>, channels: usize) -> Vec<Option<String>> {
+    let of_length = |length: usize| lists(scope, &UNIT_KEYS).find(|l| l.len() == length);
     let one = || Some(vec![of_length(1)?.remove(0); channels]);
     let all = of_length(channels).or_else(one).unwrap_or_default();
     all.into_iter().map(Some).collect()
 }
 
 /// The lists that attributes of some names hold.
-fn lists<'a>(attributes: &'a Attrs, keys: &'a [&str]) -> impl Iterator<Item = Vec<String>> + 'a {
-    let found = keys.iter().filter_map(|k| attributes.get(*k));
+fn lists<'a>(scope: Scope<'a>, keys: &'a [&str]) -> impl Iterator<Item = Vec<String>> + 'a {
+    let found = keys.iter().filter_map(move |k| scope.get(k));
     found.map(Attr::list)
 }
 

@@ -14,7 +14,7 @@ use crate::bytes::to_usize;
 use crate::hdf5::element::Element;
 use crate::hdf5::library::Store;
 use crate::hdf5::naming::{
-    MOST_CHANNELS, NAME_KEYS, Orientation, UNIT_KEYS, merged, names, natural, scaling, squeezed,
+    MOST_CHANNELS, NAME_KEYS, Orientation, Scope, UNIT_KEYS, names, natural, scaling, squeezed,
     units,
 };
 use crate::hdf5::store::{Array, Attr, Attrs, StoreError, Tree};
@@ -71,7 +71,7 @@ pub(crate) fn plan(store: &Store, tree: &Tree) -> Plans {
 impl Plans {
     fn of_group(store: &Store, tree: &Tree, inherited: &Attrs) -> Self {
         let mut plans = Self::default();
-        let mut attributes = merged(inherited, &tree.attributes);
+        let mut attributes = Scope::within(inherited, &tree.attributes).merged();
         let sorted = plans.sort(store, tree, &mut attributes);
         plans.tables(&sorted, tree, &attributes);
         for array in &sorted.slabs {
@@ -153,45 +153,26 @@ impl Plans {
         if let [table] = tables[..]
             && matches(table)
         {
-            let mut record = Record::new(tree.path.clone(), attributes);
+            let mut record = Record::new(tree.path.clone(), Scope::of(attributes));
             columns.iter().for_each(|c| record.column(c));
             record.table(table, attributes);
             return self.push(record);
         }
-        for table in tables {
-            self.note_width(table, attributes);
-            let mut record =
-                Record::new(table.path.clone(), &merged(attributes, &table.attributes));
-            let rows = Orientation::of(table, attributes).samples(table);
-            let time = columns
-                .iter()
-                .find(|c| attribute::is_time_name(&c.name) && c.count() == Some(rows));
-            time.into_iter().for_each(|c| record.column(c));
-            record.table(table, attributes);
+        let of_table = |table: &&Array| Record::of_table(table, columns, attributes);
+        let described: Vec<_> = tables.par_iter().map(of_table).collect();
+        for (record, note) in described {
+            self.notes.extend(note);
             self.push(record);
         }
         if !columns.is_empty() {
-            let mut record = Record::new(tree.path.clone(), attributes);
+            let mut record = Record::new(tree.path.clone(), Scope::of(attributes));
             columns.iter().for_each(|c| record.column(c));
             self.push(record);
         }
     }
 
-    /// Note that a table has more channels than are read.
-    fn note_width(&mut self, table: &Array, attributes: &Attrs) {
-        let of = Orientation::of(table, attributes);
-        let cells = table.count().unwrap_or(u64::MAX);
-        let channels = cells.checked_div(of.samples(table)).unwrap_or(0);
-        if channels > of.channels(table) {
-            self.notes.push(format!(
-                "dataset '{}' has {channels} channels: the first {MOST_CHANNELS} are read",
-                table.path
-            ));
-        }
-    }
-
     fn slabs(&mut self, array: &Array, attributes: &Attrs) {
-        let all = merged(attributes, &array.attributes);
+        let scope = Scope::within(attributes, &array.attributes);
         let Some((&slabs, inner)) = array.shape.split_first() else {
             return;
         };
@@ -206,7 +187,7 @@ impl Plans {
             ..array.clone()
         };
         for slab in 0..slabs {
-            let mut record = Record::new(format!("{}[{slab}]", array.path), &all);
+            let mut record = Record::new(format!("{}[{slab}]", array.path), scope);
             record.table(&table, attributes);
             record.plan.arrays = vec![array.clone()];
             record.plan.slab = Some(slab);
@@ -218,9 +199,9 @@ impl Plans {
         let Element::Fields { fields, .. } = &array.element else {
             return;
         };
-        let all = merged(attributes, &array.attributes);
-        let units = units(&array.attributes, fields.len());
-        let mut record = Record::new(array.path.clone(), &all);
+        let scope = Scope::within(attributes, &array.attributes);
+        let units = units(Scope::of(&array.attributes), fields.len());
+        let mut record = Record::new(array.path.clone(), scope);
         record.plan.arrays.push(array.clone());
         for (i, (name, offset, element)) in fields.iter().enumerate() {
             if element.is_number() {
@@ -266,14 +247,37 @@ struct Record {
 }
 
 impl Record {
-    fn new(name: String, attributes: &Attrs) -> Self {
+    fn new(name: String, scope: Scope<'_>) -> Self {
         let info = DatasetInfo {
             name,
-            attributes: texts(attributes),
+            attributes: scope.texts(),
             ..DatasetInfo::default()
         };
         let plan = Plan::default();
         Self { info, plan }
+    }
+
+    /// A table by itself, with the time axis among the columns beside it; and a note if it has more
+    /// channels than are read.
+    fn of_table(table: &Array, columns: &[&Array], inherited: &Attrs) -> (Self, Option<String>) {
+        let scope = Scope::within(inherited, &table.attributes);
+        let mut record = Self::new(table.path.clone(), scope);
+        let orientation = Orientation::of(table, inherited);
+        let rows = orientation.samples(table);
+        let time = columns
+            .iter()
+            .find(|c| attribute::is_time_name(&c.name) && c.count() == Some(rows));
+        time.into_iter().for_each(|c| record.column(c));
+        record.table(table, inherited);
+        let cells = table.count().unwrap_or(u64::MAX);
+        let channels = cells.checked_div(rows).unwrap_or(0);
+        let note = (channels > orientation.channels(table)).then(|| {
+            format!(
+                "dataset '{}' has {channels} channels: the first {MOST_CHANNELS} are read",
+                table.path
+            )
+        });
+        (record, note)
     }
 
     fn channel(&mut self, name: String, unit: Option<String>, locator: Locator) {
@@ -304,7 +308,7 @@ impl Record {
         self.channel(array.name.clone(), unit, locator);
         self.plan.arrays.push(array.clone());
         if let Some(channel) = self.info.channels.last_mut() {
-            let texts = texts(&array.attributes);
+            let texts = Scope::of(&array.attributes).texts();
             channel.sample_rate_hz = attribute::sample_rate_hz(&texts);
             channel.start_time = attribute::start_time(&texts);
             channel.properties = texts;
@@ -315,9 +319,9 @@ impl Record {
     fn table(&mut self, table: &Array, inherited: &Attrs) {
         let orientation = Orientation::of(table, inherited);
         let channels = orientation.channels(table);
-        let attributes = merged(inherited, &table.attributes);
-        let names = names(&attributes, channels);
-        let units = units(&attributes, to_usize(channels));
+        let scope = Scope::within(inherited, &table.attributes);
+        let names = names(scope, channels);
+        let units = units(scope, to_usize(channels));
         let scaling = scaling(table, to_usize(channels));
         let number = self.plan.arrays.len();
         self.plan.arrays.push(table.clone());
@@ -352,11 +356,6 @@ impl Record {
         self.info.time_axis = self.info.channels.iter().position(attribute::is_time_axis);
         (self.info, self.plan)
     }
-}
-
-fn texts(attributes: &Attrs) -> BTreeMap<String, String> {
-    let each = attributes.iter();
-    each.map(|(k, v)| (k.clone(), v.text())).collect()
 }
 
 /// All elements of an array, one after the other.
