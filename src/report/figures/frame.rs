@@ -1,7 +1,9 @@
 //! A drawing as a frame of typst's pages: its paths and texts become part of the page without a
 //! picture file between them, which would be written only to be read again.
 
-use rustybuzz::UnicodeBuffer;
+use std::collections::HashMap;
+
+use rustybuzz::{Direction, Script, ShapePlan, UnicodeBuffer, script};
 use typst::layout::{Abs, Angle, Em, Frame, FrameItem, GroupItem, Point, Size, Transform};
 use typst::syntax::Span;
 use typst::text::{FontInstance, Glyph, Lang, TextItem};
@@ -18,12 +20,12 @@ use super::fonts;
 pub(crate) fn frame(drawing: &Drawing, lang: Lang) -> Frame {
     let size = Size::new(Abs::pt(drawing.width), Abs::pt(drawing.height));
     let mut frame = Frame::hard(size);
-    let mut path = Path::default();
+    let (mut path, mut shaper) = (Path::default(), Shaper::default());
     for shape in &drawing.shapes {
         match shape {
             Shape::Text(text) => {
                 path.close(&mut frame);
-                text_items(text, lang, &mut frame);
+                text_items(text, lang, &mut shaper, &mut frame);
             }
             shape => path.add(shape, &mut frame),
         }
@@ -168,13 +170,13 @@ fn point((x, y): (i32, i32)) -> Point {
 }
 
 /// A text, in as many items as it needs fonts.
-fn text_items(shape: &TextShape, lang: Lang, frame: &mut Frame) {
+fn text_items(shape: &TextShape, lang: Lang, shaper: &mut Shaper, frame: &mut Frame) {
     let size = Abs::pt(shape.size);
     let mut line = Frame::soft(Size::zero());
     let mut along = Abs::zero();
     for (font, text) in fonts::runs(&shape.text, shape.face) {
         let item = TextItem {
-            glyphs: glyphs(&font, text),
+            glyphs: shaper.glyphs(&font, text),
             font,
             size,
             fill: paint(shape.colour),
@@ -197,26 +199,43 @@ fn text_items(shape: &TextShape, lang: Lang, frame: &mut Frame) {
     }
 }
 
-/// The glyphs of a text in one font, with its kerning and ligatures.
-fn glyphs(font: &FontInstance, text: &str) -> Vec<Glyph> {
-    let mut buffer = UnicodeBuffer::new();
-    buffer.push_str(text);
-    let shaped = rustybuzz::shape(font.rusty(), &[], buffer);
-    let starts: Vec<u32> = shaped.glyph_infos().iter().map(|i| i.cluster).collect();
-    let ends = |start: u32| starts.iter().copied().filter(|s| *s > start).min();
-    let narrow = |byte: u32| u16::try_from(byte).unwrap_or(u16::MAX);
-    let each = shaped.glyph_infos().iter().zip(shaped.glyph_positions());
-    each.map(|(info, position)| {
-        let end = ends(info.cluster).map_or(text.len(), |end| end as usize);
-        Glyph {
-            id: narrow(info.glyph_id),
-            x_advance: font.to_em(position.x_advance),
-            x_offset: font.to_em(position.x_offset),
-            y_advance: Em::zero(),
-            y_offset: font.to_em(position.y_offset),
-            range: narrow(info.cluster)..u16::try_from(end).unwrap_or(u16::MAX),
-            span: (Span::detached(), 0),
-        }
-    })
-    .collect()
+/// Sets texts with the kerning and ligatures of their fonts. How a font sets a script is worked out
+/// once: that takes longer than a label.
+#[derive(Default)]
+struct Shaper(HashMap<(FontInstance, Script, Direction), ShapePlan>);
+
+impl Shaper {
+    /// The glyphs of a text in one font.
+    fn glyphs(&mut self, font: &FontInstance, text: &str) -> Vec<Glyph> {
+        let mut buffer = UnicodeBuffer::new();
+        buffer.push_str(text);
+        buffer.guess_segment_properties();
+        let plan = self.plan(font, &buffer);
+        let shaped = rustybuzz::shape_with_plan(font.rusty(), plan, buffer);
+        let starts: Vec<u32> = shaped.glyph_infos().iter().map(|i| i.cluster).collect();
+        let ends = |start: u32| starts.iter().copied().filter(|s| *s > start).min();
+        let narrow = |byte: usize| u16::try_from(byte).unwrap_or(u16::MAX);
+        let each = shaped.glyph_infos().iter().zip(shaped.glyph_positions());
+        each.map(|(info, position)| {
+            let end = ends(info.cluster).map_or(text.len(), |end| end as usize);
+            Glyph {
+                id: narrow(info.glyph_id as usize),
+                x_advance: font.to_em(position.x_advance),
+                x_offset: font.to_em(position.x_offset),
+                y_advance: Em::zero(),
+                y_offset: font.to_em(position.y_offset),
+                range: narrow(info.cluster as usize)..narrow(end),
+                span: (Span::detached(), 0),
+            }
+        })
+        .collect()
+    }
+
+    fn plan(&mut self, font: &FontInstance, buffer: &UnicodeBuffer) -> &ShapePlan {
+        let (script, direction) = (buffer.script(), buffer.direction());
+        let known = (script != script::UNKNOWN).then_some(script);
+        let new = || ShapePlan::new(font.rusty(), direction, known, None, &[]);
+        let key = (font.clone(), script, direction);
+        self.0.entry(key).or_insert_with(new)
+    }
 }
