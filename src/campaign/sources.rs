@@ -61,9 +61,18 @@ impl Sources {
 
     /// Close the file: its owner may write to it.
     pub fn close(&self) {
-        if let Ok(mut held) = self.0.lock() {
-            *held = None;
-        }
+        drop(self.take());
+    }
+
+    /// As [`Sources::close`], without waiting for it: what is known of thousands of records takes a
+    /// while to be freed.
+    pub fn release(&self) {
+        let held = self.take();
+        rayon::spawn(move || drop(held));
+    }
+
+    fn take(&self) -> Option<Held> {
+        self.0.lock().ok()?.take()
     }
 }
 

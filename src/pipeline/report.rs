@@ -59,7 +59,29 @@ pub fn render(
     campaign: &ResolvedCampaign,
     also: Option<Format>,
 ) -> Result<Vec<ReportFile>, PipelineError> {
-    let report = Report::new(content, &options(&campaign.report)?);
+    in_formats(&drawn(content, campaign)?, campaign, also)
+}
+
+/// A content as document and figures, still to be set.
+///
+/// # Errors
+/// If the template or the logo cannot be read.
+pub(super) fn drawn(
+    content: &ReportContent,
+    campaign: &ResolvedCampaign,
+) -> Result<Report, PipelineError> {
+    Ok(Report::new(content, &options(&campaign.report)?))
+}
+
+/// A report as the campaign asks for it, and in one format more.
+///
+/// # Errors
+/// If the document cannot be set.
+pub(super) fn in_formats(
+    report: &Report,
+    campaign: &ResolvedCampaign,
+    also: Option<Format>,
+) -> Result<Vec<ReportFile>, PipelineError> {
     let mut formats = campaign.report.formats.clone();
     formats.extend(also.filter(|f| !formats.contains(f)));
     Ok(report.all_files(&formats)?)
@@ -112,7 +134,7 @@ pub fn content(
         read: &read,
     });
     let facts = facts(campaign);
-    campaign.sources.close();
+    campaign.sources.release();
     Ok(ReportContent {
         title: campaign.report.title.clone(),
         campaign: facts,

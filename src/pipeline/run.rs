@@ -86,8 +86,10 @@ pub(super) fn complete(
     // nothing looks at the waveforms any more, and the document takes room
     observed.drop_waveforms();
     memory::release();
+    let report = report::drawn(&content, campaign)?;
+    // of the document a part is set on one thread alone
     let (report, tables) = rayon::join(
-        || report::render(&content, campaign, destination.also),
+        || report::in_formats(&report, campaign, destination.also),
         || tables::files(&observed),
     );
     let (report, tables) = (report?, tables?);

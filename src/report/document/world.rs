@@ -17,18 +17,19 @@ use super::placed::{self, Placed};
 use crate::report::figures::{Figure, fonts};
 
 /// Files in memory; there is no clock and no access to the disk.
-pub(crate) struct MemoryWorld {
+pub(crate) struct MemoryWorld<'a> {
     main: Source,
     files: HashMap<FileId, Bytes>,
-    figures: Placed,
+    figures: &'a [Figure],
+    language: Lang,
 }
 
-impl MemoryWorld {
+impl<'a> MemoryWorld<'a> {
     /// A world of a template, of figures that it places as `image("NAME.svg")`, and of further files
     /// by their paths. `language` is that of the figures' texts (ISO 639-1).
     pub(crate) fn new(
         template: &str,
-        figures: &[Figure],
+        figures: &'a [Figure],
         language: &str,
         files: impl IntoIterator<Item = (String, Vec<u8>)>,
     ) -> Option<Self> {
@@ -39,11 +40,11 @@ impl MemoryWorld {
             .chain(figures.iter().map(figure))
             .map(|(path, bytes)| Some((id(&path)?, bytes)))
             .collect::<Option<_>>()?;
-        let figures = Placed::new(figures, language.parse().unwrap_or(Lang::ENGLISH));
         Some(Self {
             main,
             files,
             figures,
+            language: language.parse().unwrap_or(Lang::ENGLISH),
         })
     }
 }
@@ -56,26 +57,35 @@ pub(crate) enum Unset {
     Pages(String),
 }
 
-impl MemoryWorld {
+impl MemoryWorld<'_> {
     /// The template set and exported as PDF. The same world gives the same bytes.
     pub(crate) fn pdf(&self, title: &str) -> Result<Vec<u8>, Unset> {
-        let pages: PagedDocument = typst::compile(self)
-            .output
-            .map_err(|e| Unset::Template(self.first(&e)))?;
+        let (pages, figures) = rayon::join(
+            || typst::compile::<PagedDocument>(self),
+            || Placed::new(self.figures, self.language),
+        );
+        let pages = pages.output.map_err(|e| Unset::Template(self.first(&e)))?;
         let options = PdfOptions {
             ident: Smart::Custom(title.to_owned()),
             creator: Smart::Custom(Some("impactid".into())),
             ..PdfOptions::default()
         };
-        typst::comemo::evict(0);
-        let pages = self.figures.in_pages(pages);
-        let bytes = typst_pdf::pdf(&pages, &options).map_err(|e| Unset::Pages(self.first(&e)));
+        // what the layout remembered is freed beside the export, which needs none of it
+        let (exported, ()) = rayon::join(
+            || {
+                let pages = figures.in_pages(pages);
+                let bytes = typst_pdf::pdf(&pages, &options);
+                (bytes, pages)
+            },
+            || typst::comemo::evict(0),
+        );
+        let (bytes, pages) = exported;
         // nobody waits for the memory
         rayon::spawn(move || {
             drop(pages);
             typst::comemo::evict(0);
         });
-        bytes
+        bytes.map_err(|e| Unset::Pages(self.first(&e)))
     }
 
     /// The first complaint with its line in the template and its hints.
@@ -115,7 +125,7 @@ fn library() -> &'static LazyHash<Library> {
     LIBRARY.get_or_init(|| LazyHash::new(Library::default()))
 }
 
-impl World for MemoryWorld {
+impl World for MemoryWorld<'_> {
     fn library(&self) -> &LazyHash<Library> {
         library()
     }
