@@ -43,6 +43,7 @@ mod theory;
 mod verbosity;
 mod watch;
 
+use std::num::NonZeroUsize;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -97,7 +98,7 @@ pub struct Common {
     verbose: u8,
     /// Number of threads [default: all processors]
     #[arg(long, short = 'j', global = true, help_heading = GENERAL, value_name = "N")]
-    threads: Option<std::num::NonZeroUsize>,
+    threads: Option<NonZeroUsize>,
 }
 
 /// Defines the commands; each runs itself.
@@ -184,13 +185,8 @@ pub fn main() -> ExitCode {
         }
     };
     let verbosity = Verbosity::new(cli.common.quiet, cli.common.verbose);
-    if let Some(threads) = cli.common.threads {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.get())
-            .build_global();
-        if let Err(error) = pool {
-            verbosity.detail(&format!("the number of threads is unchanged: {error}"));
-        }
+    if let Err(error) = start_threads(cli.common.threads) {
+        verbosity.detail(&format!("the number of threads is unchanged: {error}"));
     }
     let begin = Instant::now();
     verbosity.detail(&versions());
@@ -201,6 +197,16 @@ pub fn main() -> ExitCode {
     });
     verbosity.detail(&format!("total: {:.2} s", begin.elapsed().as_secs_f64()));
     exit.into()
+}
+
+/// Starts the threads that all work is shared among: as many as stated, else one for each core.
+fn start_threads(stated: Option<NonZeroUsize>) -> Result<(), rayon::ThreadPoolBuildError> {
+    /// As much as a main thread has: nested templates take it.
+    const STACK_BYTES: usize = 8 << 20;
+    let pool = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES);
+    // 0: one for each core
+    let threads = stated.map_or(0, NonZeroUsize::get);
+    pool.num_threads(threads).build_global()
 }
 
 /// Versions of the program and of the layouts that it writes.

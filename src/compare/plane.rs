@@ -308,10 +308,14 @@ mod tests {
     fn beside_rest_the_stable_orbit_of_period_one_exists_in_the_hysteresis_region() {
         let machine = Machine::symmetric(0.07, 0.9);
         let at = (1.3, 3.0);
+        let branches = branches(&machine, at.0);
         assert_eq!(
-            coexisting(&machine, at, &Motion::Impactless),
+            coexisting(&machine, &branches, at.1, &Motion::Impactless),
             Some(Motion::periodic(1, 1))
         );
-        assert_eq!(coexisting(&machine, at, &Motion::periodic(1, 1)), None);
+        assert_eq!(
+            coexisting(&machine, &branches, at.1, &Motion::periodic(1, 1)),
+            None
+        );
     }
 }

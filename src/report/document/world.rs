@@ -60,11 +60,9 @@ pub(crate) enum Unset {
 impl MemoryWorld<'_> {
     /// The template set and exported as PDF. The same world gives the same bytes.
     pub(crate) fn pdf(&self, title: &str) -> Result<Vec<u8>, Unset> {
-        let (pages, figures) = rayon::join(
-            || typst::compile::<PagedDocument>(self),
-            || Placed::new(self.figures, self.language),
-        );
-        let pages = pages.output.map_err(|e| Unset::Template(self.first(&e)))?;
+        let (pages, figures) =
+            rayon::join(|| self.pages(), || Placed::new(self.figures, self.language));
+        let pages = pages?;
         let options = PdfOptions {
             ident: Smart::Custom(title.to_owned()),
             creator: Smart::Custom(Some("impactid".into())),
@@ -86,6 +84,12 @@ impl MemoryWorld<'_> {
             typst::comemo::evict(0);
         });
         bytes.map_err(|e| Unset::Pages(self.first(&e)))
+    }
+
+    /// The pages with stand-ins for the figures.
+    fn pages(&self) -> Result<PagedDocument, Unset> {
+        let pages = typst::compile(self).output;
+        pages.map_err(|e| Unset::Template(self.first(&e)))
     }
 
     /// The first complaint with its line in the template and its hints.
@@ -157,5 +161,54 @@ impl World for MemoryWorld<'_> {
 
     fn today(&self, _: Option<Duration>) -> Option<Datetime> {
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use typst::layout::{Frame, FrameItem};
+
+    use super::*;
+    use crate::report::figures::canvas::{Anchor, Canvas, TextLook};
+
+    /// Texts of a frame with their sizes across the page in points, and the number of its pictures.
+    fn contents(frame: &Frame, scale: f64, found: &mut (Vec<(String, f64)>, usize)) {
+        for (_, item) in frame.items() {
+            match item {
+                FrameItem::Group(group) => {
+                    let scale = scale * group.transform.sx.get();
+                    contents(&group.frame, scale, found);
+                }
+                FrameItem::Text(text) => {
+                    let size = scale * text.size.to_pt();
+                    found.0.push((text.text.to_string(), size));
+                }
+                FrameItem::Image(..) => found.1 += 1,
+                _ => {}
+            }
+        }
+    }
+
+    #[test]
+    fn a_figure_takes_its_place_in_the_size_that_the_template_gives_it() {
+        let mut canvas = Canvas::new(200.0, 100.0);
+        let look = TextLook::new(8.0, Anchor::Left);
+        canvas.text((10.0, 20.0), "label", look);
+        let figures = [Figure::new("map", "a map", canvas, String::new())];
+        let template = "#image(\"map.svg\")\n#rotate(5deg, image(\"map.svg\", width: 50pt))\n\
+                        #hide(image(\"map.svg\"))";
+        let world = MemoryWorld::new(template, &figures, "en", []).expect("a world");
+        let pages = world.pages().ok().expect("pages");
+        let pages = Placed::new(&figures, Lang::ENGLISH).in_pages(pages);
+        let mut found = (Vec::new(), 0);
+        contents(&pages.pages()[0].frame, 1.0, &mut found);
+        let (texts, pictures) = found;
+        assert_eq!(pictures, 0);
+        assert_eq!(texts.len(), 2);
+        assert!(texts.iter().all(|(text, _)| text == "label"));
+        assert!((texts[0].1 - 8.0).abs() < 1e-5, "{texts:?}");
+        // a quarter of its width, and turned; sizes of pictures are single precision
+        let turned = 2.0 * 5f64.to_radians().cos();
+        assert!((texts[1].1 - turned).abs() < 1e-5, "{texts:?}");
     }
 }

@@ -239,3 +239,128 @@ impl Shaper {
         self.0.entry(key).or_insert_with(new)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
+
+    const RED: Colour = plotters::style::RGBColor(200, 0, 0);
+
+    fn frame_of(draw: impl FnOnce(&mut Canvas)) -> Frame {
+        let mut canvas = Canvas::new(100.0, 50.0);
+        draw(&mut canvas);
+        frame(&canvas.finish(), Lang::ENGLISH)
+    }
+
+    fn shapes(frame: &Frame) -> Vec<&PageShape> {
+        let items = frame.items().map(|(_, item)| item);
+        items
+            .filter_map(|item| match item {
+                FrameItem::Shape(shape, _) => Some(shape),
+                _ => None,
+            })
+            .collect()
+    }
+
+    #[test]
+    fn neighbours_of_one_look_are_one_path() {
+        let (thin, thick) = (Stroke::solid(RED, 0.5), Stroke::solid(RED, 1.0));
+        let frame = frame_of(|canvas| {
+            canvas.segment((0.0, 0.0), (10.0, 0.0), thin);
+            canvas.segment((0.0, 5.0), (10.0, 5.0), thin);
+            canvas.segment((0.0, 9.0), (10.0, 9.0), thick);
+            canvas.segment((0.0, 9.5), (10.0, 9.5), thin);
+        });
+        let widths = shapes(&frame).into_iter().map(|shape| {
+            let stroke = shape.stroke.as_ref().expect("a line");
+            (stroke.thickness.to_pt(), shape.bbox(false).size().y.to_pt())
+        });
+        assert_eq!(
+            widths.collect::<Vec<_>>(),
+            [(0.5, 5.0), (1.0, 0.0), (0.5, 0.0)]
+        );
+    }
+
+    /// A path without extent is not exported: a dot by itself would not be seen.
+    #[test]
+    fn a_dot_by_itself_is_a_disc_and_many_are_one_path() {
+        let one = frame_of(|canvas| canvas.disc((20.0, 10.0), 1.5, RED));
+        let [disc] = shapes(&one)[..] else {
+            panic!("one shape")
+        };
+        assert!(disc.fill.is_some() && disc.stroke.is_none());
+        let size = disc.bbox(false).size();
+        assert!((size.x.to_pt() - 3.0).abs() < 1e-9 && (size.y.to_pt() - 3.0).abs() < 1e-9);
+        let many = frame_of(|canvas| {
+            for x in 0..5 {
+                canvas.disc((f64::from(x), 10.0), 1.5, RED);
+            }
+        });
+        let [dots] = shapes(&many)[..] else {
+            panic!("one shape")
+        };
+        let stroke = dots.stroke.as_ref().expect("round ends");
+        assert_eq!(
+            (stroke.cap, stroke.thickness.to_pt()),
+            (LineCap::Round, 3.0)
+        );
+    }
+
+    #[test]
+    fn areas_that_overlap_turn_the_same_way() {
+        let frame = frame_of(|canvas| {
+            canvas.fill(&[(0.0, 0.0), (8.0, 0.0), (8.0, 8.0), (0.0, 8.0)], RED);
+            canvas.fill(&[(4.0, 4.0), (4.0, 9.0), (9.0, 9.0), (9.0, 4.0)], RED);
+        });
+        let [areas] = shapes(&frame)[..] else {
+            panic!("one shape")
+        };
+        let Geometry::Curve(curve) = &areas.geometry else {
+            panic!("a curve")
+        };
+        let inside = Point::new(Abs::pt(6.0), Abs::pt(6.0));
+        assert!(curve.contains(areas.fill_rule, inside));
+    }
+
+    #[test]
+    fn texts_keep_their_characters_width_and_direction() {
+        let frame = frame_of(|canvas| {
+            let mut look = TextLook::new(8.0, Anchor::Left);
+            canvas.text((10.0, 20.0), "$η$ = $f$/$f_0$ (1)", look);
+            look.upward = true;
+            canvas.text((5.0, 40.0), "0.25", look);
+        });
+        let mut text = String::new();
+        let mut end = Abs::zero();
+        let mut upward = Vec::new();
+        for (at, item) in frame.items() {
+            match item {
+                FrameItem::Text(run) => {
+                    text.push_str(&run.text);
+                    end = at.x + run.width();
+                }
+                FrameItem::Group(group) => upward.push(group),
+                _ => panic!("nothing else is drawn"),
+            }
+        }
+        assert_eq!(text, "η = f/f0 (1)");
+        // advances alone, without kerning
+        let plain = super::super::richtext::width("$η$ = $f$/$f_0$ (1)", fonts::Face::Regular, 8.0);
+        assert!((end.to_pt() - 10.0 - plain).abs() < 2.0, "{end:?}");
+        let [group] = upward[..] else {
+            panic!("one text runs upward")
+        };
+        assert_eq!(group.transform, Transform::rotate(Angle::deg(-90.0)));
+    }
+
+    /// A sign that the embedded font for formulas has, and that of the figures has not.
+    #[test]
+    fn a_character_that_the_face_lacks_is_set_in_a_font_that_has_it() {
+        let runs = fonts::runs("a\u{2A00}b", fonts::Face::Regular);
+        let texts: Vec<&str> = runs.iter().map(|(_, text)| *text).collect();
+        assert_eq!(texts, ["a", "\u{2A00}", "b"]);
+        assert!(runs[1].0.ttf().glyph_index('\u{2A00}').is_some());
+        assert!(runs[0].0 == runs[2].0 && runs[0].0 != runs[1].0);
+    }
+}
