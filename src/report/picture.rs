@@ -5,7 +5,9 @@ use super::error::ReportError;
 use super::figures::Figure;
 
 /// A page as large as its figure.
-const PAGE: &str = "#set page(width: auto, height: auto, margin: 3pt)\n";
+const PAGE: &str = r#"#set page(width: auto, height: auto, margin: 3pt)
+#image("figure.svg")
+"#;
 
 /// The files of a figure whose texts are English: `NAME.svg`, `NAME.png`, `NAME.pdf`.
 ///
@@ -20,18 +22,38 @@ pub(crate) fn pictures(figure: &Figure) -> Result<Vec<(String, Vec<u8>)>, Report
     ])
 }
 
-/// A figure as a PDF of one page, its texts marked as of a language (ISO 639-1). The same figure gives the same bytes.
+/// A figure as a PDF of one page, its texts marked as of a language (ISO 639-1). The same figure
+/// gives the same bytes.
 ///
 /// # Errors
 /// [`ReportError::Picture`] where the renderer refuses the figure.
 pub(super) fn pdf(figure: &Figure, language: &str) -> Result<Vec<u8>, ReportError> {
-    let template = format!("{PAGE}#image(\"{}.svg\")\n", figure.name);
-    let figures = std::slice::from_ref(figure);
-    let world = MemoryWorld::new(&template, figures, language, []).ok_or(ReportError::FileName)?;
+    // names that studies give need not be paths
+    let shown = [Figure {
+        name: "figure".into(),
+        ..figure.clone()
+    }];
+    let world = MemoryWorld::new(PAGE, &shown, language, []).ok_or(ReportError::FileName)?;
     world.pdf(&figure.title).map_err(|e| match e {
         Unset::Template(why) | Unset::Pages(why) => ReportError::Picture {
             name: figure.name.clone(),
             why,
         },
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::figures::canvas::{Canvas, Stroke};
+
+    #[test]
+    fn a_figure_whose_name_is_no_path_is_set() {
+        let mut canvas = Canvas::new(100.0, 50.0);
+        let ink = Stroke::solid(plotters::style::BLACK, 0.5);
+        canvas.segment((0.0, 0.0), (50.0, 50.0), ink);
+        let figure = Figure::new("a \"b\\c#", "a line", canvas, String::new());
+        let bytes = pdf(&figure, "en").expect("a PDF");
+        assert!(bytes.starts_with(b"%PDF"));
+    }
 }
