@@ -222,8 +222,8 @@ pub(super) fn region_map(input: &Input<'_>) -> Option<RegionMap> {
         .collect();
     let other = |i: usize| match rest[i] == lively[i] {
         true => {
-            let (column, row) = (i % grid.eta.len(), i / grid.eta.len());
-            let found = coexisting(&machine, &branches[column], grid.rho[row], &rest[i]);
+            let column = &branches[i % branches.len()];
+            let found = coexisting(&machine, column, grid.at(i).1, &rest[i]);
             found.unwrap_or_else(|| rest[i].clone())
         }
         false => lively[i].clone(),
@@ -241,9 +241,9 @@ fn branches(machine: &Machine, eta: f64) -> Vec<Branch> {
 /// A stable z = 1/n motion that exists beside another one.
 fn coexisting(machine: &Machine, branches: &[Branch], rho: f64, beside: &Motion) -> Option<Motion> {
     let motions = branches.iter().map(|b| (b, Motion::periodic(1, b.n)));
-    let others = motions.filter(|(_, motion)| motion != beside);
-    let mut stable = others.filter(|(branch, _)| branch.stable_orbit(machine, rho).is_some());
-    stable.next().map(|(_, motion)| motion)
+    let mut others = motions.filter(|(_, motion)| motion != beside);
+    let stable = others.find(|(branch, _)| branch.stable_orbit(machine, rho).is_some());
+    stable.map(|(_, motion)| motion)
 }
 
 #[cfg(test)]

@@ -7,10 +7,10 @@ use rayon::prelude::*;
 use typst::foundations::Bytes;
 use typst::layout::{Abs, Axes, Frame, FrameItem, GroupItem, Ratio, Size, Transform};
 use typst::text::Lang;
-use typst::visualize::ImageKind;
+use typst::visualize::{Curve, ImageKind};
 use typst_layout::{Page, PagedDocument};
 
-use crate::report::figures::Figure;
+use crate::report::figures::{Figure, escape};
 
 /// The frames of figures by what stands for them.
 pub(super) struct Placed(HashMap<Bytes, Frame>);
@@ -56,6 +56,8 @@ impl Placed {
         } else if let Some((frame, size)) = self.of(item) {
             let mut group = GroupItem::new(frame.clone());
             group.transform = scaled(frame.size(), size);
+            // as a picture ends at its edges
+            group.clip = Some(Curve::rect(frame.size()));
             *item = FrameItem::Group(group);
         }
     }
@@ -81,7 +83,7 @@ fn scaled(from: Size, to: Size) -> Transform {
 /// The SVG that stands for a figure: of its size, with its name and nothing drawn.
 pub(super) fn stand_in(figure: &Figure) -> Bytes {
     let (width, height) = (figure.drawing.width, figure.drawing.height);
-    let name = &figure.name;
+    let name = escape(&figure.name);
     let svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}pt\" height=\"{height}pt\"><title>{name}</title></svg>"
     );

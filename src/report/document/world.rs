@@ -171,11 +171,13 @@ mod tests {
     use super::*;
     use crate::report::figures::canvas::{Anchor, Canvas, TextLook};
 
-    /// Texts of a frame with their sizes across the page in points, and the number of its pictures.
-    fn contents(frame: &Frame, scale: f64, found: &mut (Vec<(String, f64)>, usize)) {
+    /// Texts of a frame with their sizes across the page in points, and the numbers of its pictures and
+    /// of its groups that are clipped.
+    fn contents(frame: &Frame, scale: f64, found: &mut (Vec<(String, f64)>, usize, usize)) {
         for (_, item) in frame.items() {
             match item {
                 FrameItem::Group(group) => {
+                    found.2 += usize::from(group.clip.is_some());
                     let scale = scale * group.transform.sx.get();
                     contents(&group.frame, scale, found);
                 }
@@ -200,10 +202,10 @@ mod tests {
         let world = MemoryWorld::new(template, &figures, "en", []).expect("a world");
         let pages = world.pages().ok().expect("pages");
         let pages = Placed::new(&figures, Lang::ENGLISH).in_pages(pages);
-        let mut found = (Vec::new(), 0);
+        let mut found = (Vec::new(), 0, 0);
         contents(&pages.pages()[0].frame, 1.0, &mut found);
-        let (texts, pictures) = found;
-        assert_eq!(pictures, 0);
+        let (texts, pictures, clipped) = found;
+        assert_eq!((pictures, clipped), (0, 2));
         assert_eq!(texts.len(), 2);
         assert!(texts.iter().all(|(text, _)| text == "label"));
         assert!((texts[0].1 - 8.0).abs() < 1e-5, "{texts:?}");

@@ -94,7 +94,8 @@ fn lines(canvas: &mut Canvas, panels: &[Panel; 2], scatter: &ImpactScatter, unit
     let [speeds, ratios] = panels;
     let end = speeds.x.high;
     if let Some([low, high]) = scatter.interval95 {
-        let (a, b) = (ratios.at(0.0, high), ratios.at(end, low));
+        let inside = |ratio: f64| ratio.clamp(ratios.y.low, ratios.y.high);
+        let (a, b) = (ratios.at(0.0, inside(high)), ratios.at(end, inside(low)));
         canvas.rectangle(a, b, look::BAND);
     }
     canvas.layer(2);

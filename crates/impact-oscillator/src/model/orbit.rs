@@ -184,7 +184,15 @@ impl Branch {
         speeds.into_iter().find_map(judged)
     }
 
-    /// The orbit that closes with a speed w, without its multipliers and with its existence assumed.
+    /// The orbit that closes at a clearance with a speed w solving the quadratic.
+    fn orbit(&self, machine: &Machine, clearance: f64, w: f64) -> Orbit {
+        let mut orbit = self.unjudged_orbit(machine, clearance, w);
+        orbit.multipliers = multipliers(machine, &orbit);
+        orbit.existence = existence(machine, &orbit);
+        orbit
+    }
+
+    /// As [`Self::orbit`], without its multipliers and with its existence assumed.
     fn unjudged_orbit(&self, machine: &Machine, clearance: f64, w: f64) -> Orbit {
         let (eta, n) = (self.eta, self.n);
         let r = machine.restitution().at(w);
@@ -266,7 +274,7 @@ impl Branch {
 pub fn orbits(machine: &Machine, setting: Setting, n: u32) -> Result<Vec<Orbit>, ModelError> {
     let branch = checked_branch(machine, setting, n)?;
     let speeds = approach_speeds(machine, &branch, machine.gap(setting.clearance));
-    let orbit = |w: f64| orbit_with_speed(machine, setting, n, w);
+    let orbit = |w: f64| branch.orbit(machine, setting.clearance, w);
     Ok(speeds.into_iter().map(orbit).collect())
 }
 
@@ -355,10 +363,7 @@ pub(super) fn bisect(f: impl Fn(f64) -> f64, mut lo: f64, mut hi: f64) -> f64 {
 /// The orbit that closes with a speed w solving the quadratic.
 pub fn orbit_with_speed(machine: &Machine, setting: Setting, n: u32, w: f64) -> Orbit {
     let branch = Branch::new(machine, setting.frequency_ratio, n);
-    let mut orbit = branch.unjudged_orbit(machine, setting.clearance, w);
-    orbit.multipliers = multipliers(machine, &orbit);
-    orbit.existence = existence(machine, &orbit);
-    orbit
+    branch.orbit(machine, setting.clearance, w)
 }
 
 /// States just before the impact, forced response plus Green's functions, and just after it.
