@@ -1,0 +1,187 @@
+"""Instruments between the rig and the record: sensors, filters, converter, the sampler's clock.
+
+A channel states the times at which it needs the rig's motion, and turns the motion there into the numbers of the
+file. Filters act on the continuous signal: jumps at impacts pass through the filter's step response.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+DRIVE_V = 3.0
+CONTACT_V = 4.8
+ROLES_OF_X = {"velocity_x": 1, "displacement_x": 0, "acceleration_x": 1}
+ROLES_OF_Y = {"velocity_y": 3, "displacement_y": 2, "acceleration_y": 3}
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One channel as it is, not as campaign.toml states it."""
+
+    role: str
+    name: str
+    scale: float = 1.0  # SI unit per volt, as stated
+    scale_text: str = ""
+    gain: float = 1.0  # true over stated
+    high_passed: bool = False
+    delay_s: float = 0.0
+    smear: float = 0.0  # share of a sample by which software shifts readings, by straight lines between them
+    low_pass: tuple = (0, 0.0)  # order and corner in Hz of a Butterworth filter
+    pickup_drive: float = 0.0  # volts per volt of the generator
+    pickup_contact: float = 0.0  # volts per volt of the contact
+    noise_v: float = 0.0
+    full_scale_v: float = 10.0
+    bits: int = 12
+    wide: bool = False  # the converter's range was chosen for the spikes at impacts
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What one record's channels read from: the rig's state at sorted times, and its impacts."""
+
+    times: np.ndarray
+    states: np.ndarray
+    impacts: np.ndarray
+    pulse_s: float
+    omega: float
+    phase: float
+
+    def at(self, times):
+        """States at times that were asked for before."""
+        return self.states[np.searchsorted(self.times, times)]
+
+    def closed(self, times):
+        """Whether the contact is closed."""
+        if not len(self.impacts):
+            return np.zeros(len(times), bool)
+        index = np.searchsorted(self.impacts[:, 0], times, side="right") - 1
+        end = np.maximum(self.impacts[:, 2], self.impacts[:, 0] + self.pulse_s)
+        return (index >= 0) & (times < end[np.maximum(index, 0)])
+
+    def drive_v(self, times):
+        """The generator's voltage."""
+        return DRIVE_V * np.cos(self.omega * times + self.phase)
+
+
+def times_needed(channel, ticks):
+    """Times at which the channel needs the state, for samples at the given ticks."""
+    if channel.role in ("drive", "contact"):
+        return np.empty(0)
+    period = ticks[1] - ticks[0]
+    if channel.low_pass[0]:
+        return fine_times(channel, ticks)
+    base = ticks - channel.delay_s
+    if channel.smear:
+        base = base + channel.smear * period
+        base = np.concatenate([[base[0] - period], base])
+    if channel.role.startswith("acceleration"):
+        base = np.concatenate([base - 0.5 * period, [base[-1] + 0.5 * period]])
+    return base
+
+
+def fine_times(channel, ticks):
+    """An even grid that holds the ticks (of accelerations: the middles between them) and begins before them."""
+    period = ticks[1] - ticks[0]
+    corner = channel.low_pass[1]
+    parts = max(1, int(np.ceil(period * 60.0 * corner)))
+    lead = int(np.ceil(40.0 / (2.0 * np.pi * corner) / period)) + 1
+    shift = 0.5 * period if channel.role.startswith("acceleration") else 0.0
+    count = (lead + len(ticks) - 1 + (1 if shift else 0)) * parts + 1
+    return ticks[0] - channel.delay_s - shift - lead * period + period / parts * np.arange(count)
+
+
+def quantity(channel, motion, times):
+    """The measured quantity at times of which the states are known; of accelerations the velocity."""
+    index = {**ROLES_OF_X, **ROLES_OF_Y}[channel.role]
+    states = motion.at(times)
+    value = states[:, index]
+    if channel.high_passed:
+        value = value - states[:, 8 if channel.role.endswith("x") else 9]
+    return value
+
+
+def samples(channel, motion, ticks):
+    """The numbers in the file, in counts, and the size of a count in volts."""
+    read_at = ticks - channel.delay_s
+    if channel.role == "drive":
+        volts = motion.drive_v(read_at) * channel.gain
+    elif channel.role == "contact":
+        volts = CONTACT_V * motion.closed(read_at)
+    else:
+        volts = sensor(channel, motion, ticks) * channel.gain / channel.scale
+    volts = volts + channel.pickup_drive * motion.drive_v(ticks)
+    return volts + channel.pickup_contact * CONTACT_V * motion.closed(ticks)
+
+
+def sensor(channel, motion, ticks):
+    """The quantity at the ticks behind filters, averaging and the software's shift."""
+    period = ticks[1] - ticks[0]
+    times = times_needed(channel, ticks)
+    value = quantity(channel, motion, times)
+    averaged = channel.role.startswith("acceleration")
+    if channel.low_pass[0]:
+        value = low_passed(channel, motion, times, value)
+        parts = max(1, int(np.ceil(period * 60.0 * channel.low_pass[1])))
+        value = value[::parts][-(len(ticks) + averaged) :]
+    if averaged:
+        value = np.diff(value) / period
+    if channel.smear:
+        value = channel.smear * value[:-1] + (1.0 - channel.smear) * value[1:]
+    return value
+
+
+def converted(channel, volts, rng):
+    """Counts of the converter."""
+    count = channel.full_scale_v / 2 ** (channel.bits - 1)
+    noisy = volts + channel.noise_v * rng.standard_normal(len(volts))
+    limit = 2 ** (channel.bits - 1)
+    return np.clip(np.round(noisy / count), -limit, limit - 1).astype(np.int16), count
+
+
+def low_passed(channel, motion, times, value):
+    """A Butterworth filter on a signal that is even between its jumps."""
+    order, corner = channel.low_pass
+    index = 4 if channel.role.endswith("x") else 5
+    jumps = np.zeros((0, 2))
+    if not channel.role.startswith("displacement"):
+        hits = motion.impacts
+        hits = hits[(hits[:, 0] > times[0]) & (hits[:, 0] < times[-1])]
+        jumps = hits[:, [0, index]]
+    smooth = value.copy()
+    for at, jump in jumps:
+        smooth -= jump * (times >= at)
+    poles, residues = butterworth(order, corner)
+    out = linear_response(smooth, times[1] - times[0], poles, residues)
+    for at, jump in jumps:
+        since = np.maximum(0.0, times - at)
+        step = sum(r / p * (np.exp(p * since) - 1.0) for p, r in zip(poles, residues))
+        out += jump * step.real * (times >= at)
+    return out
+
+
+def butterworth(order, corner):
+    """Poles and residues of a Butterworth low-pass of unit gain."""
+    omega = 2.0 * np.pi * corner
+    j = np.arange(order)
+    poles = omega * np.exp(1j * np.pi * (2 * j + order + 1) / (2 * order))
+    gain = np.prod(-poles)
+    others = [np.prod([poles[i] - poles[k] for k in range(order) if k != i]) for i in range(order)]
+    return poles, gain / np.array(others)
+
+
+@njit(cache=True)
+def linear_response(value, step, poles, residues):
+    """Response of a sum of poles to samples joined by straight lines, settled at the first sample."""
+    out = np.zeros(value.size)
+    for j in range(poles.size):
+        p, r = poles[j], residues[j]
+        e = np.exp(p * step)
+        a = (e - 1.0) / p
+        b = (e - 1.0 - p * step) / (p * p * step)
+        z = -value[0] / p + 0.0j
+        out[0] += (r * z).real
+        for i in range(1, value.size):
+            z = e * z + a * value[i - 1] + b * (value[i] - value[i - 1])
+            out[i] += (r * z).real
+    return out

@@ -1,0 +1,126 @@
+"""Kinds of campaigns: what is special about a laboratory, one kind for each row of the table that `coverage.py` prints."""
+
+from dataclasses import dataclass, replace
+
+BOTH = ("drive", "contact", "velocity_x", "velocity_y")
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A laboratory. The defaults are the typical campaign: 72 records of an exact rig at 2 kHz."""
+
+    about: str = "typical"
+    # what is recorded
+    rate_hz: float = 2000.0
+    duration_s: float = 1.0
+    settle_s: float = 8.0
+    roles: tuple = BOTH
+    bits: int = 12
+    spikes_fit: bool = True  # the range of accelerations holds the spikes at impacts
+    frequency_stated: bool = True
+    # the settings
+    clearances: tuple = (0.5, 1.0, 1.7)  # over the static deflection
+    lowest: float = 0.8  # over f0
+    highest: float = 2.01
+    frequencies: int = 12
+    boundary_step: float = 0.0  # steps of frequency around the boundaries, over f0, instead of the sweeps
+    select: str = "all"  # "z0": impactless records alone; "few": two with impacts and six without
+    # the rig
+    machine: str = "double"
+    restitution: tuple = (0.6, 0.9)
+    mass_ratio: float = 1.0  # of y over x
+    masses_stated: bool = False
+    stiffness_ratio: float = 0.0  # of y over x; 0: drawn
+    force_ratio: float = 0.0  # of y over x; 0: drawn
+    speed_exponent: float = 0.0  # 1 - R rises with this power of the approach speed
+    contact: str = "rigid"  # "spring-damper", "hunt-crossley"
+    contact_s: float = 6.4e-4
+    second_mode: float = 0.0  # mass of the second mode over that of the part that is struck
+    second_mode_ratio: float = 12.0  # its frequency over f0
+    effects: float = 0.0  # hardening, friction, a distorted drive and a force slope, in typical strengths
+    other_restitution: float = 0.0  # what R of the second half of the records has beside the first
+    other_frequency: float = 0.0  # the same of f0, relative
+    # instruments that are off
+    gain_x: float = 1.0
+    clock: float = 0.0  # relative error of the sampler's period
+    late_s: tuple = ()  # (role, s) pairs
+    low_pass: tuple = (0, 0.0)  # order and corner in Hz, of the channels of motion
+    low_pass_stated: bool = False
+    smear: bool = False
+    pickup_drive: float = 0.0
+    pickup_contact: float = 0.0
+
+
+DISPLACEMENTS = ("drive", "displacement_x", "displacement_y")
+ACCELERATIONS = ("drive", "acceleration_x", "acceleration_y")
+ONE_MASS = replace(Kind(), machine="single", clearances=(0.6, 1.2, 2.0))
+
+KINDS = {
+    "typical": Kind(),
+    "rate_1k": Kind("1 kHz", rate_hz=1e3),
+    "rate_5k": Kind("5 kHz", rate_hz=5e3),
+    "rate_10k": Kind("10 kHz", rate_hz=1e4),
+    "rate_20k": Kind("20 kHz", rate_hz=2e4),
+    "rate_50k": Kind("50 kHz", rate_hz=5e4),
+    "long": Kind("10 s records", duration_s=10.0),
+    "displacements": Kind("displacements alone", roles=DISPLACEMENTS),
+    "accelerations": Kind("accelerations alone", roles=ACCELERATIONS, bits=16),
+    "accelerations_clipped": Kind("the same, spikes clipped", roles=ACCELERATIONS, bits=16, spikes_fit=False),
+    "accel_contact": Kind("accelerations and contact", roles=("drive", "contact", *ACCELERATIONS[1:]), bits=16),
+    "accel_contact_clipped": Kind(
+        "the same, spikes clipped", roles=("drive", "contact", *ACCELERATIONS[1:]), bits=16, spikes_fit=False
+    ),
+    "one_velocity": Kind("two masses, velocity of x and contact", roles=BOTH[:3]),
+    "one_displacement": Kind("two masses, displacement of x and contact", roles=("drive", "contact", "displacement_x")),
+    "mass_10": Kind("mass y 10 % heavier", mass_ratio=1.1),
+    "mass_10_stated": Kind("the same, masses stated", mass_ratio=1.1, masses_stated=True),
+    "stiffness_6": Kind("spring y 6 % stiffer", stiffness_ratio=1.06, force_ratio=1.0),
+    "single": replace(ONE_MASS, about="one mass against a stop, velocity", roles=("drive", "contact", "velocity_x")),
+    "single_displacement": replace(
+        ONE_MASS, about="one mass, velocity and displacement", roles=("drive", "contact", "velocity_x", "displacement_x")
+    ),
+    "single_acceleration": replace(
+        ONE_MASS, about="one mass, acceleration without contact", roles=("drive", "acceleration_x"), bits=16
+    ),
+    "clock_1": Kind("clock off by 50 ppm", clock=5e-5),
+    "clock_10": Kind("clock off by 500 ppm", clock=5e-4),
+    "clock_20": Kind("clock off by 0.1 %", clock=1e-3),
+    "gain_1": Kind("a gain off by 0.5 %", gain_x=1.005),
+    "gain_10": Kind("a gain off by 5 %", gain_x=1.05),
+    "late_1": Kind("velocity x late by half a sample", late_s=(("velocity_x", 2.5e-4),)),
+    "late_6": Kind("velocity x late by three samples", late_s=(("velocity_x", 1.5e-3),)),
+    "late_10": Kind("velocity x late by five samples", late_s=(("velocity_x", 2.5e-3),)),
+    "late_both": Kind("both velocities late by three samples", late_s=(("velocity_x", 1.5e-3), ("velocity_y", 1.5e-3))),
+    "late_contact": Kind("contact late by 2 ms", late_s=(("contact", 2e-3),)),
+    "low_pass_200": Kind("velocities behind a low-pass of order 2 at 200 Hz", low_pass=(2, 200.0)),
+    "low_pass_200_1": Kind("the same of order 1", low_pass=(1, 200.0)),
+    "low_pass_800": Kind("velocities behind an anti-alias filter of order 4 at 800 Hz", low_pass=(4, 800.0)),
+    "low_pass_stated": Kind("low-pass of order 2 at 200 Hz, stated", low_pass=(2, 200.0), low_pass_stated=True),
+    "smeared": Kind("jumps smeared over two samples", smear=True),
+    "pickup_drive": Kind("velocity x picks up 0.3 % of the generator", pickup_drive=3e-3),
+    "pickup_contact": Kind("velocity x picks up 0.3 % of the contact", pickup_contact=3e-3),
+    "speed": Kind("R falls with speed", speed_exponent=0.2),
+    "speed_mild": Kind("R falls with speed, mildly", speed_exponent=0.05),
+    "contact_linear": Kind("contacts of 0.64 ms, spring and damper", contact="spring-damper"),
+    "contact_hunt": Kind("contacts of 0.64 ms, Hunt and Crossley", contact="hunt-crossley"),
+    "contact_short": Kind("contacts of 0.2 ms, spring and damper", contact="spring-damper", contact_s=2e-4),
+    "mode": Kind("a second mode in each mass", second_mode=0.006),
+    "effects": Kind("hardening, friction, distorted drive, force slope", effects=1.0),
+    "half_other": Kind("second half on another rig: R -0.04, f0 +1 %", other_restitution=-0.04, other_frequency=0.01),
+    "half_other_large": Kind("second half: R -0.1, f0 +7 %", other_restitution=-0.1, other_frequency=0.07),
+    "unsettled": Kind("records begin at once, nothing has settled", settle_s=0.0),
+    "unsettled_half": Kind("records begin after 1.5 s", settle_s=1.5),
+    "z0_only": Kind("impactless records alone", select="z0"),
+    "no_drive": Kind("no drive channel, no frequency", roles=BOTH[1:], frequency_stated=False),
+    "no_drive_stated": Kind("no drive channel, frequency stated", roles=BOTH[1:]),
+    "position_stated": replace(
+        ONE_MASS, about="a driven spring, position at stated frequencies", roles=("displacement_x",),
+        clearances=(50.0,), frequencies=21, lowest=0.6, highest=1.6,
+    ),
+    "few": Kind("two records with impacts, six without", select="few"),
+    "twelve": Kind("12 records: two gaps, three frequencies", clearances=(0.6, 1.5), lowest=0.8, highest=1.75, frequencies=3),
+    "steps_7": Kind("boundaries in steps of 7 % of f0", boundary_step=0.07),
+    "steps_3": Kind("boundaries in steps of 3 %", boundary_step=0.03),
+    "steps_1": Kind("boundaries in steps of 1 %", boundary_step=0.01),
+    "steps_0.3": Kind("boundaries in steps of 0.3 %", boundary_step=0.003),
+}
