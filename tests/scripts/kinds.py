@@ -40,6 +40,7 @@ class Kind:
     effects: float = 0.0  # hardening, friction, a distorted drive and a force slope, in typical strengths
     other_restitution: float = 0.0  # what R of the second half of the records has beside the first
     other_frequency: float = 0.0  # the same of f0, relative
+    gap_off_m: float = 0.0  # by how much the second clearance is larger than stated
     # instruments that are off
     gain_x: float = 1.0
     clock: float = 0.0  # relative error of the sampler's period
@@ -87,6 +88,8 @@ KINDS = {
     "clock_20": Kind("clock off by 0.1 %", clock=1e-3),
     "gain_1": Kind("a gain off by 0.5 %", gain_x=1.005),
     "gain_10": Kind("a gain off by 5 %", gain_x=1.05),
+    "gap_1": Kind("one clearance off by 0.01 mm", gap_off_m=1e-5),
+    "gap_10": Kind("one clearance off by 0.1 mm", gap_off_m=1e-4),
     "late_1": Kind("velocity x late by half a sample", late_s=(("velocity_x", 2.5e-4),)),
     "late_6": Kind("velocity x late by three samples", late_s=(("velocity_x", 1.5e-3),)),
     "late_10": Kind("velocity x late by five samples", late_s=(("velocity_x", 2.5e-3),)),
@@ -107,6 +110,8 @@ KINDS = {
     "mode": Kind("a second mode in each mass", second_mode=0.006),
     "effects": Kind("hardening, friction, distorted drive, force slope", effects=1.0),
     "half_other": Kind("second half on another rig: R -0.04, f0 +1 %", other_restitution=-0.04, other_frequency=0.01),
+    "half_restitution": Kind("second half: R -0.04", other_restitution=-0.04),
+    "half_frequency": Kind("second half: f0 +1 %", other_frequency=0.01),
     "half_other_large": Kind("second half: R -0.1, f0 +7 %", other_restitution=-0.1, other_frequency=0.07),
     "unsettled": Kind("records begin at once, nothing has settled", settle_s=0.0),
     "unsettled_half": Kind("records begin after 1.5 s", settle_s=1.5),

@@ -94,6 +94,7 @@ def machine(d, kind):
         reduced = 1.0 / (p[rig.IX] + p[rig.IY])
         law = rig.contact_for(p[rig.LAW], d["R"], kind.contact_s, reduced, 2.0 * speed)
         p[rig.CONTACT_K], p[rig.CONTACT_C] = law
+        p[rig.TOUCH_SPEED] = 2.0 * speed
         p[rig.CONTACT_STEP] = kind.contact_s / 60.0
     if kind.effects:
         add_effects(p, d, kind.effects)
@@ -284,7 +285,8 @@ def measure(d, kind):
     for index, rho, direction, chain in plan:
         bench.start_sweep()
         stated_m = rho * d["xst_m"]
-        gap = stated_m * (1.0 + d["gap_error"] * d["gaps"][index] / 2.0) * (2.0 if kind.machine == "double" else 1.0)
+        clearance = stated_m * (1.0 + d["gap_error"] * d["gaps"][index] / 2.0) + (kind.gap_off_m if index == 1 else 0.0)
+        gap = clearance * (2.0 if kind.machine == "double" else 1.0)
         for frequency, recorded in chain:
             if changes and number == half:
                 bench.other_rig()

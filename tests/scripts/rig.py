@@ -15,8 +15,8 @@ from numba import njit
 # Indices of the array of parameters that the integrator is given.
 (MX, BX, KX, FX, MY, BY, KY, FY, IX, IY, HARDENING, FRICTION, SPEED_OF_FRICTION, A2, PHI2, A3, PHI3, GAP, OMEGA,
  PHASE, LAW, CONTACT_K, CONTACT_C, RESTITUTION, SPEED_EXPONENT, SPEED_REFERENCE, CORNER_X, CORNER_Y, MODE_M,
- MODE_K, MODE_B, STEP, CONTACT_STEP, STICK_SPEED) = range(34)
-PARAMETERS = 34
+ MODE_K, MODE_B, STEP, CONTACT_STEP, STICK_SPEED, TOUCH_SPEED) = range(35)
+PARAMETERS = 35
 # The state: x, x', y, y', the second mode's mass in x and in y, and what a high-pass takes off x' and y'.
 STATES = 10
 RIGID, SPRING_DAMPER, HUNT_CROSSLEY = 0.0, 1.0, 2.0
@@ -24,13 +24,17 @@ RIGID, SPRING_DAMPER, HUNT_CROSSLEY = 0.0, 1.0, 2.0
 
 @njit(cache=True)
 def press(u, w, p):
-    """Force in a contact of finite stiffness at overlap u and closing speed w; it only presses."""
+    """Force in a contact of finite stiffness at overlap u and closing speed w; it only presses.
+
+    The damping of Hunt and Crossley's contact is that over the approach speed of the present impact, so that its
+    restitution is the same at every speed; only its duration changes.
+    """
     if u <= 0.0:
         return 0.0
     if p[LAW] == SPRING_DAMPER:
         force = p[CONTACT_K] * u + p[CONTACT_C] * w
     else:
-        force = p[CONTACT_K] * u * math.sqrt(u) * (1.0 + p[CONTACT_C] * w)
+        force = p[CONTACT_K] * u * math.sqrt(u) * (1.0 + p[CONTACT_C] * w / p[TOUCH_SPEED])
     return max(0.0, force)
 
 
@@ -215,6 +219,7 @@ def move(s, t, end, p, stuck, times, states, impacts):
             impacts[n, 2] = t
             if p[LAW] != RIGID:
                 closed = True
+                p[TOUCH_SPEED] = max(w, p[STICK_SPEED])
                 pressing = True
                 impacts[n, 3:] = 0.0
             else:
@@ -258,6 +263,7 @@ def contact_alone(law, k, c, mass, speed):
     p[IX] = 1.0 / mass
     length = math.pi * math.sqrt(mass / k) if law == SPRING_DAMPER else 2.9 * (mass**2 / (k**2 * speed)) ** 0.2
     p[STEP] = p[CONTACT_STEP] = length / 400.0
+    p[TOUCH_SPEED] = speed
     s = np.zeros(STATES)
     s[0], s[1] = 1e-18, speed
     t = 0.0
@@ -287,7 +293,7 @@ def contact_for(law, restitution, duration, mass, speed):
         k = mass * (2.9 / duration) ** 2.5 * speed**-0.5
     c = 0.0
     for _ in range(6):
-        scale = 2.0 * math.sqrt(mass * k) if law == SPRING_DAMPER else 20.0 / speed
+        scale = 2.0 * math.sqrt(mass * k) if law == SPRING_DAMPER else 20.0
         low, high = 0.0, scale
         for _ in range(40):
             c = 0.5 * (low + high)
