@@ -1,4 +1,4 @@
-"""Kinds of campaigns: what is special about a laboratory, one kind for each row of the table that `coverage.py` prints."""
+"""Kinds of campaigns: what is special about a laboratory, one kind for each row of the table that `coverage_study.py` prints."""
 
 from dataclasses import dataclass, replace
 

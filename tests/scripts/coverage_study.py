@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How often the answers of impactid hold the truth, on campaigns of the simulated laboratory.
 
-    python coverage.py --binary target/release/impactid --kinds typical,rate_20k --campaigns 40 --work DIR
+    python coverage_study.py --binary target/release/impactid --kinds typical,rate_20k --campaigns 40 --work DIR
 
 makes the campaigns of each kind (laboratory.py; seeds are counted from --first-seed), runs `ingest`, `classify` and
 `identify` on each and prints one table. Campaigns that are in DIR already are used again; results are made anew,
@@ -159,8 +159,9 @@ def method_shares(lines):
     parts = []
     for name in names:
         own = [line["methods"][name] for line in lines if name in line["methods"]]
-        if any(s["restitution"]["status"] in GIVEN for s in own):
-            parts.append(f"{name} {share([s for s in own if s['restitution']['status'] in GIVEN], 'restitution')}")
+        own = [s for s in own if s["restitution"]["status"] in GIVEN]
+        if own:
+            parts.append(f"{name} {share(own, 'restitution')} ± {median_width(own, 'restitution')} %")
     return "; ".join(parts) or "–"
 
 
