@@ -4,7 +4,8 @@ A channel states the times at which it needs the rig's motion, and turns the mot
 file. Filters act on the continuous signal: jumps at impacts pass through the filter's step response.
 """
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
@@ -62,6 +63,44 @@ class Motion:
     def drive_v(self, times):
         """The generator's voltage."""
         return DRIVE_V * np.cos(self.omega * times + self.phase)
+
+
+def channels(d, kind):
+    """The channels with their errors."""
+    speed = d["xst_m"] * 2.0 * math.pi * d["f0"]
+    late = dict(kind.late_s)
+    result = []
+    for role in kind.roles:
+        name = {"drive": "generator", "contact": "contact"}.get(role, f"sensor_{role}")
+        noise = 10.0 * d["noise"] * (1.0 if kind.bits == 12 else 0.1)
+        c = Channel(role, name, delay_s=late.get(role, 0.0), noise_v=noise, bits=kind.bits)
+        if role not in ("drive", "contact"):
+            c = motion_channel(c, d, kind, speed)
+        result.append(c)
+    return result
+
+
+def motion_channel(c, d, kind, speed):
+    """Scale, gain and filters of a channel of motion."""
+    of_x = c.role.endswith("x")
+    gain = d["gain_x"] if of_x else d["gain_y"]
+    if of_x and kind.gain_x != 1.0:
+        gain = kind.gain_x
+    if c.role.startswith("velocity"):
+        scale, unit = 0.1, "m/s/V"
+    elif c.role.startswith("displacement"):
+        scale, unit = 1e-3, "m/V"
+    else:
+        spike = 2.0 * 3.5 * speed * kind.rate_hz
+        scale = float(f"{(spike if kind.spikes_fit else 0.1 * spike) / 10.0:.2g}")
+        unit = "m/s^2/V"
+    c = replace(c, scale=scale, scale_text=f"{scale:g} {unit}", gain=gain)
+    c = replace(c, high_passed=c.role == "velocity_y", low_pass=kind.low_pass)
+    if kind.smear:
+        c = replace(c, smear=kind.smear if kind.smear > 0.0 else d["smear_x"] if of_x else d["smear_y"])
+    if of_x:
+        c = replace(c, pickup_drive=kind.pickup_drive, pickup_contact=kind.pickup_contact)
+    return c
 
 
 def times_needed(channel, ticks):

@@ -47,7 +47,7 @@ class Kind:
     late_s: tuple = ()  # (role, s) pairs
     low_pass: tuple = (0, 0.0)  # order and corner in Hz, of the channels of motion
     low_pass_stated: bool = False
-    smear: bool = False
+    smear: float = 0.0  # share of a sample by which software shifts readings; -1: drawn for each channel
     pickup_drive: float = 0.0
     pickup_contact: float = 0.0
 
@@ -99,7 +99,8 @@ KINDS = {
     "low_pass_200_1": Kind("the same of order 1", low_pass=(1, 200.0)),
     "low_pass_800": Kind("velocities behind an anti-alias filter of order 4 at 800 Hz", low_pass=(4, 800.0)),
     "low_pass_stated": Kind("low-pass of order 2 at 200 Hz, stated", low_pass=(2, 200.0), low_pass_stated=True),
-    "smeared": Kind("jumps smeared over two samples", smear=True),
+    "smeared": Kind("jumps smeared over two samples by software", smear=-1.0),
+    "smeared_half": Kind("readings averaged with the one before", smear=0.5),
     "pickup_drive": Kind("velocity x picks up 0.3 % of the generator", pickup_drive=3e-3),
     "pickup_contact": Kind("velocity x picks up 0.3 % of the contact", pickup_contact=3e-3),
     "speed": Kind("R falls with speed", speed_exponent=0.2),
