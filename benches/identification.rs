@@ -16,7 +16,7 @@ use impactid::identify::run::identify;
 use impactid::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
 use impactid::motion::{ClassifySettings, Observation, brackets, observe, scale_drives};
 use impactid::synthetic::run::calibrated;
-use impactid::synthetic::{Effects, Faults, Laboratory, Plan, Truth, records};
+use impactid::synthetic::{Differences, Effects, Faults, Laboratory, Plan, Truth, records};
 
 const RECORDS: usize = 846;
 
@@ -73,15 +73,15 @@ fn time(evidence: &Evidence<'_>) -> f64 {
 
 /// A campaign as `simulate campaign` makes it, observed.
 fn campaign() -> Result<Vec<Observation>, ModelError> {
-    let truth = Truth {
-        drive_asymmetry: 0.01,
-        stiffness_asymmetry: -0.01,
-        ..Truth::symmetric(0.9, 12.6, 0.07, 1e-3)
-    };
+    let truth = Truth::symmetric(0.9, 12.6, 0.07, 1e-3).with_differences(&Differences {
+        force: 0.01,
+        stiffness: -0.01,
+        ..Differences::default()
+    });
     let plan = Plan::for_rig(
-        truth.natural_frequency_hz,
-        truth.damping_ratio,
-        truth.static_deflection_m,
+        truth.natural_frequency_hz(),
+        truth.damping_ratio(),
+        truth.static_deflection_m(),
         RECORDS,
     );
     let laboratory = Laboratory {

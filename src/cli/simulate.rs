@@ -8,7 +8,7 @@ use super::machine::{MachineArgs, StartArgs};
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::synthesise::{Recipe, write_campaign};
-use crate::synthetic::truth::draw_asymmetry;
+use crate::synthetic::truth::draw_differences;
 use crate::synthetic::{Faults, RigSpec, Truth};
 use impact_oscillator::atlas::portrait::{PortraitPlan, Soft};
 use impact_oscillator::model::Setting;
@@ -226,19 +226,15 @@ impl Campaign {
         } else {
             Faults::default()
         };
-        let (drive_asymmetry, stiffness_asymmetry) =
-            draw_asymmetry(&faults, self.rig_seed.unwrap_or(self.seed));
+        let differences = draw_differences(&faults, self.rig_seed.unwrap_or(self.seed));
         let recipe = Recipe {
-            truth: Truth {
-                drive_asymmetry,
-                stiffness_asymmetry,
-                ..Truth::symmetric(
-                    self.restitution,
-                    self.natural_frequency_hz,
-                    self.damping_ratio,
-                    self.static_deflection_m,
-                )
-            },
+            truth: Truth::symmetric(
+                self.restitution,
+                self.natural_frequency_hz,
+                self.damping_ratio,
+                self.static_deflection_m,
+            )
+            .with_differences(&differences),
             faults,
             rig: self.rig,
             records: self

@@ -12,7 +12,7 @@ use crate::identify::{Identification, identify_campaign};
 use crate::motion::{ClassifySettings, brackets, observe, scale_drives};
 use crate::record::{Channel, Excitation, Record, Role, Setting};
 use crate::synthetic::run::calibrated;
-use crate::synthetic::{Effects, Faults, Laboratory, Plan, Truth, records};
+use crate::synthetic::{Differences, Effects, Faults, Laboratory, Plan, Truth, records};
 use labfiles::units::Dimension;
 
 /// A campaign identified and compared.
@@ -50,11 +50,11 @@ pub(crate) fn decays() -> &'static Identified {
 }
 
 fn laboratory() -> Vec<Record> {
-    let truth = Truth {
-        drive_asymmetry: 0.01,
-        stiffness_asymmetry: -0.005,
-        ..Truth::symmetric(0.9, 12.6, 0.07, 1.25e-3)
-    };
+    let truth = Truth::symmetric(0.9, 12.6, 0.07, 1.25e-3).with_differences(&Differences {
+        force: 0.01,
+        stiffness: -0.005,
+        ..Differences::default()
+    });
     let laboratory = Laboratory {
         truth,
         faults: Faults::default(),

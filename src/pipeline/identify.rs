@@ -52,11 +52,11 @@ pub fn nominal(campaign: &ResolvedCampaign) -> Nominal {
     }
 }
 
-/// (`m_x` − `m_y)/m` of the stated masses, with its standard uncertainty; `None` unless both are stated.
+/// ln(`m_x`/`m_y`) of the stated masses, with its standard uncertainty; `None` unless both are stated.
 fn mass_asymmetry(rig: &NominalValues) -> Option<[f64; 2]> {
     let (x, y) = rig.mass_x_kg.zip(rig.mass_y_kg)?;
     let deviation = rig.mass_uncertainty * std::f64::consts::SQRT_2;
-    Some([2.0 * (x - y) / (x + y), deviation])
+    Some([(x / y).ln(), deviation])
 }
 
 /// The stated delays of the motion channels.

@@ -174,12 +174,14 @@ fn pair(plan: &PairsPlan, index: u64) -> Result<Pair, PipelineError> {
 
 fn changed_truth(truth: &Truth, rng: &mut ChaCha8Rng) -> Truth {
     let [r, f, b, x] = CHANGES.map(|most| rng.random_range(-most..most));
+    let changed = truth.with_means(
+        truth.natural_frequency_hz() * (1.0 + f),
+        truth.damping_ratio() * (1.0 + b),
+        truth.static_deflection_m() * (1.0 + x),
+    );
     Truth {
         restitution: (truth.restitution + r).min(0.97),
-        natural_frequency_hz: truth.natural_frequency_hz * (1.0 + f),
-        damping_ratio: truth.damping_ratio * (1.0 + b),
-        static_deflection_m: truth.static_deflection_m * (1.0 + x),
-        ..truth.clone()
+        ..changed
     }
 }
 
@@ -249,8 +251,8 @@ fn score(pairs: &[Pair], parameter: Coordinate) -> PairScore {
 fn true_value(truth: &Truth, parameter: Coordinate) -> f64 {
     match parameter {
         Coordinate::Restitution => truth.restitution,
-        Coordinate::Frequency => truth.natural_frequency_hz,
-        Coordinate::Damping => truth.damping_ratio,
-        _ => truth.static_deflection_m,
+        Coordinate::Frequency => truth.natural_frequency_hz(),
+        Coordinate::Damping => truth.damping_ratio(),
+        _ => truth.static_deflection_m(),
     }
 }

@@ -91,9 +91,9 @@ const SHARED: &str = r#"["clearances", "delays", "asymmetries", "harmonics", "fo
 /// Where the truth lies outside the model's range or a file cannot be written.
 pub fn write_campaign(recipe: &Recipe, out: &Path) -> Result<usize, PipelineError> {
     let plan = Plan::for_rig(
-        recipe.truth.natural_frequency_hz,
-        recipe.truth.damping_ratio,
-        recipe.truth.static_deflection_m,
+        recipe.truth.natural_frequency_hz(),
+        recipe.truth.damping_ratio(),
+        recipe.truth.static_deflection_m(),
         recipe.records,
     );
     let mut recipe = recipe.clone();
@@ -242,9 +242,9 @@ fn truth_file<'a>(
     TruthFile {
         synthetic: true,
         restitution: recipe.truth.restitution,
-        natural_frequency_hz: recipe.truth.natural_frequency_hz,
-        damping_ratio: recipe.truth.damping_ratio,
-        static_deflection_m: recipe.truth.static_deflection_m,
+        natural_frequency_hz: recipe.truth.natural_frequency_hz(),
+        damping_ratio: recipe.truth.damping_ratio(),
+        static_deflection_m: recipe.truth.static_deflection_m(),
         effects: (!recipe.rig.is_exact()).then_some(effects),
         speed_ratio: speed_ratio(files).filter(|_| effects.contact_duration_s > 0.0),
         recipe,

@@ -55,8 +55,8 @@ impl Laboratory {
     /// η and ρ of a step, the gap as it is.
     pub fn setting(&self, step: &Step) -> Setting {
         Setting::new(
-            step.frequency_hz / self.truth.natural_frequency_hz,
-            self.effects.true_clearance_m(step.clearance_m) / self.truth.static_deflection_m,
+            step.frequency_hz / self.truth.natural_frequency_hz(),
+            self.effects.true_clearance_m(step.clearance_m) / self.truth.static_deflection_m(),
         )
     }
 
@@ -234,7 +234,7 @@ mod tests {
     use crate::record::Sweep;
     use crate::synthetic::effects::{Effects, Harmonic};
     use crate::synthetic::plan::Plan;
-    use crate::synthetic::truth::{Faults, Truth};
+    use crate::synthetic::truth::{Differences, Faults, Truth};
 
     fn step(eta: f64, rho: f64) -> Step {
         Step {
@@ -268,12 +268,12 @@ mod tests {
             (0.9, 1.1, 30.0),
         ];
         for (r, eta, rho) in cases {
-            let truth = Truth {
-                drive_asymmetry: 0.02,
-                stiffness_asymmetry: -0.01,
-                damping_asymmetry: 0.05,
-                ..Truth::symmetric(r, 10.0, 0.07, 1e-3)
-            };
+            let truth = Truth::symmetric(r, 10.0, 0.07, 1e-3).with_differences(&Differences {
+                force: 0.02,
+                stiffness: -0.01,
+                dashpot: 0.05,
+                mass: 0.03,
+            });
             let step = step(eta, rho);
             let laboratory = laboratory(truth, Effects::default(), vec![step]);
             let mut exact = laboratory.at_rest(0, &step).unwrap();

@@ -130,8 +130,8 @@ impl Equations {
         step: &Step,
         elapsed: f64,
     ) -> Self {
-        let x_st = truth.static_deflection_m;
-        let eta = step.frequency_hz / truth.natural_frequency_hz;
+        let x_st = truth.static_deflection_m();
+        let eta = step.frequency_hz / truth.natural_frequency_hz();
         let machine = truth.machine();
         let masses = [machine.x, machine.y.unwrap_or(machine.x)];
         let stiffening = (1.0 + effects.frequency_drift * (elapsed - 0.5)).powi(2);

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use super::effects::Effects;
 use super::plan::Plan;
 use super::rig_spec::RigSpec;
-use super::truth::{Faults, Truth, draw_asymmetry};
+use super::truth::{Faults, Truth, draw_differences};
 use crate::signal::whole;
 
 /// A virtual laboratory: what it is made of, what it visits and what it states.
@@ -41,7 +41,7 @@ pub enum Reach {
 /// Draw the laboratory of campaign number `index` of a study; the same seed and index always give the same.
 ///
 /// R 0.5 to 0.93, β 0.025 to 0.09, f0 8 to 17 Hz, `x_st` 0.3 to 3 mm, 120 to 260 records, noise 1 to
-/// 8 mV on ±5 V, integrators' corner 0.2 to 0.8 Hz, asymmetry up to 2 %, and the effects of `rig`.
+/// 8 mV on ±5 V, integrators' corner 0.2 to 0.8 Hz, masses unlike by up to 2 %, and the effects of `rig`.
 pub fn draw(seed: u64, index: u64, reach: Reach, rig: &RigSpec) -> Laboratory {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(index);
@@ -60,7 +60,7 @@ pub fn draw(seed: u64, index: u64, reach: Reach, rig: &RigSpec) -> Laboratory {
         ..Faults::default()
     };
     let own_seed = rng.random();
-    let (drive_asymmetry, stiffness_asymmetry) = draw_asymmetry(&faults, own_seed);
+    let differences = draw_differences(&faults, own_seed);
     let mut plan = Plan::for_rig(
         natural_frequency_hz,
         damping_ratio,
@@ -71,16 +71,13 @@ pub fn draw(seed: u64, index: u64, reach: Reach, rig: &RigSpec) -> Laboratory {
         let widest = plan.steps[0].clearance_m;
         plan.steps.retain(|s| s.clearance_m == widest);
     }
-    let mut truth = Truth {
-        drive_asymmetry,
-        stiffness_asymmetry,
-        ..Truth::symmetric(
-            restitution,
-            natural_frequency_hz,
-            damping_ratio,
-            static_deflection_m,
-        )
-    };
+    let mut truth = Truth::symmetric(
+        restitution,
+        natural_frequency_hz,
+        damping_ratio,
+        static_deflection_m,
+    )
+    .with_differences(&differences);
     let effects = rig.draw(&mut truth, &plan, own_seed);
     Laboratory {
         clearance_uncertainty_m: rig.clearance_uncertainty_m(&truth),
@@ -98,9 +95,9 @@ impl Laboratory {
     #[must_use]
     pub fn with_records(mut self, records: usize, rig: &RigSpec) -> Self {
         self.plan = Plan::for_rig(
-            self.truth.natural_frequency_hz,
-            self.truth.damping_ratio,
-            self.truth.static_deflection_m,
+            self.truth.natural_frequency_hz(),
+            self.truth.damping_ratio(),
+            self.truth.static_deflection_m(),
             records,
         );
         self.effects = rig.draw(&mut self.truth, &self.plan, self.rig_seed);

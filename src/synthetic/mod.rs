@@ -23,4 +23,4 @@ pub use laboratory::{Laboratory, Reach, draw};
 pub use plan::{Plan, Step};
 pub use rig_spec::{Effect, RigError, RigSpec};
 pub use run::{RawChannel, RawRecord, blocks, records};
-pub use truth::{Faults, TrueImpact, Truth};
+pub use truth::{Differences, Faults, TrueImpact, TrueMass, Truth};

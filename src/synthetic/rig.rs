@@ -29,9 +29,9 @@ pub struct Sensitivity {
 /// round numbers that put the largest motions well within the converter's range.
 pub fn sensitivities(truth: &Truth) -> [Sensitivity; 7] {
     // The resonance amplitude x_st/(2β) must stay below four fifths of full scale.
-    let reach = (0.5 / truth.damping_ratio / (0.8 * acquisition::FULL_SCALE_V)).max(2.0);
-    let length = round_up(truth.static_deflection_m * reach);
-    let speed = round_up(truth.static_deflection_m * truth.natural_rate() * reach);
+    let reach = (0.5 / truth.damping_ratio() / (0.8 * acquisition::FULL_SCALE_V)).max(2.0);
+    let length = round_up(truth.static_deflection_m() * reach);
+    let speed = round_up(truth.static_deflection_m() * truth.natural_rate() * reach);
     let si_per_volt = [1.0, 1.0, speed, speed, length, length, 1e-2 * length];
     std::array::from_fn(|i| Sensitivity {
         name: NAMES[i],

@@ -208,14 +208,14 @@ impl Switch {
         };
         match self.effect {
             Effect::Gaps => {
-                let deviation_m = self.strength * truth.static_deflection_m;
+                let deviation_m = self.strength * truth.static_deflection_m();
                 effects.shift_gaps(plan, || deviation_m * normal(rng));
             }
             Effect::GapOffset => {
-                let offset_m = self.strength * truth.static_deflection_m * normal(rng);
+                let offset_m = self.strength * truth.static_deflection_m() * normal(rng);
                 effects.shift_gaps(plan, || offset_m);
             }
-            Effect::DampingAsymmetry => truth.damping_asymmetry = sign * size,
+            Effect::DampingAsymmetry => *truth = truth.with_damping_ratios_apart(sign * size),
             Effect::SecondHarmonic => effects.second_harmonic = harmonic,
             Effect::ThirdHarmonic => effects.third_harmonic = harmonic,
             Effect::ForceSlope => effects.force_slope = sign * size,
@@ -224,8 +224,8 @@ impl Switch {
             Effect::Drag => effects.drag = size,
             Effect::SpringAsymmetry => effects.spring_asymmetry = sign * size,
             Effect::HystereticDamping => effects.hysteretic_damping = sign * size,
-            Effect::GapDrift => effects.gap_drift_m = sign * size * truth.static_deflection_m,
-            Effect::Backlash => effects.backlash_m = sign * size * truth.static_deflection_m,
+            Effect::GapDrift => effects.gap_drift_m = sign * size * truth.static_deflection_m(),
+            Effect::Backlash => effects.backlash_m = sign * size * truth.static_deflection_m(),
             Effect::Compression => effects.compression = sign * size,
             Effect::Restarts => {
                 effects.restarts = Some(Restarts {
@@ -326,7 +326,7 @@ impl RigSpec {
         let strength = self
             .strength(Effect::Gaps)
             .max(self.strength(Effect::GapOffset));
-        (strength > 0.0).then_some(strength * truth.static_deflection_m)
+        (strength > 0.0).then_some(strength * truth.static_deflection_m())
     }
 
     /// The effects of one campaign: sizes, signs and phases drawn from a seed. Each effect has a
@@ -334,7 +334,7 @@ impl RigSpec {
     /// The asymmetry of damping is put into the truth.
     pub fn draw(&self, truth: &mut Truth, plan: &Plan, seed: u64) -> Effects {
         let mut effects = Effects {
-            resonance_amplitude_m: truth.static_deflection_m / (2.0 * truth.damping_ratio),
+            resonance_amplitude_m: truth.static_deflection_m() / (2.0 * truth.damping_ratio()),
             ..Effects::default()
         };
         for switch in &self.switches {

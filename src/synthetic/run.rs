@@ -188,7 +188,7 @@ impl VirtualRig<'_> {
     }
 
     fn speed(&self) -> f64 {
-        self.laboratory.truth.static_deflection_m * self.laboratory.truth.natural_rate()
+        self.laboratory.truth.static_deflection_m() * self.laboratory.truth.natural_rate()
     }
 
     fn channels(&self, take: &Take<'_>, rng: &mut ChaCha8Rng) -> Vec<RawChannel> {
@@ -275,7 +275,7 @@ impl VirtualRig<'_> {
     /// [x, x', y, y'] in SI at [`FINE`] times the rate of sampling, the pre-roll included.
     fn fine_states(&self, take: &Take<'_>, delay_s: f64) -> Vec<Phase4> {
         let omega = self.laboratory.truth.natural_rate();
-        let (x_st, speed) = (self.laboratory.truth.static_deflection_m, self.speed());
+        let (x_st, speed) = (self.laboratory.truth.static_deflection_m(), self.speed());
         let count = PRE_ROLL_FINE + (SAMPLES - 1) * FINE + 1;
         let taus = (0..count).map(|i| take.start_tau + (i as f64 * FINE_STEP_S - delay_s) * omega);
         let states = take.recorded.sample(taus).into_iter();

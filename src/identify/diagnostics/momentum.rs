@@ -61,7 +61,7 @@ pub fn momentum(block: &ImpactBlock, evidence: &Evidence<'_>) -> Option<(Remark,
     };
     let stated = evidence.nominal.mass_asymmetry;
     let finding = stated.and_then(|[asymmetry, deviation]| {
-        let stated = (2.0 - asymmetry) / (2.0 + asymmetry);
+        let stated = (-asymmetry).exp();
         let off = measured / stated - 1.0;
         let z_score = off / (error / measured).hypot(deviation);
         (z_score.abs() > SIGNIFICANT && off.abs() > MATTERS).then_some(

@@ -9,13 +9,6 @@ use impact_oscillator::model::sensitivity::{Change, MassChange};
 /// asymmetry, at η and a gap; all other coordinates change neither.
 pub fn change(machine: &Machine, eta: f64, gap: f64, coordinate: Coordinate) -> Change {
     let none = Change::default();
-    let both = |of: &dyn Fn(f64, &Oscillator) -> MassChange| Change {
-        x: of(1.0, &machine.x),
-        y: machine.y.map(|o| of(-1.0, &o)).unwrap_or_default(),
-        ..none
-    };
-    // A single mass carries no asymmetry.
-    let half = if machine.y.is_some() { 0.5 } else { 0.0 };
     match coordinate {
         Coordinate::Restitution => Change {
             restitution: 1.0,
@@ -23,34 +16,61 @@ pub fn change(machine: &Machine, eta: f64, gap: f64, coordinate: Coordinate) -> 
         },
         Coordinate::Frequency => Change { eta: -eta, ..none },
         Coordinate::Deflection => Change { gap: -gap, ..none },
-        Coordinate::Damping => both(&|_, o| MassChange {
+        Coordinate::Damping => both(machine, |_, o| MassChange {
             decay_rate: o.decay_rate(),
             ..MassChange::default()
         }),
-        Coordinate::DriveAsymmetry => both(&|sign, _| MassChange {
-            drive_per_mass: sign * half,
-            ..MassChange::default()
-        }),
-        Coordinate::StiffnessAsymmetry => both(&|sign, _| MassChange {
-            stiffness_per_mass: sign * half,
-            ..MassChange::default()
-        }),
-        Coordinate::DampingAsymmetry => both(&|sign, _| MassChange {
-            decay_rate: sign * half * mean_decay_rate(machine),
-            ..MassChange::default()
-        }),
-        Coordinate::MassAsymmetry => both(&|sign, _| MassChange {
-            mobility: -0.5 * sign * half,
-            ..MassChange::default()
-        }),
-        _ => none,
+        // A single mass carries no asymmetry.
+        _ => machine
+            .y
+            .map(|y| apart(machine, &y, coordinate))
+            .unwrap_or_default(),
     }
 }
 
-/// Mean of both masses' coefficients of damping.
-fn mean_decay_rate(machine: &Machine) -> f64 {
-    let x = machine.x.decay_rate();
-    machine.y.map_or(x, |y| 0.5 * (x + y.decay_rate()))
+/// A change of both masses, of which the first has the sign +.
+fn both(machine: &Machine, of: impl Fn(f64, &Oscillator) -> MassChange) -> Change {
+    Change {
+        x: of(1.0, &machine.x),
+        y: machine.y.map(|o| of(-1.0, &o)).unwrap_or_default(),
+        ..Change::default()
+    }
+}
+
+/// Change of two masses per unit of an asymmetry, by which f0, β and `x_st` stay.
+fn apart(machine: &Machine, y: &Oscillator, coordinate: Coordinate) -> Change {
+    // What the means of deflections and of damping ratios stay by: tanh of half the logarithm of
+    // their ratio.
+    let unlike = |of: fn(&Oscillator) -> f64| {
+        let (x, y) = (of(&machine.x), of(y));
+        (x - y) / (x + y)
+    };
+    let deflection = unlike(|o| o.drive_per_mass() / o.stiffness_per_mass());
+    let damping = unlike(|o| o.damping_ratio);
+    match coordinate {
+        Coordinate::DriveAsymmetry => both(machine, |sign, o| MassChange {
+            drive_per_mass: 0.5 * (sign - deflection) * o.drive_per_mass(),
+            ..MassChange::default()
+        }),
+        Coordinate::StiffnessAsymmetry => both(machine, |sign, o| MassChange {
+            stiffness_per_mass: 0.5 * sign * o.stiffness_per_mass(),
+            decay_rate: 0.25 * damping * o.decay_rate(),
+            drive_per_mass: 0.5 * deflection * o.drive_per_mass(),
+            ..MassChange::default()
+        }),
+        Coordinate::DampingAsymmetry => both(machine, |sign, o| MassChange {
+            decay_rate: 0.5 * (sign - damping) * o.decay_rate(),
+            ..MassChange::default()
+        }),
+        Coordinate::MassAsymmetry => both(machine, |sign, _| {
+            let (x, y) = machine.mobility();
+            MassChange {
+                mobility: -sign * x * y,
+                ..MassChange::default()
+            }
+        }),
+        _ => Change::default(),
+    }
 }
 
 /// Relative change of the unit of length per unit of a coordinate.

@@ -312,10 +312,7 @@ impl Block for FlightBlock {
                 .records
                 .iter()
                 .any(|r| r.gap.map(Coordinate::Gap) == Some(coordinate)),
-            Coordinate::Gain(2 | 3)
-            | Coordinate::Delay(_)
-            | Coordinate::Effect(_)
-            | Coordinate::MassAsymmetry => false,
+            Coordinate::Gain(2 | 3) | Coordinate::Delay(_) | Coordinate::Effect(_) => false,
             _ => true,
         }
     }

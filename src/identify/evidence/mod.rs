@@ -56,7 +56,7 @@ pub struct Nominal {
     pub delays_s: [f64; 4],
     /// Standard uncertainties of those delays, s; `None`: half a sample.
     pub delay_uncertainties_s: [Option<f64>; 4],
-    /// (`m_x` − `m_y)/m` with its standard uncertainty; `None`: masses that were made alike.
+    /// ln(`m_x`/`m_y`) with its standard uncertainty; `None`: masses that were made alike.
     pub mass_asymmetry: Option<[f64; 2]>,
     /// Effects that the fit allows beyond the model.
     pub effects: Effects,

@@ -611,7 +611,80 @@ impl Block for ResonanceBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identify::fit::Problem;
     use crate::identify::fit::block::difference;
+
+    /// Impactless records of two masses (m, k, b, F), by their own transfer functions.
+    fn measured(masses: [[f64; 4]; 2]) -> ResonanceBlock {
+        let point = |i: usize| {
+            let frequency_hz = 8.0 + 0.5 * i as f64;
+            let rate = std::f64::consts::TAU * frequency_hz;
+            let roles = [Role::VelocityX, Role::VelocityY];
+            let responses = roles.into_iter().zip(masses).map(|(role, [m, k, b, f])| {
+                let resists = Complex::new(k - m * rate * rate, b * rate);
+                let value = Complex::new(0.0, rate) * f / resists;
+                Response {
+                    role,
+                    real: value.re,
+                    imaginary: value.im,
+                    error: 1e-6,
+                    residual_rms: 1e-6,
+                    high_pass_hz: None,
+                }
+            });
+            ResonancePoint {
+                observation: i,
+                frequency_hz,
+                drive_amplitude: 1.0,
+                frequency_error: 0.0,
+                phase_error_rad: 0.0,
+                place: 0.0,
+                group: Group::default(),
+                responses: responses.collect(),
+                errors: Vec::new(),
+                over_frequency: Vec::new(),
+                shared: Whitening::none(),
+            }
+        };
+        let mut block = ResonanceBlock {
+            rig: RigKind::Double,
+            points: (0..20).map(point).collect(),
+            relative_error: 0.0,
+            reach_m: 1.0,
+        };
+        block.allow(0.0);
+        block
+    }
+
+    #[test]
+    fn valid_masses_ten_percent_apart_have_the_means_of_their_own_frequencies() {
+        // (2π 12 Hz)² and 2 · 0.05 · 2π 12 Hz per unit of mass; the second mass is 10 % heavier.
+        let (k, b) = (5684.89, 7.540);
+        let block = measured([[1.0, k, b, 5.0], [1.1, 1.02 * k, 0.95 * b, 5.2]]);
+        let free = vec![
+            Coordinate::Frequency,
+            Coordinate::Damping,
+            Coordinate::Deflection,
+            Coordinate::DriveAsymmetry,
+            Coordinate::StiffnessAsymmetry,
+            Coordinate::DampingAsymmetry,
+        ];
+        let problem = Problem {
+            blocks: vec![(&block, 1.0)],
+            free,
+            ..Problem::default()
+        };
+        let start = Parameters::symmetric(0.8, 11.9, 0.055, 1e-3);
+        let found = problem.fit(start).expect("a fit").parameters;
+        let own = [1.0, 1.02 / 1.1].map(|r: f64| (k * r).sqrt());
+        let f0_hz = (own[0] * own[1]).sqrt() / std::f64::consts::TAU;
+        assert!((found.natural_frequency_hz / f0_hz - 1.0).abs() < 1e-7);
+        let ratios = [b / own[0], 0.95 * b / 1.1 / own[1]].map(|d| 0.5 * d);
+        let beta = 0.5 * (ratios[0] + ratios[1]);
+        assert!((found.damping_ratio / beta - 1.0).abs() < 1e-6);
+        let deflection_m = 0.5 * (5.0 / k + 5.2 / (1.02 * k));
+        assert!((found.static_deflection_m / deflection_m - 1.0).abs() < 1e-7);
+    }
 
     #[test]
     fn valid_slopes_are_those_of_finite_differences() {

@@ -27,13 +27,13 @@ pub enum Coordinate {
     Damping,
     /// ln `x_st`
     Deflection,
-    /// (`F_x` − `F_y)/F0`
+    /// ln(`F_x`/`F_y`), per unit of mass
     DriveAsymmetry,
-    /// (`k_x` − `k_y)/k`
+    /// ln(`k_x`/`k_y`), per unit of mass
     StiffnessAsymmetry,
-    /// (`b_x` − `b_y)/b`
+    /// ln(`b_x`/`b_y`), per unit of mass
     DampingAsymmetry,
-    /// (`m_x` − `m_y)/m`
+    /// ln(`m_x`/`m_y`)
     MassAsymmetry,
     /// ln of a channel's gain, by its index in [`Parameters::gains`]
     Gain(usize),

@@ -16,20 +16,20 @@ use impact_oscillator::model::params::{
 pub struct Parameters {
     /// Coefficient of restitution R.
     pub restitution: f64,
-    /// Natural frequency f0, Hz; of two masses the geometric mean.
+    /// Natural frequency f0, Hz; of two masses the geometric mean √(`f_x` `f_y`).
     pub natural_frequency_hz: f64,
-    /// Damping ratio β.
+    /// Damping ratio β; of two masses the mean.
     pub damping_ratio: f64,
     /// Static deflection `x_st`, m; of two masses the mean.
     pub static_deflection_m: f64,
-    /// (`F_x` − `F_y)/F0`.
+    /// ln(`F_x`/`F_y`), forces per unit of mass.
     pub drive_asymmetry: f64,
-    /// (`k_x` − `k_y)/k`, per unit of mass.
+    /// ln(`k_x`/`k_y`), stiffnesses per unit of mass.
     pub stiffness_asymmetry: f64,
-    /// (`b_x` − `b_y)/b`, per unit of mass.
+    /// ln(`b_x`/`b_y`), coefficients of damping per unit of mass.
     #[serde(default)]
     pub damping_asymmetry: f64,
-    /// (`m_x` − `m_y)/m`.
+    /// ln(`m_x`/`m_y`).
     #[serde(default)]
     pub mass_asymmetry: f64,
     /// Gain of the channels over the stated one: velocity x, y, displacement x, y.
@@ -76,20 +76,26 @@ impl Parameters {
         }
     }
 
-    /// The machine, dimensionless: masses about the nominal one. The coefficients of damping are
-    /// alike where stiffnesses differ (the paper's eq. 15); asymmetries are per unit of mass, so
-    /// that unlike masses change the impact alone.
+    /// The machine, dimensionless: masses about the nominal one, so that √(`f_x` `f_y`) is f0 and
+    /// the means of both masses' damping ratios and static deflections are β and `x_st`, whatever
+    /// the asymmetries. Stiffness, damping and drive are per unit of mass, so that unlike masses
+    /// change the impact alone; coefficients of damping are alike where stiffnesses differ (the
+    /// paper's eq. 15).
     pub fn machine(&self, rig: RigKind) -> Machine {
+        // (e^u + e^−u)/2 = cosh u: what the mean of two values in the ratio e^2u is over
+        // their geometric mean.
+        let ratio = 0.25 * self.stiffness_asymmetry;
+        let damping = 0.5 * self.damping_asymmetry - ratio;
+        let deflection = 0.5 * self.drive_asymmetry - 2.0 * ratio;
         let mass = |sign: f64| {
-            let of = |asymmetry: f64| (1.0 + 0.5 * sign * asymmetry).max(0.01);
-            let natural_frequency_ratio = of(self.stiffness_asymmetry).sqrt();
-            let decay_rate = self.damping_ratio * of(self.damping_asymmetry);
-            let mass = of(self.mass_asymmetry);
+            let natural_frequency_ratio = (sign * ratio).exp();
+            let mass = (0.5 * sign * self.mass_asymmetry).exp();
+            let drive_per_mass = (0.5 * sign * self.drive_asymmetry).exp() / deflection.cosh();
             Oscillator {
                 mass,
                 natural_frequency_ratio,
-                damping_ratio: decay_rate / natural_frequency_ratio,
-                drive_amplitude: mass * of(self.drive_asymmetry),
+                damping_ratio: self.damping_ratio * (sign * damping).exp() / damping.cosh(),
+                drive_amplitude: mass * drive_per_mass,
             }
         };
         let restitution = Restitution::Constant(self.restitution.clamp(0.0, 1.0));
@@ -222,4 +228,73 @@ pub const GAIN_ROLES: [Role; 4] = [
 /// Position of a motion channel among the gains and among the corners.
 pub fn gain_index(role: Role) -> Option<usize> {
     GAIN_ROLES.iter().position(|r| *r == role)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, Matrix2, Vector2};
+
+    use super::*;
+
+    /// f0, β and `x_st` of two uncoupled masses over the nominal ones, from the eigenvalues of their
+    /// state matrix and the solution of their static equations; frequencies are assigned to masses by
+    /// nothing: both means take them all.
+    fn means(masses: [&Oscillator; 2]) -> [f64; 3] {
+        let diagonal = |of: fn(&Oscillator) -> f64| {
+            Matrix2::from_diagonal(&Vector2::new(of(masses[0]), of(masses[1])))
+        };
+        let mass = diagonal(|o| o.mass);
+        let stiffness = diagonal(|o| o.mass * o.natural_frequency_ratio.powi(2));
+        let dashpots = diagonal(|o| 2.0 * o.damping_ratio * o.mass * o.natural_frequency_ratio);
+        let inverse = mass.try_inverse().expect("masses");
+        let mut state = DMatrix::zeros(4, 4);
+        state.view_mut((0, 2), (2, 2)).fill_with_identity();
+        state
+            .view_mut((2, 0), (2, 2))
+            .copy_from(&(-inverse * stiffness));
+        state
+            .view_mut((2, 2), (2, 2))
+            .copy_from(&(-inverse * dashpots));
+        let eigenvalues = state.complex_eigenvalues();
+        let rates = eigenvalues.iter().map(|l| l.norm());
+        let ratios = eigenvalues.iter().map(|l| -l.re / l.norm());
+        let forces = Vector2::new(masses[0].drive_amplitude, masses[1].drive_amplitude);
+        let deflections = stiffness.lu().solve(&forces).expect("springs");
+        [
+            rates.product::<f64>().powf(0.25),
+            0.25 * ratios.sum::<f64>(),
+            deflections.mean(),
+        ]
+    }
+
+    #[test]
+    fn valid_f0_beta_and_x_st_are_the_means_of_the_masses_eigenvalues() {
+        let at = |i: usize| [-0.4, -0.1, 0.0, 0.2][i % 4];
+        for i in 0..64 {
+            let [drive_asymmetry, stiffness_asymmetry] = [at(i), at(i / 4)];
+            let damping_asymmetry = at(i / 16);
+            for mass_asymmetry in [0.0, 0.3] {
+                let parameters = Parameters {
+                    drive_asymmetry,
+                    stiffness_asymmetry,
+                    damping_asymmetry,
+                    mass_asymmetry,
+                    ..Parameters::symmetric(0.8, 12.0, 0.06, 1e-3)
+                };
+                let machine = parameters.machine(RigKind::Double);
+                let y = machine.y.expect("two masses");
+                let [rate, damping, deflection] = means([&machine.x, &y]);
+                assert!((rate - 1.0).abs() < 1e-12, "{rate}");
+                assert!((damping - 0.06).abs() < 1e-12, "{damping}");
+                assert!((deflection - 1.0).abs() < 1e-12, "{deflection}");
+                let ratio = machine.x.stiffness_per_mass() / y.stiffness_per_mass();
+                assert!((ratio.ln() - stiffness_asymmetry).abs() < 1e-12);
+                let ratio = machine.x.drive_per_mass() / y.drive_per_mass();
+                assert!((ratio.ln() - drive_asymmetry).abs() < 1e-12);
+                let ratio = machine.x.decay_rate() / y.decay_rate();
+                assert!((ratio.ln() - damping_asymmetry).abs() < 1e-12);
+                assert!(((machine.x.mass / y.mass).ln() - mass_asymmetry).abs() < 1e-12);
+            }
+        }
+    }
 }

@@ -32,7 +32,7 @@ impl Mistake {
 
     /// The campaign with an uncertainty of its gaps stated, where the mistake is measured by it.
     pub(super) fn stated(self, draw: &Laboratory) -> Laboratory {
-        let typical_m = Effect::Gaps.typical_strength() * draw.truth.static_deflection_m;
+        let typical_m = Effect::Gaps.typical_strength() * draw.truth.static_deflection_m();
         let uncertainty_m = match self {
             Self::GapOffByFiveUncertainties | Self::GapOffByItsUncertainty => {
                 Some(draw.clearance_uncertainty_m.unwrap_or(typical_m))

@@ -21,7 +21,7 @@ use crate::motion::{
 use crate::pipeline::{PipelineError, Progress};
 use crate::record::{FlagCode, Record};
 use crate::synthetic::run::calibrated;
-use crate::synthetic::{Laboratory, Reach, RigSpec, Truth, draw, records};
+use crate::synthetic::{Laboratory, Reach, RigSpec, TrueMass, Truth, draw, records};
 
 mod mistake;
 mod tallies;
@@ -148,15 +148,18 @@ fn trial(seen: &Seen, draw: &Laboratory) -> Trial {
 }
 
 fn parameters(truth: &Truth) -> Parameters {
+    let [x, y] = truth.masses;
+    let asymmetry = |of: fn(&TrueMass) -> f64| (of(&x) / of(&y)).ln();
     Parameters {
-        drive_asymmetry: truth.drive_asymmetry,
-        stiffness_asymmetry: truth.stiffness_asymmetry,
-        damping_asymmetry: truth.damping_asymmetry,
+        drive_asymmetry: asymmetry(|m| m.force_n / m.mass_kg),
+        stiffness_asymmetry: asymmetry(|m| m.stiffness_n_m / m.mass_kg),
+        damping_asymmetry: asymmetry(|m| m.dashpot_n_s_m / m.mass_kg),
+        mass_asymmetry: asymmetry(|m| m.mass_kg),
         ..Parameters::symmetric(
             truth.restitution,
-            truth.natural_frequency_hz,
-            truth.damping_ratio,
-            truth.static_deflection_m,
+            truth.natural_frequency_hz(),
+            truth.damping_ratio(),
+            truth.static_deflection_m(),
         )
     }
 }
@@ -247,7 +250,7 @@ mod tests {
         let draw = draw(0x00FA_0175 ^ 14_001, 11, Reach::Full, &rig);
         let seen = campaign(&draw, Some(Mistake::WrongClearance)).expect("a campaign");
         let (stated_m, fitting_m) = named_gap(&seen);
-        assert!(draw.truth.static_deflection_m < 7.0 * 0.05e-3);
+        assert!(draw.truth.static_deflection_m() < 7.0 * 0.05e-3);
         assert!((stated_m - 0.05e-3 - fitting_m).abs() < 1e-7, "{fitting_m}");
     }
 
