@@ -177,9 +177,13 @@ fn fitted(input: &Input<'_>, role: Role, points: &[ResonancePoint]) -> Vec<[f64;
     frequencies.into_iter().map(at).collect()
 }
 
-/// Speeds before and after impact; each specimen by itself if there are several.
+/// Speeds before and after impact; each specimen by itself if there are several. None where the speed of
+/// one of two masses alone is known.
 pub(super) fn impacts(input: &Input<'_>) -> Vec<ImpactScatter> {
-    let block = impacts_of_bulk(input.observations);
+    let block = impacts_of_bulk(input.rig, input.observations);
+    if block.one_of_two {
+        return Vec::new();
+    }
     let specimens = &input.identification.specimens;
     if specimens.is_empty() {
         let method = input.identification.methods.get(&Method::Impacts);

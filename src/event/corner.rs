@@ -2,28 +2,27 @@
 //!
 //! With the corner `ω_c(1` + ε) in place of the stated `ω_c`, undoing the high-pass leaves the velocity
 //! short by ε `ω_c` times the displacement (minus its mean, which such a channel does not contain). At
-//! impacts the displacement is far from its mean, and both speeds are off by the same amount.
+//! impacts the displacement is far from its mean, and both speeds are off by the same amount, less the line that
+//! is removed from the velocity with its drift.
 
 use crate::event::impact::CornerShift;
-use crate::event::kinematics::{Body, Kinematics, RelativeSource};
-use crate::record::Role;
+use crate::event::drift;
+use crate::event::drive::DriveTone;
+use crate::event::kinematics::{Body, Kinematics, RelativeSource, Series};
 use crate::signal::interpolation::interpolate;
-use crate::signal::{drift, robust};
 
-/// A body's shift at all times.
-struct Shift {
-    role: Role,
-    speeds_m_s: Vec<f64>,
-}
-
-/// The shifts of the approach velocity of a record, one per mass.
-pub(super) struct Shifts([Option<Shift>; 2]);
+/// The shifts of the approach velocity of a record at all times, one per mass.
+pub(super) struct Shifts([Option<Series>; 2]);
 
 impl Shifts {
-    /// Of a record whose velocities are free of drift.
-    pub(super) fn of(kinematics: &Kinematics) -> Self {
-        let rate_hz = kinematics.rate_hz;
-        let of = |body: &Body, times: f64| shift(body, times / rate_hz);
+    /// Of a record whose velocities are free of drift, with impacts at times in samples.
+    pub(super) fn of(kinematics: &Kinematics, times: &[f64], drive: Option<&DriveTone>) -> Self {
+        let of = |body: &Body, factor: f64| {
+            let velocity = body.velocity.as_ref()?;
+            let mut shift = shift(velocity, factor / kinematics.rate_hz)?;
+            drift::remove_drift(&mut shift, times, drive, kinematics.rate_hz);
+            Some(shift)
+        };
         let Kinematics { x, y, .. } = kinematics;
         Self(match kinematics.relative_from {
             Some(RelativeSource::Both) => [of(x, 1.0), of(y, 1.0)],
@@ -39,27 +38,23 @@ impl Shifts {
             let shift = self.0[i].as_ref()?;
             Some(CornerShift {
                 role: shift.role,
-                speed_m_s: interpolate(&shift.speeds_m_s, time)?,
+                speed_m_s: interpolate(&shift.values, time)?,
             })
         })
     }
 }
 
 /// `ω_c` times the displacement by integration, in steps of a time.
-fn shift(body: &Body, step_s: f64) -> Option<Shift> {
-    let velocity = body.velocity.as_ref()?;
+fn shift(velocity: &Series, step_s: f64) -> Option<Series> {
     let corner_hz = velocity.high_pass_hz.filter(|c| *c > 0.0)?;
     let mut sum = 0.0;
     let steps = velocity.values.windows(2).map(|pair| {
         sum += 0.5 * (pair[0] + pair[1]) * step_s * std::f64::consts::TAU * corner_hz;
         sum
     });
-    let mut speeds_m_s: Vec<f64> = std::iter::once(0.0).chain(steps).collect();
-    let mean = robust::mean(&speeds_m_s);
-    drift::remove_line(&mut speeds_m_s, mean, 0.0);
-    Some(Shift {
-        role: velocity.role,
-        speeds_m_s,
+    Some(Series {
+        values: std::iter::once(0.0).chain(steps).collect(),
+        ..*velocity
     })
 }
 
@@ -79,9 +74,9 @@ mod tests {
             &Record::of(rate_hz, &[(Role::VelocityX, &values)]),
             RigKind::Single,
         );
-        assert!(Shifts::of(&kinematics).at(700.0)[0].is_none());
+        assert!(Shifts::of(&kinematics, &[], None).at(700.0)[0].is_none());
         kinematics.x.velocity.as_mut().unwrap().high_pass_hz = Some(corner_hz);
-        let shifts = Shifts::of(&kinematics);
+        let shifts = Shifts::of(&kinematics, &[], None);
         for time in [300.0, 450.5, 1234.25] {
             let [of_x, of_y] = shifts.at(time);
             let want = -corner_hz / frequency_hz * angle(time).cos();

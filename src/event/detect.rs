@@ -264,27 +264,29 @@ fn undrifted(
         Some((_, placed)) => placed.to_vec(),
         None => refine::instants(kinematics, arcs),
     };
-    let first = instants(kinematics);
+    // The lost mean of what has passed a high-pass would otherwise shift the times.
+    let middles: Vec<f64> = arcs.candidates.iter().map(|c| c.jump.middle()).collect();
+    remove_drifts(kinematics, &middles, drive);
+    let instants = instants(kinematics);
     let (delay, delays) = contact.map_or((0.0, [0.0; 2]), |(c, _)| (c.delay(), c.delays));
-    let jumps: Vec<Instant> = first.iter().map(|i| i.later(delay)).collect();
+    let jumps: Vec<Instant> = instants.iter().map(|i| i.later(delay)).collect();
     let later = delays.map(|own| own - delay);
     refine::correct_jumps(kinematics, arcs, (&jumps, later));
     kinematics.update_relative(rig);
     let times: Vec<f64> = jumps.iter().map(|i| i.time).collect();
-    let rate_hz = kinematics.rate_hz;
-    for series in [
-        &mut kinematics.relative,
-        &mut kinematics.x,
-        &mut kinematics.y,
-    ]
-    .into_iter()
-    .filter_map(|b| b.velocity.as_mut())
-    {
-        drift::remove_drift(series, &times, drive, rate_hz);
-    }
-    let instants = instants(kinematics);
+    remove_drifts(kinematics, &times, drive);
     let contact = contact.map(|(contact, _)| contact);
     impact_speeds::impacts(kinematics, arcs, &instants, drive, contact)
+}
+
+/// Remove the drift of all velocities by the arcs between times of impacts, in samples.
+fn remove_drifts(kinematics: &mut Kinematics, times: &[f64], drive: Option<&DriveTone>) {
+    let rate_hz = kinematics.rate_hz;
+    let Kinematics { relative, x, y, .. } = kinematics;
+    let bodies = [relative, x, y].into_iter();
+    for velocity in bodies.filter_map(|b| b.velocity.as_mut()) {
+        drift::remove_drift(velocity, times, drive, rate_hz);
+    }
 }
 
 /// Candidates for impacts, and counts of what supports and contradicts them.

@@ -25,7 +25,8 @@ pub(super) fn impacts(
     };
     let delays = contact.map_or([0.0; 2], |c| c.delays);
     let rate_hz = kinematics.rate_hz;
-    let shifts = Shifts::of(kinematics);
+    let times: Vec<f64> = instants.iter().map(|i| i.time).collect();
+    let shifts = Shifts::of(kinematics, &times, drive);
     let lags = lag::lags(kinematics, arcs, instants, contact);
     (0..candidates.len())
         .map(|i| {

@@ -4,6 +4,7 @@
 //! Times become sample indices by `as usize`, which saturates (negative and NaN give 0); an index is
 //! bounded by the number of samples before it is used.
 
+mod arc_times;
 mod contact;
 mod contact_profile;
 mod contact_samples;

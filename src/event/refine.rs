@@ -1,8 +1,6 @@
 //! Times of impacts to a fraction of the sample step, and the speeds extrapolated to them.
 
-use nalgebra::{DMatrix, DVector};
-
-use crate::event::drift::integral;
+use crate::event::arc_times::arc_times;
 use crate::event::impact::{DetectionSource, MassSpeeds};
 use crate::event::jumps::Jump;
 use crate::event::kinematics::{Kinematics, Series};
@@ -120,7 +118,7 @@ pub(super) fn instants(kinematics: &Kinematics, arcs: Arcs<'_>) -> Vec<Instant> 
                     .unwrap_or(plain[i])
             })
             .collect(),
-        (None, Some(velocity)) => closed_arcs(velocity, arcs, &plain),
+        (None, Some(velocity)) => arc_times(kinematics, velocity, arcs, &plain),
         _ => plain,
     }
 }
@@ -142,59 +140,6 @@ pub(super) fn kink(
         time,
         error: spread * rate_hz / jump.height.abs(),
     })
-}
-
-/// Least squares for the shifts δ of all impact times within their sample intervals and the
-/// velocity offset b: for each arc, area + `v₋δ_end` − `v₊δ_start` = b · duration.
-fn closed_arcs(velocity: &Series, arcs: Arcs<'_>, plain: &[Instant]) -> Vec<Instant> {
-    let count = plain.len();
-    if count < 3 {
-        return plain.to_vec();
-    }
-    let speeds: Vec<Option<MassSpeeds>> = (0..count)
-        .map(|i| speeds(velocity, arcs, i, plain[i]).map(|s| s.0))
-        .collect();
-    let mut normal = DMatrix::<f64>::zeros(count + 1, count + 1);
-    let mut right = DVector::<f64>::zeros(count + 1);
-    for (i, instant) in plain.iter().enumerate() {
-        normal[(i, i)] = instant.error.powi(-2);
-    }
-    normal[(count, count)] = 1e-12;
-    for i in 0..count - 1 {
-        let (from, to) = (plain[i].time, plain[i + 1].time);
-        let (Some(start), Some(end)) = (speeds[i], speeds[i + 1]) else {
-            continue;
-        };
-        let Some(area) = integral(&velocity.values, from, to) else {
-            continue;
-        };
-        // The trapezoid's own error scales with the speeds; noise adds up over the arc.
-        let error = velocity.noise * (to - from).sqrt() + 1e-3 * end.before_m_s.abs();
-        let row = [
-            (i, -start.after_m_s),
-            (i + 1, end.before_m_s),
-            (count, from - to),
-        ];
-        for (a, ra) in row {
-            right[a] -= ra * area / error.powi(2);
-            for (b, rb) in row {
-                normal[(a, b)] += ra * rb / error.powi(2);
-            }
-        }
-    }
-    let Some(inverse) = normal.try_inverse() else {
-        return plain.to_vec();
-    };
-    let shifts = &inverse * right;
-    (0..count)
-        .map(|i| {
-            let half = 0.5 * arcs.candidates[i].jump.gap as f64;
-            Instant {
-                time: plain[i].time + shifts[i].clamp(-half, half),
-                error: inverse[(i, i)].max(0.0).sqrt().min(plain[i].error),
-            }
-        })
-        .collect()
 }
 
 /// Flights of one signal before and after a candidate, fitted to samples that touch no impact.

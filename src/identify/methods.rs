@@ -141,10 +141,15 @@ fn deflection_guess(block: &ResonanceBlock, unit: &Parameters) -> f64 {
     if square > 0.0 { product / square } else { 1e-3 }
 }
 
-/// R alone from the speeds at impacts, with the corners of the velocities' high-pass as nuisances.
+/// R alone from the speeds at impacts, with the corners of the velocities' high-pass as nuisances. The
+/// speeds of one of two masses do not tell it: an unlike drive of the other one moves their ratio by
+/// (1 + R)/2 times its share, which waveforms take into account.
 pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.impact.pairs.len() < blocks.impact.fewest() {
         return None;
+    }
+    if blocks.impact.one_of_two {
+        return Some(Err(FitError::OneOfTwo));
     }
     let list: Vec<(&dyn Block, f64)> = vec![(&blocks.impact, 1.0)];
     let (mut free, mut priors) = (vec![Coordinate::Restitution], Vec::new());

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::identify::diagnostics::{contact_law, momentum, structure, verdict};
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::evidence::{Blocks, Evidence, impact_bias};
-use crate::identify::fit::Fit;
+use crate::identify::fit::{Fit, FitError};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::methods::{self, FitResult};
 use crate::identify::uncertainty::posterior::Posterior;
@@ -36,6 +36,9 @@ pub fn impacts(
     evidence: &Evidence<'_>,
     together: Option<&Fit>,
 ) -> MethodResult {
+    if matches!(fitted, Err(FitError::OneOfTwo)) {
+        return methods::result(fitted, &[Coordinate::Restitution], 0, 0);
+    }
     let fit = together.or(fitted.as_ref().ok().map(|a| &a.fit));
     let block = &match fit {
         Some(fit) => blocks.impact.corrected(&fit.parameters),

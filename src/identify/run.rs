@@ -13,6 +13,7 @@ use crate::identify::diagnostics::swapped_channels;
 use crate::identify::diagnostics::undeclared_high_pass;
 use crate::identify::diagnostics::verdict::{self, Basis};
 use crate::identify::estimate::ParameterSet;
+use crate::identify::evidence::impacts::ImpactBlock;
 use crate::identify::evidence::{Blocks, Evidence, Nominal, impact_bias};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Fit, Precision, Problem};
@@ -99,7 +100,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
     }
     let start = start(evidence, &resonance);
     let impacts = methods::impacts(&run.selection.blocks, &evidence.nominal, start);
-    let start = with_restitution(start, &impacts);
+    let start = with_restitution(start, &impacts, &run.selection.blocks.impact);
     let mut fits = run.fits(start, resonance, impacts);
     let mut odd_gaps: Vec<Finding> = Vec::new();
     while let Some(odd) = run.odd_gap(&fits, start, odd_gaps.len()) {
@@ -247,11 +248,17 @@ const ON_TIME: f64 = 0.05;
 /// Rounds of leaving out influential records.
 const MOST_ROUNDS: usize = 8;
 
-/// R as the impacts tell it.
-fn with_restitution(start: Parameters, impacts: &Option<FitResult>) -> Parameters {
-    match succeeded(impacts) {
-        Some(found) => Parameters {
-            restitution: found.fit.parameters.restitution.clamp(0.0, 1.0),
+/// R as the impacts tell it, if only by the ratios of one mass's speeds.
+fn with_restitution(
+    start: Parameters,
+    impacts: &Option<FitResult>,
+    block: &ImpactBlock,
+) -> Parameters {
+    let told = succeeded(impacts).map(|found| found.fit.parameters.restitution);
+    let told = told.or(block.typical_ratio().filter(|_| block.one_of_two));
+    match told {
+        Some(restitution) => Parameters {
+            restitution: restitution.clamp(0.0, 1.0),
             ..start
         },
         None => start,

@@ -1,12 +1,16 @@
 //! The contact law questioned: is R one number, a straight line over the closing speed, or a
 //! table? Chosen by Bayes' information criterion (Schwarz 1978).
+//!
+//! The speeds before and after, b and a, have errors of the same size. Regressed on b, the ratio a/b
+//! falls wherever speeds differ by little more than their errors: by −R/v where they do not differ at
+//! all. Of both speeds v̂ = (b + R a)/(1 + R²) tells the true one best, and its error is independent of
+//! that of a − R b (Deming's regression): the laws are fitted over v̂.
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::fit::normal::inverse;
-use crate::signal::robust;
 use crate::signal::whole;
 
 /// How R depends on the closing speed.
@@ -81,6 +85,34 @@ const VERY_STRONG: f64 = 10.0;
 /// Points of the curve.
 const POINTS: usize = 21;
 
+/// An impact as the law has it: the closing speed by both speeds, and the deviation of the speed after
+/// from R times the speed before with its standard error, all in m/s.
+struct Point {
+    speed: f64,
+    deviation: f64,
+    error: f64,
+}
+
+/// The impacts of a block about one R.
+fn points(block: &ImpactBlock, restitution: f64) -> Vec<Point> {
+    let point = |p: &SpeedPair| Point {
+        speed: (p.before_m_s + restitution * p.after_m_s) / (1.0 + restitution * restitution),
+        deviation: p.after_m_s - restitution * p.before_m_s,
+        error: block.error(p, restitution),
+    };
+    block.pairs.iter().map(point).collect()
+}
+
+/// One R for all impacts, each by its error.
+fn one_restitution(block: &ImpactBlock) -> Option<f64> {
+    let typical = block.typical_ratio()?;
+    // a − R b = (R' − R) v̂ at another R': the mean deviation over the speed corrects the typical one.
+    let points = points(block, typical);
+    let sum = |of: fn(&Point) -> f64| points.iter().map(|p| of(p) / p.error.powi(2)).sum::<f64>();
+    let squares = sum(|p| p.speed * p.speed);
+    (squares > 0.0).then(|| typical + sum(|p| p.speed * p.deviation) / squares)
+}
+
 struct Fitted {
     law: Law,
     coefficients: DVector<f64>,
@@ -90,23 +122,24 @@ struct Fitted {
 
 /// Choose the law of a block's impacts; `None` with fewer than ten.
 pub fn contact_law(block: &ImpactBlock) -> Option<ContactLaw> {
-    let pairs = &block.pairs;
-    if pairs.len() < FEWEST {
+    if block.pairs.len() < FEWEST {
         return None;
     }
-    let mut speeds: Vec<f64> = pairs.iter().map(|p| p.before_m_s).collect();
+    let restitution = one_restitution(block)?;
+    let points = points(block, restitution);
+    let mut speeds: Vec<f64> = points.iter().map(|p| p.speed).collect();
     speeds.sort_by(f64::total_cmp);
     let knots: Vec<f64> = [0.0, 1.0, 2.0, 3.0]
         .map(|k: f64| speeds[whole::index(((speeds.len() - 1) as f64 * k / 3.0).round())])
         .to_vec();
     let fits: Vec<Fitted> = Law::ALL
         .into_iter()
-        .map(|law| fit(block, law, &knots))
+        .map(|law| fit((&points, restitution), law, &knots))
         .collect::<Option<_>>()?;
     // Scatter beyond the stated errors is that which the richest law leaves.
-    let freedom = pairs.len().saturating_sub(knots.len()).max(1) as f64;
+    let freedom = points.len().saturating_sub(knots.len()).max(1) as f64;
     let scale = (fits[2].chi2 / freedom).max(1.0);
-    let penalty = (pairs.len() as f64).ln();
+    let penalty = (points.len() as f64).ln();
     let criterion = [0, 1, 2]
         .map(|i: usize| fits[i].chi2 / scale + penalty * fits[i].coefficients.len() as f64);
     let least = criterion.iter().copied().fold(f64::INFINITY, f64::min);
@@ -122,25 +155,20 @@ pub fn contact_law(block: &ImpactBlock) -> Option<ContactLaw> {
     })
 }
 
-/// Weighted least squares of speeds after on the law times speeds before.
-fn fit(block: &ImpactBlock, law: Law, knots: &[f64]) -> Option<Fitted> {
-    let pairs = &block.pairs;
-    let ratios: Vec<f64> = pairs.iter().map(|p| p.after_m_s / p.before_m_s).collect();
-    let typical = robust::median(&ratios)?;
-    let weight = |p: &SpeedPair| 1.0 / block.error(p, typical);
-    let rows: Vec<Vec<f64>> = pairs
+/// Weighted least squares of the deviations from one R on the law less that, times the speed.
+fn fit((points, restitution): (&[Point], f64), law: Law, knots: &[f64]) -> Option<Fitted> {
+    let rows: Vec<Vec<f64>> = points
         .iter()
         .map(|p| {
-            let scale = weight(p) * p.before_m_s;
-            law.base(p.before_m_s, knots)
-                .iter()
-                .map(|b| b * scale)
-                .collect()
+            let base = law.base(p.speed, knots).into_iter();
+            base.map(|b| b * p.speed / p.error).collect()
         })
         .collect();
     let columns = rows.first()?.len();
     let design = DMatrix::from_fn(rows.len(), columns, |i, k| rows[i][k]);
-    let target = DVector::from_iterator(pairs.len(), pairs.iter().map(|p| weight(p) * p.after_m_s));
+    let targets = points.iter();
+    let targets = targets.map(|p| (p.deviation + restitution * p.speed) / p.error);
+    let target = DVector::from_iterator(points.len(), targets);
     let covariance = inverse(&design.tr_mul(&design))?;
     let coefficients = &covariance * design.tr_mul(&target);
     let chi2 = (&target - &design * &coefficients).norm_squared();
@@ -187,6 +215,10 @@ fn hats(speed: f64, knots: &[f64]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
     use super::*;
 
     fn block(law: impl Fn(f64) -> f64) -> ImpactBlock {
@@ -215,6 +247,56 @@ mod tests {
         assert_eq!(chosen(|_| 0.8), Some(Law::Constant));
         assert_eq!(chosen(|v| 0.9 - 0.05 * v), Some(Law::Linear));
         assert_eq!(chosen(|v| 0.9 - 0.1 * v.powf(0.2)), Some(Law::Table));
+    }
+
+    /// Pairs of one R with errors of both speeds, whose true speeds are at most a share apart.
+    fn noisy(apart: f64, seed: u64) -> ImpactBlock {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+        let pairs = (0..250)
+            .map(|i| {
+                let v = 0.28 * (1.0 + apart * f64::from(i % 11) / 10.0);
+                SpeedPair {
+                    observation: i as usize % 2,
+                    time_s: f64::from(i),
+                    before_m_s: v + 2e-3 * normal(),
+                    after_m_s: 0.835 * v + 2e-3 * normal(),
+                    error_m_s: 2e-3,
+                    corner_shifts: [None, None],
+                    lags: [None, None],
+                }
+            })
+            .collect();
+        ImpactBlock::of_pairs(pairs, 1e-3)
+    }
+
+    #[test]
+    fn valid_noise_of_the_speed_before_makes_no_law() {
+        // Regressed on the speed before, whose noise is as great as what the speeds differ by, R would
+        // fall by R/v = 3 per m/s: from 0.835 at 0.28 m/s by 0.03 within the noise.
+        for apart in [0.0, 0.01, 0.08] {
+            let found: Vec<ContactLaw> = (0..40)
+                .filter_map(|seed| contact_law(&noisy(apart, seed)))
+                .collect();
+            assert_eq!(found.len(), 40);
+            let told = found.iter().filter(|law| law.is_not_constant()).count();
+            assert_eq!(told, 0, "of speeds {apart} apart");
+        }
+    }
+
+    #[test]
+    fn valid_the_slope_over_the_speed_is_unbiased_by_noise() {
+        let mut slopes = Vec::new();
+        for seed in 0..40 {
+            let block = noisy(0.08, seed);
+            let r = one_restitution(&block).unwrap();
+            assert!((r - 0.835).abs() < 3e-3, "{r}");
+            let fitted = fit((&points(&block, r), r), Law::Linear, &[]).unwrap();
+            let error = fitted.covariance[(1, 1)].sqrt();
+            slopes.push(fitted.coefficients[1] / error);
+        }
+        let mean = slopes.iter().sum::<f64>() / 40.0;
+        assert!(mean.abs() < 0.6, "{mean} standard errors");
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::identify::diagnostics::suspicion::SURE;
 use crate::identify::evidence::Blocks;
+use crate::identify::fit::parameters::gain_index;
 use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
 use crate::identify::joint::Weights;
 use crate::identify::messages::Finding;
@@ -20,6 +21,10 @@ pub fn swapped(
     blocks: &Blocks,
     cost: &dyn Fn(&Blocks, &Weights) -> Option<(f64, usize)>,
 ) -> Option<Finding> {
+    let velocities = [Role::VelocityX, Role::VelocityY].map(|role| gain_index(role));
+    if !velocities.into_iter().flatten().all(|i| blocks.sees(i)) {
+        return None;
+    }
     // What was recorded under the other's name came through its own filter, or the filters too
     // are stated the wrong way round. One after the other: each is a copy of all waveforms.
     let best = |blocks: &Blocks, weights: &Weights| {

@@ -1,6 +1,6 @@
 //! R from the speeds after over before each impact.
 
-use crate::event::{CornerShift, Lag};
+use crate::event::{CornerShift, Impact, Lag, RigKind};
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
@@ -66,6 +66,9 @@ pub struct ImpactBlock {
     corners: [bool; 4],
     /// Whether the impacts are between free flights, of records without a drive.
     pub free: bool,
+    /// Whether two masses hit each other and only one of them is measured: twice its speed stands for
+    /// the approach speed, whose ratio is R as far as the masses are alike alone.
+    pub one_of_two: bool,
 }
 
 /// Share of the error of an impact between free flights that all have in common.
@@ -77,7 +80,7 @@ const ENOUGH_FOR_OUTLIERS: usize = 8;
 impl ImpactBlock {
     /// Collect impacts without dead zone, faster than six standard errors (twelve where a contact
     /// lasts several samples, as slow ones are then swayed by where its middle is put).
-    pub fn new(observations: &[Observation], relative_error: f64) -> Self {
+    pub fn new(rig: RigKind, observations: &[Observation], relative_error: f64) -> Self {
         let mut pairs: Vec<SpeedPair> = observations
             .iter()
             .enumerate()
@@ -113,10 +116,26 @@ impl ImpactBlock {
         let free = pairs
             .iter()
             .all(|p: &SpeedPair| observations[p.observation].drive.is_none());
+        let impacts = observations.iter().filter(|o| !o.excluded());
+        let sees_both = |i: &Impact| i.x.is_some() && i.y.is_some();
+        let mut with_speeds = impacts
+            .flat_map(|o| &o.impacts)
+            .filter(|i| i.x.is_some() || i.y.is_some());
         Self {
             free,
+            one_of_two: rig == RigKind::Double && with_speeds.any(|i| !sees_both(i)),
             ..Self::of_pairs(pairs, relative_error)
         }
+    }
+
+    /// The typical ratio of the speed after to that before.
+    pub fn typical_ratio(&self) -> Option<f64> {
+        let ratios: Vec<f64> = self
+            .pairs
+            .iter()
+            .map(|p| p.after_m_s / p.before_m_s)
+            .collect();
+        crate::signal::robust::median(&ratios)
     }
 
     /// What all impacts between free flights have in common of their errors: how their contacts are timed.
@@ -142,6 +161,7 @@ impl ImpactBlock {
             relative_error,
             corners,
             free: false,
+            one_of_two: false,
         }
     }
 
@@ -152,12 +172,7 @@ impl ImpactBlock {
 
     /// Leave out pairs that do not lie within `limit` robust deviations of the bulk, and give them.
     pub fn extract_outliers(&mut self, limit: f64) -> Vec<SpeedPair> {
-        let ratios: Vec<f64> = self
-            .pairs
-            .iter()
-            .map(|p| p.after_m_s / p.before_m_s)
-            .collect();
-        let Some(centre) = crate::signal::robust::median(&ratios) else {
+        let Some(centre) = self.typical_ratio() else {
             return Vec::new();
         };
         if self.free && self.pairs.len() < ENOUGH_FOR_OUTLIERS {

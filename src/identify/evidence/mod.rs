@@ -168,15 +168,23 @@ pub struct Blocks {
 }
 
 /// The pairs of speeds at impacts, and apart from them those that lie far from the bulk.
-fn impacts(observations: &[Observation], scatter: f64) -> (ImpactBlock, Vec<SpeedPair>) {
-    let mut block = ImpactBlock::new(observations, scatter);
-    let outliers = block.extract_outliers(OUTLYING_IMPACT);
+fn impacts(
+    rig: RigKind,
+    observations: &[Observation],
+    scatter: f64,
+) -> (ImpactBlock, Vec<SpeedPair>) {
+    let mut block = ImpactBlock::new(rig, observations, scatter);
+    // The ratios of one of two masses differ from record to record.
+    let outliers = match block.one_of_two {
+        true => Vec::new(),
+        false => block.extract_outliers(OUTLYING_IMPACT),
+    };
     (block, outliers)
 }
 
 /// The pairs of speeds at impacts that [`Blocks::new`] has.
-pub fn impacts_of_bulk(observations: &[Observation]) -> ImpactBlock {
-    impacts(observations, IMPACT_SCATTER).0
+pub fn impacts_of_bulk(rig: RigKind, observations: &[Observation]) -> ImpactBlock {
+    impacts(rig, observations, IMPACT_SCATTER).0
 }
 
 impl Blocks {
@@ -197,7 +205,7 @@ impl Blocks {
             brackets,
             ..
         } = *evidence;
-        let (impact, impact_outliers) = impacts(observations, impact_scatter);
+        let (impact, impact_outliers) = impacts(rig, observations, impact_scatter);
         let mut blocks = Self {
             resonance: ResonanceBlock::new(rig, observations, relative_error),
             trajectory: TrajectoryBlock::new(rig, observations, relative_error),
@@ -225,7 +233,7 @@ impl Blocks {
     /// Read the speeds at impacts with the delays of the channels that waveforms tell; whether any depends on
     /// them.
     pub fn delay_impacts(&mut self, waveforms: &Parameters) -> bool {
-        if !self.impact.has_lags() {
+        if self.impact.one_of_two || !self.impact.has_lags() {
             return false;
         }
         let outliers = std::mem::take(&mut self.impact_outliers);
@@ -322,10 +330,15 @@ impl Blocks {
         channels.any(|(role, corner_hz)| gain_index(role) == Some(index) && test(corner_hz))
     }
 
+    /// Whether the channel of an index is measured.
+    pub fn sees(&self, index: usize) -> bool {
+        self.measures(index, |_| true)
+    }
+
     /// Gains of which any channel is measured.
     fn gains(&self) -> impl Iterator<Item = Coordinate> {
         (0..4)
-            .filter(|i| self.measures(*i, |_| true))
+            .filter(|i| self.sees(*i))
             .map(Coordinate::Gain)
     }
 
@@ -336,12 +349,6 @@ impl Blocks {
             speeds || self.measures(*i, |corner_hz| corner_hz.is_some())
         };
         (0..4).filter(filtered).map(Coordinate::Corner)
-    }
-
-    /// Whether both masses are measured, so that asymmetries can be determined.
-    fn sees_both(&self) -> bool {
-        let has = |i: usize| self.measures(i, |_| true);
-        self.resonance.rig == RigKind::Double && (has(0) || has(2)) && (has(1) || has(3))
     }
 
     /// Add the nuisance coordinates on which a fit of some blocks depends, with their priors: the
@@ -370,7 +377,7 @@ impl Blocks {
 
     /// Delays of the channels that are measured, ms.
     fn delays(&self, nominal: &Nominal) -> impl Iterator<Item = Prior> {
-        let measured = (0..4).filter(|i| self.measures(*i, |_| true));
+        let measured = (0..4).filter(|i| self.sees(*i));
         measured.map(|i| {
             let uncertainty_s = nominal.delay_uncertainties_s[i].unwrap_or(self.half_sample_s);
             let centre = 1e3 * nominal.delays_s[i];
@@ -378,7 +385,7 @@ impl Blocks {
         })
     }
 
-    /// How the masses may differ, where both are measured.
+    /// How two masses may differ, whether both are measured or the motion of one shows the other.
     fn asymmetries(&self, nominal: &Nominal) -> impl Iterator<Item = Prior> {
         let [centre, deviation] = nominal.mass_asymmetry.unwrap_or([0.0, MASS_ASYMMETRY]);
         let all = [
@@ -387,8 +394,8 @@ impl Blocks {
             Prior::new(Coordinate::DampingAsymmetry, 0.0, ASYMMETRY),
             Prior::new(Coordinate::MassAsymmetry, centre, deviation),
         ];
-        let seen = self.sees_both();
-        all.into_iter().filter(move |_| seen)
+        let two = self.resonance.rig == RigKind::Double;
+        all.into_iter().filter(move |_| two)
     }
 
     /// Errors of the clearances, mm: one that all share and one of each stated.

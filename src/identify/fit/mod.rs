@@ -116,6 +116,9 @@ pub enum FitError {
     /// Nothing to fit.
     #[error("there are no observations to fit")]
     Empty,
+    /// Two masses hit each other and one of them is measured: approach speeds are not known.
+    #[error("only one of the two masses is measured")]
+    OneOfTwo,
     /// The solver ended without a point.
     #[error("the solver failed")]
     Solver,

@@ -50,6 +50,8 @@ pub enum Note {
     },
     /// There is nothing to fit.
     NothingToFit,
+    /// Only one of two masses is measured: the speeds of both make R.
+    OneOfTwo,
     /// The solver failed.
     SolverFailed,
     /// The data do not separate the parameters.
@@ -64,6 +66,7 @@ impl From<&FitError> for Note {
                 observations: items.len(),
             },
             FitError::Empty => Self::NothingToFit,
+            FitError::OneOfTwo => Self::OneOfTwo,
             FitError::Solver => Self::SolverFailed,
             FitError::Singular => Self::NotSeparable,
         }
@@ -108,6 +111,11 @@ message_table! { Note;
     Self::NothingToFit =>
         "there are no observations to fit",
         "es gibt keine Beobachtungen für eine Anpassung";
+    Self::OneOfTwo =>
+        "only one of the two masses is measured: $R$ is the ratio of the speeds of both, and the \
+         other mass need not move alike",
+        "nur eine der beiden Massen ist gemessen: $R$ ist das Verhältnis der Geschwindigkeiten \
+         beider, und die andere Masse muss sich nicht gleich bewegen";
     Self::SolverFailed => "the solver failed", "der Löser versagte";
     Self::NotSeparable =>
         "the data do not separate the parameters",
