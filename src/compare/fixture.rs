@@ -38,6 +38,19 @@ pub(crate) fn nothing_touches() -> &'static Identified {
     })
 }
 
+/// The same two masses, of which only x has a velocity, and no displacement is measured.
+pub(crate) fn one_of_two() -> &'static Identified {
+    static CAMPAIGN: OnceLock<Identified> = OnceLock::new();
+    CAMPAIGN.get_or_init(|| {
+        let mut records = laboratory();
+        let kept = [Role::Drive, Role::Contact, Role::VelocityX];
+        for record in &mut records {
+            record.channels.retain(|c| kept.contains(&c.role));
+        }
+        identified(&records, RigKind::Double)
+    })
+}
+
 /// Nine free decays of three masses on one spring, the last filed under the wrong mass.
 pub(crate) fn decays() -> &'static Identified {
     static CAMPAIGN: OnceLock<Identified> = OnceLock::new();

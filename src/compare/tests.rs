@@ -1,9 +1,9 @@
 //! Whole campaigns of known truth, compared with their fitted model.
 
-use super::fixture::{decay, decays, nothing_touches, whole};
+use super::fixture::{decay, decays, nothing_touches, one_of_two, whole};
 use super::left_out::{UnusableReason, unusable};
 use crate::event::{DetectSettings, DriveTone, RigKind};
-use crate::identify::Method;
+use crate::identify::{Finding, Method, Note, Status};
 use crate::motion::{BoundaryKind, ClassifySettings, Motion, Undetermined, observe};
 use crate::record::{Flag, FlagCode};
 
@@ -160,4 +160,22 @@ fn records_are_grouped_by_why_their_motion_is_undetermined() {
         groups,
         [(vec!["r1", "r3"], false), (vec!["r2", "r4"], true)]
     );
+}
+
+/// The driving forces differ by 1 %: twice the speed of mass x would be 0.9 % of R off.
+#[test]
+fn valid_one_of_two_masses_tells_r_by_its_waveforms_alone() {
+    let found = &one_of_two().identification;
+    let joint = found.joint.parameters.restitution.as_ref().expect("R");
+    let [low, high] = joint.interval95.expect("an interval");
+    assert!(low < 0.9 && 0.9 < high, "{low} to {high}");
+    assert!(high - low < 0.01, "{low} to {high}");
+    let impacts = &found.methods[&Method::Impacts];
+    let own = impacts.parameters.restitution.as_ref().expect("R");
+    assert_eq!(own.status, Status::NotIdentifiable);
+    assert_eq!(own.note, Some(Note::OneOfTwo));
+    assert_ne!(impacts.fits, Some(false));
+    let swapped = |f: &Finding| matches!(f, Finding::SwappedChannels { .. });
+    assert!(!found.suspicions.iter().any(swapped));
+    assert!(one_of_two().compared.impacts.is_empty());
 }
