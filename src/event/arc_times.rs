@@ -60,7 +60,7 @@ impl Drift {
             drift.walk += step * step;
             drift.slopes = true;
             for (i, by_shift) in drift.by_shift.iter_mut().enumerate() {
-                if let Some((s, _)) = speeds(velocity, arcs, i, plain[i]) {
+                if let Some(s) = speeds(velocity, arcs, i, plain[i]) {
                     *by_shift += per_sample * (s.before_m_s - s.after_m_s);
                 }
             }
@@ -123,7 +123,7 @@ pub(super) fn arc_times(
         return plain.to_vec();
     }
     let beside: Vec<Option<MassSpeeds>> = (0..count)
-        .map(|i| speeds(velocity, arcs, i, plain[i]).map(|s| s.0))
+        .map(|i| speeds(velocity, arcs, i, plain[i]))
         .collect();
     let drift = Drift::of(kinematics, arcs, plain);
     let Some(states) = smoothed(velocity, plain, &beside, &drift) else {

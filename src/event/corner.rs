@@ -5,9 +5,9 @@
 //! impacts the displacement is far from its mean, and both speeds are off by the same amount, less the line that
 //! is removed from the velocity with its drift.
 
-use crate::event::impact::CornerShift;
 use crate::event::drift;
 use crate::event::drive::DriveTone;
+use crate::event::impact::CornerShift;
 use crate::event::kinematics::{Body, Kinematics, RelativeSource, Series};
 use crate::signal::interpolation::interpolate;
 
@@ -62,7 +62,7 @@ fn shift(velocity: &Series, step_s: f64) -> Option<Series> {
 mod tests {
     use super::*;
     use crate::event::kinematics::RigKind;
-    use crate::record::Record;
+    use crate::record::{Record, Role};
 
     #[test]
     fn valid_the_shift_of_a_sine_is_its_displacement_times_the_corner() {

@@ -52,8 +52,12 @@ pub struct Impact {
     /// bodies separate.
     #[serde(rename = "closing_speed_after_m_s")]
     pub approach_speed_after_m_s: Option<f64>,
-    /// Standard error of either approach speed, m/s.
+    /// Standard error of either approach speed, m/s, by noise.
     pub speed_error_m_s: Option<f64>,
+    /// What either approach speed changes by where the impact is later by the standard error of its
+    /// time, m/s; `None` where that is part of their errors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speeds_by_time_m_s: Option<[f64; 2]>,
     /// Mass x alone.
     pub x: Option<MassSpeeds>,
     /// Mass y alone.
@@ -117,6 +121,7 @@ impl Impact {
             approach_speed_before_m_s: None,
             approach_speed_after_m_s: None,
             speed_error_m_s: None,
+            speeds_by_time_m_s: None,
             x: None,
             y: None,
             corner_shifts: [None, None],

@@ -6,7 +6,7 @@ use crate::event::finite_contact::FiniteContact;
 use crate::event::impact::{Impact, MassSpeeds};
 use crate::event::kinematics::{Body, Kinematics};
 use crate::event::lag;
-use crate::event::refine::{Arcs, Instant, flights, speeds};
+use crate::event::refine::{Arcs, Instant, Reading, flights, read, speeds};
 use crate::signal::local_fit::LocalFit;
 
 /// The impacts at the refined times. If impacts are not instantaneous the approach speeds are those
@@ -23,6 +23,10 @@ pub(super) fn impacts(
         let velocity = body.velocity.as_ref()?;
         speeds(velocity, arcs, i, instants[i].later(delay))
     };
+    let relative = |i: usize| {
+        let velocity = kinematics.relative.velocity.as_ref()?;
+        read(velocity, arcs, i, instants[i])
+    };
     let delays = contact.map_or([0.0; 2], |c| c.delays);
     let rate_hz = kinematics.rate_hz;
     let times: Vec<f64> = instants.iter().map(|i| i.time).collect();
@@ -34,25 +38,26 @@ pub(super) fn impacts(
             let lasting = contact
                 .filter(|_| candidates[i].dead_samples == 0.0)
                 .and_then(|c| contact_speeds(kinematics, arcs, i, (instants[i], c)));
-            let approach = match &lasting {
-                Some(c) => Some((c.speeds, c.error)),
-                None => of(&kinematics.relative, i, 0.0),
-            };
+            let external_push_m_s = lasting.as_ref().map(|c| c.external_push_m_s);
+            let lasts = lasting.is_some();
+            let approach = lasting.map(|c| c.reading).or_else(|| relative(i));
+            let by_time = |reading: &Reading| reading.slopes_m_s.map(|s| s * instants[i].error);
             let duration = contact.map(|c| c.duration / rate_hz);
             Impact {
                 time_s,
                 time_error_s: instants[i].error / rate_hz,
                 drive_phase_rad: drive.map(|d| d.phase_at(time_s)),
-                approach_speed_before_m_s: approach.map(|c| c.0.before_m_s),
-                approach_speed_after_m_s: approach.map(|c| c.0.after_m_s),
-                speed_error_m_s: approach.map(|c| c.1),
-                x: of(&kinematics.x, i, delays[0]).map(|s| s.0),
-                y: of(&kinematics.y, i, delays[1]).map(|s| s.0),
+                approach_speed_before_m_s: approach.as_ref().map(|r| r.speeds.before_m_s),
+                approach_speed_after_m_s: approach.as_ref().map(|r| r.speeds.after_m_s),
+                speed_error_m_s: approach.as_ref().map(|r| r.error_m_s),
+                speeds_by_time_m_s: approach.as_ref().map(by_time),
+                x: of(&kinematics.x, i, delays[0]),
+                y: of(&kinematics.y, i, delays[1]),
                 corner_shifts: shifts.at(instants[i].time),
                 lags: lags[i],
                 dead_zone_s: candidates[i].dead_samples / rate_hz,
-                contact_duration_s: duration.filter(|d| lasting.is_some() && *d > 0.0),
-                external_push_m_s: lasting.map(|c| c.external_push_m_s).filter(|p| *p != 0.0),
+                contact_duration_s: duration.filter(|d| lasts && *d > 0.0),
+                external_push_m_s: external_push_m_s.filter(|p| *p != 0.0),
                 source: candidates[i].source,
             }
         })
@@ -61,8 +66,7 @@ pub(super) fn impacts(
 
 /// Approach speeds at the start and at the end of a contact of finite duration.
 struct ContactSpeeds {
-    speeds: MassSpeeds,
-    error: f64,
+    reading: Reading,
     external_push_m_s: f64,
 }
 
@@ -94,12 +98,16 @@ fn contact_speeds(
     let acceleration = 0.5 * (before.slope(start) + after.slope(end));
     let push = -contact.profile.drift() * contact.duration * acceleration;
     let error = before.error_factor(start).max(after.error_factor(end));
-    Some(ContactSpeeds {
+    let reading = Reading {
         speeds: MassSpeeds {
             before_m_s: before.value(start) + own(0, start),
             after_m_s: after.value(end) + own(1, end),
         },
-        error: relative.noise * error,
+        error_m_s: relative.noise * error,
+        slopes_m_s: [before.slope(start), after.slope(end)],
+    };
+    Some(ContactSpeeds {
+        reading,
         external_push_m_s: push,
     })
 }

@@ -147,21 +147,42 @@ pub(super) fn flights(velocity: &Series, arcs: Arcs<'_>, index: usize) -> Option
     fits(&velocity.values, windows(velocity, arcs, index))
 }
 
-/// Speeds of one signal before and after a candidate at a time, with their standard error.
+/// Speeds of one signal before and after a candidate, as they were read at a time.
+pub(super) struct Reading {
+    pub speeds: MassSpeeds,
+    /// Standard error of either by noise, m/s.
+    pub error_m_s: f64,
+    /// What either changes by per sample that the time is later, m/s.
+    pub slopes_m_s: [f64; 2],
+}
+
+/// Speeds of one signal before and after a candidate at a time.
+pub(super) fn read(
+    velocity: &Series,
+    arcs: Arcs<'_>,
+    index: usize,
+    instant: Instant,
+) -> Option<Reading> {
+    let [before, after] = flights(velocity, arcs, index)?;
+    let time = instant.time;
+    Some(Reading {
+        speeds: MassSpeeds {
+            before_m_s: before.value(time),
+            after_m_s: after.value(time),
+        },
+        error_m_s: velocity.noise * before.error_factor(time).max(after.error_factor(time)),
+        slopes_m_s: [before.slope(time), after.slope(time)],
+    })
+}
+
+/// The same without their errors.
 pub(super) fn speeds(
     velocity: &Series,
     arcs: Arcs<'_>,
     index: usize,
     instant: Instant,
-) -> Option<(MassSpeeds, f64)> {
-    let [before, after] = flights(velocity, arcs, index)?;
-    let time = instant.time;
-    let error = velocity.noise * before.error_factor(time).max(after.error_factor(time));
-    let speeds = MassSpeeds {
-        before_m_s: before.value(time),
-        after_m_s: after.value(time),
-    };
-    Some((speeds, error))
+) -> Option<MassSpeeds> {
+    Some(read(velocity, arcs, index, instant)?.speeds)
 }
 
 /// Correct the undone high-pass of each body's velocity for every jump, from the jumps' times
@@ -180,7 +201,7 @@ pub(super) fn correct_jumps(
             continue;
         };
         let known: Vec<Option<MassSpeeds>> = (0..instants.len())
-            .map(|i| speeds(velocity, arcs, i, instants[i]).map(|s| s.0))
+            .map(|i| speeds(velocity, arcs, i, instants[i]))
             .collect();
         for (instant, speeds) in instants.iter().zip(known) {
             if let Some(s) = speeds {

@@ -3,8 +3,9 @@
 //!
 //! The speeds before and after, b and a, have errors of the same size. Regressed on b, the ratio a/b
 //! falls wherever speeds differ by little more than their errors: by −R/v where they do not differ at
-//! all. Of both speeds v̂ = (b + R a)/(1 + R²) tells the true one best, and its error is independent of
-//! that of a − R b (Deming's regression): the laws are fitted over v̂.
+//! all. With both errors known, by noise and by the impact's time, v̂ = b + κ(a − R b) is the estimate of
+//! the true speed whose error is independent of that of a − R b; of equal errors (b + R a)/(1 + R²)
+//! (Deming's regression). The laws are fitted over v̂.
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -95,10 +96,13 @@ struct Point {
 
 /// The impacts of a block about one R.
 fn points(block: &ImpactBlock, restitution: f64) -> Vec<Point> {
-    let point = |p: &SpeedPair| Point {
-        speed: (p.before_m_s + restitution * p.after_m_s) / (1.0 + restitution * restitution),
-        deviation: p.after_m_s - restitution * p.before_m_s,
-        error: block.error(p, restitution),
+    let point = |p: &SpeedPair| {
+        let deviation = p.after_m_s - restitution * p.before_m_s;
+        Point {
+            speed: p.before_m_s + block.shared(p, restitution) * deviation,
+            deviation,
+            error: block.error(p, restitution),
+        }
     };
     block.pairs.iter().map(point).collect()
 }
@@ -233,6 +237,7 @@ mod tests {
                     before_m_s: v,
                     after_m_s: law(v) * v + 2e-3 * scatter(i),
                     error_m_s: 2e-3 / 1f64.hypot(0.8),
+                    by_time_m_s: [0.0; 2],
                     corner_shifts: [None, None],
                     lags: [None, None],
                 }
@@ -249,19 +254,26 @@ mod tests {
         assert_eq!(chosen(|v| 0.9 - 0.1 * v.powf(0.2)), Some(Law::Table));
     }
 
-    /// Pairs of one R with errors of both speeds, whose true speeds are at most a share apart.
+    /// What a standard error of the time changes of the approach speeds before and after, m/s.
+    const BY_TIME_M_S: [f64; 2] = [-4e-3, -1e-3];
+
+    /// Pairs of one R with errors of both speeds and of the time, whose true speeds are at most a share
+    /// apart.
     fn noisy(apart: f64, seed: u64) -> ImpactBlock {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
-        let pairs = (0..250)
+        let pairs = (0..250u32)
             .map(|i| {
                 let v = 0.28 * (1.0 + apart * f64::from(i % 11) / 10.0);
+                let late = normal();
+                let [before, after] = BY_TIME_M_S.map(|m_s| m_s * late);
                 SpeedPair {
-                    observation: i as usize % 2,
+                    observation: usize::from(i % 2 == 1),
                     time_s: f64::from(i),
-                    before_m_s: v + 2e-3 * normal(),
-                    after_m_s: 0.835 * v + 2e-3 * normal(),
+                    before_m_s: v + before + 2e-3 * normal(),
+                    after_m_s: 0.835 * v - after + 2e-3 * normal(),
                     error_m_s: 2e-3,
+                    by_time_m_s: BY_TIME_M_S,
                     corner_shifts: [None, None],
                     lags: [None, None],
                 }

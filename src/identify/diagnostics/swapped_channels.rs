@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::identify::diagnostics::suspicion::SURE;
 use crate::identify::evidence::Blocks;
-use crate::identify::fit::parameters::gain_index;
 use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
+use crate::identify::fit::parameters::gain_index;
 use crate::identify::joint::Weights;
 use crate::identify::messages::Finding;
 use crate::identify::method::Method;
@@ -21,7 +21,7 @@ pub fn swapped(
     blocks: &Blocks,
     cost: &dyn Fn(&Blocks, &Weights) -> Option<(f64, usize)>,
 ) -> Option<Finding> {
-    let velocities = [Role::VelocityX, Role::VelocityY].map(|role| gain_index(role));
+    let velocities = [Role::VelocityX, Role::VelocityY].map(gain_index);
     if !velocities.into_iter().flatten().all(|i| blocks.sees(i)) {
         return None;
     }

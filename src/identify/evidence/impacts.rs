@@ -16,8 +16,10 @@ pub struct SpeedPair {
     pub before_m_s: f64,
     /// Parting speed after, m/s (positive).
     pub after_m_s: f64,
-    /// Standard error of either, m/s.
+    /// Standard error of either by noise, m/s.
     pub error_m_s: f64,
+    /// What a standard error of the impact's time changes of the approach speed before and after, m/s.
+    pub by_time_m_s: [f64; 2],
     /// What the channels' corners would change of the speeds, toward each other.
     pub corner_shifts: [Option<CornerShift>; 2],
     /// What delays of the channels would change of them.
@@ -37,6 +39,12 @@ impl SpeedPair {
             self.before_m_s += later_s * lag.accelerations_m_s2[0];
             self.after_m_s -= later_s * lag.accelerations_m_s2[1];
         }
+    }
+
+    /// What a standard error of the impact's time changes of R·before − after, m/s: the approach speed
+    /// after is minus the speed after.
+    fn late(&self, restitution: f64) -> f64 {
+        self.by_time_m_s[1] + restitution * self.by_time_m_s[0]
     }
 
     /// Change of the closing speed, m/s, by corners other than the stated ones.
@@ -105,6 +113,7 @@ impl ImpactBlock {
                     after_m_s: -impact.approach_speed_after_m_s?
                         - impact.external_push_m_s.unwrap_or(0.0),
                     error_m_s: impact.speed_error_m_s?,
+                    by_time_m_s: impact.speeds_by_time_m_s.unwrap_or_default(),
                     corner_shifts: impact.corner_shifts,
                     lags: impact.lags,
                 })
@@ -225,7 +234,17 @@ impl ImpactBlock {
     /// Standard error of after − R·before.
     pub fn error(&self, pair: &SpeedPair, restitution: f64) -> f64 {
         let noise = pair.error_m_s * 1f64.hypot(restitution);
-        noise.hypot(self.relative_error * pair.before_m_s)
+        noise
+            .hypot(pair.late(restitution))
+            .hypot(self.relative_error * pair.before_m_s)
+    }
+
+    /// Mean error of the speed before per error of after − R·before, with the sign of −1: half the slope
+    /// of the variance of that over R, over the variance.
+    pub fn shared(&self, pair: &SpeedPair, restitution: f64) -> f64 {
+        let noise = restitution * pair.error_m_s.powi(2);
+        let time = pair.by_time_m_s[0] * pair.late(restitution);
+        (noise + time) / self.error(pair, restitution).powi(2)
     }
 }
 
@@ -254,8 +273,8 @@ impl Block for ImpactBlock {
         let error = self.error(pair, r);
         let slope = |coordinate: &Coordinate| match coordinate {
             Coordinate::Restitution => {
-                let over_error = r * (pair.error_m_s / error).powi(2);
-                -(pair.before_m_s + pair.shift(parameters)) / error - residuals[0] * over_error
+                let before = pair.before_m_s + pair.shift(parameters);
+                -before / error - residuals[0] * self.shared(pair, r)
             }
             Coordinate::Corner(index) => {
                 let shifts = pair.corner_shifts.iter().flatten();
@@ -301,6 +320,7 @@ mod tests {
             before_m_s: 0.5,
             after_m_s: 0.37,
             error_m_s: 5e-3,
+            by_time_m_s: [4e-3, 1e-3],
             corner_shifts: [shift(Role::VelocityX, 3e-3), shift(Role::VelocityY, -2e-3)],
             lags: [None, None],
         };
@@ -331,6 +351,7 @@ mod tests {
             before_m_s: 0.5,
             after_m_s: 0.4,
             error_m_s: 1e-3,
+            by_time_m_s: [0.0; 2],
             corner_shifts: [None, None],
             lags: [
                 lag(Role::VelocityX, Role::DisplacementX, [10.0, 4.0]),

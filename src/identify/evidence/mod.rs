@@ -337,9 +337,7 @@ impl Blocks {
 
     /// Gains of which any channel is measured.
     fn gains(&self) -> impl Iterator<Item = Coordinate> {
-        (0..4)
-            .filter(|i| self.sees(*i))
-            .map(Coordinate::Gain)
+        (0..4).filter(|i| self.sees(*i)).map(Coordinate::Gain)
     }
 
     /// Corners of the channels that have passed a high-pass.
