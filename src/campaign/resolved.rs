@@ -11,7 +11,7 @@ use crate::difference::Common;
 use crate::event::DetectSettings;
 use crate::identify::fit::effect::EffectKind;
 use crate::identify::uncertainty::IntervalMethod;
-use crate::motion::ClassifySettings;
+use crate::motion::{ClassifySettings, LateChannel};
 use crate::record::Setting;
 use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup};
 
@@ -79,6 +79,9 @@ pub struct NominalValues {
     pub gain_uncertainty: f64,
     /// Standard uncertainty of the corners of the channels' high-pass, relative.
     pub corner_uncertainty: f64,
+    /// Standard uncertainty of the sampler's clock, relative.
+    #[serde(default)]
+    pub clock_uncertainty: f64,
     /// Standard uncertainty of the clearances, m.
     pub clearance_uncertainty_m: f64,
     /// Standard uncertainty of the masses, relative.
@@ -182,6 +185,18 @@ impl ResolvedCampaign {
             most_impacts: self.analysis.most_impacts_p,
             ..ClassifySettings::default()
         }
+    }
+
+    /// The same with channels that are later than stated by what was found.
+    #[must_use]
+    pub fn with_late(&self, late: &[LateChannel]) -> Self {
+        let mut campaign = self.clone();
+        for setup in &mut campaign.channels {
+            let found = late.iter().find(|l| l.role == setup.role);
+            setup.delay_s += found.map_or(0.0, |l| l.delay_s);
+            setup.low_pass = setup.low_pass.or(found.and_then(|l| l.low_pass));
+        }
+        campaign
     }
 
     /// What [`crate::record::calibrate::calibrate`] needs for one of its records.

@@ -289,6 +289,7 @@ const RIG: &str = "\
 # restitution = 0.9
 gain_uncertainty = \"0.5 %\"       # of the channels' scales
 corner_uncertainty = \"5 %\"       # of the corners of the channels' high-pass
+clock_uncertainty = \"50 ppm\"     # of the clock of the sampler, in f0
 clearance_uncertainty = \"10 um\"  # of each stated clearance, and of the zero that all share
 # mass_x = \"1.50 kg\"             # both masses, if weighed, with mass_uncertainty = \"0.5 %\"
 # effects = [\"harmonics\", \"force_frequency\", \"hardening\", \"friction\", \"drift\", \"contact_duration\",

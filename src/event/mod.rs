@@ -4,6 +4,7 @@
 //! Times become sample indices by `as usize`, which saturates (negative and NaN give 0); an index is
 //! bounded by the number of samples before it is used.
 
+mod channel_lags;
 mod contact;
 mod contact_profile;
 mod contact_samples;
@@ -20,6 +21,7 @@ mod kinematics;
 mod lag;
 mod refine;
 
+pub use channel_lags::ChannelLag;
 pub use detect::{DetectSettings, Detection, FlightKind, detect};
 pub use drive::DriveTone;
 pub use impact::{CornerShift, DetectionSource, Impact, Lag, MassSpeeds};

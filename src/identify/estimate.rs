@@ -125,6 +125,25 @@ pub fn estimate_within(
 /// An estimate that a disagreement of methods leaves further open: by a standard uncertainty, of R
 /// absolute, of the others relative.
 pub fn widened(coordinate: Coordinate, estimate: &Estimate, by: f64) -> Estimate {
+    in_doubt(coordinate, estimate, by, Note::MethodsDisagree)
+}
+
+/// An estimate that something leaves further open, so that it is weak: by a standard uncertainty, of R
+/// absolute, of the others relative.
+pub fn in_doubt(coordinate: Coordinate, estimate: &Estimate, by: f64, why: Note) -> Estimate {
+    let wider = wider(coordinate, estimate, by);
+    match wider.status {
+        Status::NotIdentifiable => wider,
+        _ => Estimate {
+            status: Status::Weak,
+            note: Some(why),
+            ..wider
+        },
+    }
+}
+
+/// An estimate with a further standard uncertainty, of R absolute, of the others relative.
+pub fn wider(coordinate: Coordinate, estimate: &Estimate, by: f64) -> Estimate {
     let (Some(value), Some(error), Some([low, high])) =
         (estimate.value, estimate.standard_error, estimate.interval95)
     else {
@@ -137,13 +156,23 @@ pub fn widened(coordinate: Coordinate, estimate: &Estimate, by: f64) -> Estimate
         true => [value * (-half).exp(), value * half.exp()],
         false => [(value - half).max(0.0), (value + half).min(1.0)],
     };
-    Estimate {
+    let error = error.hypot(by * unit);
+    let mut wider = Estimate {
         value: Some(value),
-        standard_error: Some(error.hypot(by * unit)),
+        standard_error: Some(error),
         interval95: Some(interval),
-        status: Status::Weak,
-        note: Some(Note::MethodsDisagree),
+        ..estimate.clone()
+    };
+    let standard_error = error / unit;
+    if standard_error >= limits(coordinate).0 && wider.status == Status::Identified {
+        let parameter = coordinate;
+        wider.status = Status::Weak;
+        wider.note = Some(Note::Open {
+            parameter,
+            standard_error,
+        });
     }
+    wider
 }
 
 /// A missing estimate with the reason.

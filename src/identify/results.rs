@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::identify::diagnostics::contact_law::ContactLaw;
 use crate::identify::diagnostics::{contact_law, momentum, structure, verdict};
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::evidence::{Blocks, Evidence, impact_bias};
@@ -60,12 +61,17 @@ pub fn impacts(
     result
         .remarks
         .extend(momentum::momentum(block, evidence).map(|m| m.0));
-    result.contact_law = contact_law::contact_law(block);
+    let law = contact_law::contact_law(block);
+    let gained = law.as_ref().and_then(ContactLaw::gained);
+    result.contact_law = law.filter(|_| gained.is_none()).map(ContactLaw::within_one);
     let ratios = structure::ratios(block, &blocks.impact_outliers, evidence.observations);
     if !ratios.is_empty() {
         result.impact_groups = Some(structure::groups(&ratios, evidence.observations));
     }
     verdict::judge_impacts(&mut result, block, evidence, structure::structure(&ratios));
+    if let Some(point) = gained {
+        verdict::judge_gained(&mut result, point);
+    }
     result
 }
 

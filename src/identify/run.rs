@@ -4,7 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::identify::diagnostics::agreement::{agreement, between_methods};
 use crate::identify::diagnostics::beyond;
+use crate::identify::diagnostics::clock;
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
+use crate::identify::diagnostics::doubt::{self, Doubt, Suspicion};
+use crate::identify::diagnostics::late_channel;
 use crate::identify::diagnostics::momentum;
 use crate::identify::diagnostics::stated_clearances;
 use crate::identify::diagnostics::stated_frequencies;
@@ -12,6 +15,7 @@ use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
 use crate::identify::diagnostics::undeclared_high_pass;
 use crate::identify::diagnostics::verdict::{self, Basis};
+use crate::identify::diagnostics::wrong_gains;
 use crate::identify::estimate::ParameterSet;
 use crate::identify::evidence::{Blocks, Evidence, Nominal, impact_bias};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
@@ -23,7 +27,7 @@ use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult, succeeded};
 use crate::identify::residuals::MethodResiduals;
 use crate::identify::selection::Selection;
-use crate::identify::uncertainty::budget;
+use crate::identify::uncertainty::budget::{self, Further, Source};
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
 use crate::identify::{decay, estimate, flight_times, residuals, results};
@@ -101,21 +105,16 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
     let impacts = methods::impacts(&run.selection.blocks, &evidence.nominal, start);
     let start = with_restitution(start, &impacts);
     let mut fits = run.fits(start, resonance, impacts);
-    let mut odd_gaps: Vec<Finding> = Vec::new();
+    let mut odd_gaps: Vec<Suspicion> = Vec::new();
     while let Some(odd) = run.odd_gap(&fits, start, odd_gaps.len()) {
-        odd_gaps.push(odd.into());
+        odd_gaps.push(Finding::from(odd).into());
         if !run.selection.leave_out_gap(odd.stated_m) {
             break;
         }
         fits = run.fits(start, fits.alone.resonance, fits.alone.impacts);
     }
     fits = run.without_influential(fits);
-    let mut suspicions = Vec::from_iter(stated_frequencies::contradicted(evidence.observations));
-    suspicions.extend(stated_frequencies::no_drive(evidence.observations));
-    suspicions.extend(odd_gaps);
-    suspicions.extend(run.other_suspicions(&fits));
-    let of_masses = momentum::momentum(&run.selection.blocks.impact, evidence);
-    suspicions.extend(of_masses.and_then(|m| m.1));
+    let (suspicions, doubts) = doubt::parted(run.suspicions(&fits, odd_gaps));
     let mut methods = run.results(&fits);
     let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
     if observations_are_undriven(evidence) {
@@ -139,6 +138,11 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
             *estimate = estimate::widened(*parameter, estimate, *by);
         }
     }
+    let clock_uncertainty = evidence.nominal.clock_uncertainty;
+    for result in methods.values_mut().chain([&mut joint]) {
+        clock::widen(result, clock_uncertainty);
+    }
+    doubt::widen(&mut joint, &doubts);
     let verdict = verdict::verdict(&Basis {
         beyond: &beyond,
         joint: &joint,
@@ -151,7 +155,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         verdict,
         joint,
         agreement,
-        uncertainty: run.uncertainty(&fits, &apart),
+        uncertainty: run.uncertainty(&fits, &further(apart, &doubts, clock_uncertainty)),
         suspicions,
         left_out: run.left_out(),
         used_by: run.used_by(&methods),
@@ -182,6 +186,17 @@ fn without_clearances(evidence: &Evidence<'_>, contradicted: Finding) -> Identif
     found.verdict.findings.insert(0, contradicted.clone());
     found.suspicions.insert(0, contradicted);
     found
+}
+
+/// What is open in the joint estimates beside the fit.
+fn further(apart: Vec<(Coordinate, f64)>, doubts: &[Doubt], clock: f64) -> [Further; 3] {
+    let doubtful = doubts.iter().map(|d| (d.parameter, d.by)).collect();
+    let of_clock = (clock > 0.0).then_some((Coordinate::Frequency, clock));
+    [
+        Further::new(Source::BetweenMethods, apart),
+        Further::new(Source::Clock, Vec::from_iter(of_clock)),
+        Further::new(Source::InstrumentOff, doubtful),
+    ]
 }
 
 /// Whether no record has a drive, so that R rests on the impacts alone.
@@ -477,9 +492,8 @@ impl IdentificationRun<'_> {
         })
     }
 
-    /// The uncertainty of the joint fit as the options want it; `apart`: what disagreement of methods
-    /// leaves open.
-    fn uncertainty(&self, fits: &Fits, apart: &[(Coordinate, f64)]) -> Uncertainty {
+    /// The uncertainty of the joint fit as the options want it, with what is open beside it.
+    fn uncertainty(&self, fits: &Fits, further: &[Further]) -> Uncertainty {
         let blocks = &self.selection.blocks;
         let problem = self.problem(blocks, fits.start, &fits.weights);
         let Some((problem, joint)) = problem.zip(succeeded(&fits.joint)) else {
@@ -488,7 +502,7 @@ impl IdentificationRun<'_> {
         let present = joint::present(blocks, &fits.weights);
         let options = &self.evidence.uncertainty;
         Uncertainty {
-            budget: budget::budget(&problem, &present, joint, blocks, apart),
+            budget: budget::budget(&problem, &present, joint, blocks, further),
             scatter: joint.scatter.clone(),
             ..uncertainty::uncertainty(&problem, &present, joint, options)
         }
@@ -523,8 +537,26 @@ impl IdentificationRun<'_> {
             .or_else(|| suspicion::odd_gap(blocks, weight, joint, uncertainty_m))
     }
 
+    /// Mistakes of the laboratory that the data give away, gaps that were found odd among them.
+    fn suspicions(&self, fits: &Fits, odd_gaps: Vec<Suspicion>) -> Vec<Suspicion> {
+        let observations = self.evidence.observations;
+        let clock = self.evidence.nominal.clock_uncertainty;
+        let mut found = Vec::from_iter(clock::suspicion(observations, clock));
+        found.extend(stated_frequencies::no_drive(observations).map(Suspicion::from));
+        found.extend(odd_gaps);
+        found.extend(late_channel::late_channels(
+            observations,
+            succeeded(&fits.joint),
+            (&self.selection.blocks, &self.evidence.nominal),
+        ));
+        found.extend(self.other_suspicions(fits));
+        let of_masses = momentum::momentum(&self.selection.blocks.impact, self.evidence);
+        found.extend(of_masses.and_then(|m| m.1).map(Suspicion::from));
+        found
+    }
+
     /// Gains and corners far off, and interchanged channels.
-    fn other_suspicions(&self, fits: &Fits) -> Vec<Finding> {
+    fn other_suspicions(&self, fits: &Fits) -> Vec<Suspicion> {
         let Some(joint) = succeeded(&fits.joint) else {
             return Vec::new();
         };
@@ -538,7 +570,7 @@ impl IdentificationRun<'_> {
             Some((found.fit.cost, found.fit.residuals))
         };
         if let Some(found) = swapped_channels::swapped(&self.selection.blocks, &cost) {
-            return vec![found];
+            return vec![found.into()];
         }
         let nominal = &self.evidence.nominal;
         let open = Nominal {
@@ -548,7 +580,9 @@ impl IdentificationRun<'_> {
         let curve = Weights::from([(Method::Resonance, 1.0)]);
         let fit = |blocks: &Blocks| rough_fit(blocks, start, &curve, &open);
         let mut found = undeclared_high_pass::undeclared(&self.selection.blocks, &fit);
-        found.extend(suspicion::channels(&joint.fit, joint.factor, nominal));
+        found.extend(suspicion::corners(&joint.fit, joint.factor, nominal));
+        let mut found: Vec<Suspicion> = found.into_iter().map(Suspicion::from).collect();
+        found.extend(wrong_gains::wrong_gain(joint, nominal.gain_uncertainty));
         found
     }
 

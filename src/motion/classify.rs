@@ -107,6 +107,7 @@ pub(super) fn undetermined(reason: Undetermined, evidence: Evidence) -> Classifi
 ///     dimension: Dimension::Voltage,
 ///     values,
 ///     high_pass_hz: None,
+///     low_pass: None,
 ///     threshold: (role == Role::Contact).then_some(2.5),
 /// };
 /// let phase = |i: usize| std::f64::consts::TAU * i as f64 / 200.0;
@@ -469,6 +470,7 @@ mod tests {
             unsupported_pulses: 0,
             missed_pulses: 0,
             closed_fraction: 0.0,
+            lags: Vec::new(),
             flags: Vec::new(),
         }
     }

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::event::{DetectSettings, DriveTone, Impact, RigKind, detect};
+use crate::event::{ChannelLag, DetectSettings, DriveTone, Impact, RigKind, detect};
 use crate::motion::classify::{Classification, ClassifySettings, classify, undetermined};
 use crate::motion::fold::{Folded, fold};
 use crate::motion::kind::Motion;
+use crate::motion::late::LateChannel;
 use crate::motion::response::{Response, responses};
 use crate::motion::undetermined::Undetermined;
 use crate::record::{Excitation, Flag, FlagCode, Record, Role, Setting};
@@ -49,6 +50,15 @@ pub struct Observation {
     pub missed_pulses: usize,
     /// Samples that a jump of velocity takes.
     pub jump_samples: usize,
+    /// Whether a motion channel has passed a low-pass, so that the speeds at impacts are not those of flights.
+    #[serde(default)]
+    pub low_pass: bool,
+    /// How much later than the contact or the other mass the channels show impacts, where that may matter.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lags: Vec<ChannelLag>,
+    /// Channels that were found late, beyond what is stated; their samples have been moved back.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub late: Vec<LateChannel>,
     /// Amplitudes of the motion channels.
     pub amplitudes: Vec<Amplitude>,
     /// Response at the drive's frequency; only of impactless records.
@@ -97,6 +107,8 @@ impl Observation {
             classification: self.classification.clone(),
             flags: self.flags.clone(),
             impacts: Vec::new(),
+            lags: Vec::new(),
+            late: self.late.clone(),
             amplitudes: Vec::new(),
             response: Vec::new(),
             folded: None,
@@ -154,6 +166,7 @@ pub fn observe(
         unsupported_pulses: detection.unsupported_pulses,
         missed_pulses: detection.missed_pulses,
         jump_samples: detection.jump_samples,
+        lags: detection.lags.clone(),
         flags,
         classification,
         ..undriven(record)
@@ -200,12 +213,22 @@ fn undriven(record: &Record) -> Observation {
         unsupported_pulses: 0,
         missed_pulses: 0,
         jump_samples: 1,
+        low_pass: smears_jumps(record),
+        lags: Vec::new(),
+        late: Vec::new(),
         amplitudes: amplitudes(record),
         response: Vec::new(),
         folded: None,
         decay: None,
         flags: record.flags.clone(),
     }
+}
+
+/// Whether a motion channel's low-pass takes more than a sample to settle.
+fn smears_jumps(record: &Record) -> bool {
+    let motion = record.channels.iter().filter(|c| c.role.is_motion());
+    let mut filters = motion.filter_map(|c| c.low_pass);
+    filters.any(|filter| filter.settling_s() * record.sample_rate_hz > 1.0)
 }
 
 /// Scale each record's drive amplitude by what was measured, relative to the median of its
@@ -312,6 +335,9 @@ impl Observation {
             unsupported_pulses: 0,
             missed_pulses: 0,
             jump_samples: 1,
+            low_pass: false,
+            lags: Vec::new(),
+            late: Vec::new(),
             amplitudes: Vec::new(),
             response: Vec::new(),
             folded: None,

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ContactContent, Flag, FlagCode, Role};
+use super::{ContactContent, Flag, FlagCode, LowPass, Role};
 use labfiles::units::{self, Dimension, Quantity, Scale, Unit};
 use labfiles::{ChannelInfo, DatasetInfo};
 
@@ -74,6 +74,9 @@ pub struct ChannelSetup {
     pub sign: f64,
     /// Corner of the first-order high-pass that the signal carries, Hz.
     pub high_pass_hz: Option<f64>,
+    /// Low-pass that the signal has passed.
+    #[serde(default)]
+    pub low_pass: Option<LowPass>,
     /// How much later than the drive's channel it shows what happens, s.
     #[serde(default)]
     pub delay_s: f64,
@@ -95,6 +98,11 @@ pub struct ChannelSetup {
 }
 
 impl ChannelSetup {
+    /// How much later than the drive's channel it shows slow motion, its low-pass included, s.
+    pub fn whole_delay_s(&self) -> f64 {
+        self.delay_s + self.low_pass.map_or(0.0, |filter| filter.delay_s())
+    }
+
     /// A channel read as it is, in the unit the file states.
     pub fn plain(role: Role, source: ChannelKey) -> Self {
         Self {
@@ -105,6 +113,7 @@ impl ChannelSetup {
             offset: 0.0,
             sign: 1.0,
             high_pass_hz: None,
+            low_pass: None,
             delay_s: 0.0,
             delay_uncertainty_s: None,
             threshold: None,

@@ -5,7 +5,7 @@ use super::bind::flag;
 pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
 use super::time_axis;
 use super::{Channel, ContactContent, Flag, FlagCode, Record, Role, Setting};
-use super::{condition, consistency, events};
+use super::{condition, consistency, events, late};
 use crate::signal::whole;
 use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 
@@ -153,6 +153,7 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
         let flags = consistency::inspect(&record);
         record.flags.extend(flags);
     }
+    late::align(&mut record, setup.channels);
     skip(&mut record, setup.skip_s);
     record
 }
@@ -253,6 +254,7 @@ fn scaled(
         dimension: bound.to_si.dimension,
         values,
         high_pass_hz: setup.high_pass_hz,
+        low_pass: setup.low_pass,
         threshold: setup.threshold.map(|t| t.si),
     })
 }

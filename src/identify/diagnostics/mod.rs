@@ -3,9 +3,12 @@
 
 pub mod agreement;
 pub mod beyond;
+pub mod clock;
 pub mod contact_law;
 pub mod contradicting_gap;
+pub mod doubt;
 pub mod influence;
+pub mod late_channel;
 pub mod momentum;
 pub mod stated_clearances;
 pub mod stated_frequencies;
@@ -14,3 +17,4 @@ pub mod suspicion;
 pub mod swapped_channels;
 pub mod undeclared_high_pass;
 pub mod verdict;
+pub mod wrong_gains;

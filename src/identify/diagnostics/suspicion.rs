@@ -1,4 +1,4 @@
-//! Mistakes of the laboratory that the data give away: a gap stated wrongly, a gain or a corner
+//! Mistakes of the laboratory that the data give away: a gap stated wrongly, a corner
 //! far off, the channels of the two masses interchanged.
 //!
 //! A gap or an interchange is tested as an alternative: what would change if it were so, and how
@@ -17,8 +17,8 @@ use crate::signal::columns::dot;
 
 /// Standard errors from which a deviation is named.
 pub(super) const SURE: f64 = 6.0;
-/// Standard uncertainties of gains and corners from which one is named.
-const CHANNEL_LIMIT: f64 = 4.0;
+/// Standard uncertainties of the corners from which one is named.
+const CORNER_LIMIT: f64 = 4.0;
 /// Least relative deviation of a gap that is named.
 const GAP_LIMIT: f64 = 2e-3;
 /// Standard uncertainties, those of the clearances and of the fit combined, from which a gap is named
@@ -36,31 +36,22 @@ fn is_named(odd: &OddGap, uncertainty_m: f64) -> bool {
     }
 }
 
-/// Gains and corners of channels that are far outside what the laboratory states of them.
-pub fn channels(fit: &Fit, factor: f64, nominal: &Nominal) -> Vec<Finding> {
+/// Corners of channels that are far outside what the laboratory states of them.
+pub fn corners(fit: &Fit, factor: f64, nominal: &Nominal) -> Vec<Finding> {
     let of = |coordinate: &Coordinate| {
-        let (allowed, index) = match coordinate {
-            Coordinate::Gain(index) => (nominal.gain_uncertainty, index),
-            Coordinate::Corner(index) => (nominal.corner_uncertainty, index),
-            _ => return None,
+        let Coordinate::Corner(index) = *coordinate else {
+            return None;
         };
         let off = fit.parameters.coordinate(*coordinate);
         let error = fit.error(*coordinate)? * factor.sqrt();
-        let z_score = off / allowed.hypot(error).max(f64::MIN_POSITIVE);
-        let odd = z_score.abs() > CHANNEL_LIMIT && off.abs() > SURE * error;
-        let channel = *GAIN_ROLES.get(*index).filter(|_| odd)?;
-        let deviation = off.exp_m1();
-        Some(match coordinate {
-            Coordinate::Corner(_) => Finding::WrongCorner {
-                channel,
-                deviation,
-                z_score,
-            },
-            _ => Finding::WrongGain {
-                channel,
-                deviation,
-                z_score,
-            },
+        let allowed = nominal.corner_uncertainty.hypot(error);
+        let z_score = off / allowed.max(f64::MIN_POSITIVE);
+        let odd = z_score.abs() > CORNER_LIMIT && off.abs() > SURE * error;
+        let channel = *GAIN_ROLES.get(index).filter(|_| odd)?;
+        Some(Finding::WrongCorner {
+            channel,
+            deviation: off.exp_m1(),
+            z_score,
         })
     };
     fit.free.iter().filter_map(of).collect()

@@ -2,8 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::identify::diagnostics::contact_law::CurvePoint;
 use crate::identify::diagnostics::structure::Grouping;
-use crate::identify::estimate::{Estimate, Status};
+use crate::identify::estimate::{Estimate, Status, not_identifiable};
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::impacts::ImpactBlock;
 use crate::identify::evidence::resonance::{self, ResonanceBlock};
@@ -141,6 +142,16 @@ pub fn judge_structure(result: &mut MethodResult, grouping: Grouping) {
     if let Some(estimate) = &mut result.parameters.restitution {
         not_one_number(estimate, &values);
     }
+}
+
+/// Speeds that impacts seem to gain are not those of impacts: they tell no R.
+pub fn judge_gained(result: &mut MethodResult, point: CurvePoint) {
+    result.fits = Some(false);
+    result.remarks.push(Remark::SpeedsGained {
+        speed_m_s: point.speed_m_s,
+        ratio: point.restitution,
+    });
+    result.parameters.restitution = Some(not_identifiable(Note::SpeedsGained));
 }
 
 /// Mark R as not one number, with an interval that holds all of its values.

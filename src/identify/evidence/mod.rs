@@ -50,6 +50,8 @@ pub struct Nominal {
     pub gain_uncertainty: f64,
     /// Standard uncertainty of the corners of the channels' high-pass, relative.
     pub corner_uncertainty: f64,
+    /// Standard uncertainty of the sampler's clock, relative.
+    pub clock_uncertainty: f64,
     /// Standard uncertainty of each stated clearance, and of the zero that all share, m.
     pub clearance_uncertainty_m: f64,
     /// Delay of the motion channels against the drive's, s, by the index of their gains.

@@ -38,6 +38,24 @@ pub enum Finding {
         /// How sure.
         z_score: f64,
     },
+    /// One of the gains of two channels is off, the data do not tell which.
+    GainsApart {
+        /// The channels, the one that reads more first.
+        channels: [Role; 2],
+        /// How much more it reads for the same motion, relative.
+        deviation: f64,
+        /// How sure.
+        z_score: f64,
+    },
+    /// A channel is later or earlier than stated.
+    LateChannel {
+        /// The channel.
+        channel: Role,
+        /// By how much it is later than stated, ms; negative where it is earlier.
+        later_ms: f64,
+        /// How sure.
+        z_score: f64,
+    },
     /// The corner of a channel's high-pass is far off the stated one.
     WrongCorner {
         /// The channel.
@@ -56,6 +74,13 @@ pub enum Finding {
         /// How sure.
         z_score: f64,
     },
+    /// A channel has passed a low-pass that is not stated.
+    UndeclaredLowPass {
+        /// The channel.
+        channel: Role,
+        /// Its corner, as jumps show it, Hz.
+        corner_hz: f64,
+    },
     /// The velocities of both masses are swapped.
     SwappedChannels {
         /// How sure.
@@ -69,6 +94,19 @@ pub enum Finding {
         records: usize,
         /// Records in which both are known.
         of: usize,
+    },
+    /// All stated frequencies are off by one small ratio: the sampler's clock is, or the generator.
+    ClockOrGenerator {
+        /// Measured over stated frequency, the mean.
+        ratio: f64,
+        /// Its standard error.
+        standard_error: f64,
+        /// Standard uncertainty of the clock, relative.
+        clock_uncertainty: f64,
+        /// Records in which both are known.
+        records: usize,
+        /// How sure.
+        z_score: f64,
     },
     /// The drive's frequencies are not the stated ones in most records.
     FrequenciesOff {
@@ -204,6 +242,34 @@ message_table! { Finding, key = template_key;
         channel = Value::Name(channel.name()),
         share = Value::Percent(deviation.abs(), 1),
         direction = direction(*deviation);
+    Self::GainsApart { channels: [high, low], deviation, .. } =>
+        "{high} reads {share} more than {low} for the same motion, and the data do not tell which \
+         is off: calibrate both, correct scale in [channels.{high}] or [channels.{low}], or state a \
+         larger gain_uncertainty in [rig]",
+        "{high} zeigt bei gleicher Bewegung {share} mehr als {low}; welcher Kanal falsch zeigt, \
+         sagen die Daten nicht: beide kalibrieren, scale in [channels.{high}] oder [channels.{low}] \
+         richtigstellen, oder eine größere gain_uncertainty in [rig] angeben",
+        high = Value::Name(high.name()),
+        low = Value::Name(low.name()),
+        share = Value::Percent(*deviation, 1);
+    Self::LateChannel { channel, later_ms, .. } =>
+        match *later_ms > 0.0 {
+            true => "{channel} shows the motion {time} ms later than stated: measure its delay and \
+                     state it as delay in [channels.{channel}]; all is corrected by it here",
+            false => "{channel} shows the motion {time} ms earlier than stated: check the delays of \
+                      it and of the drive's channel, and state it as delay in [channels.{channel}]; \
+                      all is corrected by it here",
+        },
+        match *later_ms > 0.0 {
+            true => "{channel} zeigt die Bewegung {time} ms später als angegeben: die Verzögerung \
+                     messen und als delay in [channels.{channel}] angeben; hier ist alles um sie \
+                     berichtigt",
+            false => "{channel} zeigt die Bewegung {time} ms früher als angegeben: die Verzögerungen \
+                      dieses Kanals und der Erregung prüfen und als delay in [channels.{channel}] \
+                      angeben; hier ist alles um sie berichtigt",
+        },
+        channel = Value::Name(channel.name()),
+        time = Value::Number(later_ms.abs(), 2);
     Self::WrongCorner { channel, deviation, .. } =>
         "the corner of the high-pass of {channel} is {share} too {direction} for the stated one: \
          correct high_pass in [channels.{channel}], or state a larger corner_uncertainty in [rig]",
@@ -222,6 +288,18 @@ message_table! { Finding, key = template_key;
          high_pass in [channels.{channel}] und den anderen angeben",
         channel = Value::Name(channel.name()),
         corner = Value::Shortest(two_digits(*corner_hz));
+    Self::UndeclaredLowPass { channel, corner_hz } =>
+        "{channel} takes longer for a jump than the contact is closed, as behind a low-pass of about \
+         {corner} Hz, and none is stated: look up the filters of vibrometer, amplifier and converter, \
+         and state low_pass and low_pass_order in [channels.{channel}]; here that corner is used, and \
+         the speeds at impacts are not",
+        "{channel} braucht für einen Sprung länger, als der Kontakt geschlossen ist, wie hinter einem \
+         Tiefpass von etwa {corner} Hz, und keiner ist angegeben: die Filter von Vibrometer, \
+         Verstärker und Wandler nachsehen und als low_pass und low_pass_order in \
+         [channels.{channel}] angeben; hier wird diese Grenzfrequenz verwendet, und die \
+         Geschwindigkeiten an Stößen werden es nicht",
+        channel = Value::Name(channel.name()),
+        corner = Value::Shortest(two_digits(*corner_hz));
     Self::SwappedChannels { .. } =>
         "all data fit far better with the velocities of both masses swapped: swap \
          [channels.velocity_x] and [channels.velocity_y], or the displacements",
@@ -237,6 +315,18 @@ message_table! { Finding, key = template_key;
         ratio = Value::Number(*ratio, 4),
         records = Value::Count(*records),
         of = Value::Count(*of);
+    Self::ClockOrGenerator { ratio, clock_uncertainty, records, .. } =>
+        "the measured drive is at {ratio} times the stated frequencies on average over {records} \
+         records, which the clock's {clock} ppm do not explain: the sampler's clock or the generator \
+         is off; measure both with a frequency counter and correct sample_rate or the stated \
+         frequencies: until then $f_0$ is known no better than that",
+        "die gemessene Erregung hat im Mittel über {records} Aufzeichnungen das {ratio}-fache der \
+         angegebenen Frequenzen, was die {clock} ppm des Taktes nicht erklären: der Abtasttakt oder \
+         der Generator ist falsch; beide mit einem Frequenzzähler messen und sample_rate oder die \
+         angegebenen Frequenzen richtigstellen: bis dahin ist $f_0$ nicht besser bekannt",
+        ratio = Value::Number(*ratio, 5),
+        clock = Value::Shortest(two_digits(1e6 * clock_uncertainty)),
+        records = Value::Count(*records);
     Self::FrequenciesOff { records, of } =>
         "the drive's frequency is not the stated one in {records} of {of} records: check that \
          each row of the run table names its own file",
@@ -332,6 +422,7 @@ fn template_key(finding: &Finding) -> String {
             let way = if *strength > 0.0 { "above" } else { "below" };
             format!("{}_{}_zero", effect.name(), way)
         }
+        Finding::LateChannel { later_ms, .. } if *later_ms <= 0.0 => "early_channel".to_owned(),
         _ => finding.kind().to_owned(),
     }
 }

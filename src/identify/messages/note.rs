@@ -35,6 +35,10 @@ pub enum Note {
     },
     /// Methods do not agree on it; the interval covers them.
     MethodsDisagree,
+    /// An instrument is off, as a finding says; the interval covers what that leaves open.
+    InstrumentOff,
+    /// Speeds after impacts exceed those before.
+    SpeedsGained,
     /// R depends on the speed.
     NotOneNumber,
     /// The frequency changes over the decay.
@@ -89,6 +93,13 @@ message_table! { Note;
         "the methods do not agree on it: the interval is widened by their disagreement",
         "die Verfahren stimmen darin nicht überein: das Intervall ist um ihren Unterschied \
          verbreitert";
+    Self::InstrumentOff =>
+        "an instrument is off, see the finding: the interval is widened by what that leaves open",
+        "ein Messgerät zeigt falsch, siehe den Befund: das Intervall ist um das verbreitert, was \
+         das offen lässt";
+    Self::SpeedsGained =>
+        "the speeds after impacts exceed those before: see the remark",
+        "die Geschwindigkeiten nach Stößen übersteigen die davor: siehe die Anmerkung";
     Self::NotOneNumber =>
         "$R$ is not one number here: see the remark on its change",
         "$R$ ist hier nicht eine Zahl: siehe die Anmerkung zu seiner Änderung";

@@ -33,7 +33,7 @@ impl GroupPoint {
     pub fn of(group: &ImpactGroup) -> Self {
         Self {
             group: group.group.clone(),
-            restitution: group.restitution,
+            restitution: group.restitution.min(1.0),
             half_width: NORMAL_975 * group.standard_error,
         }
     }
@@ -136,6 +136,13 @@ pub enum Remark {
         slower: SpeedPoint,
         /// R at the faster end.
         faster: SpeedPoint,
+    },
+    /// Speeds after impacts exceed those before.
+    SpeedsGained {
+        /// Approach speed before the impact, m/s.
+        speed_m_s: f64,
+        /// Speed after over speed before.
+        ratio: f64,
     },
     /// R depends on the speed because a contact lasts several samples.
     LongContact {
@@ -292,6 +299,14 @@ message_table! { Remark;
         slow = Value::Number(slower.speed_m_s, 3),
         last = Value::Number(faster.restitution, 3),
         fast = Value::Number(faster.speed_m_s, 3);
+    Self::SpeedsGained { speed_m_s, ratio } =>
+        "the masses seem to part {ratio} times as fast as they met, at {speed} m/s, which no contact \
+         makes: a velocity is late, filtered or wrongly scaled; no coefficient of restitution follows \
+         from the speeds at impacts",
+        "die Massen scheinen bei {speed} m/s {ratio}-mal so schnell auseinanderzugehen, wie sie sich \
+         trafen, was kein Kontakt bewirkt: eine Geschwindigkeit ist verzögert, gefiltert oder falsch \
+         skaliert; aus den Geschwindigkeiten an Stößen folgt keine Stoßzahl",
+        ratio = Value::Number(*ratio, 1), speed = Value::Number(*speed_m_s, 3);
     Self::LongContact { slower, faster, samples } =>
         "$R$ goes from {first} at {slow} m/s to {last} at {fast} m/s, and a contact lasts {count} \
          samples: it is not an instantaneous impact, so one coefficient of restitution does not \

@@ -87,6 +87,7 @@ changes! {
     ("rig.restitution", Html, one_record, Replace("= 0.9", "= 0.8"));
     ("rig.gain_uncertainty", Identify, synthetic, Replace(r#""0.5 %""#, r#""2 %""#));
     ("rig.corner_uncertainty", Identify, synthetic, Replace(r#""2 %""#, r#""8 %""#));
+    ("rig.clock_uncertainty", Identify, synthetic, Add("rig", r#"clock_uncertainty = "0.1 %""#));
     ("rig.mass_x", Identify, weighed, Replace(r#"mass_x = "1 kg""#, r#"mass_x = "1.02 kg""#));
     ("rig.mass_y", Identify, weighed, Replace(r#"mass_y = "1 kg""#, r#"mass_y = "1.02 kg""#));
     ("rig.mass_uncertainty", Identify, weighed, Add("rig", r#"mass_uncertainty = "5 %""#));
@@ -100,6 +101,8 @@ changes! {
     ("channels.ROLE.offset", Classify, as_is, Add("channels.contact", r#"offset = "3 V""#));
     ("channels.ROLE.sign", Classify, as_is, Replace("sign = 1", "sign = -1"));
     ("channels.ROLE.high_pass", Classify, as_is, Replace(r#""0.5 Hz""#, r#""2 Hz""#));
+    ("channels.ROLE.low_pass", Classify, as_is, Add("channels.velocity_x", r#"low_pass = "200 Hz""#));
+    ("channels.ROLE.low_pass_order", Classify, filtered, Replace("low_pass_order = 1", "low_pass_order = 4"));
     ("channels.ROLE.delay", Identify, synthetic, Add("channels.velocity_x", r#"delay = "0.1 ms""#));
     ("channels.ROLE.delay_uncertainty", Identify, synthetic, Add("channels.velocity_x", r#"delay_uncertainty = "5 us""#));
     ("channels.ROLE.threshold", Classify, as_is, Replace(r#""2.5 V""#, r#""6 V""#));
@@ -129,6 +132,12 @@ changes! {
 
 /// The campaign of the tests.
 fn as_is(_: &Lab) {}
+
+/// With a low-pass of the first order.
+fn filtered(lab: &Lab) {
+    let filter = "low_pass = \"200 Hz\"\nlow_pass_order = 1";
+    add(lab, "channels.velocity_x", filter);
+}
 
 /// Add a line below a table's head; without such a table it is added.
 pub(super) fn add(lab: &Lab, table: &str, line: &str) {

@@ -118,6 +118,7 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("°", Dimension::Angle, std::f64::consts::PI / 180.0),
     ("1", Dimension::Number, 1.0),
     ("%", Dimension::Number, 1e-2),
+    ("ppm", Dimension::Number, 1e-6),
 ];
 
 /// The unit of a symbol; surrounding blanks are ignored, letters keep their case (`mN` is not
