@@ -359,7 +359,8 @@ impl Fused {
             .filter(|pair| pair[1].jump.middle() - pair[0].jump.middle() < ONE_IMPACT_S * rate_hz)
             .count();
         let contradicted = self.unsupported + self.missed;
-        !all.is_empty() && (self.jump_samples > 1 || 4 * close > all.len() || 2 * contradicted > all.len())
+        !all.is_empty()
+            && (self.jump_samples > 1 || 4 * close > all.len() || 2 * contradicted > all.len())
     }
 }
 

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::identify::diagnostics::agreement::{agreement, between_methods};
 use crate::identify::diagnostics::beyond;
 use crate::identify::diagnostics::clock;
+use crate::identify::diagnostics::contact_law;
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::doubt::{self, Doubt, Suspicion};
 use crate::identify::diagnostics::late_channel;
@@ -372,7 +373,11 @@ impl IdentificationRun<'_> {
         let weight = |attempt: &Option<FitResult>| succeeded(attempt).map(|f| 1.0 / f.factor);
         // Flights rest on the speeds at impacts; waveforms tell the same better than either.
         let flown = weight(&alone.flights).filter(|_| succeeded(&alone.trajectories).is_none());
-        let impact_weight = succeeded(&alone.impacts).map(|found| {
+        // Speeds that impacts seem to gain tell no R.
+        let law = contact_law::contact_law(&self.selection.blocks.impact);
+        let gained = law.is_some_and(|law| law.gained().is_some());
+        let impacts = succeeded(&alone.impacts).filter(|_| !gained);
+        let impact_weight = impacts.map(|found| {
             let told = [&alone.trajectories, &alone.resonance];
             let waveforms = told.into_iter().find_map(succeeded).unwrap_or(found);
             let effects = self.evidence.nominal.effects;

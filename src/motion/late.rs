@@ -166,6 +166,10 @@ mod tests {
         // a contact that is closed as long, and a low-pass that is stated
         let lags = observations.iter_mut().flat_map(|o| &mut o.lags);
         lags.for_each(|lag| lag.closed_s = Some(2.5e-3));
-        assert!(late_channels(&observations).iter().all(|l| l.low_pass.is_none()));
+        assert!(
+            late_channels(&observations)
+                .iter()
+                .all(|l| l.low_pass.is_none())
+        );
     }
 }

@@ -50,8 +50,8 @@ pub(super) fn align(record: &mut Record, setups: &[ChannelSetup]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{LowPass, Role};
     use crate::record::calibrate::ChannelKey;
+    use crate::record::{LowPass, Role};
 
     #[test]
     fn channels_that_are_late_or_early_by_whole_samples_show_one_time() {

@@ -38,7 +38,10 @@ impl LowPass {
 
     /// Time after a jump until it has settled, s.
     pub fn settling_s(&self) -> f64 {
-        let slowest = self.poles().map(|pole| -pole.re).fold(f64::INFINITY, f64::min);
+        let slowest = self
+            .poles()
+            .map(|pole| -pole.re)
+            .fold(f64::INFINITY, f64::min);
         SETTLED / slowest
     }
 }
@@ -67,7 +70,10 @@ mod tests {
             assert!((filter.delay_s() * rate - want).abs() < 1e-6, "{order}");
             // the slowest pole lies at sin(90°/n) of the corner
             let slowest = (std::f64::consts::FRAC_PI_2 / f64::from(order)).sin() * rate;
-            assert!((filter.settling_s() * slowest - 8.0).abs() < 1e-9, "{order}");
+            assert!(
+                (filter.settling_s() * slowest - 8.0).abs() < 1e-9,
+                "{order}"
+            );
         }
     }
 }

@@ -56,11 +56,17 @@ fn off_together(observations: &[Observation], clock: f64) -> Option<Finding> {
         let compared = o.drive.zip(o.setting.stated_frequency_hz);
         if let Some((drive, stated_hz)) = compared.filter(|_| !alone) {
             let ratio = (drive.frequency_hz / stated_hz).ln();
-            by_stated.entry(stated_hz.to_bits()).or_default().push(ratio);
+            by_stated
+                .entry(stated_hz.to_bits())
+                .or_default()
+                .push(ratio);
             records += 1;
         }
     }
-    let each: Vec<f64> = by_stated.values().filter_map(|r| robust::median(r)).collect();
+    let each: Vec<f64> = by_stated
+        .values()
+        .filter_map(|r| robust::median(r))
+        .collect();
     if each.len() < FEWEST {
         return None;
     }

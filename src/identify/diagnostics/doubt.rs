@@ -50,8 +50,10 @@ impl Doubt {
 
 /// The mistakes, and all that they leave open.
 pub fn parted(suspicions: Vec<Suspicion>) -> (Vec<Finding>, Vec<Doubt>) {
-    let (findings, doubts): (Vec<_>, Vec<_>) =
-        suspicions.into_iter().map(|s| (s.finding, s.doubts)).unzip();
+    let (findings, doubts): (Vec<_>, Vec<_>) = suspicions
+        .into_iter()
+        .map(|s| (s.finding, s.doubts))
+        .unzip();
     (findings, doubts.concat())
 }
 

@@ -64,7 +64,9 @@ pub fn wrong_gain(found: &MethodFit, stated: f64) -> Option<Suspicion> {
     };
     let open = Coordinate::PHYSICAL.into_iter().filter_map(|parameter| {
         let each = [Some(worst), also].into_iter().flatten();
-        let by = each.filter_map(|k| moved(parameter, &k)).fold(0.0, f64::max);
+        let by = each
+            .filter_map(|k| moved(parameter, &k))
+            .fold(0.0, f64::max);
         Doubt::material(found, parameter, by, Note::InstrumentOff)
     });
     Some(Suspicion {

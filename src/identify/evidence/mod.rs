@@ -11,6 +11,7 @@ mod groups;
 pub mod high_pass;
 pub mod impacts;
 pub mod nearest_orbit;
+pub mod pickup;
 pub mod record_motion;
 pub mod reduced_record;
 pub mod resonance;
@@ -24,6 +25,7 @@ use crate::event::RigKind;
 use crate::identify::evidence::boundary::BoundaryBlock;
 use crate::identify::evidence::flights::FlightBlock;
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
+use crate::identify::evidence::pickup::Pickups;
 use crate::identify::evidence::resonance::ResonanceBlock;
 use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::fit::effect::{Effect, Effects};
@@ -215,6 +217,8 @@ impl Blocks {
         blocks.give_gaps_errors(evidence.nominal.clearance_uncertainty_m);
         let reach_m = reach_m(observations);
         (blocks.trajectory.reach_m, blocks.resonance.reach_m) = (reach_m, reach_m);
+        let pickups = Pickups::of(observations);
+        (blocks.trajectory.pickups, blocks.resonance.pickups) = (pickups, pickups);
         blocks.trajectory.effects = evidence.nominal.effects;
         blocks
     }

@@ -249,7 +249,7 @@ impl<'a> RecordMotion<'a> {
                 (Coordinate::Gain(gain), _) => {
                     slopes.alone(Column::Terms(self.only(values, *gain)))
                 }
-                (Coordinate::Effect(effect), _) if effect.is_acceleration() => {
+                (Coordinate::Effect(effect), _) if effect.is_perturbation() => {
                     slopes.alone(Column::Effect(*effect))
                 }
                 (_, Some(slope)) => {
@@ -615,7 +615,7 @@ pub(super) mod tests {
             coordinates.extend([Coordinate::Corner(1), Coordinate::Corner(2)]);
             coordinates.extend([Coordinate::Delay(0), Coordinate::Delay(3)]);
             coordinates.extend([Coordinate::ScrewZero, Coordinate::Gap(1)]);
-            let effects = Effects::all().iter().filter(|e| !e.is_acceleration());
+            let effects = Effects::all().iter().filter(|e| !e.is_perturbation());
             coordinates.extend(effects.map(Coordinate::Effect));
             let slopes = motion.slopes(&here, &coordinates);
             for (coordinate, sum) in coordinates.into_iter().zip(&slopes.sums) {

@@ -4,6 +4,7 @@ use nalgebra::Complex;
 
 use crate::event::RigKind;
 use crate::identify::evidence::direction::{change, relative_length};
+use crate::identify::evidence::pickup::Pickups;
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::fit::Block;
 use crate::identify::fit::effect::{Effect, EffectKind};
@@ -74,6 +75,8 @@ pub struct ResonanceBlock {
     relative_error: f64,
     /// Displacement at which springs harden by the strength of that effect, m.
     pub reach_m: f64,
+    /// What channels may pick up from the drive.
+    pub pickups: Pickups,
 }
 
 impl ResonanceBlock {
@@ -110,6 +113,7 @@ impl ResonanceBlock {
             points,
             relative_error,
             reach_m: 1.0,
+            pickups: Pickups::default(),
         };
         block.allow(relative_error);
         block
@@ -409,6 +413,7 @@ struct Model<'a> {
     machine: Machine,
     eta: f64,
     responses: Vec<Predicted>,
+    pickups: Pickups,
 }
 
 /// Coordinates of a record's own that change its responses: all physical ones but R.
@@ -444,6 +449,12 @@ impl Model<'_> {
             Coordinate::Effect(Effect::Hardening) => self.over_force(0),
             Coordinate::Effect(Effect::Friction) => self.over_force(1),
             Coordinate::Effect(Effect::Drag) => self.over_force(2),
+            Coordinate::Effect(effect @ (Effect::PickupX | Effect::PickupY)) => {
+                let responses = self.point.responses.iter();
+                let unit = |r: &Response| self.pickups.unit(effect, r.role);
+                let unit = |r| Complex::from(unit(r) * self.point.drive_amplitude);
+                responses.map(unit).collect()
+            }
             _ => match self.parameters.own_slope(&self.at, coordinate) {
                 // The campaign's x_st moves with the record's own.
                 Some(slope) if coordinate == Coordinate::Deflection => {
@@ -524,6 +535,7 @@ impl ResonanceBlock {
             machine,
             eta,
             responses,
+            pickups: self.pickups,
         }
     }
 
@@ -548,9 +560,16 @@ impl ResonanceBlock {
         Whitening::new(&columns)
     }
 
-    fn apart(&self, point: &ResonancePoint, found: &[Predicted]) -> Vec<f64> {
-        let pairs = point.responses.iter().zip(found);
-        let apart = pairs.map(|(r, p)| Complex::new(r.real, r.imaginary) - p.value);
+    fn apart(&self, found: &Model<'_>) -> Vec<f64> {
+        let point = found.point;
+        let pairs = point.responses.iter().zip(&found.responses);
+        let apart = pairs.map(|(r, p)| {
+            let picked_up = [Effect::PickupX, Effect::PickupY].map(|effect| {
+                let unit = self.pickups.unit(effect, r.role) * point.drive_amplitude;
+                found.parameters.effect(effect) * unit
+            });
+            Complex::new(r.real, r.imaginary) - p.value - picked_up[0] - picked_up[1]
+        });
         point.weighted(apart)
     }
 }
@@ -562,7 +581,7 @@ impl Block for ResonanceBlock {
 
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let point = &self.points[item];
-        let mut out = self.apart(point, &self.model(point, parameters).responses);
+        let mut out = self.apart(&self.model(point, parameters));
         point.shared.apply(&mut out);
         Some(out)
     }
@@ -585,7 +604,7 @@ impl Block for ResonanceBlock {
             white(point.weighted(slopes.into_iter().map(|s| -s)))
         };
         let columns = coordinates.iter().map(column).collect();
-        Some((white(self.apart(point, &found.responses)), columns))
+        Some((white(self.apart(&found)), columns))
     }
 
     fn group(&self, item: usize) -> Option<Group> {
@@ -599,6 +618,9 @@ impl Block for ResonanceBlock {
             | Coordinate::ScrewZero
             | Coordinate::Gap(_)
             | Coordinate::Effect(Effect::ClearanceDrift) => false,
+            Coordinate::Effect(effect @ (Effect::PickupX | Effect::PickupY)) => {
+                self.pickups.has(effect)
+            }
             Coordinate::Effect(effect) => !matches!(
                 effect.kind(),
                 EffectKind::Harmonics | EffectKind::ContactDuration | EffectKind::SpringAsymmetry
@@ -613,6 +635,7 @@ mod tests {
     use super::*;
     use crate::identify::fit::Problem;
     use crate::identify::fit::block::difference;
+    use crate::motion::{Amplitude, Motion};
 
     /// Impactless records of two masses (m, k, b, F), by their own transfer functions.
     fn measured(masses: [[f64; 4]; 2]) -> ResonanceBlock {
@@ -694,6 +717,13 @@ mod tests {
             Role::DisplacementX,
             Role::AccelerationY,
         ];
+        let mut amplitudes = Observation::of("r", 14.0, Motion::Impactless);
+        let of = |role| Amplitude {
+            role,
+            half_range: 0.2,
+            rms: 0.1,
+        };
+        amplitudes.amplitudes = vec![of(Role::VelocityX), of(Role::VelocityY)];
         let mut block = ResonanceBlock {
             rig: RigKind::Double,
             points: vec![ResonancePoint {
@@ -720,6 +750,7 @@ mod tests {
             }],
             relative_error: 1e-3,
             reach_m: 3e-3,
+            pickups: Pickups::of(&[amplitudes]),
         };
         block.allow(1e-3);
         let mut effects = [0.0; Effect::COUNT];
@@ -729,6 +760,7 @@ mod tests {
         effects[Effect::Friction.place()] = 0.03;
         effects[Effect::Drag.place()] = 0.02;
         effects[Effect::HystereticDamping.place()] = 0.1;
+        effects[Effect::PickupX.place()] = 3e-3;
         let p = Parameters {
             drive_asymmetry: 0.03,
             stiffness_asymmetry: -0.02,
