@@ -119,7 +119,11 @@ mod tests {
 
     /// A deviation of either sign, by turns of the stated frequencies.
     fn either(i: usize, size: f64) -> f64 {
-        if i / 2 % 2 == 0 { size } else { -size }
+        if (i / 2).is_multiple_of(2) {
+            size
+        } else {
+            -size
+        }
     }
 
     #[test]

@@ -674,6 +674,7 @@ mod tests {
             points: (0..20).map(point).collect(),
             relative_error: 0.0,
             reach_m: 1.0,
+            pickups: Pickups::default(),
         };
         block.allow(0.0);
         block
