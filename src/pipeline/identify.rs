@@ -80,7 +80,7 @@ const ROUGHLY: f64 = 0.5;
 /// What is stated, with what is left of the delays of channels whose whole samples were removed.
 fn nominal_of(campaign: &ResolvedCampaign, observed: &Observed) -> Nominal {
     let mut nominal = nominal(campaign);
-    let late = observed.observations.first().map_or(&[][..], |o| &o.late);
+    let late = observed.late();
     let campaign = campaign.with_late(late);
     let rates: Vec<f64> = observed
         .observations

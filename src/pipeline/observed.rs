@@ -7,7 +7,7 @@ use super::checkpoint;
 use super::error::{PipelineError, Progress, RefusedRecord};
 use super::observe;
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::motion::{Bracket, Observation, brackets, late_channels, scale_drives};
+use crate::motion::{Bracket, LateChannel, Observation, brackets, late_channels, scale_drives};
 use labfiles::output::OutputError;
 
 /// All records as observed.
@@ -45,6 +45,11 @@ impl Observed {
         let chunk = checkpoint::chunk_of(campaign.records.len());
         let observations = observe::observe_in_chunks(campaign, &kept, chunk, progress)?;
         Self::from_observations(aligned(campaign, observations, progress)?)
+    }
+
+    /// The channels that were found late, and whose samples were moved back.
+    pub fn late(&self) -> &[LateChannel] {
+        self.observations.first().map_or(&[], |o| &o.late)
     }
 
     /// Forget the folded waveforms of all records.

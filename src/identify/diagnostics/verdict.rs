@@ -151,7 +151,7 @@ pub fn judge_gained(result: &mut MethodResult, point: CurvePoint) {
         speed_m_s: point.speed_m_s,
         ratio: point.restitution,
     });
-    result.parameters.restitution = Some(not_identifiable(Note::SpeedsGained));
+    result.parameters.restitution = Some(not_identifiable(Note::NotOfImpacts));
 }
 
 /// Mark R as not one number, with an interval that holds all of its values.

@@ -38,7 +38,7 @@ pub enum Note {
     /// An instrument is off, as a finding says; the interval covers what that leaves open.
     InstrumentOff,
     /// Speeds after impacts exceed those before.
-    SpeedsGained,
+    NotOfImpacts,
     /// R depends on the speed.
     NotOneNumber,
     /// The frequency changes over the decay.
@@ -97,7 +97,7 @@ message_table! { Note;
         "an instrument is off, see the finding: the interval is widened by what that leaves open",
         "ein Messgerät zeigt falsch, siehe den Befund: das Intervall ist um das verbreitert, was \
          das offen lässt";
-    Self::SpeedsGained =>
+    Self::NotOfImpacts =>
         "the speeds after impacts exceed those before: see the remark",
         "die Geschwindigkeiten nach Stößen übersteigen die davor: siehe die Anmerkung";
     Self::NotOneNumber =>
