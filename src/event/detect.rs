@@ -436,6 +436,9 @@ fn candidates(
             jump: *jump,
             source,
             dead_samples,
+            open_from: pulse
+                .filter(|p| p.samples() < dead_from)
+                .map_or(0, |p| p.last + 1),
         });
     }
     out
@@ -468,6 +471,7 @@ fn from_contact_alone(closed: &[Closed], dead_from: usize) -> Fused {
                 error: f64::NAN,
             },
             source: DetectionSource::Contact,
+            open_from: 0,
             dead_samples: if pulse.samples() >= dead_from {
                 pulse.samples() as f64
             } else {
