@@ -147,7 +147,8 @@ fn group(name: String, members: &[GroupedRatio]) -> ImpactGroup {
         group: name,
         impacts: members.len(),
         speed_m_s: (!speeds.is_empty()).then(|| crate::signal::robust::mean(&speeds)),
-        restitution,
+        // what noise makes of more is no restitution
+        restitution: restitution.min(1.0),
         standard_error: error * (chi2 / freedom).max(1.0).sqrt(),
     }
 }

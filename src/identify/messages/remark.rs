@@ -33,7 +33,7 @@ impl GroupPoint {
     pub fn of(group: &ImpactGroup) -> Self {
         Self {
             group: group.group.clone(),
-            restitution: group.restitution.min(1.0),
+            restitution: group.restitution,
             half_width: NORMAL_975 * group.standard_error,
         }
     }
