@@ -62,14 +62,15 @@ pub struct ParameterSet {
     pub static_deflection_m: Option<Estimate>,
 }
 
-/// Standard errors (of the coordinate: R absolute, the others relative) from which a parameter is
-/// weak and from which it is not identifiable.
+/// Half widths of a 95 % interval (of the coordinate: R absolute, the others relative) from which a
+/// parameter is weak and from which it is not identifiable. Weak is what is not known within 5 %, and f0,
+/// on which all settings depend by η, within 2 %.
 pub(super) fn limits(coordinate: Coordinate) -> (f64, f64) {
     match coordinate {
-        Coordinate::Restitution => (0.03, 0.15),
-        Coordinate::Frequency => (0.01, 0.08),
-        Coordinate::Damping => (0.15, 0.9),
-        _ => (0.05, 0.5),
+        Coordinate::Restitution => (0.05, 0.3),
+        Coordinate::Frequency => (0.02, 0.16),
+        Coordinate::Damping => (0.05, 1.8),
+        _ => (0.05, 1.0),
     }
 }
 
@@ -87,9 +88,10 @@ pub fn estimate_within(
 ) -> Estimate {
     let error = spread.error;
     let (weak, unknown) = limits(coordinate);
-    if !error.is_finite() || error >= unknown {
+    let half = spread.half95();
+    if !half.is_finite() || half >= unknown {
         let parameter = coordinate;
-        return not_identifiable(match error.is_finite() {
+        return not_identifiable(match half.is_finite() {
             true => Note::Open {
                 parameter,
                 standard_error: error,
@@ -97,7 +99,6 @@ pub fn estimate_within(
             false => Note::NotDetermined { parameter },
         });
     }
-    let half = spread.half95();
     let (value, standard_error, interval) = if coordinate.is_logarithm() {
         let v = value.exp();
         (v, v * error, [v * (-half).exp(), v * half.exp()])
@@ -108,7 +109,7 @@ pub fn estimate_within(
         Coordinate::Restitution => [interval[0].max(0.0), interval[1].min(1.0)],
         _ => interval,
     };
-    let status = if error >= weak {
+    let status = if half >= weak {
         Status::Weak
     } else {
         Status::Identified

@@ -201,33 +201,26 @@ pub fn joint(
 
 /// Widen a joint R that rests on impacts between free flights by what their errors have in common.
 pub fn widen_common(joint: &mut MethodResult, block: &ImpactBlock) {
-    let common = block.common_error();
-    let Some(estimate) = joint
-        .parameters
-        .restitution
-        .as_mut()
-        .filter(|_| common > 0.0)
-    else {
-        return;
-    };
-    let (Some(value), Some(error), Some([low, high])) =
-        (estimate.value, estimate.standard_error, estimate.interval95)
-    else {
-        return;
-    };
-    // An interval that ends at 0 or 1 has its width on the other side.
-    let half = (value - low).max(high - value);
-    let half = half.hypot(NORMAL_975 * common);
-    estimate.standard_error = Some(error.hypot(common));
-    estimate.interval95 = Some([(value - half).max(0.0), (value + half).min(1.0)]);
+    if let Some(estimate) = &mut joint.parameters.restitution {
+        widen(estimate, block.common_error());
+    }
 }
 
-/// Add a systematic part to the standard error of R.
+/// Add a systematic part to the standard error of R; an interval that ends at 0 or 1 has its width on the
+/// other side.
 fn widen(restitution: &mut Estimate, systematic: f64) {
-    if let (Some(value), Some(error)) = (restitution.value, restitution.standard_error) {
-        let error = error.hypot(systematic);
-        let half = NORMAL_975 * error;
-        restitution.standard_error = Some(error);
+    let (Some(value), Some(error), Some([low, high])) = (
+        restitution.value,
+        restitution.standard_error,
+        restitution.interval95,
+    ) else {
+        return;
+    };
+    if systematic > 0.0 {
+        let half = (value - low)
+            .max(high - value)
+            .hypot(NORMAL_975 * systematic);
+        restitution.standard_error = Some(error.hypot(systematic));
         restitution.interval95 = Some([(value - half).max(0.0), (value + half).min(1.0)]);
     }
 }

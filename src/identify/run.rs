@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::identify::diagnostics::agreement::{agreement, between_methods};
 use crate::identify::diagnostics::beyond;
+use crate::identify::diagnostics::cause::Cause;
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
+use crate::identify::diagnostics::missing;
 use crate::identify::diagnostics::momentum;
 use crate::identify::diagnostics::stated_clearances;
 use crate::identify::diagnostics::stated_frequencies;
@@ -120,8 +122,8 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
     let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
     if observations_are_undriven(evidence) {
         results::widen_common(&mut joint, &run.selection.blocks.impact);
-        verdict::carry_over(&mut joint, &methods);
     }
+    verdict::carry_over(&mut joint, &methods);
     let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
     let of_joint = succeeded(&fits.joint).map(|f| &f.fit.parameters);
     let ideal = beyond.is_empty() && of_joint.is_none_or(|p| run.is_on_time(p));
@@ -139,7 +141,12 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
             *estimate = estimate::widened(*parameter, estimate, *by);
         }
     }
+    let cause = Cause::leading(&suspicions, &methods);
+    let replaced = cause.map_or_else(Vec::new, |c| c.withdraw(&mut joint, &methods));
+    suspicions.retain(|finding| !cause.is_some_and(|c| c.explains(finding)));
+    missing::say_missing(&mut joint, evidence);
     let verdict = verdict::verdict(&Basis {
+        cause,
         beyond: &beyond,
         joint: &joint,
         methods: &methods,
@@ -151,7 +158,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         verdict,
         joint,
         agreement,
-        uncertainty: run.uncertainty(&fits, &apart),
+        uncertainty: run.uncertainty(&fits, &apart).without(&replaced),
         suspicions,
         left_out: run.left_out(),
         used_by: run.used_by(&methods),
@@ -459,11 +466,14 @@ impl IdentificationRun<'_> {
         let priors = self.problem(blocks, fits.start, &fits.weights)?.priors;
         let allowed = Coordinate::PHYSICAL.into_iter().filter_map(|parameter| {
             let estimate = estimates.get(parameter)?;
-            let unit = parameter.slope(estimate.value?);
+            let value = estimate.value?;
+            let unit = parameter.slope(value);
             let freedom = found.spread(parameter)?.freedom;
+            // what the estimate is off this fit where it is that of a method alone
+            let off = found.fit.parameters.coordinate(parameter) - parameter.of_physical(value);
             Some(Allowed {
                 parameter,
-                standard_uncertainty: estimate.standard_error? / unit,
+                standard_uncertainty: (estimate.standard_error? / unit).hypot(off),
                 degrees_of_freedom: freedom.is_finite().then_some(freedom),
             })
         });

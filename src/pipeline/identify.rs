@@ -48,6 +48,7 @@ pub fn nominal(campaign: &ResolvedCampaign) -> Nominal {
             Some(kinds) => Effects::of(kinds),
             None => Effects::all(),
         },
+        flight: campaign.flight,
         ..delays(&campaign.channels)
     }
 }

@@ -3,9 +3,11 @@
 
 pub mod agreement;
 pub mod beyond;
+pub mod cause;
 pub mod contact_law;
 pub mod contradicting_gap;
 pub mod influence;
+pub mod missing;
 pub mod momentum;
 pub mod stated_clearances;
 pub mod stated_frequencies;

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::identify::diagnostics::cause::Cause;
 use crate::identify::diagnostics::structure::Grouping;
 use crate::identify::estimate::{Estimate, Status};
 use crate::identify::evidence::Evidence;
@@ -227,6 +228,8 @@ pub struct Basis<'a> {
     pub agreement: &'a Agreement,
     /// Mistakes of the laboratory that the data give away.
     pub suspicions: &'a [Finding],
+    /// The cause that bends the fits.
+    pub cause: Option<Cause>,
 }
 
 /// The verdict: the model does not fit if it does not fit the data of any one method.
@@ -251,7 +254,9 @@ pub fn verdict(basis: &Basis<'_>) -> Verdict {
     // x_st, which scales the lengths, is no answer by itself
     let answers = |v: &StatedValue| v.parameter != Coordinate::Deflection;
     let says_something = basis.agreement.agree.is_some() || values.iter().any(answers);
-    let second = says_something.then(|| Sentence::on_agreement(basis.agreement.agree));
+    // that methods which one cause bends agree says nothing
+    let second = (says_something && basis.cause.is_none())
+        .then(|| Sentence::on_agreement(basis.agreement.agree));
     let first = match kind {
         VerdictKind::DoesNotFit => Sentence::DoesNotFit,
         VerdictKind::NotIdentifiable if estimates.is_empty() => Sentence::NothingUsable,
@@ -303,6 +308,9 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
     findings.extend(noted);
     let disagreement = basis.agreement.disagreement().cloned();
     findings.extend(disagreement.map(|pair| Finding::Disagreement { pair }));
+    if let Some(cause) = basis.cause {
+        findings.retain(|finding| !cause.explains(finding));
+    }
     findings
 }
 
@@ -362,6 +370,7 @@ mod tests {
                 methods: &BTreeMap::new(),
                 agreement: &Agreement::default(),
                 suspicions: &[],
+                cause: None,
             })
         };
         assert_eq!(
@@ -394,12 +403,13 @@ mod tests {
                 pairs: vec![pair],
             },
             suspicions: &[],
+            cause: None,
         })
     }
 
     #[test]
     fn the_verdict_is_that_of_the_worst_parameter() {
-        // R is weak from 0.03 on and not identifiable from 0.15, f0 from 0.01 and 0.08
+        // as half widths R is weak from 0.05 on and not identifiable from 0.3, f0 from 2 and 16 %
         let kind = |r, f| judged(&joint(r, f), &[], true).kind;
         assert_eq!(kind(0.001, 0.001), VerdictKind::Identified);
         assert_eq!(kind(0.04, 0.001), VerdictKind::Weak);

@@ -20,7 +20,7 @@ pub mod trajectory_record;
 pub mod waveform;
 pub mod weighing;
 
-use crate::event::RigKind;
+use crate::event::{FlightKind, RigKind};
 use crate::identify::evidence::boundary::BoundaryBlock;
 use crate::identify::evidence::flights::FlightBlock;
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
@@ -60,6 +60,8 @@ pub struct Nominal {
     pub mass_asymmetry: Option<[f64; 2]>,
     /// Effects that the fit allows beyond the model.
     pub effects: Effects,
+    /// What moves the masses between impacts.
+    pub flight: FlightKind,
 }
 
 impl Nominal {

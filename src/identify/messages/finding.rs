@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::beyond::beyond;
 use super::direction::direction;
 use super::{Note, PairAgreement, Reason, Remark, Sentence};
+use crate::identify::diagnostics::cause::Cause;
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
@@ -187,6 +188,23 @@ pub enum Finding {
 }
 
 messages!(Finding);
+
+impl Finding {
+    /// The kind of cause that it names; `None` where it has no part in the fits.
+    pub fn cause(&self) -> Option<Cause> {
+        match self {
+            Self::UndeclaredHighPass { .. } => Some(Cause::Channel),
+            Self::WrongClearance { .. }
+            | Self::WrongGain { .. }
+            | Self::WrongCorner { .. }
+            | Self::SwappedChannels { .. } => Some(Cause::Statement),
+            Self::BeyondModel { .. } => Some(Cause::Effect),
+            Self::Misfit { remark, .. } => remark.cause(),
+            Self::Disagreement { .. } => Some(Cause::Symptom),
+            _ => None,
+        }
+    }
+}
 
 message_table! { Finding, key = template_key;
     Self::WrongClearance { stated_m, fitting_m, .. } =>

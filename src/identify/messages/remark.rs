@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Item, Note};
+use crate::identify::diagnostics::cause::Cause;
 use crate::identify::diagnostics::structure::ImpactGroup;
 use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::message::{Message, Value};
@@ -233,6 +234,23 @@ pub enum Remark {
 }
 
 messages!(Remark);
+
+impl Remark {
+    /// The kind of cause that it names, of a method that does not fit.
+    pub fn cause(&self) -> Option<Cause> {
+        match self {
+            Self::RestitutionChanges { .. }
+            | Self::LongContact { .. }
+            | Self::RestitutionByBounce { .. } => Some(Cause::Contact),
+            Self::RecordsDiffer { .. } => Some(Cause::Change),
+            Self::NotOneDegreeOfFreedom { .. }
+            | Self::WaveformsUnexplained { .. }
+            | Self::StatesDeviate { .. }
+            | Self::FewUsable { .. } => Some(Cause::Symptom),
+            _ => None,
+        }
+    }
+}
 
 message_table! { Remark;
     Self::OneDegreeOfFreedom { deviation } =>
