@@ -21,6 +21,6 @@ mod lag;
 mod refine;
 
 pub use detect::{DetectSettings, Detection, FlightKind, detect};
-pub use drive::DriveTone;
+pub use drive::{DriveTone, of_motion};
 pub use impact::{CornerShift, DetectionSource, Impact, Lag, MassSpeeds};
 pub use kinematics::{Kinematics, RigKind, Series};

@@ -122,7 +122,7 @@ fn starts(block: &ResonanceBlock, nominal: &Nominal) -> Vec<Parameters> {
 }
 
 /// Deflection that best scales the unit response to the measured amplitudes.
-fn deflection_guess(block: &ResonanceBlock, unit: &Parameters) -> f64 {
+pub(super) fn deflection_guess(block: &ResonanceBlock, unit: &Parameters) -> f64 {
     let (mut product, mut square) = (0.0, 0.0);
     for point in &block.points {
         for r in &point.responses {

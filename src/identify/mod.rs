@@ -26,6 +26,7 @@ pub mod results;
 pub mod run;
 pub mod selection;
 pub mod specimens;
+mod starts;
 pub mod uncertainty;
 
 pub use estimate::{Estimate, ParameterSet, Status};

@@ -5,9 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::identify::diagnostics::agreement::{agreement, between_methods};
 use crate::identify::diagnostics::beyond;
 use crate::identify::diagnostics::cause::Cause;
+use crate::identify::diagnostics::change::{self, Change};
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::missing;
 use crate::identify::diagnostics::momentum;
+use crate::identify::diagnostics::settling;
 use crate::identify::diagnostics::stated_clearances;
 use crate::identify::diagnostics::stated_frequencies;
 use crate::identify::diagnostics::suspicion::{self, OddGap};
@@ -27,6 +29,7 @@ use crate::identify::residuals::MethodResiduals;
 use crate::identify::selection::Selection;
 use crate::identify::uncertainty::budget;
 use crate::identify::uncertainty::posterior::{self, Posterior};
+use crate::identify::uncertainty::scatter::Spread;
 use crate::identify::uncertainty::{self, Uncertainty};
 use crate::identify::{decay, estimate, flight_times, residuals, results};
 use crate::motion::Observation;
@@ -141,8 +144,15 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
             *estimate = estimate::widened(*parameter, estimate, *by);
         }
     }
+    let observations = evidence.observations;
+    suspicions.extend(settling::not_settled(observations, &joint.parameters));
+    let change = run.change(&fits);
+    suspicions.extend(change.as_ref().map(|c| c.finding(observations.len())));
     let cause = Cause::leading(&suspicions, &methods);
-    let replaced = cause.map_or_else(Vec::new, |c| c.withdraw(&mut joint, &methods));
+    let mut replaced = cause.map_or_else(Vec::new, |c| c.withdraw(&mut joint, &methods));
+    if let Some(change) = change.filter(|_| cause == Some(Cause::Change)) {
+        replaced.extend(change.tell(&mut joint));
+    }
     suspicions.retain(|finding| !cause.is_some_and(|c| c.explains(finding)));
     missing::say_missing(&mut joint, evidence);
     let verdict = verdict::verdict(&Basis {
@@ -189,6 +199,43 @@ fn without_clearances(evidence: &Evidence<'_>, contradicted: Finding) -> Identif
     found.verdict.findings.insert(0, contradicted.clone());
     found.suspicions.insert(0, contradicted);
     found
+}
+
+/// What waveforms, resonance curve and impacts of some records alone tell of each parameter, the first of
+/// them that tells it: the coordinate and how far it may be off; `None` where nothing does.
+pub(super) fn part_alone(
+    evidence: &Evidence<'_>,
+    within: &dyn Fn(usize) -> bool,
+) -> Option<BTreeMap<Coordinate, (f64, Spread)>> {
+    let indexed = evidence.observations.iter().enumerate();
+    let observations: Vec<Observation> = indexed
+        .filter(|(i, _)| within(*i))
+        .map(|(_, o)| o.clone())
+        .collect();
+    let evidence = Evidence {
+        observations: &observations,
+        brackets: &[],
+        ..*evidence
+    };
+    let mut selection = Selection::new(&evidence);
+    let resonance = selection.resonance();
+    let begin = start(&evidence, &resonance);
+    let impacts = methods::impacts(&selection.blocks, &evidence.nominal, begin);
+    let begin = with_restitution(begin, &impacts);
+    let trajectories = selection.trajectories(begin);
+    let mut told = BTreeMap::new();
+    for found in [&trajectories, &resonance, &impacts]
+        .into_iter()
+        .filter_map(succeeded)
+    {
+        for (_, parameter) in found.fit.estimated() {
+            let value = found.fit.parameters.coordinate(parameter);
+            if let Some(spread) = found.spread(parameter) {
+                told.entry(parameter).or_insert((value, spread));
+            }
+        }
+    }
+    (!told.is_empty()).then_some(told)
 }
 
 /// Whether no record has a drive, so that R rests on the impacts alone.
@@ -502,6 +549,17 @@ impl IdentificationRun<'_> {
             scatter: joint.scatter.clone(),
             ..uncertainty::uncertainty(&problem, &present, joint, options)
         }
+    }
+
+    /// Where the campaign's rig became another one, if it did.
+    fn change(&self, fits: &Fits) -> Option<Change> {
+        let joint = succeeded(&fits.joint)?;
+        let blocks = &self.selection.blocks;
+        let problem = self.problem(blocks, fits.start, &fits.weights)?;
+        let present = joint::present(blocks, &fits.weights);
+        let fitted = (&self.selection, &problem, &present[..]);
+        let at = (&joint.fit.parameters, joint.factor);
+        change::change(self.evidence, fitted, at)
     }
 
     /// The gap that deviates most from what the others say, if one does.

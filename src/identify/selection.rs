@@ -15,6 +15,7 @@ use crate::identify::flight_times;
 use crate::identify::messages::{Item, LeftOut, Reason};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult};
+use crate::identify::starts;
 use crate::motion::{Bracket, Observation};
 
 /// Slowest multiplier's distance from 1 at which a motion is at its end.
@@ -103,6 +104,7 @@ impl<'a> Selection<'a> {
     /// without an orbit at the start are tried again, and those that fit far worse than the bulk are left out and named.
     pub fn trajectories(&mut self, start: Parameters) -> Option<FitResult> {
         let nominal = self.evidence.nominal;
+        let start = starts::best(&self.blocks, &nominal, start);
         let all = self.blocks.trajectory.records.clone();
         self.keep_those_with_orbits(&start);
         let first =

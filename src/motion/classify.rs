@@ -6,6 +6,7 @@ use crate::event::{Detection, Impact};
 use crate::motion::aperiodic::Irregularity;
 use crate::motion::closure::{self, Count, ImpactClosure, WaveformClosure};
 use crate::motion::kind::Motion;
+use crate::motion::settling;
 use crate::motion::undetermined::Undetermined;
 use crate::signal::whole;
 
@@ -51,6 +52,10 @@ pub struct Evidence {
     pub impact_closure: Option<ImpactClosure>,
     /// Fraction of windows of n periods that hold p impacts.
     pub count_agreement: Option<f64>,
+    /// What dies away while the motion is recorded, over the waveform's root mean square; `None` of a
+    /// motion that has settled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub settling: Option<f64>,
     /// Number of impacts in the record.
     pub impacts: usize,
     /// Measures that distinguish a beat from chaos, if the motion does not close.
@@ -278,6 +283,11 @@ impl Case<'_> {
             .reduce(f64::min);
         let closed = (2.5 * self.noise).max(self.settings.closed_ratio);
         let open = (5.0 * self.noise).max(self.settings.open_ratio);
+        let extent = (closed, evidence.periods_observed);
+        evidence.settling = settling::disturbance(closures, chosen, extent);
+        if evidence.settling.is_some() && (chosen.periods_n > 1 || chosen.ratio > closed) {
+            return undetermined(Undetermined::NotSettled, evidence);
+        }
         if chosen.ratio > open {
             return self.aperiodic(evidence);
         }

@@ -9,6 +9,7 @@ mod fold;
 mod kind;
 mod observation;
 mod response;
+mod settling;
 mod undetermined;
 
 pub use bracket::{BoundaryKind, Bracket, brackets};

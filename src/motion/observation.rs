@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::event::{DetectSettings, DriveTone, Impact, RigKind, detect};
+use crate::event::{DetectSettings, DriveTone, FlightKind, Impact, RigKind, detect, of_motion};
 use crate::motion::classify::{Classification, ClassifySettings, classify, undetermined};
 use crate::motion::fold::{Folded, fold};
 use crate::motion::kind::Motion;
@@ -38,6 +38,10 @@ pub struct Observation {
     pub duration_s: f64,
     /// The drive as measured.
     pub drive: Option<DriveTone>,
+    /// The tone that the motion has at the stated frequency of a drive that was not recorded: its
+    /// frequency is the drive's, its phase is not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion_tone: Option<DriveTone>,
     /// The motion and its evidence.
     #[serde(rename = "finding")]
     pub classification: Classification,
@@ -63,9 +67,14 @@ pub struct Observation {
 }
 
 impl Observation {
+    /// The drive, else the motion's tone at its stated frequency.
+    pub fn tone(&self) -> Option<DriveTone> {
+        self.drive.or(self.motion_tone)
+    }
+
     /// Measured drive frequency, Hz; the stated one if the drive was not recorded.
     pub fn frequency_hz(&self) -> Option<f64> {
-        self.drive
+        self.tone()
             .map(|d| d.frequency_hz)
             .or(self.setting.stated_frequency_hz)
     }
@@ -140,6 +149,12 @@ pub fn observe(
         return observe_decay(record);
     }
     let mut detection = detect(record, rig, detecting);
+    let drive = detection.drive;
+    let motion = detection.kinematics.waveform.as_ref();
+    let motion_tone = motion
+        .filter(|_| drive.is_none() && detecting.flight == FlightKind::Harmonic)
+        .and_then(|motion| of_motion(record, &motion.values));
+    detection.drive = drive.or(motion_tone);
     let classification = classify(&detection, record.duration_s(), classifying);
     let mut flags = record.flags.clone();
     flags.append(&mut detection.flags);
@@ -149,7 +164,8 @@ pub fn observe(
         detection.unsupported_pulses,
     ));
     let mut observation = Observation {
-        drive: detection.drive,
+        drive,
+        motion_tone,
         impacts: detection.impacts.clone(),
         unsupported_pulses: detection.unsupported_pulses,
         missed_pulses: detection.missed_pulses,
@@ -158,16 +174,13 @@ pub fn observe(
         classification,
         ..undriven(record)
     };
-    if let Some(drive) = &observation.drive {
-        if observation.has_no_impact() {
-            // within less than a period a tone is hardly told from a line
-            let periods = record.duration_s() * drive.frequency_hz;
-            if periods >= 1.0 {
-                observation.response = responses(record, drive);
-            }
-        } else if let Some(n) = observation.one_impact_in() {
-            observation.folded = Some(Arc::new(fold(record, &detection, drive, n)));
+    if let Some(tone) = observation.tone().filter(|_| observation.has_no_impact()) {
+        // within less than a period a tone is hardly told from a line
+        if record.duration_s() * tone.frequency_hz >= 1.0 {
+            observation.response = responses(record, &tone);
         }
+    } else if let (Some(drive), Some(n)) = (drive, observation.one_impact_in()) {
+        observation.folded = Some(Arc::new(fold(record, &detection, &drive, n)));
     }
     observation
 }
@@ -195,6 +208,7 @@ fn undriven(record: &Record) -> Observation {
         sample_rate_hz: record.sample_rate_hz,
         duration_s: record.duration_s(),
         drive: None,
+        motion_tone: None,
         classification: undetermined(Undetermined::DecayWithoutDrive, Default::default()),
         impacts: Vec::new(),
         unsupported_pulses: 0,
@@ -303,6 +317,7 @@ impl Observation {
             sample_rate_hz: 2000.0,
             duration_s: 1.0,
             drive: None,
+            motion_tone: None,
             classification: Classification {
                 motion,
                 confidence: 1.0,

@@ -51,7 +51,7 @@ fn why(parameter: Coordinate, observations: &[&Observation]) -> Note {
     if parameter == Coordinate::Restitution {
         return match any(&|o| !o.impacts.is_empty()) {
             true => Note::NotDetermined { parameter },
-            false => Note::NoImpact,
+            false => Note::WithoutImpact,
         };
     }
     match any(&|o| o.frequency_hz().is_some()) {
@@ -94,7 +94,7 @@ mod tests {
         let r = found.parameters.restitution.expect("R is asked for");
         assert_eq!(
             (r.status, r.note),
-            (Status::NotIdentifiable, Some(Note::NoImpact))
+            (Status::NotIdentifiable, Some(Note::WithoutImpact))
         );
         // a stated frequency, but nothing that shows the damping
         let parameter = Coordinate::Damping;

@@ -4,11 +4,13 @@
 pub mod agreement;
 pub mod beyond;
 pub mod cause;
+pub mod change;
 pub mod contact_law;
 pub mod contradicting_gap;
 pub mod influence;
 pub mod missing;
 pub mod momentum;
+pub mod settling;
 pub mod stated_clearances;
 pub mod stated_frequencies;
 pub mod structure;

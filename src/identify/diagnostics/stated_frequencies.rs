@@ -17,8 +17,12 @@ pub fn no_drive(observations: &[Observation]) -> Option<Finding> {
         .iter()
         .filter(|o| o.setting.stated_frequency_hz.is_some());
     let records = stating.clone().count();
+    let with_tone = stating.clone().filter(|o| o.motion_tone.is_some()).count();
     let none = records > 0 && stating.into_iter().all(|o| o.drive.is_none());
-    none.then_some(Finding::DriveNotMeasured { records })
+    none.then_some(match with_tone {
+        0 => Finding::DriveNotMeasured { records },
+        records => Finding::PhaseNotMeasured { records },
+    })
 }
 
 /// That more than half of the records that state a frequency are driven at another one.
@@ -83,7 +87,10 @@ mod tests {
         let mut unseen = observed(8.0, 8.0);
         unseen.drive = None;
         let none = Finding::DriveNotMeasured { records: 1 };
-        assert_eq!(no_drive(&[unseen]), Some(none));
+        assert_eq!(no_drive(std::slice::from_ref(&unseen)), Some(none));
+        unseen.motion_tone = observed(8.0, 8.0).drive;
+        let phase = Finding::PhaseNotMeasured { records: 1 };
+        assert_eq!(no_drive(&[unseen]), Some(phase));
         let shuffled = [[8.0, 12.0], [10.0, 8.0], [12.0, 10.0]];
         let differ = Finding::FrequenciesOff { records: 3, of: 3 };
         assert_eq!(of(&shuffled), Some(differ));

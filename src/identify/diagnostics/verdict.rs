@@ -39,7 +39,10 @@ pub fn judge_resonance(result: &mut MethodResult, block: &ResonanceBlock, fitted
                 point.frequency_hz,
                 point.drive_amplitude,
             );
-            let apart = (r.real - model.re).hypot(r.imaginary - model.im);
+            let apart = match point.phase_error_rad {
+                Some(_) => (r.real - model.re).hypot(r.imaginary - model.im),
+                None => (r.amplitude() - model.norm()).abs(),
+            };
             deviations.push(apart / model.norm().max(r.amplitude()));
         }
     }
@@ -240,7 +243,8 @@ pub fn verdict(basis: &Basis<'_>) -> Verdict {
         .collect();
     let unknown = with_status(&estimates, Status::NotIdentifiable);
     let weak = with_status(&estimates, Status::Weak);
-    let misfit = basis.methods.values().any(|m| m.fits == Some(false));
+    let misfit =
+        basis.methods.values().any(|m| m.fits == Some(false)) || basis.cause == Some(Cause::Change);
     let kind = if misfit {
         VerdictKind::DoesNotFit
     } else if estimates.is_empty() || !unknown.is_empty() {

@@ -199,7 +199,9 @@ impl Blocks {
             brackets,
             ..
         } = *evidence;
-        let (impact, impact_outliers) = impacts(observations, impact_scatter);
+        let (mut impact, impact_outliers) = impacts(observations, impact_scatter);
+        // records of springs whose drive was not recorded have no free flights
+        impact.free &= evidence.nominal.flight == FlightKind::ConstantForce;
         let mut blocks = Self {
             resonance: ResonanceBlock::new(rig, observations, relative_error),
             trajectory: TrajectoryBlock::new(rig, observations, relative_error),

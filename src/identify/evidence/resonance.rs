@@ -13,6 +13,7 @@ use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
 use crate::motion::Response;
 use crate::record::Role;
+use crate::signal::columns::{dot, subtract};
 use impact_oscillator::model::flight::{Drive, dynamic_stiffness, forced_amplitude};
 use impact_oscillator::model::params::{Machine, Oscillator};
 use impact_oscillator::model::sensitivity::{Change, forced_slope};
@@ -28,8 +29,8 @@ pub struct ResonancePoint {
     pub drive_amplitude: f64,
     /// Standard error of the drive's frequency, relative.
     pub frequency_error: f64,
-    /// Standard error of the drive's phase, rad.
-    pub phase_error_rad: f64,
+    /// Standard error of the drive's phase, rad; `None` where it is not known, as the drive was not recorded.
+    pub phase_error_rad: Option<f64>,
     /// Place in the campaign, −½ … ½.
     pub place: f64,
     /// The groups of records that it belongs to.
@@ -55,12 +56,57 @@ impl ResonancePoint {
     }
 
     /// Complex changes of the responses over their errors, real and imaginary parts in turn.
+    ///
+    /// Where the drive's phase is not known, the changes of the amplitudes, and those of the phases but for
+    /// the one that all have in common.
     fn weighted(&self, changes: impl Iterator<Item = Complex<f64>>) -> Vec<f64> {
-        let errors = self.errors.iter().zip(changes);
-        errors
-            .flat_map(|(error, c)| [c.re / error, c.im / error])
-            .collect()
+        let scaled = self.errors.iter().zip(changes).map(|(error, c)| c / error);
+        if self.phase_error_rad.is_some() {
+            return scaled.flat_map(|c| [c.re, c.im]).collect();
+        }
+        let along =
+            |(c, measured): (Complex<f64>, Complex<f64>)| c * measured.conj() / measured.norm();
+        let turned: Vec<Complex<f64>> = scaled.zip(self.measured()).map(along).collect();
+        let sizes = self
+            .measured()
+            .zip(&self.errors)
+            .map(|(m, error)| m.norm() / error);
+        let across = without_common(turned.iter().map(|c| c.im).collect(), sizes.collect());
+        turned.iter().map(|c| c.re).chain(across).collect()
     }
+
+    /// The measured responses.
+    fn measured(&self) -> impl Iterator<Item = Complex<f64>> {
+        self.responses
+            .iter()
+            .map(|r| Complex::new(r.real, r.imaginary))
+    }
+
+    /// The turn of predicted responses that brings them closest to the measured ones.
+    fn turn(&self, predicted: &[Predicted]) -> Complex<f64> {
+        let pairs = self.measured().zip(predicted).zip(&self.errors);
+        let sum: Complex<f64> = pairs.map(|((m, p), e)| m * p.value.conj() / (e * e)).sum();
+        match sum.norm() > 0.0 {
+            true => sum / sum.norm(),
+            false => Complex::new(1.0, 0.0),
+        }
+    }
+}
+
+/// Values in coordinates across a direction: Householder's reflection that brings the direction onto the
+/// first axis, without that axis.
+fn without_common(mut values: Vec<f64>, mut direction: Vec<f64>) -> Vec<f64> {
+    let size = dot(&direction, &direction).sqrt();
+    if let Some(first) = direction.first_mut() {
+        *first += size.copysign(*first);
+        let square = dot(&direction, &direction);
+        if square > 0.0 {
+            let share = 2.0 * dot(&direction, &values) / square;
+            subtract(&mut values, share, &direction);
+        }
+        values.remove(0);
+    }
+    values
 }
 
 /// Responses of all impactless records.
@@ -84,12 +130,12 @@ impl ResonanceBlock {
             .enumerate()
             .filter(|(_, o)| !o.excluded() && !o.response.is_empty())
             .filter_map(|(i, o)| {
-                let drive = o.drive?;
+                let drive = o.tone()?;
                 Some(ResonancePoint {
                     observation: i,
                     frequency_hz: drive.frequency_hz,
                     frequency_error: drive.frequency_error_hz / drive.frequency_hz,
-                    phase_error_rad: o.drive_phase_error_rad(),
+                    phase_error_rad: o.drive.map(|_| o.drive_phase_error_rad()),
                     drive_amplitude: o.setting.drive_amplitude,
                     place: 0.0,
                     group: Group::default(),
@@ -517,6 +563,14 @@ impl ResonanceBlock {
                 }
             })
             .collect();
+        let mut responses: Vec<Predicted> = responses;
+        if point.phase_error_rad.is_none() {
+            let turn = point.turn(&responses);
+            for response in &mut responses {
+                response.value *= turn;
+                response.unit *= turn;
+            }
+        }
         Model {
             point,
             at,
@@ -536,12 +590,13 @@ impl ResonanceBlock {
     /// The errors that all responses of a point share, by what was measured: weights that follow the
     /// parameters would reward a model that moves more.
     fn whitening(&self, point: &ResonancePoint) -> Whitening {
-        let turn = Complex::new(0.0, point.phase_error_rad);
-        let turned = point.responses.iter();
-        let turned = turned.map(|r| turn * Complex::new(r.real, r.imaginary));
         let shifted = point.over_frequency.iter();
         let shifted = shifted.map(|slope| slope * point.frequency_error);
-        let mut columns = vec![point.weighted(turned)];
+        let mut columns = Vec::new();
+        if let Some(error) = point.phase_error_rad {
+            let turn = Complex::new(0.0, error);
+            columns.push(point.weighted(point.measured().map(|m| turn * m)));
+        }
         if !point.over_frequency.is_empty() {
             columns.push(point.weighted(shifted));
         }
@@ -701,7 +756,7 @@ mod tests {
                 frequency_hz: 14.0,
                 drive_amplitude: 1.2,
                 frequency_error: 0.0,
-                phase_error_rad: 0.0,
+                phase_error_rad: Some(0.0),
                 place: 0.2,
                 group: Group::default(),
                 responses: roles
@@ -755,6 +810,97 @@ mod tests {
             let size = crate::signal::robust::rms(&exact);
             for (e, f) in exact.iter().zip(found.expect("differences")) {
                 assert!((e - f).abs() < 1e-6 * size, "{coordinate:?}: {e} {f}");
+            }
+        }
+    }
+
+    /// A record of two velocities without noise at a rig's parameters, the drive's phase off by some angle.
+    fn unphased(angle: f64, at: &Parameters) -> ResonanceBlock {
+        let turn = Complex::from_polar(1.0, angle);
+        let response = |role: Role| {
+            let value = turn * predicted(at, RigKind::Double, role, 14.0, 1.0);
+            Response {
+                role,
+                real: value.re,
+                imaginary: value.im,
+                error: 1e-3 * value.norm(),
+                residual_rms: 0.0,
+                high_pass_hz: None,
+            }
+        };
+        let mut block = ResonanceBlock {
+            rig: RigKind::Double,
+            points: vec![ResonancePoint {
+                observation: 0,
+                frequency_hz: 14.0,
+                drive_amplitude: 1.0,
+                frequency_error: 0.0,
+                phase_error_rad: None,
+                place: 0.0,
+                group: Group::default(),
+                responses: [Role::VelocityX, Role::VelocityY].map(response).to_vec(),
+                errors: Vec::new(),
+                over_frequency: Vec::new(),
+                shared: Whitening::none(),
+            }],
+            relative_error: 0.0,
+            reach_m: 3e-3,
+        };
+        block.allow(0.0);
+        block
+    }
+
+    #[test]
+    fn valid_without_a_phase_amplitudes_and_the_phase_between_the_masses_are_compared() {
+        let truth = Parameters {
+            stiffness_asymmetry: 0.03,
+            ..Parameters::symmetric(0.8, 12.6, 0.07, 1e-3)
+        };
+        for angle in [0.0, 1.0, -2.5] {
+            let block = unphased(angle, &truth);
+            let here = block.residuals(0, &truth).expect("residuals");
+            // two amplitudes and one phase
+            assert_eq!(here.len(), 3);
+            assert!(here.iter().all(|r| r.abs() < 1e-9), "{here:?}");
+            // amplitudes 1 % too small are ten errors of 0.1 % off, whatever the phase
+            let small = truth.with(
+                Coordinate::Deflection,
+                truth.coordinate(Coordinate::Deflection) - 0.01,
+            );
+            let off = block.residuals(0, &small).expect("residuals");
+            for amplitude in &off[..2] {
+                assert!(
+                    (amplitude - 1e3 * (1.0 - (-0.01f64).exp())).abs() < 1e-6,
+                    "{off:?}"
+                );
+            }
+            assert!(off[2].abs() < 1e-6);
+            // a phase of y against x of a milliradian is one error over √2
+            let mut late = block.clone();
+            let y = &mut late.points[0].responses[1];
+            let turned = Complex::new(y.real, y.imaginary) * Complex::from_polar(1.0, 1e-3);
+            (y.real, y.imaginary) = (turned.re, turned.im);
+            late.allow(0.0);
+            let off = late.residuals(0, &truth).expect("residuals");
+            assert!((off[2].abs() - 0.5f64.sqrt()).abs() < 1e-3, "{off:?}");
+        }
+    }
+
+    #[test]
+    fn valid_slopes_without_a_phase_are_those_of_finite_differences() {
+        let truth = Parameters::symmetric(0.8, 12.6, 0.07, 1e-3);
+        let block = unphased(0.7, &truth);
+        let coordinates = [
+            Coordinate::Frequency,
+            Coordinate::Damping,
+            Coordinate::DriveAsymmetry,
+        ];
+        let (here, columns) = block.slopes(0, &truth, &coordinates).expect("slopes");
+        for (coordinate, exact) in coordinates.iter().zip(columns) {
+            let found = difference(&truth, *coordinate, &here, |p| block.residuals(0, p));
+            let size = crate::signal::robust::rms(&exact);
+            for (e, f) in exact.iter().zip(found.expect("differences")) {
+                assert!((e - f).abs() < 1e-5 * size, "{coordinate:?}: {e} {f}");
             }
         }
     }

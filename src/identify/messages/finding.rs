@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::beyond::beyond;
 use super::direction::direction;
-use super::{Note, PairAgreement, Reason, Remark, Sentence};
+use super::{Note, PairAgreement, Reason, Remark, Sentence, StatedValue};
 use crate::identify::diagnostics::cause::Cause;
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::Coordinate;
@@ -82,6 +82,33 @@ pub enum Finding {
     DriveNotMeasured {
         /// Records that state a frequency.
         records: usize,
+    },
+    /// No record shows its drive; the motions have its stated frequencies, and no phase.
+    PhaseNotMeasured {
+        /// Records whose motion has the stated frequency.
+        records: usize,
+    },
+    /// The records are of two rigs, one after the other.
+    RigChanged {
+        /// The first record after the change.
+        record: String,
+        /// Its number in the order of acquisition, from 1.
+        number: usize,
+        /// Number of records.
+        of: usize,
+        /// What differs, as it was before.
+        before: Vec<StatedValue>,
+        /// The same after.
+        after: Vec<StatedValue>,
+    },
+    /// Many records begin before their motion has settled.
+    RecordsNotSettled {
+        /// How many.
+        records: usize,
+        /// Of how many.
+        of: usize,
+        /// Time after which a thousandth of a disturbance is left, s.
+        wait_s: f64,
     },
     /// The stated clearances are all about twice those that the motions show; none of them is used.
     WholeGapsStated {
@@ -194,6 +221,7 @@ impl Finding {
     pub fn cause(&self) -> Option<Cause> {
         match self {
             Self::UndeclaredHighPass { .. } => Some(Cause::Channel),
+            Self::RigChanged { .. } => Some(Cause::Change),
             Self::WrongClearance { .. }
             | Self::WrongGain { .. }
             | Self::WrongCorner { .. }
@@ -269,6 +297,33 @@ message_table! { Finding, key = template_key;
          daher wird keine Bewegung benannt, und weder $f_0$ noch $β$ noch $x_st$ folgen: den \
          Generator oder seinen Strom aufzeichnen und den Kanal in [channels.drive] nennen",
         records = Value::Count(*records);
+    Self::PhaseNotMeasured { records } =>
+        "no record shows its drive: $f_0$, $β$ and $x_st$ rest on the amplitudes of the resonance \
+         curve at the frequencies that the motions of {records} records have, and no waveform is \
+         fitted: record the generator or its current, and name that channel in [channels.drive]",
+        "keine Aufzeichnung zeigt ihre Erregung: $f_0$, $β$ und $x_st$ beruhen auf den Amplituden der \
+         Resonanzkurve bei den Frequenzen, die die Bewegungen in {records} Aufzeichnungen haben, und \
+         kein Verlauf wird angepasst: den Generator oder seinen Strom aufzeichnen und den Kanal in \
+         [channels.drive] nennen",
+        records = Value::Count(*records);
+    Self::RigChanged { record, number, of, before, after } =>
+        "the records are not of one rig: before {record} (number {number} of {of}) they have {before}, \
+         from it on {after}: look for what was changed there (masses, springs, clamps, bumpers, \
+         amplifier, sensors), and identify both parts by themselves",
+        "die Aufzeichnungen sind nicht von einem Prüfstand: vor {record} (Nummer {number} von {of}) \
+         haben sie {before}, von da an {after}: suchen, was dort geändert wurde (Massen, Federn, \
+         Einspannungen, Puffer, Verstärker, Aufnehmer), und beide Teile für sich identifizieren",
+        record = Value::Name(record), number = Value::Count(*number), of = Value::Count(*of),
+        before = Value::list(before), after = Value::list(after);
+    Self::RecordsNotSettled { records, of, wait_s } =>
+        "{records} of {of} records begin before their motion has settled, so that their motions are \
+         not known, or named less surely: wait at least {wait} s after each change of a setting \
+         before recording",
+        "{records} von {of} Aufzeichnungen beginnen, bevor ihre Bewegung eingeschwungen ist, so dass \
+         ihre Bewegungen nicht oder weniger sicher bestimmt sind: nach jeder Änderung einer \
+         Einstellung mindestens {wait} s warten, ehe aufgezeichnet wird",
+        records = Value::Count(*records), of = Value::Count(*of),
+        wait = Value::Shortest(two_digits(*wait_s));
     Self::WholeGapsStated { ratio, records } =>
         "the masses hit as if the clearances were {ratio} times the stated ones in {records} \
          records: whole gaps are stated, a clearance is half of one; no clearance is used until the \

@@ -38,8 +38,10 @@ pub enum Note {
     MethodsDisagree,
     /// R depends on the speed.
     NotOneNumber,
+    /// It changes during the campaign.
+    Changes,
     /// No record has an impact.
-    NoImpact,
+    WithoutImpact,
     /// No record shows its drive or states its frequency.
     NoFrequency,
     /// A cause that the findings name bends the fits that it rests on.
@@ -104,7 +106,11 @@ message_table! { Note;
     Self::NotOneNumber =>
         "$R$ is not one number here: see the remark on its change",
         "$R$ ist hier nicht eine Zahl: siehe die Anmerkung zu seiner Änderung";
-    Self::NoImpact =>
+    Self::Changes =>
+        "is another before and after the change that the findings name; the interval holds both",
+        "ist vor und nach der Änderung, die die Befunde nennen, ein anderer Wert; das Intervall \
+         enthält beide";
+    Self::WithoutImpact =>
         "no record has an impact, and only impacts tell it: record motions at clearances that the \
          masses reach",
         "keine Aufzeichnung hat einen Stoß, und nur Stöße sagen etwas darüber: Bewegungen bei \
