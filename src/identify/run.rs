@@ -144,16 +144,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
             *estimate = estimate::widened(*parameter, estimate, *by);
         }
     }
-    let observations = evidence.observations;
-    suspicions.extend(settling::not_settled(observations, &joint.parameters));
-    let change = run.change(&fits);
-    suspicions.extend(change.as_ref().map(|c| c.finding(observations.len())));
-    let cause = Cause::leading(&suspicions, &methods);
-    let mut replaced = cause.map_or_else(Vec::new, |c| c.withdraw(&mut joint, &methods));
-    if let Some(change) = change.filter(|_| cause == Some(Cause::Change)) {
-        replaced.extend(change.tell(&mut joint));
-    }
-    suspicions.retain(|finding| !cause.is_some_and(|c| c.explains(finding)));
+    let (cause, replaced) = run.one_cause(&fits, (&mut suspicions, &mut joint), &methods);
     missing::say_missing(&mut joint, evidence);
     let verdict = verdict::verdict(&Basis {
         cause,
@@ -549,6 +540,27 @@ impl IdentificationRun<'_> {
             scatter: joint.scatter.clone(),
             ..uncertainty::uncertainty(&problem, &present, joint, options)
         }
+    }
+
+    /// What explains other findings, which go, and withdraws what it reaches from the joint result; gives
+    /// that cause and the parameters that are no longer those of the joint fit.
+    fn one_cause(
+        &self,
+        fits: &Fits,
+        (suspicions, joint): (&mut Vec<Finding>, &mut MethodResult),
+        methods: &BTreeMap<Method, MethodResult>,
+    ) -> (Option<Cause>, Vec<Coordinate>) {
+        let observations = self.evidence.observations;
+        suspicions.extend(settling::not_settled(observations, &joint.parameters));
+        let change = self.change(fits);
+        suspicions.extend(change.as_ref().map(|c| c.finding(observations.len())));
+        let cause = Cause::leading(suspicions, methods);
+        let mut replaced = cause.map_or_else(Vec::new, |c| c.withdraw(joint, methods));
+        if let Some(change) = change.filter(|_| cause == Some(Cause::Change)) {
+            replaced.extend(change.tell(joint));
+        }
+        suspicions.retain(|finding| !cause.is_some_and(|c| c.explains(finding)));
+        (cause, replaced)
     }
 
     /// Where the campaign's rig became another one, if it did.

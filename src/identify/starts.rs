@@ -31,7 +31,7 @@ const FITTED: usize = 4;
 const LOST: f64 = 13.8;
 
 /// The given start where it gives most records an orbit, else the best one.
-pub fn best(blocks: &Blocks, nominal: &Nominal, given: Parameters) -> Parameters {
+pub(super) fn best(blocks: &Blocks, nominal: &Nominal, given: Parameters) -> Parameters {
     let few = thinned(blocks);
     if few.trajectory.records.is_empty() || with_orbits(&few, &given) >= ENOUGH {
         return given;
@@ -106,10 +106,11 @@ fn grid(blocks: &Blocks, nominal: &Nominal, given: Parameters) -> Vec<Parameters
                 0 => by_clearance,
                 _ => deflection_guess(&blocks.resonance, &unit),
             };
-            all.extend(DEFLECTIONS.map(|share| Parameters {
-                static_deflection_m: share * deflection_m,
-                ..unit
-            }));
+            for share in DEFLECTIONS {
+                let mut start = unit;
+                start.static_deflection_m = share * deflection_m;
+                all.push(start);
+            }
         }
     }
     all

@@ -283,7 +283,13 @@ impl Case<'_> {
             .reduce(f64::min);
         let closed = (2.5 * self.noise).max(self.settings.closed_ratio);
         let open = (5.0 * self.noise).max(self.settings.open_ratio);
-        let extent = (closed, evidence.periods_observed);
+        let impacts = &self.detection.impacts;
+        let early = impacts.iter().all(|i| i.time_s < 0.5 * self.duration_s);
+        let extent = (
+            closed,
+            evidence.periods_observed,
+            early && !impacts.is_empty(),
+        );
         evidence.settling = settling::disturbance(closures, chosen, extent);
         if evidence.settling.is_some() && (chosen.periods_n > 1 || chosen.ratio > closed) {
             return undetermined(Undetermined::NotSettled, evidence);

@@ -29,17 +29,21 @@ impl WaveformClosure {
 /// The disturbance that dies away while a motion is recorded, over the waveform's root mean square.
 ///
 /// `chosen`: the smallest number of drive periods after which the waveform closes about as well as after
-/// any; `closed`: the ratio up to which it counts as closed; `periods`: drive periods in the record.
+/// any; `closed`: the ratio up to which it counts as closed; `periods`: drive periods in the record; `calm`:
+/// whether the masses hit each other in its first half alone.
 pub(super) fn disturbance(
     closures: &[WaveformClosure],
     chosen: &WaveformClosure,
-    (closed, periods): (f64, f64),
+    (closed, periods, calm): (f64, f64, bool),
 ) -> Option<f64> {
     let n = f64::from(chosen.periods_n);
     if chosen.ratio > closed {
         let closes_at_last = |c: &&WaveformClosure| c.halves.is_some_and(|h| h[1] <= closed);
         let mut at_last = closures.iter().filter(closes_at_last);
-        return at_last.find_map(|c| c.dying(DYING_TO_CLOSED));
+        let settles = at_last.find_map(|c| c.dying(DYING_TO_CLOSED));
+        // what still swings without an impact need not close yet
+        let first = closures.first().filter(|_| calm);
+        return settles.or_else(|| first.and_then(|c| c.dying(DYING)));
     }
     let least = if chosen.periods_n == 1 {
         LEAST_OF_ONE
@@ -77,7 +81,7 @@ mod tests {
             .map(|c| c.ratio)
             .fold(f64::INFINITY, f64::min);
         let chosen = closures.iter().find(|c| c.ratio < 1.12 * least + 1e-4);
-        disturbance(&closures, chosen.expect("a closure"), (0.02, 13.0))
+        disturbance(&closures, chosen.expect("a closure"), (0.02, 13.0, false))
     }
 
     const TURN: f64 = std::f64::consts::TAU;

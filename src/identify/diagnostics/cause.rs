@@ -22,6 +22,8 @@ pub enum Cause {
     Change,
     /// The contact has no single coefficient of restitution.
     Contact,
+    /// Most records begin before their motions have settled.
+    Unsettled,
     /// A stated number is wrong, and the fit carries its error.
     Statement,
     /// An effect beyond the model that the fit carries.
@@ -41,13 +43,17 @@ impl Cause {
         match self {
             Self::Channel | Self::Change => true,
             Self::Contact => !matches!(method, Method::Resonance | Method::FreeDecay),
-            Self::Statement | Self::Effect | Self::Symptom => false,
+            Self::Unsettled | Self::Statement | Self::Effect | Self::Symptom => false,
         }
     }
 
     /// Whether a finding is a trace of this cause, so that it is not named beside it.
     pub fn explains(self, finding: &Finding) -> bool {
         let later = finding.cause().is_some_and(|other| other > self);
+        if self == Self::Unsettled {
+            // what is still dying away looks like friction, drag and a force against frequency
+            return finding.cause() == Some(Self::Effect);
+        }
         let reached = match finding {
             Finding::Misfit { method, .. } => self.reaches(*method),
             Finding::Disagreement { pair } => pair.methods.iter().any(|m| self.reaches(*m)),
@@ -57,7 +63,7 @@ impl Cause {
         self.bends() && later && reached
     }
 
-    /// The cause that bends the fits, by the findings on the laboratory and the remarks of methods that do
+    /// The cause that explains the others, by the findings on the laboratory and the remarks of methods that do
     /// not fit; the first of several.
     pub fn leading(
         suspicions: &[Finding],
@@ -67,7 +73,7 @@ impl Cause {
         let remarks = misfits.flat_map(|m| &m.remarks);
         let named = suspicions.iter().filter_map(Finding::cause);
         let all = named.chain(remarks.filter_map(|remark| remark.cause()));
-        all.filter(|cause| cause.bends()).min()
+        all.filter(|cause| *cause <= Self::Unsettled).min()
     }
 
     /// Withdraw from a joint result what this cause reaches: a parameter is that of the method, out of those
@@ -214,6 +220,29 @@ mod tests {
             remark: changes(),
         };
         assert!(Cause::Channel.explains(&law));
+    }
+
+    #[test]
+    fn records_that_have_not_settled_explain_effects_alone() {
+        let early = |records| Finding::RecordsNotSettled {
+            records,
+            of: 72,
+            wait_s: 1.0,
+        };
+        let none = BTreeMap::new();
+        assert_eq!(Cause::leading(&[early(57)], &none), Some(Cause::Unsettled));
+        assert_eq!(Cause::leading(&[early(6)], &none), None);
+        let drag = Finding::BeyondModel {
+            effect: Effect::Drag,
+            strength: 0.04,
+            standard_error: 0.001,
+            z_score: 40.0,
+        };
+        let apart = Finding::Disagreement {
+            pair: PairAgreement::default(),
+        };
+        assert!(Cause::Unsettled.explains(&drag) && !Cause::Unsettled.explains(&apart));
+        assert!(!Cause::Unsettled.bends());
     }
 
     #[test]

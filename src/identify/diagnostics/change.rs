@@ -71,9 +71,9 @@ pub fn change(
     let ranks = ranks(evidence.observations);
     let of_rank = |rank: usize| ranks.iter().position(|r| *r == rank);
     let suspects = [
+        by_impacts(&ranks, &selection.blocks),
         by_rows(&ranks, problem, present, (&selection.blocks, at, factor)),
         by_lost_records(&ranks, selection),
-        by_impacts(&ranks, &selection.blocks),
     ];
     let mut tried: Vec<usize> = Vec::new();
     for rank in suspects.into_iter().flatten() {

@@ -231,7 +231,7 @@ pub struct Basis<'a> {
     pub agreement: &'a Agreement,
     /// Mistakes of the laboratory that the data give away.
     pub suspicions: &'a [Finding],
-    /// The cause that bends the fits.
+    /// The cause that explains other findings.
     pub cause: Option<Cause>,
 }
 
@@ -259,8 +259,8 @@ pub fn verdict(basis: &Basis<'_>) -> Verdict {
     let answers = |v: &StatedValue| v.parameter != Coordinate::Deflection;
     let says_something = basis.agreement.agree.is_some() || values.iter().any(answers);
     // that methods which one cause bends agree says nothing
-    let second = (says_something && basis.cause.is_none())
-        .then(|| Sentence::on_agreement(basis.agreement.agree));
+    let bent = basis.cause.is_some_and(Cause::bends);
+    let second = (says_something && !bent).then(|| Sentence::on_agreement(basis.agreement.agree));
     let first = match kind {
         VerdictKind::DoesNotFit => Sentence::DoesNotFit,
         VerdictKind::NotIdentifiable if estimates.is_empty() => Sentence::NothingUsable,

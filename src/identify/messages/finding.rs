@@ -222,6 +222,9 @@ impl Finding {
         match self {
             Self::UndeclaredHighPass { .. } => Some(Cause::Channel),
             Self::RigChanged { .. } => Some(Cause::Change),
+            Self::RecordsNotSettled { records, of, .. } if 4 * records > *of => {
+                Some(Cause::Unsettled)
+            }
             Self::WrongClearance { .. }
             | Self::WrongGain { .. }
             | Self::WrongCorner { .. }

@@ -160,9 +160,8 @@ mod tests {
             let (low, high, steps) = (1.5f64.ln(), 30.0, 60_000);
             let h = (high - low) / f64::from(steps);
             let at = |k: i32| slope(low + h * f64::from(k));
-            let inner: f64 = (1..steps)
-                .map(|k| [2.0, 4.0][(k & 1) as usize] * at(k))
-                .sum();
+            let weight = |k: i32| if k % 2 == 0 { 2.0 } else { 4.0 };
+            let inner: f64 = (1..steps).map(|k| weight(k) * at(k)).sum();
             let integral = h / 3.0 * (at(0) + inner + at(steps)) + slope(high) / freedom;
             let apart = student_tail(1.5, freedom) / integral - 1.0;
             assert!(apart.abs() < 1e-9, "{freedom}: {apart}");

@@ -119,6 +119,7 @@ impl Plans {
                     let value = raw.ok().and_then(|r| e.decode(&r, ONE)?.into_real());
                     attributes.extend(value.map(|v| (array.name.clone(), Attr::Numbers(v))));
                 }
+                (e, 1) if e.is_number() && is_named_table(array) => sorted.tables.push(array),
                 (Element::Text, 0 | 1) => sorted.columns.push(array),
                 (e, 0 | 1) if e.is_number() => sorted.columns.push(array),
                 (e, 2) if e.is_number() => sorted.tables.push(array),
@@ -365,4 +366,9 @@ fn whole(array: &Array) -> Spacing {
         stride: array.element.bytes(),
         count: to_usize(array.count().unwrap_or(0)),
     }
+}
+
+/// Whether an array of samples × 1 names its one channel.
+fn is_named_table(array: &Array) -> bool {
+    array.shape.len() == 2 && names(Scope::of(&array.attributes), 1).is_some()
 }
