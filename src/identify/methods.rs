@@ -39,7 +39,7 @@ pub fn succeeded(attempt: &Option<FitResult>) -> Option<&MethodFit> {
 /// # Errors
 /// Those of [`Problem::fit`].
 pub fn fit_blocks(problem: Problem<'_>, start: Parameters) -> FitResult {
-    let fit = problem.fit(start)?;
+    let fit = problem.fit_from_both_ends(start)?;
     let informed = problem.free.len().saturating_sub(problem.priors.len());
     let freedom = fit.residuals.saturating_sub(informed);
     Ok(MethodFit::of(&problem, fit, freedom))

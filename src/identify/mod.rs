@@ -11,6 +11,8 @@ pub mod diagnostics;
 pub mod estimate;
 pub mod evidence;
 pub mod fit;
+#[cfg(test)]
+mod fixture;
 pub mod flight_times;
 mod identification;
 pub mod joint;

@@ -372,6 +372,10 @@ impl IdentificationRun<'_> {
     ) -> Fits {
         let trajectories = self.selection.trajectories(start);
         let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
+        let resonance = match succeeded(&trajectories) {
+            Some(_) => self.selection.resonance_again(resonance, &start),
+            None => resonance,
+        };
         let waveforms = succeeded(&trajectories).or(succeeded(&resonance));
         let delayed = waveforms.is_some() && self.selection.blocks.delay_impacts(&start);
         let impacts = match delayed {

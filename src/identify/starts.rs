@@ -130,3 +130,31 @@ fn fitted(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<Param
     };
     problem.fit(start).ok().map(|fit| fit.parameters)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::fixture::{evidence, observed, recorded};
+
+    #[test]
+    fn a_start_far_from_the_rig_is_replaced_and_one_near_it_is_kept() {
+        let observations = observed(&recorded((0.8, 12.0), 50, 3));
+        let evidence = evidence(&observations);
+        let blocks = Blocks::new(&evidence);
+        let nominal = evidence.nominal.ideal();
+        let near = Parameters::symmetric(0.8, 12.02, 0.06, 1.01e-3);
+        assert_eq!(best(&blocks, &nominal, near), near);
+        // a quarter of the deflection, as a resonance curve of three points may have it
+        let far = Parameters::symmetric(0.8, 13.5, 0.06, 0.25e-3);
+        assert!(with_orbits(&blocks, &far) < ENOUGH);
+        let found = best(&blocks, &nominal, far);
+        assert!(
+            (found.natural_frequency_hz / 12.0 - 1.0).abs() < 0.02,
+            "{found:?}"
+        );
+        assert!(
+            (found.static_deflection_m / 1e-3 - 1.0).abs() < 0.05,
+            "{found:?}"
+        );
+    }
+}

@@ -345,6 +345,10 @@ fn between(parameter: Coordinate, both: &[(f64, Spread); 2]) -> Estimate {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identify::VerdictKind;
+    use crate::identify::fixture::{evidence, observed, recorded};
+    use crate::identify::run::identify;
+    use crate::record::Record;
 
     /// A measurement of the first of two numbers, or of their sum, with a unit error.
     fn measured(value: f64, both: bool) -> PlacedRows {
@@ -400,6 +404,43 @@ mod tests {
         // f0 may drift by 0.3 %
         assert!(of(Coordinate::Frequency, 0.01, 1e-4));
         assert!(!of(Coordinate::Frequency, 0.003, 1e-4));
+    }
+
+    #[test]
+    fn valid_a_campaign_of_two_rigs_is_named_where_the_rig_changes_and_one_of_one_is_not() {
+        let one = |rig, seed| recorded(rig, 36, seed);
+        let half = one((0.8, 12.0), 11);
+        let of = |other: Vec<Record>| {
+            let observations = observed(&[half.clone(), other].concat());
+            let found = identify(&evidence(&observations));
+            let changed = found
+                .suspicions
+                .into_iter()
+                .find_map(|finding| match finding {
+                    Finding::RigChanged {
+                        number,
+                        before,
+                        after,
+                        ..
+                    } => Some((number, before, after)),
+                    _ => None,
+                });
+            (found.verdict.kind, changed)
+        };
+        let (kind, changed) = of(one((0.8, 12.0), 12));
+        assert_eq!((kind, changed), (VerdictKind::Identified, None));
+        let (kind, changed) = of(one((0.77, 12.1), 12));
+        assert_eq!(kind, VerdictKind::DoesNotFit);
+        let (number, before, after) = changed.expect("a change");
+        assert!((35..=39).contains(&number), "{number}");
+        for (values, truth) in [(before, [0.8, 12.0]), (after, [0.77, 12.1])] {
+            let named: Vec<Coordinate> = values.iter().map(|v| v.parameter).collect();
+            assert_eq!(named, [Coordinate::Restitution, Coordinate::Frequency]);
+            for (value, truth) in values.iter().zip(truth) {
+                let apart = (value.value - truth).abs();
+                assert!(apart < 1.5 * value.half_width, "{values:?}");
+            }
+        }
     }
 
     #[test]

@@ -692,7 +692,7 @@ mod tests {
                 frequency_hz,
                 drive_amplitude: 1.0,
                 frequency_error: 0.0,
-                phase_error_rad: 0.0,
+                phase_error_rad: Some(0.0),
                 place: 0.0,
                 group: Group::default(),
                 responses: responses.collect(),
