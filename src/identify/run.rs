@@ -633,6 +633,8 @@ impl IdentificationRun<'_> {
         let fit = |blocks: &Blocks| rough_fit(blocks, start, &curve, &open);
         let mut found = undeclared_high_pass::undeclared(&self.selection.blocks, &fit);
         found.extend(suspicion::channels(&joint.fit, joint.factor, nominal));
+        let problem = self.problem(&self.selection.blocks, fits.start, &fits.weights);
+        found.extend(problem.map_or_else(Vec::new, |p| suspicion::sides(&joint.fit, &p.priors)));
         found
     }
 

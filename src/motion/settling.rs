@@ -14,8 +14,9 @@ const DYING: f64 = 1.5;
 const LEAST: f64 = 5e-3;
 /// The same beside a motion of one drive period, which it does not hide.
 const LEAST_OF_ONE: f64 = 2e-2;
-/// Ratio from which a motion that does not close as a whole settles toward one that does.
-const DYING_TO_CLOSED: f64 = 3.0;
+/// Ratio from which a motion that does not close settles. Of an irregular one each half holds several
+/// periods that differ as much.
+const DYING_WHILE_OPEN: f64 = 2.5;
 
 impl WaveformClosure {
     /// What dies away from the first half of the record to the second, over the waveform's root mean
@@ -38,12 +39,14 @@ pub(super) fn disturbance(
 ) -> Option<f64> {
     let n = f64::from(chosen.periods_n);
     if chosen.ratio > closed {
-        let closes_at_last = |c: &&WaveformClosure| c.halves.is_some_and(|h| h[1] <= closed);
-        let mut at_last = closures.iter().filter(closes_at_last);
-        let settles = at_last.find_map(|c| c.dying(DYING_TO_CLOSED));
-        // what still swings without an impact need not close yet
-        let first = closures.first().filter(|_| calm);
-        return settles.or_else(|| first.and_then(|c| c.dying(DYING)));
+        let closes_at_last = |c: &WaveformClosure| c.halves.is_some_and(|h| h[1] <= closed);
+        let settles = |c: &WaveformClosure| match (c.periods_n, calm) {
+            // what still swings without an impact need not close yet
+            (1, true) => c.dying(DYING),
+            (1, false) => c.dying(DYING_WHILE_OPEN),
+            _ => c.dying(DYING_WHILE_OPEN).filter(|_| closes_at_last(c)),
+        };
+        return closures.iter().find_map(settles);
     }
     let least = if chosen.periods_n == 1 {
         LEAST_OF_ONE

@@ -10,7 +10,7 @@ use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::fit::parameters::{Coordinate, GAIN_ROLES, Parameters};
-use crate::identify::fit::{Block, Fit, mean_squares};
+use crate::identify::fit::{Block, Fit, Prior, mean_squares};
 use crate::identify::messages::Finding;
 use crate::identify::method_fit::MethodFit;
 use crate::signal::columns::dot;
@@ -64,6 +64,29 @@ pub fn channels(fit: &Fit, factor: f64, nominal: &Nominal) -> Vec<Finding> {
         })
     };
     fit.free.iter().filter_map(of).collect()
+}
+
+/// Differences of both sides that are far outside what is stated or assumed of them.
+pub fn sides(fit: &Fit, priors: &[Prior]) -> Vec<Finding> {
+    let of = |prior: &Prior| {
+        let coordinate = prior.coordinate;
+        let side = matches!(
+            coordinate,
+            Coordinate::DriveAsymmetry
+                | Coordinate::StiffnessAsymmetry
+                | Coordinate::DampingAsymmetry
+                | Coordinate::MassAsymmetry
+        );
+        let difference = fit.parameters.coordinate(coordinate);
+        let deviations = (difference - prior.centre) / prior.deviation;
+        let odd = side && deviations.abs() > CHANNEL_LIMIT;
+        odd.then_some(Finding::SidesUnlike {
+            coordinate,
+            difference,
+            deviations,
+        })
+    };
+    priors.iter().filter_map(of).collect()
 }
 
 /// A gap that fits the other records only with another clearance.
@@ -292,6 +315,22 @@ mod tests {
             },
             parts: Vec::new(),
         }
+    }
+
+    #[test]
+    fn sides_that_differ_by_more_than_is_stated_are_named() {
+        let mut found = found(1.0).fit;
+        found.parameters = found.parameters.with(Coordinate::MassAsymmetry, -0.041);
+        let of = |coordinate, deviation| sides(&found, &[Prior::new(coordinate, 0.0, deviation)]);
+        assert_eq!(of(Coordinate::MassAsymmetry, 0.02), []);
+        assert_eq!(of(Coordinate::Gap(0), 1e-6), []);
+        let named = of(Coordinate::MassAsymmetry, 0.01);
+        assert_eq!(
+            named[0].to_string(),
+            "the fit needs a mass_asymmetry of -4.1 %, 4.1 times its uncertainty off what is stated \
+             or assumed: weigh both masses and state mass_x and mass_y in [rig], and check springs, \
+             dashpots and drives of both sides"
+        );
     }
 
     #[test]

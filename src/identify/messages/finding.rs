@@ -57,6 +57,15 @@ pub enum Finding {
         /// How sure.
         z_score: f64,
     },
+    /// The masses, springs, dashpots or drives of both sides differ by far more than is stated or assumed.
+    SidesUnlike {
+        /// Which of them.
+        coordinate: Coordinate,
+        /// Relative difference, x less y.
+        difference: f64,
+        /// How many of its standard uncertainties that is off what is stated or assumed.
+        deviations: f64,
+    },
     /// The velocities of both masses are swapped.
     SwappedChannels {
         /// How sure.
@@ -228,6 +237,7 @@ impl Finding {
             Self::WrongClearance { .. }
             | Self::WrongGain { .. }
             | Self::WrongCorner { .. }
+            | Self::SidesUnlike { .. }
             | Self::SwappedChannels { .. } => Some(Cause::Statement),
             Self::BeyondModel { .. } => Some(Cause::Effect),
             Self::Misfit { remark, .. } => remark.cause(),
@@ -271,6 +281,16 @@ message_table! { Finding, key = template_key;
          high_pass in [channels.{channel}] und den anderen angeben",
         channel = Value::Name(channel.name()),
         corner = Value::Shortest(two_digits(*corner_hz));
+    Self::SidesUnlike { coordinate, difference, deviations } =>
+        "the fit needs a {coordinate} of {share}, {deviations} times its uncertainty off what is \
+         stated or assumed: weigh both masses and state mass_x and mass_y in [rig], and check springs, \
+         dashpots and drives of both sides",
+        "die Anpassung braucht {coordinate} = {share}, um das {deviations}-Fache der Unsicherheit neben \
+         dem, was angegeben oder angenommen ist: beide Massen wiegen und mass_x und mass_y in [rig] \
+         angeben, und Federn, Dämpfer und Antriebe beider Seiten prüfen",
+        coordinate = Value::Message(coordinate),
+        share = Value::Percent(*difference, 1),
+        deviations = Value::Number(deviations.abs(), 1);
     Self::SwappedChannels { .. } =>
         "all data fit far better with the velocities of both masses swapped: swap \
          [channels.velocity_x] and [channels.velocity_y], or the displacements",
