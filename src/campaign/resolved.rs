@@ -44,6 +44,9 @@ pub struct ResolvedCampaign {
     pub channels: Vec<ChannelSetup>,
     /// The channel with the time, if the reader of the files cannot find it.
     pub time: Option<ChannelKey>,
+    /// Seconds in the unit of the time axes that state none.
+    #[serde(default)]
+    pub time_unit_s: Option<f64>,
     /// Samples per second, Hz, for files that state none.
     pub sample_rate_hz: Option<f64>,
     /// The records in the order of acquisition.
@@ -191,6 +194,7 @@ impl ResolvedCampaign {
             dataset: entry.dataset.unwrap_or(0),
             channels: &self.channels,
             time: self.time.as_ref(),
+            time_unit_s: self.time_unit_s,
             sample_rate_hz: self.sample_rate_hz,
             setting: &entry.setting,
             driven: self.driven(entry),

@@ -69,10 +69,14 @@ fn records(text: &mut String, found: &FolderContents) -> std::fmt::Result {
         text.write_str(RUN_TABLE)?;
     }
     if !found.timed && !matches!(found.experiment, Experiment::Events(_)) {
-        writeln!(
-            text,
-            "sample_rate = \"2 kHz\"       # FILL IN: the files state none"
-        )?;
+        let (rate, why) = match found.counts_frames {
+            true => (
+                "240 Hz",
+                "the frames per second: the files number the frames",
+            ),
+            false => ("2 kHz", "the files state none"),
+        };
+        writeln!(text, "sample_rate = \"{rate}\"       # FILL IN: {why}")?;
     }
     let attributes = attributes(found);
     let lacks = |key: &str| !attributes.iter().any(|(k, _)| *k == key);
@@ -208,6 +212,18 @@ fn table(
     let guessed = unit.is_none() && found.experiment != Experiment::Driven;
     let volts = !guessed && unit.is_none_or(|u| u.dimension == Dimension::Voltage);
     match (role.dimension(), role) {
+        (Some(_), _) if unit.is_some_and(|u| u.dimension == Dimension::Angle) => {
+            writeln!(
+                text,
+                "scale = \"1 m per rad\"        # CHECK: the arm at which the mass touches"
+            )?;
+        }
+        (Some(_), _) if unit.is_some_and(|u| u.dimension == Dimension::Frequency) => {
+            writeln!(
+                text,
+                "scale = \"1 m/s per rad/s\"    # CHECK: the arm at which the mass touches"
+            )?;
+        }
         (Some(dimension), _) if volts => {
             let symbol = dimension.si_symbol().replace('²', "2");
             writeln!(
@@ -238,7 +254,10 @@ fn table(
 fn events(text: &mut String, content: ContactContent) -> std::fmt::Result {
     let (word, what) = match content {
         ContactContent::Signal => return writeln!(text),
-        ContactContent::Times => ("times", "each row is the time of an impact"),
+        ContactContent::Times => (
+            "times",
+            "each row is the time of an impact, or of a change of the contact: those that close it count",
+        ),
         ContactContent::Intervals => (
             "intervals",
             "each row is the time from an impact to the next",

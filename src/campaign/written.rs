@@ -86,6 +86,8 @@ pub struct Records {
     pub sample_rate: Placed<Quantity>,
     /// Name or index of the channel that holds the time, if the reader of the file cannot find it.
     pub time: Placed<WrittenKey>,
+    /// Unit of the time axes that state none.
+    pub time_unit: Placed<String>,
     /// Clearance of the records that state none: r, half the gap of two masses.
     pub clearance: Placed<Quantity>,
     /// Drive frequency of the records that state none.

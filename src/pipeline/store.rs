@@ -80,6 +80,7 @@ pub fn ingest(
         campaign: ResolvedCampaign {
             channels: roles,
             time: None,
+            time_unit_s: None,
             sample_rate_hz: None,
             records: entries,
             ..campaign.clone()

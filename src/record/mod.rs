@@ -4,13 +4,16 @@
 //! [`Record`]s. A simulated record is the same type, so that one detector and one classifier
 //! judge experiment and simulation alike. This module does not use the model.
 
+mod alignment;
 mod bind;
 pub mod calibrate;
+pub mod changes;
 mod condition;
 pub mod consistency;
 mod events;
 mod flag;
 pub mod time_axis;
+mod times;
 
 use serde::{Deserialize, Serialize};
 

@@ -70,6 +70,7 @@ changes! {
     ("records.files", Classify, as_is, Replace(r#"run_table = "runs.csv""#, r#"files = "r?.csv""#));
     ("records.run_table", Classify, as_is, By(other_run_table));
     ("records.sample_rate", Classify, sampled_at_2_khz, Replace("2 kHz", "1 kHz"));
+    ("records.time_unit", Classify, without_unit_of_time, Add("records", r#"time_unit = "ms""#));
     ("records.time", Classify, with_spare_channels, Add("records", r#"time = "clock""#));
     ("records.clearance", Classify, bare_table, Add("records", r#"clearance = "2 mm""#));
     ("records.drive_frequency", Classify, bare_table, Add("records", r#"drive_frequency = "11 Hz""#));
@@ -175,6 +176,13 @@ fn timed(lab: &Lab) {
 fn untimed(lab: &Lab) {
     for name in ["r1.csv", "r2.csv", "r3.csv"] {
         lab.lines(name, |_, line| Some(line.split_once(',')?.1.to_owned()));
+    }
+}
+
+/// Files whose time column states no unit.
+fn without_unit_of_time(lab: &Lab) {
+    for name in ["r1.csv", "r2.csv", "r3.csv"] {
+        lab.replace(name, "time [s]", "time");
     }
 }
 

@@ -19,7 +19,8 @@ use crate::hdf5::naming::{
 };
 use crate::hdf5::store::{Array, Attr, Attrs, StoreError, Tree};
 use crate::numbers::Spacing;
-use crate::source::{ChannelInfo, DatasetInfo};
+use crate::source::{ChannelInfo, Clock, DatasetInfo};
+use crate::timing::{is_time_name, main_axis, own_axes};
 
 /// The spacing of a single element.
 const ONE: Spacing = Spacing {
@@ -266,7 +267,7 @@ impl Record {
         let rows = orientation.samples(table);
         let time = columns
             .iter()
-            .find(|c| attribute::is_time_name(&c.name) && c.count() == Some(rows));
+            .find(|c| is_time_name(&c.name) && c.count() == Some(rows));
         time.into_iter().for_each(|c| record.column(c));
         record.table(table, inherited);
         let cells = table.count().unwrap_or(u64::MAX);
@@ -288,6 +289,8 @@ impl Record {
             samples: locator.spacing.count as u64,
             sample_rate_hz: None,
             start_time: None,
+            clock: Clock::Shared,
+            start_s: None,
             properties: BTreeMap::new(),
         });
         self.plan.channels.push(locator);
@@ -311,6 +314,7 @@ impl Record {
             let texts = Scope::of(&array.attributes).texts();
             channel.sample_rate_hz = attribute::sample_rate_hz(&texts);
             channel.start_time = attribute::start_time(&texts);
+            channel.start_s = attribute::start_s(&texts);
             channel.properties = texts;
         }
     }
@@ -353,7 +357,8 @@ impl Record {
             channel.sample_rate_hz = channel.sample_rate_hz.or(rate);
             channel.start_time = channel.start_time.take().or_else(|| start.clone());
         }
-        self.info.time_axis = self.info.channels.iter().position(attribute::is_time_axis);
+        self.info.time_axis = main_axis(&self.info.channels);
+        own_axes(&mut self.info.channels);
         (self.info, self.plan)
     }
 }

@@ -110,6 +110,8 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("ms", Dimension::Time, 1e-3),
     ("us", Dimension::Time, 1e-6),
     ("µs", Dimension::Time, 1e-6),
+    ("μs", Dimension::Time, 1e-6),
+    ("ns", Dimension::Time, 1e-9),
     ("min", Dimension::Time, 60.0),
     ("kg", Dimension::Mass, 1.0),
     ("gram", Dimension::Mass, 1e-3),
