@@ -6,7 +6,7 @@ use super::context::{ResolveContext, remedy};
 use super::diagnostic::Code;
 use super::written::{Channel, Channels, Flight, Machine, Placed, Quantity, value};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
-use crate::record::{ContactContent, Role};
+use crate::record::{ContactContent, LowPass, Role};
 use labfiles::units::{self, Dimension, Scale, Unit};
 
 impl Channels {
@@ -131,6 +131,7 @@ fn resolve_one(
         offset: raw_level(&written.offset, &key("offset"), unit, context).unwrap_or(0.0),
         sign: sign(&written.sign, &key("sign"), context),
         high_pass_hz: high_pass(&written.high_pass, &key("high_pass"), context),
+        low_pass: low_pass(written, &key, context),
         delay_s: context
             .within(&written.delay, &key("delay"), Dimension::Time, [-1.0, 1.0])
             .unwrap_or(0.0),
@@ -173,6 +174,42 @@ fn source(
         return None;
     };
     Some(channel.get_ref().0.clone())
+}
+
+/// Poles of a low-pass whose order is not stated.
+const USUAL_ORDER: u32 = 2;
+/// Most poles of a low-pass.
+const MOST_POLES: u32 = 8;
+
+/// The low-pass; at 0 Hz there is none.
+fn low_pass(
+    written: &Channel,
+    key: &dyn Fn(&str) -> String,
+    context: &mut ResolveContext<'_>,
+) -> Option<LowPass> {
+    let corner_hz = high_pass(&written.low_pass, &key("low_pass"), context);
+    let order = value(&written.low_pass_order);
+    let placed = written.low_pass_order.as_ref();
+    let wrong = match (order, corner_hz) {
+        (Some(order), _) if !(1..=MOST_POLES).contains(&order) => Some((
+            format!("a low-pass has no {order} poles"),
+            "write a number from 1 to 8",
+        )),
+        (Some(_), None) if written.low_pass.is_none() => Some((
+            "an order is stated, and no low_pass".to_owned(),
+            "write low_pass = \"200 Hz\", the corner, beside it, or remove the line",
+        )),
+        _ => None,
+    };
+    if let Some(((message, remedy), placed)) = wrong.zip(placed) {
+        let key = key("low_pass_order");
+        context.fault(Code::OutOfRange, placed, &key, message, remedy);
+        return None;
+    }
+    corner_hz.map(|corner_hz| LowPass {
+        corner_hz,
+        order: order.unwrap_or(USUAL_ORDER),
+    })
 }
 
 /// The corner of a high-pass; at 0 Hz there is none.

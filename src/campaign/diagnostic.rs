@@ -41,6 +41,8 @@ pub enum Code {
     UnknownRecord,
     /// An attribute of a file is missing or is not what campaign.toml expects.
     Attribute,
+    /// Datasets of a file that are no records.
+    NoRecord,
     /// The samples of another record.
     DuplicateRecord,
     /// Much shorter than the usual record.

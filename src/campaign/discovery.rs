@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use super::context::ResolveContext;
-use super::diagnostic::{Code, Diagnostic, FaultCollector, Severity};
+use super::diagnostic::{Code, Diagnostic, FaultCollector, Place, Severity, first_of};
 use super::names::natural_key;
 use super::run_table::{self, Row};
 use super::sources::Sources;
 use super::written::OneOrMany;
 use crate::record::calibrate::{self, ChannelKey, ChannelSetup};
 use crate::record::{Flag, FlagCode};
-use labfiles::{DatasetInfo, ReadError, Source};
+use labfiles::{DatasetInfo, ReadError, Source, StoredType};
 
 /// How a file is opened; [`labfiles::open`] but for tests.
 pub type Opener<'a> = &'a (dyn Fn(&Path) -> Result<Box<dyn Source>, ReadError> + Sync);
@@ -81,11 +81,16 @@ pub(super) fn list_files(
     paths.sort_by_cached_key(|p| natural_key(&p.to_string_lossy()));
     paths.dedup();
     paths.retain(|path| shared.lists(path));
-    let listed: Vec<Vec<Discovered>> = paths
+    let listed: Vec<(Vec<Discovered>, Option<Diagnostic>)> = paths
         .par_iter()
         .map(|path| list_file(path, shared, open))
         .collect();
-    listed.into_iter().flatten().collect()
+    let mut all = Vec::new();
+    for (records, left_out) in listed {
+        all.extend(records);
+        context.faults.extend(left_out);
+    }
+    all
 }
 
 /// The files that a glob matches, folders left out.
@@ -100,27 +105,39 @@ pub(super) fn expand(folder: &Path, pattern: &str) -> Vec<PathBuf> {
         .collect()
 }
 
-fn list_file(path: &Path, shared: Shared<'_>, open: Opener<'_>) -> Vec<Discovered> {
+/// The records of a file, and a note on its datasets that are none.
+fn list_file(
+    path: &Path,
+    shared: Shared<'_>,
+    open: Opener<'_>,
+) -> (Vec<Discovered>, Option<Diagnostic>) {
     match shared.sources.open_by(path, open) {
         Ok(source) => {
             let sets = source.datasets();
             if sets.is_empty() {
-                return vec![failed(path, None, empty_file(path))];
+                return (vec![failed(path, None, empty_file(path))], None);
             }
             let used = records_of(sets, shared);
+            let note = left_out(path, sets, &used);
             let listed = |i: usize| listed(path, i, &sets[i], None, shared);
-            used.into_iter().map(listed).collect()
+            (used.into_iter().map(listed).collect(), note)
         }
-        Err(error) => vec![failed(path, None, calibrate::read_flag(&error))],
+        Err(error) => (vec![failed(path, None, calibrate::read_flag(&error))], None),
     }
 }
 
-/// The datasets of a file that are records: those with a channel that campaign.toml names, where any has
-/// one (a workbook has sheets of notes too), else all.
+/// The datasets of a file that are records: those with samples of a channel that campaign.toml names, where any
+/// has them (a workbook has sheets of notes too), else all.
 fn records_of(sets: &[DatasetInfo], shared: Shared<'_>) -> Vec<usize> {
     let named = |i: &usize| {
-        let mut sources = shared.channels.iter().map(|c| &c.source);
-        sources.any(|source| source.find(&sets[*i]).is_some())
+        let mut found = shared
+            .channels
+            .iter()
+            .filter_map(|c| c.source.find(&sets[*i]));
+        found.any(|index| {
+            let info = &sets[*i].channels[index];
+            info.samples > 1 && info.stored != StoredType::Text
+        })
     };
     let all = 0..sets.len();
     let found: Vec<usize> = all.clone().filter(named).collect();
@@ -129,6 +146,32 @@ fn records_of(sets: &[DatasetInfo], shared: Shared<'_>) -> Vec<usize> {
     } else {
         found
     }
+}
+
+/// One note on all datasets of a file that are no records.
+fn left_out(path: &Path, sets: &[DatasetInfo], used: &[usize]) -> Option<Diagnostic> {
+    let others = (0..sets.len()).filter(|i| !used.contains(i));
+    let names: Vec<String> = others.map(|i| bare(&sets[i].name).to_owned()).collect();
+    if names.is_empty() {
+        return None;
+    }
+    let place = Place {
+        file: path.to_path_buf(),
+        ..Place::default()
+    };
+    let found = format!(
+        "{} of {} datasets hold no samples of the channels in campaign.toml and are no records: {}",
+        names.len(),
+        sets.len(),
+        first_of(&names)
+    );
+    let remedy = "nothing, if they hold notes or settings";
+    Some(Diagnostic::new(
+        (Code::NoRecord, Severity::Note),
+        place,
+        found,
+        remedy,
+    ))
 }
 
 fn empty_file(path: &Path) -> Flag {
@@ -243,11 +286,11 @@ fn list_rows_of(
     for (index, set) in sets.iter().enumerate() {
         places.entry(bare(&set.name)).or_default().push(index);
     }
-    let every: Vec<usize> = (0..sets.len()).collect();
+    let records = records_of(sets, shared);
     let found = rows.par_iter().flat_map_iter(|row| {
         let wanted = match &row.dataset {
             Some(name) => places.get(bare(name)),
-            None => Some(&every).filter(|every| !every.is_empty()),
+            None => Some(&records).filter(|records| !records.is_empty()),
         };
         let Some(wanted) = wanted else {
             return vec![failed(path, Some((*row).clone()), no_dataset(row, sets))];

@@ -17,7 +17,7 @@ use super::written::{
     self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign, value,
 };
 use crate::report::catalog::Catalog;
-use labfiles::units::Dimension;
+use labfiles::units::{self, Dimension};
 
 /// A campaign as far as it could be resolved, and everything that is wrong with it.
 #[derive(Debug)]
@@ -94,6 +94,7 @@ fn resolve(
         machine,
         flight,
         rig: rig::resolve(&written.rig, context),
+        time_unit_s: time_unit(&written.records.time_unit, context),
         sample_rate_hz: context.positive(
             &written.records.sample_rate,
             "records.sample_rate",
@@ -112,6 +113,24 @@ fn resolve(
         published: written.published.clone(),
         sources,
     }
+}
+
+/// Seconds in the stated unit of time.
+fn time_unit(placed: &Placed<String>, context: &mut ResolveContext<'_>) -> Option<f64> {
+    let placed = placed.as_ref()?;
+    let unit = units::parse_unit(placed.get_ref()).filter(|u| u.dimension == Dimension::Time);
+    if unit.is_none() {
+        let what = format!("'{}' is no unit of time", placed.get_ref());
+        let remedy = "write s, ms, us, ns or min";
+        context.fault(
+            Code::InvalidValue,
+            placed,
+            "records.time_unit",
+            what,
+            remedy,
+        );
+    }
+    unit.map(|u| u.to_si)
 }
 
 fn machine(placed: &Placed<Machine>, context: &mut ResolveContext<'_>) -> Machine {

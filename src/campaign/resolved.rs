@@ -11,7 +11,7 @@ use crate::difference::Common;
 use crate::event::DetectSettings;
 use crate::identify::fit::effect::EffectKind;
 use crate::identify::uncertainty::IntervalMethod;
-use crate::motion::ClassifySettings;
+use crate::motion::{ClassifySettings, LateChannel};
 use crate::record::Setting;
 use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup};
 
@@ -44,6 +44,9 @@ pub struct ResolvedCampaign {
     pub channels: Vec<ChannelSetup>,
     /// The channel with the time, if the reader of the files cannot find it.
     pub time: Option<ChannelKey>,
+    /// Seconds in the unit of the time axes that state none.
+    #[serde(default)]
+    pub time_unit_s: Option<f64>,
     /// Samples per second, Hz, for files that state none.
     pub sample_rate_hz: Option<f64>,
     /// The records in the order of acquisition.
@@ -79,6 +82,9 @@ pub struct NominalValues {
     pub gain_uncertainty: f64,
     /// Standard uncertainty of the corners of the channels' high-pass, relative.
     pub corner_uncertainty: f64,
+    /// Standard uncertainty of the sampler's clock, relative.
+    #[serde(default)]
+    pub clock_uncertainty: f64,
     /// Standard uncertainty of the clearances, m.
     pub clearance_uncertainty_m: f64,
     /// Standard uncertainty of the masses, relative.
@@ -184,6 +190,18 @@ impl ResolvedCampaign {
         }
     }
 
+    /// The same with channels that are later than stated by what was found.
+    #[must_use]
+    pub fn with_late(&self, late: &[LateChannel]) -> Self {
+        let mut campaign = self.clone();
+        for setup in &mut campaign.channels {
+            let found = late.iter().find(|l| l.role == setup.role);
+            setup.delay_s += found.map_or(0.0, |l| l.delay_s);
+            setup.low_pass = setup.low_pass.or(found.and_then(|l| l.low_pass));
+        }
+        campaign
+    }
+
     /// What [`crate::record::calibrate::calibrate`] needs for one of its records.
     pub fn setup_of<'a>(&'a self, entry: &'a RecordEntry) -> RecordSetup<'a> {
         RecordSetup {
@@ -191,6 +209,7 @@ impl ResolvedCampaign {
             dataset: entry.dataset.unwrap_or(0),
             channels: &self.channels,
             time: self.time.as_ref(),
+            time_unit_s: self.time_unit_s,
             sample_rate_hz: self.sample_rate_hz,
             setting: &entry.setting,
             driven: self.driven(entry),

@@ -27,6 +27,7 @@ pub(super) fn resolve(rig: &written::Rig, context: &mut ResolveContext<'_>) -> N
     let restitution = part(&rig.restitution, "restitution", [0.0, 1.0]);
     let gain = part(&rig.gain_uncertainty, "gain_uncertainty", [0.0, 0.5]);
     let corner = part(&rig.corner_uncertainty, "corner_uncertainty", [0.0, 0.5]);
+    let clock = part(&rig.clock_uncertainty, "clock_uncertainty", [0.0, 0.05]);
     let mass = part(&rig.mass_uncertainty, "mass_uncertainty", [0.0, 0.5]);
     let clearance = context.within(
         &rig.clearance_uncertainty,
@@ -43,6 +44,7 @@ pub(super) fn resolve(rig: &written::Rig, context: &mut ResolveContext<'_>) -> N
         mass_y_kg,
         gain_uncertainty: gain.unwrap_or(0.005),
         corner_uncertainty: corner.unwrap_or(0.05),
+        clock_uncertainty: clock.unwrap_or(5e-5),
         clearance_uncertainty_m: clearance.unwrap_or(1e-5),
         mass_uncertainty: mass.unwrap_or(0.005),
         effects: effects(&rig.effects, context),

@@ -69,10 +69,14 @@ fn records(text: &mut String, found: &FolderContents) -> std::fmt::Result {
         text.write_str(RUN_TABLE)?;
     }
     if !found.timed && !matches!(found.experiment, Experiment::Events(_)) {
-        writeln!(
-            text,
-            "sample_rate = \"2 kHz\"       # FILL IN: the files state none"
-        )?;
+        let (rate, why) = match found.counts_frames {
+            true => (
+                "240 Hz",
+                "the frames per second: the files number the frames",
+            ),
+            false => ("2 kHz", "the files state none"),
+        };
+        writeln!(text, "sample_rate = \"{rate}\"       # FILL IN: {why}")?;
     }
     let attributes = attributes(found);
     let lacks = |key: &str| !attributes.iter().any(|(k, _)| *k == key);
@@ -208,6 +212,18 @@ fn table(
     let guessed = unit.is_none() && found.experiment != Experiment::Driven;
     let volts = !guessed && unit.is_none_or(|u| u.dimension == Dimension::Voltage);
     match (role.dimension(), role) {
+        (Some(_), _) if unit.is_some_and(|u| u.dimension == Dimension::Angle) => {
+            writeln!(
+                text,
+                "scale = \"1 m per rad\"        # CHECK: the arm at which the mass touches"
+            )?;
+        }
+        (Some(_), _) if unit.is_some_and(|u| u.dimension == Dimension::Frequency) => {
+            writeln!(
+                text,
+                "scale = \"1 m/s per rad/s\"    # CHECK: the arm at which the mass touches"
+            )?;
+        }
         (Some(dimension), _) if volts => {
             let symbol = dimension.si_symbol().replace('²', "2");
             writeln!(
@@ -238,7 +254,10 @@ fn table(
 fn events(text: &mut String, content: ContactContent) -> std::fmt::Result {
     let (word, what) = match content {
         ContactContent::Signal => return writeln!(text),
-        ContactContent::Times => ("times", "each row is the time of an impact"),
+        ContactContent::Times => (
+            "times",
+            "each row is the time of an impact, or of a change of the contact: those that close it count",
+        ),
         ContactContent::Intervals => (
             "intervals",
             "each row is the time from an impact to the next",
@@ -289,10 +308,11 @@ const RIG: &str = "\
 # restitution = 0.9
 gain_uncertainty = \"0.5 %\"       # of the channels' scales
 corner_uncertainty = \"5 %\"       # of the corners of the channels' high-pass
+clock_uncertainty = \"50 ppm\"     # of the clock of the sampler, in f0
 clearance_uncertainty = \"10 um\"  # of each stated clearance, and of the zero that all share
 # mass_x = \"1.50 kg\"             # both masses, if weighed, with mass_uncertainty = \"0.5 %\"
 # effects = [\"harmonics\", \"force_frequency\", \"hardening\", \"friction\", \"drift\", \"contact_duration\",
-#            \"drag\", \"spring_asymmetry\", \"hysteretic_damping\"]
+#            \"drag\", \"spring_asymmetry\", \"hysteretic_damping\", \"pickup\"]
 #                                # what springs, drive and contact may add to the model; all by default
 # name = \"rig 1\"                 # which rig it is, where campaigns are compared (impactid compare)
 # shared = [\"clearances\"]        # errors that stay the same in all campaigns on it

@@ -86,6 +86,8 @@ pub struct Records {
     pub sample_rate: Placed<Quantity>,
     /// Name or index of the channel that holds the time, if the reader of the file cannot find it.
     pub time: Placed<WrittenKey>,
+    /// Unit of the time axes that state none.
+    pub time_unit: Placed<String>,
     /// Clearance of the records that state none: r, half the gap of two masses.
     pub clearance: Placed<Quantity>,
     /// Drive frequency of the records that state none.
@@ -141,6 +143,8 @@ pub struct Rig {
     pub gain_uncertainty: Placed<Quantity>,
     /// Standard uncertainty of the corners of the channels' high-pass, relative.
     pub corner_uncertainty: Placed<Quantity>,
+    /// Standard uncertainty of the sampler's clock, relative.
+    pub clock_uncertainty: Placed<Quantity>,
     /// Standard uncertainty of the clearances.
     pub clearance_uncertainty: Placed<Quantity>,
     /// Standard uncertainty of the masses, relative.
@@ -183,6 +187,10 @@ pub struct Channel {
     pub sign: Placed<f64>,
     /// Corner of the first-order high-pass (of an integrator, of an AC coupling).
     pub high_pass: Placed<Quantity>,
+    /// Corner of the low-pass that the signal has passed (anti-alias filter, vibrometer, amplifier).
+    pub low_pass: Placed<Quantity>,
+    /// Number of that low-pass's poles.
+    pub low_pass_order: Placed<u32>,
     /// How much later than the drive's channel it shows what happens.
     pub delay: Placed<Quantity>,
     /// Standard uncertainty of the delay.

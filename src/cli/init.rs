@@ -73,16 +73,23 @@ fn none_found(folder: &Path, found: &FolderContents) -> Failure {
     )
 }
 
+/// Files that the summary names.
+const NAMED: usize = 5;
+
 fn print_summary(path: &Path, found: &FolderContents, verbosity: Verbosity) {
-    for (file, why) in &found.refused {
-        verbosity.detail(&format!("{file} is not a record: {why}"));
+    for (file, why) in found.refused.iter().take(NAMED) {
+        verbosity.info(&format!("{file} is not a record: {why}"));
+    }
+    if let Some(more) = found.refused.len().checked_sub(NAMED).filter(|n| *n > 0) {
+        verbosity.info(&format!("{} more are no records", counted(more, "file")));
     }
     let assigned = found.channels.iter().filter(|c| c.role.is_some()).count();
     verbosity.info(&format!(
-        "{}: {} ({}), {assigned} of {} channels assigned to a role. Complete it, then run: impactid \
+        "{}: {} with {} ({}), {assigned} of {} channels assigned to a role. Complete it, then run: impactid \
          check {}",
         path.display(),
         counted(found.files, "file"),
+        counted(found.records, "record"),
         found.format,
         found.channels.len(),
         path.display()

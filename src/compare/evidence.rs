@@ -26,9 +26,9 @@ pub struct ResonancePoint {
     pub amplitude: f64,
     /// Its error.
     pub amplitude_error: f64,
-    /// Phase behind the drive, rad.
+    /// Phase behind the drive, rad; NaN where the drive was not recorded.
     pub phase_rad: f64,
-    /// Its error, rad.
+    /// Its error, rad, or NaN.
     pub phase_error_rad: f64,
     /// Whether the fit used it.
     pub used: bool,
@@ -152,13 +152,15 @@ fn curve(input: &Input<'_>, role: Role) -> Option<ResonanceCurve> {
 
 fn point(o: &Observation, response: &Response, used: bool) -> ResonancePoint {
     let amplitude = response.amplitude();
+    // without the drive's phase the response has none
+    let known = |phase: f64| o.drive.map_or(f64::NAN, |_| phase);
     ResonancePoint {
         record: o.record.clone(),
         frequency_hz: o.frequency_hz().unwrap_or(f64::NAN),
         amplitude: amplitude / o.setting.drive_amplitude,
         amplitude_error: response.error / o.setting.drive_amplitude,
-        phase_rad: -response.imaginary.atan2(response.real),
-        phase_error_rad: response.error / amplitude,
+        phase_rad: known(-response.imaginary.atan2(response.real)),
+        phase_error_rad: known(response.error / amplitude),
         used,
     }
 }

@@ -103,6 +103,7 @@ pub(crate) fn decay(id: &str, mass: usize, f0_hz: f64) -> Record {
             dimension: Dimension::Acceleration,
             values: (0..1640).map(value).collect(),
             high_pass_hz: None,
+            low_pass: None,
             threshold: None,
         }],
         setting: Setting {

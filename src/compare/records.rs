@@ -28,7 +28,7 @@ pub struct Overview {
 
 pub(super) fn overview(input: &Input<'_>) -> Overview {
     let all = input.observations;
-    let frequencies = all.iter().filter_map(|o| Some(o.drive?.frequency_hz));
+    let frequencies = all.iter().filter_map(|o| Some(o.tone()?.frequency_hz));
     let mut clearances: Vec<f64> = all.iter().filter_map(|o| o.setting.clearance_m).collect();
     clearances.sort_by(f64::total_cmp);
     clearances.dedup();

@@ -72,6 +72,7 @@ impl Common {
                 | EffectKind::HystereticDamping
                 | EffectKind::Hardening
                 | EffectKind::Friction
+                | EffectKind::Pickup
                 | EffectKind::Drift
                 | EffectKind::ContactDuration => None,
             },

@@ -4,13 +4,13 @@ use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use crate::difference::campaign::Known;
-use crate::difference::distribution::{fisher_tail, student_tail};
 use crate::difference::share::{SeparateNuisance, SharedNuisance, sharing};
 use crate::difference::stack::Stack;
 use crate::difference::{Campaign, Outcome, Remark, decision};
 use crate::event::{FlightKind, RigKind};
 use crate::identify::fit::coordinate::Coordinate;
 use crate::identify::fit::normal::inverse;
+use crate::identify::uncertainty::distribution::{fisher_tail, student_tail};
 use crate::identify::uncertainty::quantile::student_975;
 use crate::identify::{ParameterSet, VerdictKind};
 

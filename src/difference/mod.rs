@@ -19,7 +19,6 @@ mod chart;
 mod common;
 mod comparison;
 mod decision;
-mod distribution;
 mod message;
 mod share;
 mod stack;

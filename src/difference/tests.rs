@@ -8,6 +8,7 @@ use crate::event::{FlightKind, RigKind};
 use crate::identify::fit::normal::inverse;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Fit, FitReport, Prior};
+use crate::identify::uncertainty::distribution::student_tail;
 use crate::identify::{Allowed, Estimate, GAIN_ROLES, JointFit, ParameterSet, Status, VerdictKind};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use labfiles::units::Scale;
@@ -277,6 +278,32 @@ fn valid_the_test_of_one_difference_is_that_of_its_interval() {
     let found = compare(&far).expect("comparable");
     let parameters = vec![Coordinate::Restitution];
     assert_eq!(found.outcome(), Outcome::Changed { parameters });
+}
+
+#[test]
+fn valid_interval_and_p_value_are_of_one_distribution_with_few_degrees_of_freedom() {
+    let uncertain = |number, value| {
+        let mut campaign = nothing_shared(simple(number, value, 0.01));
+        if let Some(fit) = &mut campaign.fit {
+            fit.allowed[0].degrees_of_freedom = Some(0.6);
+        }
+        campaign
+    };
+    let found = compare(&[uncertain(0, 0.7), uncertain(1, 0.75)]).expect("comparable");
+    let difference = found.differences[0];
+    // two equal variances with 0.6 degrees of freedom each
+    let freedom = difference.degrees_of_freedom.expect("a number");
+    assert!((freedom - 1.2).abs() < 1e-6, "{freedom}");
+    // scipy.stats.t.ppf(0.975, 1.2)
+    let [low, high] = difference.interval95;
+    let quantile = 0.5 * (high - low) / difference.standard_error;
+    assert!((quantile / 8.648_826_51 - 1.0).abs() < 1e-5, "{quantile}");
+    // at the end of the interval p is 5 %
+    let [value, error] = [difference.value, difference.standard_error];
+    let at_end = student_tail(quantile, freedom);
+    assert!((at_end - 0.05).abs() < 1e-10, "{at_end}");
+    let p = student_tail(value / error, freedom);
+    assert!((difference.p_value - p).abs() < 1e-6, "{difference:?}");
 }
 
 #[test]

@@ -288,6 +288,7 @@ mod tests {
                     error: 1e-6,
                 },
                 source: DetectionSource::Velocity,
+                open_from: 0,
                 dead_samples: 0.0,
             })
             .collect();

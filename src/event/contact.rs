@@ -84,6 +84,7 @@ mod tests {
             dimension: Dimension::Voltage,
             values,
             high_pass_hz: None,
+            low_pass: None,
             threshold,
         }
     }

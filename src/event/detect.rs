@@ -1,5 +1,6 @@
 //! From a record to its impacts: contact pulses and velocity jumps fused, times refined.
 
+use crate::event::channel_lags::{ChannelLag, channel_lags};
 use crate::event::contact::{Closed, closed_intervals};
 use crate::event::drive::{self, DriveTone};
 use crate::event::finite_contact::{self, FiniteContact};
@@ -68,6 +69,9 @@ pub struct Detection {
     pub missed_pulses: usize,
     /// Fraction of the record in which the contact was closed.
     pub closed_fraction: f64,
+    /// How much later than the contact or the other mass the channels show impacts; looked for where impacts
+    /// are closer than one delay could make them, or contradict the contact.
+    pub lags: Vec<ChannelLag>,
     /// Problems found.
     pub flags: Vec<Flag>,
 }
@@ -94,6 +98,7 @@ pub struct Detection {
 ///         dimension: Dimension::Velocity,
 ///         values,
 ///         high_pass_hz: None,
+///         low_pass: None,
 ///         threshold: None,
 ///     }],
 ///     setting: Setting {
@@ -142,10 +147,15 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
         candidates: &found.candidates,
         samples: arc_samples,
     };
+    let lags = match found.may_be_late(rate_hz) {
+        true => channel_lags(&kinematics, &closed, width),
+        false => Vec::new(),
+    };
     let impacts = refined(&mut kinematics, arcs, drive.as_ref(), rig);
     let closed_samples: usize = closed.iter().map(Closed::samples).sum();
     Detection {
         drive,
+        lags,
         impacts,
         jump_samples: found.jump_samples,
         unsupported_pulses: found.unsupported,
@@ -187,6 +197,7 @@ fn freely(record: &Record, kinematics: Kinematics, rig: RigKind, closed: &[Close
         missed_pulses: 0,
         closed_fraction: closed_samples as f64 / record.samples().max(1) as f64,
         kinematics,
+        lags: Vec::new(),
         flags: found.flags,
     }
 }
@@ -202,6 +213,7 @@ fn listed(kinematics: Kinematics, times_s: &[f64]) -> Detection {
         missed_pulses: 0,
         closed_fraction: 0.0,
         kinematics,
+        lags: Vec::new(),
         flags: Vec::new(),
     }
 }
@@ -336,6 +348,24 @@ fn fuse(velocity: &Series, closed: &[Closed], width: usize, dead_from: usize) ->
     }
 }
 
+/// Time between impacts below which one of them may be the other, seen by a late channel, s.
+const ONE_IMPACT_S: f64 = 10e-3;
+
+impl Fused {
+    /// Whether a channel may be late: jumps take more than a sample, follow each other closely, or contradict
+    /// the contact.
+    fn may_be_late(&self, rate_hz: f64) -> bool {
+        let all = &self.candidates;
+        let pairs = all.windows(2);
+        let close = pairs
+            .filter(|pair| pair[1].jump.middle() - pair[0].jump.middle() < ONE_IMPACT_S * rate_hz)
+            .count();
+        let contradicted = self.unsupported + self.missed;
+        !all.is_empty()
+            && (self.jump_samples > 1 || 4 * close > all.len() || 2 * contradicted > all.len())
+    }
+}
+
 /// Share of a jump that the flights beside it must show.
 const SHOWN: f64 = 0.5;
 
@@ -408,6 +438,9 @@ fn candidates(
             jump: *jump,
             source,
             dead_samples,
+            open_from: pulse
+                .filter(|p| p.samples() < dead_from)
+                .map_or(0, |p| p.last + 1),
         });
     }
     out
@@ -440,6 +473,7 @@ fn from_contact_alone(closed: &[Closed], dead_from: usize) -> Fused {
                 error: f64::NAN,
             },
             source: DetectionSource::Contact,
+            open_from: 0,
             dead_samples: if pulse.samples() >= dead_from {
                 pulse.samples() as f64
             } else {

@@ -66,6 +66,29 @@ pub(super) fn measure(record: &Record, tolerance: f64) -> (Option<DriveTone>, Ve
     (Some(drive), flags)
 }
 
+/// Relative deviation from the stated frequency within which a motion's tone is the drive's.
+const NEAR_STATED: f64 = 0.02;
+
+/// The tone that a motion has near the frequency that is stated for its drive, of a record without a
+/// drive channel: its frequency is the drive's, its phase is not.
+pub fn of_motion(record: &Record, motion: &[f64]) -> Option<DriveTone> {
+    let stated_hz = record.setting.stated_frequency_hz?;
+    if record.channel(Role::Drive).is_some() || motion.iter().any(|v| !v.is_finite()) {
+        return None;
+    }
+    let tone = tone::fit_from(motion, record.sample_rate_hz, stated_hz)?;
+    let near = (tone.frequency_hz / stated_hz - 1.0).abs() < NEAR_STATED;
+    // what is no tone has no more at one frequency than at others
+    let harmonic = tone.residual_rms < tone.amplitude;
+    (near && harmonic).then_some(DriveTone {
+        frequency_hz: tone.frequency_hz,
+        frequency_error_hz: tone.frequency_error_hz,
+        amplitude: tone.amplitude,
+        phase_rad: tone.phase_rad,
+        residual_ratio: tone.residual_rms / tone.amplitude,
+    })
+}
+
 fn no_tone(channel: &str) -> Flag {
     Flag::new(
         FlagCode::DriveNotHarmonic,
@@ -143,6 +166,23 @@ mod tests {
         assert!(!flags[0].message.contains("factor"), "{}", flags[0].message);
         stated.setting.stated_frequency_hz = Some(12.62);
         assert!(measure(&stated, 5e-3).1.is_empty());
+    }
+
+    #[test]
+    fn a_motion_has_the_frequency_of_a_drive_that_is_stated_and_not_recorded() {
+        let (drive, half) = (tone(12.6, 0.4), tone(6.3, 0.1));
+        let motion: Vec<f64> = (0..2000).map(|i| drive(i) + 0.3 * half(i)).collect();
+        let mut unrecorded = Record::of(2000.0, &[(Role::VelocityX, &motion)]);
+        assert_eq!(of_motion(&unrecorded, &motion), None);
+        unrecorded.setting.stated_frequency_hz = Some(12.5);
+        let found = of_motion(&unrecorded, &motion).expect("a tone");
+        assert!((found.frequency_hz - 12.6).abs() < 0.02, "{found:?}");
+        // neither another tone nor a recorded drive
+        unrecorded.setting.stated_frequency_hz = Some(15.0);
+        assert_eq!(of_motion(&unrecorded, &motion), None);
+        let mut recorded = record(tone(12.6, 0.0));
+        recorded.setting.stated_frequency_hz = Some(12.6);
+        assert_eq!(of_motion(&recorded, &motion), None);
     }
 
     #[test]

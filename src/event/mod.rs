@@ -5,6 +5,7 @@
 //! bounded by the number of samples before it is used.
 
 mod arc_times;
+mod channel_lags;
 mod contact;
 mod contact_profile;
 mod contact_samples;
@@ -21,7 +22,8 @@ mod kinematics;
 mod lag;
 mod refine;
 
+pub use channel_lags::ChannelLag;
 pub use detect::{DetectSettings, Detection, FlightKind, detect};
-pub use drive::DriveTone;
+pub use drive::{DriveTone, of_motion};
 pub use impact::{CornerShift, DetectionSource, Impact, Lag, MassSpeeds};
 pub use kinematics::{Kinematics, RigKind, Series};

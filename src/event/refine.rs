@@ -11,6 +11,9 @@ use crate::signal::whole;
 /// an impact to it.
 pub(super) const DEGREE: usize = 3;
 
+/// Part of an arc that may be left out while the contact is closed: a sixth.
+const PICKED_UP: usize = 6;
+
 /// An impact's time in samples with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Instant {
@@ -39,6 +42,9 @@ pub(super) struct Candidate {
     pub source: DetectionSource,
     /// Samples the contact stayed closed beyond an ordinary pulse.
     pub dead_samples: f64,
+    /// First sample at which the contact of an ordinary pulse is open again; 0 without one. Until then the
+    /// velocities may show what their cables pick up from it.
+    pub open_from: usize,
 }
 
 impl Candidate {
@@ -75,6 +81,10 @@ fn windows(velocity: &Series, arcs: Arcs<'_>, index: usize) -> [(usize, usize); 
         .get(index + 1)
         .map_or(samples, |c| c.jump.left + 1);
     let begin = jump.left + jump.gap;
+    // Where leaving them out would take much of the arc, samples of the closed contact are kept.
+    let open_from = candidates[index].open_from;
+    let few = open_from <= begin + width / PICKED_UP && open_from + width / 2 <= high;
+    let begin = if few { begin.max(open_from) } else { begin };
     let dead = whole::index(candidates[index].dead_samples);
     // Within a dead zone the bodies move together: "after" is limited to its samples.
     let end = if dead > 3 {
@@ -269,6 +279,7 @@ mod tests {
             jump,
             source: DetectionSource::Velocity,
             dead_samples: 0.0,
+            open_from: 0,
         };
         let found = JumpSearch::new(velocity, 12).find();
         found.into_iter().map(candidate).collect()

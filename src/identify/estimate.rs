@@ -62,14 +62,15 @@ pub struct ParameterSet {
     pub static_deflection_m: Option<Estimate>,
 }
 
-/// Standard errors (of the coordinate: R absolute, the others relative) from which a parameter is
-/// weak and from which it is not identifiable.
+/// Half widths of a 95 % interval (of the coordinate: R absolute, the others relative) from which a
+/// parameter is weak and from which it is not identifiable. Weak is what is not known within 5 %, and f0,
+/// on which all settings depend by η, within 2 %.
 pub(super) fn limits(coordinate: Coordinate) -> (f64, f64) {
     match coordinate {
-        Coordinate::Restitution => (0.03, 0.15),
-        Coordinate::Frequency => (0.01, 0.08),
-        Coordinate::Damping => (0.15, 0.9),
-        _ => (0.05, 0.5),
+        Coordinate::Restitution => (0.05, 0.3),
+        Coordinate::Frequency => (0.02, 0.16),
+        Coordinate::Damping => (0.05, 1.8),
+        _ => (0.05, 1.0),
     }
 }
 
@@ -87,9 +88,10 @@ pub fn estimate_within(
 ) -> Estimate {
     let error = spread.error;
     let (weak, unknown) = limits(coordinate);
-    if !error.is_finite() || error >= unknown {
+    let half = spread.half95();
+    if !half.is_finite() || half >= unknown {
         let parameter = coordinate;
-        return not_identifiable(match error.is_finite() {
+        return not_identifiable(match half.is_finite() {
             true => Note::Open {
                 parameter,
                 standard_error: error,
@@ -97,7 +99,6 @@ pub fn estimate_within(
             false => Note::NotDetermined { parameter },
         });
     }
-    let half = spread.half95();
     let (value, standard_error, interval) = if coordinate.is_logarithm() {
         let v = value.exp();
         (v, v * error, [v * (-half).exp(), v * half.exp()])
@@ -108,7 +109,7 @@ pub fn estimate_within(
         Coordinate::Restitution => [interval[0].max(0.0), interval[1].min(1.0)],
         _ => interval,
     };
-    let status = if error >= weak {
+    let status = if half >= weak {
         Status::Weak
     } else {
         Status::Identified
@@ -125,6 +126,25 @@ pub fn estimate_within(
 /// An estimate that a disagreement of methods leaves further open: by a standard uncertainty, of R
 /// absolute, of the others relative.
 pub fn widened(coordinate: Coordinate, estimate: &Estimate, by: f64) -> Estimate {
+    in_doubt(coordinate, estimate, by, Note::MethodsDisagree)
+}
+
+/// An estimate that something leaves further open, so that it is weak: by a standard uncertainty, of R
+/// absolute, of the others relative.
+pub fn in_doubt(coordinate: Coordinate, estimate: &Estimate, by: f64, why: Note) -> Estimate {
+    let wider = wider(coordinate, estimate, by);
+    match wider.status {
+        Status::NotIdentifiable => wider,
+        _ => Estimate {
+            status: Status::Weak,
+            note: Some(why),
+            ..wider
+        },
+    }
+}
+
+/// An estimate with a further standard uncertainty, of R absolute, of the others relative.
+pub fn wider(coordinate: Coordinate, estimate: &Estimate, by: f64) -> Estimate {
     let (Some(value), Some(error), Some([low, high])) =
         (estimate.value, estimate.standard_error, estimate.interval95)
     else {
@@ -137,13 +157,23 @@ pub fn widened(coordinate: Coordinate, estimate: &Estimate, by: f64) -> Estimate
         true => [value * (-half).exp(), value * half.exp()],
         false => [(value - half).max(0.0), (value + half).min(1.0)],
     };
-    Estimate {
+    let error = error.hypot(by * unit);
+    let mut wider = Estimate {
         value: Some(value),
-        standard_error: Some(error.hypot(by * unit)),
+        standard_error: Some(error),
         interval95: Some(interval),
-        status: Status::Weak,
-        note: Some(Note::MethodsDisagree),
+        ..estimate.clone()
+    };
+    let standard_error = error / unit;
+    if standard_error >= limits(coordinate).0 && wider.status == Status::Identified {
+        let parameter = coordinate;
+        wider.status = Status::Weak;
+        wider.note = Some(Note::Open {
+            parameter,
+            standard_error,
+        });
     }
+    wider
 }
 
 /// A missing estimate with the reason.

@@ -87,7 +87,47 @@ pub fn problem<'b>(
 /// # Errors
 /// Those of [`Problem::fit`].
 pub fn fit(problem: &Problem<'_>, start: Parameters) -> Result<MethodFit, FitError> {
-    let fit = problem.fit(start)?;
+    let fit = problem.fit_from_both_ends(start)?;
     let freedom = fit.residuals.saturating_sub(4);
     Ok(MethodFit::of(problem, fit, freedom))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::fit::effect::Effects;
+    use crate::identify::fixture::{evidence, observed, recorded};
+
+    #[test]
+    fn prop_more_freedom_never_costs_likelihood() {
+        for seed in [5, 6] {
+            let observations = observed(&recorded((0.75, 12.0), 50, seed));
+            let evidence = evidence(&observations);
+            let truth = Parameters::symmetric(0.75, 12.0, 0.06, 1e-3);
+            let mut blocks = Blocks::new(&evidence);
+            let has_orbit = crate::identify::fit::mean_squares(&blocks.trajectory, &truth);
+            let mut has_orbit = has_orbit.iter().map(Option::is_some);
+            blocks
+                .trajectory
+                .records
+                .retain(|_| has_orbit.next().unwrap_or(false));
+            blocks.weigh(&truth);
+            let weights = Weights::from([(Method::Resonance, 1.0), (Method::Trajectories, 1.0)]);
+            let cost = |effects: Effects, start: Parameters| {
+                let nominal = Nominal {
+                    effects,
+                    ..evidence.nominal
+                };
+                let problem = problem(&blocks, start, &weights, &nominal, None).expect("a problem");
+                let found = fit(&problem, start).expect("a fit").fit;
+                (found.cost, found.parameters)
+            };
+            let (without, at) = cost(Effects::none(), truth);
+            // from where the fit without effects ends, and from the same start
+            for start in [at, truth] {
+                let (with, _) = cost(Effects::all(), start);
+                assert!(with <= without + 1e-3, "{seed}: {with} {without}");
+            }
+        }
+    }
 }

@@ -39,7 +39,7 @@ pub fn succeeded(attempt: &Option<FitResult>) -> Option<&MethodFit> {
 /// # Errors
 /// Those of [`Problem::fit`].
 pub fn fit_blocks(problem: Problem<'_>, start: Parameters) -> FitResult {
-    let fit = problem.fit(start)?;
+    let fit = problem.fit_from_both_ends(start)?;
     let informed = problem.free.len().saturating_sub(problem.priors.len());
     let freedom = fit.residuals.saturating_sub(informed);
     Ok(MethodFit::of(&problem, fit, freedom))
@@ -122,7 +122,7 @@ fn starts(block: &ResonanceBlock, nominal: &Nominal) -> Vec<Parameters> {
 }
 
 /// Deflection that best scales the unit response to the measured amplitudes.
-fn deflection_guess(block: &ResonanceBlock, unit: &Parameters) -> f64 {
+pub(super) fn deflection_guess(block: &ResonanceBlock, unit: &Parameters) -> f64 {
     let (mut product, mut square) = (0.0, 0.0);
     for point in &block.points {
         for r in &point.responses {

@@ -11,6 +11,8 @@ pub mod diagnostics;
 pub mod estimate;
 pub mod evidence;
 pub mod fit;
+#[cfg(test)]
+mod fixture;
 pub mod flight_times;
 mod identification;
 pub mod joint;
@@ -26,6 +28,7 @@ pub mod results;
 pub mod run;
 pub mod selection;
 pub mod specimens;
+mod starts;
 pub mod uncertainty;
 
 pub use estimate::{Estimate, ParameterSet, Status};

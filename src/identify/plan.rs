@@ -304,6 +304,7 @@ impl UsualRecord {
                     role: *role,
                     noise: *noise,
                     high_pass_hz: None,
+                    low_pass: None,
                     points: points.clone(),
                 })
                 .collect(),

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::identify::diagnostics::contact_law::ContactLaw;
 use crate::identify::diagnostics::{contact_law, momentum, structure, verdict};
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::evidence::{Blocks, Evidence, impact_bias};
@@ -63,12 +64,17 @@ pub fn impacts(
     result
         .remarks
         .extend(momentum::momentum(block, evidence).map(|m| m.0));
-    result.contact_law = contact_law::contact_law(block);
+    let law = contact_law::contact_law(block);
+    let gained = law.as_ref().and_then(ContactLaw::gained);
+    result.contact_law = law.filter(|_| gained.is_none()).map(ContactLaw::within_one);
     let ratios = structure::ratios(block, &blocks.impact_outliers, evidence.observations);
     if !ratios.is_empty() {
         result.impact_groups = Some(structure::groups(&ratios, evidence.observations));
     }
     verdict::judge_impacts(&mut result, block, evidence, structure::structure(&ratios));
+    if let Some(point) = gained {
+        verdict::judge_gained(&mut result, point);
+    }
     result
 }
 
@@ -204,33 +210,26 @@ pub fn joint(
 
 /// Widen a joint R that rests on impacts between free flights by what their errors have in common.
 pub fn widen_common(joint: &mut MethodResult, block: &ImpactBlock) {
-    let common = block.common_error();
-    let Some(estimate) = joint
-        .parameters
-        .restitution
-        .as_mut()
-        .filter(|_| common > 0.0)
-    else {
-        return;
-    };
-    let (Some(value), Some(error), Some([low, high])) =
-        (estimate.value, estimate.standard_error, estimate.interval95)
-    else {
-        return;
-    };
-    // An interval that ends at 0 or 1 has its width on the other side.
-    let half = (value - low).max(high - value);
-    let half = half.hypot(NORMAL_975 * common);
-    estimate.standard_error = Some(error.hypot(common));
-    estimate.interval95 = Some([(value - half).max(0.0), (value + half).min(1.0)]);
+    if let Some(estimate) = &mut joint.parameters.restitution {
+        widen(estimate, block.common_error());
+    }
 }
 
-/// Add a systematic part to the standard error of R.
+/// Add a systematic part to the standard error of R; an interval that ends at 0 or 1 has its width on the
+/// other side.
 fn widen(restitution: &mut Estimate, systematic: f64) {
-    if let (Some(value), Some(error)) = (restitution.value, restitution.standard_error) {
-        let error = error.hypot(systematic);
-        let half = NORMAL_975 * error;
-        restitution.standard_error = Some(error);
+    let (Some(value), Some(error), Some([low, high])) = (
+        restitution.value,
+        restitution.standard_error,
+        restitution.interval95,
+    ) else {
+        return;
+    };
+    if systematic > 0.0 {
+        let half = (value - low)
+            .max(high - value)
+            .hypot(NORMAL_975 * systematic);
+        restitution.standard_error = Some(error.hypot(systematic));
         restitution.interval95 = Some([(value - half).max(0.0), (value + half).min(1.0)]);
     }
 }

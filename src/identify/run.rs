@@ -4,14 +4,23 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::identify::diagnostics::agreement::{agreement, between_methods};
 use crate::identify::diagnostics::beyond;
+use crate::identify::diagnostics::cause::Cause;
+use crate::identify::diagnostics::change::{self, Change};
+use crate::identify::diagnostics::clock;
+use crate::identify::diagnostics::contact_law;
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
+use crate::identify::diagnostics::doubt::{self, Doubt, Suspicion};
+use crate::identify::diagnostics::late_channel;
+use crate::identify::diagnostics::missing;
 use crate::identify::diagnostics::momentum;
+use crate::identify::diagnostics::settling;
 use crate::identify::diagnostics::stated_clearances;
 use crate::identify::diagnostics::stated_frequencies;
 use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
 use crate::identify::diagnostics::undeclared_high_pass;
 use crate::identify::diagnostics::verdict::{self, Basis};
+use crate::identify::diagnostics::wrong_gains;
 use crate::identify::estimate::ParameterSet;
 use crate::identify::evidence::impacts::ImpactBlock;
 use crate::identify::evidence::{Blocks, Evidence, Nominal, impact_bias};
@@ -24,8 +33,9 @@ use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult, succeeded};
 use crate::identify::residuals::MethodResiduals;
 use crate::identify::selection::Selection;
-use crate::identify::uncertainty::budget;
+use crate::identify::uncertainty::budget::{self, Further, Source};
 use crate::identify::uncertainty::posterior::{self, Posterior};
+use crate::identify::uncertainty::scatter::Spread;
 use crate::identify::uncertainty::{self, Uncertainty};
 use crate::identify::{decay, estimate, flight_times, residuals, results};
 use crate::motion::Observation;
@@ -102,27 +112,22 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
     let impacts = methods::impacts(&run.selection.blocks, &evidence.nominal, start);
     let start = with_restitution(start, &impacts, &run.selection.blocks.impact);
     let mut fits = run.fits(start, resonance, impacts);
-    let mut odd_gaps: Vec<Finding> = Vec::new();
+    let mut odd_gaps: Vec<Suspicion> = Vec::new();
     while let Some(odd) = run.odd_gap(&fits, start, odd_gaps.len()) {
-        odd_gaps.push(odd.into());
+        odd_gaps.push(Finding::from(odd).into());
         if !run.selection.leave_out_gap(odd.stated_m) {
             break;
         }
         fits = run.fits(start, fits.alone.resonance, fits.alone.impacts);
     }
     fits = run.without_influential(fits);
-    let mut suspicions = Vec::from_iter(stated_frequencies::contradicted(evidence.observations));
-    suspicions.extend(stated_frequencies::no_drive(evidence.observations));
-    suspicions.extend(odd_gaps);
-    suspicions.extend(run.other_suspicions(&fits));
-    let of_masses = momentum::momentum(&run.selection.blocks.impact, evidence);
-    suspicions.extend(of_masses.and_then(|m| m.1));
+    let (mut suspicions, doubts) = doubt::parted(run.suspicions(&fits, odd_gaps));
     let mut methods = run.results(&fits);
     let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
     if observations_are_undriven(evidence) {
         results::widen_common(&mut joint, &run.selection.blocks.impact);
-        verdict::carry_over(&mut joint, &methods);
     }
+    verdict::carry_over(&mut joint, &methods);
     let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
     let of_joint = succeeded(&fits.joint).map(|f| &f.fit.parameters);
     let ideal = beyond.is_empty() && of_joint.is_none_or(|p| run.is_on_time(p));
@@ -140,7 +145,15 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
             *estimate = estimate::widened(*parameter, estimate, *by);
         }
     }
+    let clock_uncertainty = evidence.nominal.clock_uncertainty;
+    for result in methods.values_mut().chain([&mut joint]) {
+        clock::widen(result, clock_uncertainty);
+    }
+    doubt::widen(&mut joint, &doubts);
+    let (cause, replaced) = run.one_cause(&fits, (&mut suspicions, &mut joint), &methods);
+    missing::say_missing(&mut joint, evidence);
     let verdict = verdict::verdict(&Basis {
+        cause,
         beyond: &beyond,
         joint: &joint,
         methods: &methods,
@@ -152,7 +165,9 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         verdict,
         joint,
         agreement,
-        uncertainty: run.uncertainty(&fits, &apart),
+        uncertainty: run
+            .uncertainty(&fits, &further(apart, &doubts, clock_uncertainty))
+            .without(&replaced),
         suspicions,
         left_out: run.left_out(),
         used_by: run.used_by(&methods),
@@ -183,6 +198,54 @@ fn without_clearances(evidence: &Evidence<'_>, contradicted: Finding) -> Identif
     found.verdict.findings.insert(0, contradicted.clone());
     found.suspicions.insert(0, contradicted);
     found
+}
+
+/// What is open in the joint estimates beside the fit.
+fn further(apart: Vec<(Coordinate, f64)>, doubts: &[Doubt], clock: f64) -> [Further; 3] {
+    let doubtful = doubts.iter().map(|d| (d.parameter, d.by)).collect();
+    let of_clock = (clock > 0.0).then_some((Coordinate::Frequency, clock));
+    [
+        Further::new(Source::BetweenMethods, apart),
+        Further::new(Source::Clock, Vec::from_iter(of_clock)),
+        Further::new(Source::InstrumentOff, doubtful),
+    ]
+}
+
+/// What waveforms, resonance curve and impacts of some records alone tell of each parameter, the first of
+/// them that tells it: the coordinate and how far it may be off; `None` where nothing does.
+pub(super) fn part_alone(
+    evidence: &Evidence<'_>,
+    within: &dyn Fn(usize) -> bool,
+) -> Option<BTreeMap<Coordinate, (f64, Spread)>> {
+    let indexed = evidence.observations.iter().enumerate();
+    let observations: Vec<Observation> = indexed
+        .filter(|(i, _)| within(*i))
+        .map(|(_, o)| o.clone())
+        .collect();
+    let evidence = Evidence {
+        observations: &observations,
+        brackets: &[],
+        ..*evidence
+    };
+    let mut selection = Selection::new(&evidence);
+    let resonance = selection.resonance();
+    let begin = start(&evidence, &resonance);
+    let impacts = methods::impacts(&selection.blocks, &evidence.nominal, begin);
+    let begin = with_restitution(begin, &impacts, &selection.blocks.impact);
+    let trajectories = selection.trajectories(begin);
+    let mut told = BTreeMap::new();
+    for found in [&trajectories, &resonance, &impacts]
+        .into_iter()
+        .filter_map(succeeded)
+    {
+        for (_, parameter) in found.fit.estimated() {
+            let value = found.fit.parameters.coordinate(parameter);
+            if let Some(spread) = found.spread(parameter) {
+                told.entry(parameter).or_insert((value, spread));
+            }
+        }
+    }
+    (!told.is_empty()).then_some(told)
 }
 
 /// Whether no record has a drive, so that R rests on the impacts alone.
@@ -334,6 +397,10 @@ impl IdentificationRun<'_> {
     ) -> Fits {
         let trajectories = self.selection.trajectories(start);
         let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
+        let resonance = match succeeded(&trajectories) {
+            Some(_) => self.selection.resonance_again(resonance, &start),
+            None => resonance,
+        };
         let waveforms = succeeded(&trajectories).or(succeeded(&resonance));
         let delayed = waveforms.is_some() && self.selection.blocks.delay_impacts(&start);
         let impacts = match delayed {
@@ -364,7 +431,11 @@ impl IdentificationRun<'_> {
         let weight = |attempt: &Option<FitResult>| succeeded(attempt).map(|f| 1.0 / f.factor);
         // Flights rest on the speeds at impacts; waveforms tell the same better than either.
         let flown = weight(&alone.flights).filter(|_| succeeded(&alone.trajectories).is_none());
-        let impact_weight = succeeded(&alone.impacts).map(|found| {
+        // Speeds that impacts seem to gain tell no R.
+        let law = contact_law::contact_law(&self.selection.blocks.impact);
+        let gained = law.is_some_and(|law| law.gained().is_some());
+        let impacts = succeeded(&alone.impacts).filter(|_| !gained);
+        let impact_weight = impacts.map(|found| {
             let told = [&alone.trajectories, &alone.resonance];
             let waveforms = told.into_iter().find_map(succeeded).unwrap_or(found);
             let effects = self.evidence.nominal.effects;
@@ -466,11 +537,14 @@ impl IdentificationRun<'_> {
         let priors = self.problem(blocks, fits.start, &fits.weights)?.priors;
         let allowed = Coordinate::PHYSICAL.into_iter().filter_map(|parameter| {
             let estimate = estimates.get(parameter)?;
-            let unit = parameter.slope(estimate.value?);
+            let value = estimate.value?;
+            let unit = parameter.slope(value);
             let freedom = found.spread(parameter)?.freedom;
+            // what the estimate is off this fit where it is that of a method alone
+            let off = found.fit.parameters.coordinate(parameter) - parameter.of_physical(value);
             Some(Allowed {
                 parameter,
-                standard_uncertainty: estimate.standard_error? / unit,
+                standard_uncertainty: (estimate.standard_error? / unit).hypot(off),
                 degrees_of_freedom: freedom.is_finite().then_some(freedom),
             })
         });
@@ -484,9 +558,8 @@ impl IdentificationRun<'_> {
         })
     }
 
-    /// The uncertainty of the joint fit as the options want it; `apart`: what disagreement of methods
-    /// leaves open.
-    fn uncertainty(&self, fits: &Fits, apart: &[(Coordinate, f64)]) -> Uncertainty {
+    /// The uncertainty of the joint fit as the options want it, with what is open beside it.
+    fn uncertainty(&self, fits: &Fits, further: &[Further]) -> Uncertainty {
         let blocks = &self.selection.blocks;
         let problem = self.problem(blocks, fits.start, &fits.weights);
         let Some((problem, joint)) = problem.zip(succeeded(&fits.joint)) else {
@@ -495,10 +568,42 @@ impl IdentificationRun<'_> {
         let present = joint::present(blocks, &fits.weights);
         let options = &self.evidence.uncertainty;
         Uncertainty {
-            budget: budget::budget(&problem, &present, joint, blocks, apart),
+            budget: budget::budget(&problem, &present, joint, blocks, further),
             scatter: joint.scatter.clone(),
             ..uncertainty::uncertainty(&problem, &present, joint, options)
         }
+    }
+
+    /// What explains other findings, which go, and withdraws what it reaches from the joint result; gives
+    /// that cause and the parameters that are no longer those of the joint fit.
+    fn one_cause(
+        &self,
+        fits: &Fits,
+        (suspicions, joint): (&mut Vec<Finding>, &mut MethodResult),
+        methods: &BTreeMap<Method, MethodResult>,
+    ) -> (Option<Cause>, Vec<Coordinate>) {
+        let observations = self.evidence.observations;
+        suspicions.extend(settling::not_settled(observations, &joint.parameters));
+        let change = self.change(fits);
+        suspicions.extend(change.as_ref().map(|c| c.finding(observations.len())));
+        let cause = Cause::leading(suspicions, methods);
+        let mut replaced = cause.map_or_else(Vec::new, |c| c.withdraw(joint, methods));
+        if let Some(change) = change.filter(|_| cause == Some(Cause::Change)) {
+            replaced.extend(change.tell(joint));
+        }
+        suspicions.retain(|finding| !cause.is_some_and(|c| c.explains(finding)));
+        (cause, replaced)
+    }
+
+    /// Where the campaign's rig became another one, if it did.
+    fn change(&self, fits: &Fits) -> Option<Change> {
+        let joint = succeeded(&fits.joint)?;
+        let blocks = &self.selection.blocks;
+        let problem = self.problem(blocks, fits.start, &fits.weights)?;
+        let present = joint::present(blocks, &fits.weights);
+        let fitted = (&self.selection, &problem, &present[..]);
+        let at = (&joint.fit.parameters, joint.factor);
+        change::change(self.evidence, fitted, at)
     }
 
     /// The gap that deviates most from what the others say, if one does.
@@ -530,8 +635,26 @@ impl IdentificationRun<'_> {
             .or_else(|| suspicion::odd_gap(blocks, weight, joint, uncertainty_m))
     }
 
+    /// Mistakes of the laboratory that the data give away, gaps that were found odd among them.
+    fn suspicions(&self, fits: &Fits, odd_gaps: Vec<Suspicion>) -> Vec<Suspicion> {
+        let observations = self.evidence.observations;
+        let clock = self.evidence.nominal.clock_uncertainty;
+        let mut found = Vec::from_iter(clock::suspicion(observations, clock));
+        found.extend(stated_frequencies::no_drive(observations).map(Suspicion::from));
+        found.extend(odd_gaps);
+        found.extend(late_channel::late_channels(
+            observations,
+            succeeded(&fits.joint),
+            (&self.selection.blocks, &self.evidence.nominal),
+        ));
+        found.extend(self.other_suspicions(fits));
+        let of_masses = momentum::momentum(&self.selection.blocks.impact, self.evidence);
+        found.extend(of_masses.and_then(|m| m.1).map(Suspicion::from));
+        found
+    }
+
     /// Gains and corners far off, and interchanged channels.
-    fn other_suspicions(&self, fits: &Fits) -> Vec<Finding> {
+    fn other_suspicions(&self, fits: &Fits) -> Vec<Suspicion> {
         let Some(joint) = succeeded(&fits.joint) else {
             return Vec::new();
         };
@@ -545,7 +668,7 @@ impl IdentificationRun<'_> {
             Some((found.fit.cost, found.fit.residuals))
         };
         if let Some(found) = swapped_channels::swapped(&self.selection.blocks, &cost) {
-            return vec![found];
+            return vec![found.into()];
         }
         let nominal = &self.evidence.nominal;
         let open = Nominal {
@@ -555,7 +678,11 @@ impl IdentificationRun<'_> {
         let curve = Weights::from([(Method::Resonance, 1.0)]);
         let fit = |blocks: &Blocks| rough_fit(blocks, start, &curve, &open);
         let mut found = undeclared_high_pass::undeclared(&self.selection.blocks, &fit);
-        found.extend(suspicion::channels(&joint.fit, joint.factor, nominal));
+        found.extend(suspicion::corners(&joint.fit, joint.factor, nominal));
+        let problem = self.problem(&self.selection.blocks, fits.start, &fits.weights);
+        found.extend(problem.map_or_else(Vec::new, |p| suspicion::sides(&joint.fit, &p.priors)));
+        let mut found: Vec<Suspicion> = found.into_iter().map(Suspicion::from).collect();
+        found.extend(wrong_gains::wrong_gain(joint, nominal.gain_uncertainty));
         found
     }
 

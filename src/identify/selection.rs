@@ -6,15 +6,17 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use crate::identify::diagnostics::influence;
+use crate::identify::evidence::resonance::ResonancePoint;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::weighing::Bulk;
 use crate::identify::evidence::{Blocks, Evidence, boundary};
-use crate::identify::fit::parameters::Parameters;
+use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{FitError, Precision, Problem, mean_squares};
 use crate::identify::flight_times;
 use crate::identify::messages::{Item, LeftOut, Reason};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult};
+use crate::identify::starts;
 use crate::motion::{Bracket, Observation};
 
 /// Slowest multiplier's distance from 1 at which a motion is at its end.
@@ -27,6 +29,19 @@ const ROUNDS: usize = 2;
 /// Relative change of the error allowed beside the noise below which another round changes nothing.
 const SETTLED: f64 = 0.1;
 
+/// Relative changes of f0, β and `x_st` from which two fits are not of one minimum.
+const FAR: [(Coordinate, f64); 3] = [
+    (Coordinate::Frequency, 0.03),
+    (Coordinate::Damping, 0.3),
+    (Coordinate::Deflection, 0.1),
+];
+
+/// Whether two fits are so far apart that they may be in different minima.
+fn is_far(a: &Parameters, b: &Parameters) -> bool {
+    let apart = |c: Coordinate| (a.coordinate(c) - b.coordinate(c)).abs();
+    FAR.iter().any(|(c, limit)| apart(*c) > *limit)
+}
+
 /// Records of methods by their places in the methods' blocks.
 pub type Places = Vec<(Method, usize)>;
 
@@ -37,6 +52,8 @@ pub struct Selection<'a> {
     pub blocks: Blocks,
     /// Records or brackets left out, each with the reason.
     pub left_out: Vec<LeftOut>,
+    /// Impactless records whose responses are unlike those of the others.
+    unlike: Vec<ResonancePoint>,
     /// Periodic records that the trajectories' fit lost.
     pub lost: Vec<TrajectoryRecord>,
     /// The typical mean square of the records that it kept.
@@ -50,6 +67,7 @@ impl<'a> Selection<'a> {
             evidence,
             blocks: Blocks::new(evidence),
             left_out: Vec::new(),
+            unlike: Vec::new(),
             lost: Vec::new(),
             typical: 1.0,
         }
@@ -78,8 +96,14 @@ impl<'a> Selection<'a> {
             failed => return Some(failed),
         };
         let parameters = first.fit.parameters;
-        self.blocks.weigh_resonance(&parameters);
-        let scores: Vec<f64> = mean_squares(&self.blocks.resonance, &parameters)
+        self.keep_like_responses(&parameters);
+        methods::resonance_from(&self.blocks, &self.evidence.nominal, parameters)
+    }
+
+    /// Weigh the impactless records at good parameters, keep those that fit like the bulk, and name the others.
+    fn keep_like_responses(&mut self, parameters: &Parameters) {
+        self.blocks.weigh_resonance(parameters);
+        let scores: Vec<f64> = mean_squares(&self.blocks.resonance, parameters)
             .into_iter()
             .map(|s| s.unwrap_or(0.0))
             .collect();
@@ -90,19 +114,48 @@ impl<'a> Selection<'a> {
                 self.blocks.resonance.points.push(point);
             } else {
                 let times_worse = bulk.times_worse(score);
-                self.note(
-                    point.observation,
-                    Reason::ResponseUnlikeOthers { times_worse },
-                );
+                let reason = Reason::ResponseUnlikeOthers { times_worse };
+                self.note(point.observation, reason);
+                self.unlike.push(point);
             }
         }
-        methods::resonance_from(&self.blocks, &self.evidence.nominal, parameters)
+    }
+
+    /// The resonance curve's fit, again from where the waveforms are, if it is far from there or left
+    /// records out: few points tell f0 and `x_st` only together, and then also which of them is odd. The better
+    /// one of the fits from there and from where it was.
+    pub fn resonance_again(
+        &mut self,
+        found: Option<FitResult>,
+        waveforms: &Parameters,
+    ) -> Option<FitResult> {
+        let before = match found {
+            Some(Ok(found)) => found,
+            other => return other,
+        };
+        let parameters = before.fit.parameters;
+        if self.unlike.is_empty() && !is_far(&parameters, waveforms) {
+            return Some(Ok(before));
+        }
+        let unlike = |reason: &Reason| matches!(reason, Reason::ResponseUnlikeOthers { .. });
+        self.left_out.retain(|left| !unlike(&left.reason));
+        self.blocks.resonance.points.append(&mut self.unlike);
+        let points = &mut self.blocks.resonance.points;
+        points.sort_by_key(|p| p.observation);
+        self.keep_like_responses(waveforms);
+        let nominal = &self.evidence.nominal;
+        let starts = [*waveforms, parameters];
+        let fits = starts.map(|start| methods::resonance_from(&self.blocks, nominal, start));
+        let fits = fits.into_iter().flatten().filter_map(Result::ok);
+        let best = fits.min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
+        Some(Ok(best.unwrap_or(before)))
     }
 
     /// Fit the folded records, first as if the rig were ideal, then with all that may add to it; those
     /// without an orbit at the start are tried again, and those that fit far worse than the bulk are left out and named.
     pub fn trajectories(&mut self, start: Parameters) -> Option<FitResult> {
         let nominal = self.evidence.nominal;
+        let start = starts::best(&self.blocks, &nominal, start);
         let all = self.blocks.trajectory.records.clone();
         self.keep_those_with_orbits(&start);
         let first =

@@ -6,6 +6,7 @@ use crate::event::{Detection, Impact};
 use crate::motion::aperiodic::Irregularity;
 use crate::motion::closure::{self, Count, ImpactClosure, WaveformClosure};
 use crate::motion::kind::Motion;
+use crate::motion::settling;
 use crate::motion::undetermined::Undetermined;
 use crate::signal::whole;
 
@@ -51,6 +52,10 @@ pub struct Evidence {
     pub impact_closure: Option<ImpactClosure>,
     /// Fraction of windows of n periods that hold p impacts.
     pub count_agreement: Option<f64>,
+    /// What dies away while the motion is recorded, over the waveform's root mean square; `None` of a
+    /// motion that has settled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub settling: Option<f64>,
     /// Number of impacts in the record.
     pub impacts: usize,
     /// Measures that distinguish a beat from chaos, if the motion does not close.
@@ -107,6 +112,7 @@ pub(super) fn undetermined(reason: Undetermined, evidence: Evidence) -> Classifi
 ///     dimension: Dimension::Voltage,
 ///     values,
 ///     high_pass_hz: None,
+///     low_pass: None,
 ///     threshold: (role == Role::Contact).then_some(2.5),
 /// };
 /// let phase = |i: usize| std::f64::consts::TAU * i as f64 / 200.0;
@@ -278,6 +284,17 @@ impl Case<'_> {
             .reduce(f64::min);
         let closed = (2.5 * self.noise).max(self.settings.closed_ratio);
         let open = (5.0 * self.noise).max(self.settings.open_ratio);
+        let impacts = &self.detection.impacts;
+        let early = impacts.iter().all(|i| i.time_s < 0.5 * self.duration_s);
+        let extent = (
+            closed,
+            evidence.periods_observed,
+            early && !impacts.is_empty(),
+        );
+        evidence.settling = settling::disturbance(closures, chosen, extent);
+        if evidence.settling.is_some() && (chosen.periods_n > 1 || chosen.ratio > closed) {
+            return undetermined(Undetermined::NotSettled, evidence);
+        }
         if chosen.ratio > open {
             return self.aperiodic(evidence);
         }
@@ -469,6 +486,7 @@ mod tests {
             unsupported_pulses: 0,
             missed_pulses: 0,
             closed_fraction: 0.0,
+            lags: Vec::new(),
             flags: Vec::new(),
         }
     }

@@ -16,6 +16,8 @@ pub(super) struct WaveformClosure {
     pub periods_n: u32,
     /// Deviation of w(t + nT) − w(t) over √2 and over the waveform's root mean square.
     pub ratio: f64,
+    /// The same in the first and in the second half of the record; `None` where either has few samples.
+    pub halves: Option<[f64; 2]>,
 }
 
 /// Closure of a waveform for n = 1 … `most`, samples near impacts left out.
@@ -50,12 +52,19 @@ pub(super) fn waveform(
             let mut differences: Vec<f64> = pairs.map(|(later, now)| later - now).collect();
             hum.remove(&mut differences, &weights);
             weighted_mean_removed(&mut differences, &weights);
-            let square = dot(&differences, &differences);
             // Interpolation smooths the noise of one of the two: make lags comparable.
-            let square = square * 2.0 / (1.0 + noise_gain(lag.fract()));
+            let gain = 2.0 / (1.0 + noise_gain(lag.fract()));
+            let ratio = |[square, samples]: [f64; 2]| {
+                (samples >= 16.0).then(|| (0.5 * gain * square / samples).sqrt() / scale)
+            };
+            let middle = differences.len() / 2;
+            let (early, late) = differences.split_at(middle);
+            let early = [dot(early, early), sum(&weights[..middle])];
+            let late = [dot(late, late), sum(&weights[middle..])];
             Some(WaveformClosure {
                 periods_n: n,
-                ratio: (0.5 * square / samples).sqrt() / scale,
+                ratio: ratio([early[0] + late[0], early[1] + late[1]])?,
+                halves: ratio(early).zip(ratio(late)).map(Into::into),
             })
         })
         .collect()

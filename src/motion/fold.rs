@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::event::{Detection, DriveTone, Series};
-use crate::record::{Channel, Record, Role};
+use crate::record::{Channel, LowPass, Record, Role};
 use crate::signal::columns::subtract;
 use crate::signal::interpolation::later;
 use crate::signal::whole;
@@ -37,6 +37,9 @@ pub struct FoldedChannel {
     /// `None`: none.
     #[serde(default)]
     pub high_pass_hz: Option<f64>,
+    /// Low-pass that the values have passed and that has settled in them; `None`: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub low_pass: Option<LowPass>,
     /// Points that keep clear of impacts, by phase.
     pub points: Vec<FoldedPoint>,
 }
@@ -85,18 +88,18 @@ pub(super) fn fold(
         let total = std::f64::consts::TAU * drive.frequency_hz * time_s + drive.phase_rad;
         within(total - start, span)
     };
-    let guard_s = (detection.jump_samples as f64 + 1.0) / rate_hz;
     let impact_phase_rad = mean_impact_phase(detection, phase, span);
     let phases: Vec<f64> = (0..sample_count(detection))
         .map(|i| phase(i as f64 / rate_hz))
         .collect();
-    let mut blocked = blocked(detection, guard_s);
+    let guards_s = guards_s(record, (detection.jump_samples as f64 + 1.0) / rate_hz);
+    let mut blocked = blocked(detection, guards_s);
     if let Some(impact) = impact_phase_rad {
         // Also at the record's edges, where no impact can be detected.
-        let guard = guard_s * std::f64::consts::TAU * drive.frequency_hz;
+        let [before, after] = guards_s.map(|s| s * std::f64::consts::TAU * drive.frequency_hz);
         for (phase, blocked) in phases.iter().zip(&mut blocked) {
-            let apart = (phase - impact).abs();
-            *blocked |= apart.min(span - apart) < guard;
+            let since = within(phase - impact, span);
+            *blocked |= since < after || span - since < before;
         }
     }
     let axis = Axis::new(
@@ -128,12 +131,26 @@ fn sample_count(detection: &Detection) -> usize {
         .unwrap_or(0)
 }
 
-fn blocked(detection: &Detection, guard_s: f64) -> Vec<bool> {
+/// Times before and after an impact that are left out, s: a guard on either side and, of channels behind a
+/// low-pass, whose values were moved back by its delay, what it takes to settle.
+fn guards_s(record: &Record, guard_s: f64) -> [f64; 2] {
+    let motion = record.channels.iter().filter(|c| c.role.is_motion());
+    let filters = motion.filter_map(|c| c.low_pass);
+    filters.fold([guard_s; 2], |[before, after], filter| {
+        let (delay_s, settling_s) = (filter.delay_s(), filter.settling_s());
+        [
+            before.max(guard_s + delay_s),
+            after.max(guard_s + settling_s - delay_s),
+        ]
+    })
+}
+
+fn blocked(detection: &Detection, [before_s, after_s]: [f64; 2]) -> Vec<bool> {
     let rate_hz = detection.kinematics.rate_hz;
     let mut blocked = vec![false; sample_count(detection)];
     for impact in &detection.impacts {
-        let first = whole::index(((impact.time_s - guard_s) * rate_hz).floor().max(0.0));
-        let last = whole::index(((impact.time_s + guard_s + impact.dead_zone_s) * rate_hz).ceil());
+        let first = whole::index(((impact.time_s - before_s) * rate_hz).floor().max(0.0));
+        let last = whole::index(((impact.time_s + after_s + impact.dead_zone_s) * rate_hz).ceil());
         let end = (last + 1).min(blocked.len());
         if let Some(range) = blocked.get_mut(first.min(end)..end) {
             range.fill(true);
@@ -264,6 +281,7 @@ fn channels(record: &Record, detection: &Detection, axis: &Axis) -> Vec<FoldedCh
             role,
             noise: series.noise,
             high_pass_hz: filtered.map(|(_, corner_hz)| corner_hz),
+            low_pass: channel.and_then(|c| c.low_pass),
             points: points(&values, axis),
         })
     })

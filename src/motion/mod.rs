@@ -7,14 +7,17 @@ mod classify;
 mod closure;
 mod fold;
 mod kind;
+mod late;
 mod observation;
 mod response;
+mod settling;
 mod undetermined;
 
 pub use bracket::{BoundaryKind, Bracket, brackets};
 pub use classify::{Classification, ClassifySettings, Evidence, classify};
 pub use fold::{Folded, FoldedChannel, FoldedPoint};
 pub use kind::Motion;
+pub use late::{LateChannel, late_channels};
 pub use observation::{Amplitude, Observation, observe, scale_drives};
 pub use response::Response;
 pub use undetermined::Undetermined;

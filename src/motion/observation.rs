@@ -5,10 +5,13 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::event::{DetectSettings, DriveTone, Impact, RigKind, detect};
+use crate::event::{
+    ChannelLag, DetectSettings, DriveTone, FlightKind, Impact, RigKind, detect, of_motion,
+};
 use crate::motion::classify::{Classification, ClassifySettings, classify, undetermined};
 use crate::motion::fold::{Folded, fold};
 use crate::motion::kind::Motion;
+use crate::motion::late::LateChannel;
 use crate::motion::response::{Response, responses};
 use crate::motion::undetermined::Undetermined;
 use crate::record::{Excitation, Flag, FlagCode, Record, Role, Setting};
@@ -38,6 +41,10 @@ pub struct Observation {
     pub duration_s: f64,
     /// The drive as measured.
     pub drive: Option<DriveTone>,
+    /// The tone that the motion has at the stated frequency of a drive that was not recorded: its
+    /// frequency is the drive's, its phase is not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion_tone: Option<DriveTone>,
     /// The motion and its evidence.
     #[serde(rename = "finding")]
     pub classification: Classification,
@@ -49,6 +56,15 @@ pub struct Observation {
     pub missed_pulses: usize,
     /// Samples that a jump of velocity takes.
     pub jump_samples: usize,
+    /// Whether a motion channel has passed a low-pass, so that the speeds at impacts are not those of flights.
+    #[serde(default)]
+    pub low_pass: bool,
+    /// How much later than the contact or the other mass the channels show impacts, where that may matter.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lags: Vec<ChannelLag>,
+    /// Channels that were found late, beyond what is stated; their samples have been moved back.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub late: Vec<LateChannel>,
     /// Amplitudes of the motion channels.
     pub amplitudes: Vec<Amplitude>,
     /// Response at the drive's frequency; only of impactless records.
@@ -63,9 +79,14 @@ pub struct Observation {
 }
 
 impl Observation {
+    /// The drive, else the motion's tone at its stated frequency.
+    pub fn tone(&self) -> Option<DriveTone> {
+        self.drive.or(self.motion_tone)
+    }
+
     /// Measured drive frequency, Hz; the stated one if the drive was not recorded.
     pub fn frequency_hz(&self) -> Option<f64> {
-        self.drive
+        self.tone()
             .map(|d| d.frequency_hz)
             .or(self.setting.stated_frequency_hz)
     }
@@ -97,6 +118,8 @@ impl Observation {
             classification: self.classification.clone(),
             flags: self.flags.clone(),
             impacts: Vec::new(),
+            lags: Vec::new(),
+            late: self.late.clone(),
             amplitudes: Vec::new(),
             response: Vec::new(),
             folded: None,
@@ -140,6 +163,12 @@ pub fn observe(
         return observe_decay(record);
     }
     let mut detection = detect(record, rig, detecting);
+    let drive = detection.drive;
+    let motion = detection.kinematics.waveform.as_ref();
+    let motion_tone = motion
+        .filter(|_| drive.is_none() && detecting.flight == FlightKind::Harmonic)
+        .and_then(|motion| of_motion(record, &motion.values));
+    detection.drive = drive.or(motion_tone);
     let classification = classify(&detection, record.duration_s(), classifying);
     let mut flags = record.flags.clone();
     flags.append(&mut detection.flags);
@@ -149,25 +178,24 @@ pub fn observe(
         detection.unsupported_pulses,
     ));
     let mut observation = Observation {
-        drive: detection.drive,
+        drive,
+        motion_tone,
         impacts: detection.impacts.clone(),
         unsupported_pulses: detection.unsupported_pulses,
         missed_pulses: detection.missed_pulses,
         jump_samples: detection.jump_samples,
+        lags: detection.lags.clone(),
         flags,
         classification,
         ..undriven(record)
     };
-    if let Some(drive) = &observation.drive {
-        if observation.has_no_impact() {
-            // within less than a period a tone is hardly told from a line
-            let periods = record.duration_s() * drive.frequency_hz;
-            if periods >= 1.0 {
-                observation.response = responses(record, drive);
-            }
-        } else if let Some(n) = observation.one_impact_in() {
-            observation.folded = Some(Arc::new(fold(record, &detection, drive, n)));
+    if let Some(tone) = observation.tone().filter(|_| observation.has_no_impact()) {
+        // within less than a period a tone is hardly told from a line
+        if record.duration_s() * tone.frequency_hz >= 1.0 {
+            observation.response = responses(record, &tone);
         }
+    } else if let (Some(drive), Some(n)) = (drive, observation.one_impact_in()) {
+        observation.folded = Some(Arc::new(fold(record, &detection, &drive, n)));
     }
     observation
 }
@@ -195,17 +223,28 @@ fn undriven(record: &Record) -> Observation {
         sample_rate_hz: record.sample_rate_hz,
         duration_s: record.duration_s(),
         drive: None,
+        motion_tone: None,
         classification: undetermined(Undetermined::DecayWithoutDrive, Default::default()),
         impacts: Vec::new(),
         unsupported_pulses: 0,
         missed_pulses: 0,
         jump_samples: 1,
+        low_pass: smears_jumps(record),
+        lags: Vec::new(),
+        late: Vec::new(),
         amplitudes: amplitudes(record),
         response: Vec::new(),
         folded: None,
         decay: None,
         flags: record.flags.clone(),
     }
+}
+
+/// Whether a motion channel's low-pass takes more than a sample to settle.
+fn smears_jumps(record: &Record) -> bool {
+    let motion = record.channels.iter().filter(|c| c.role.is_motion());
+    let mut filters = motion.filter_map(|c| c.low_pass);
+    filters.any(|filter| filter.settling_s() * record.sample_rate_hz > 1.0)
 }
 
 /// Scale each record's drive amplitude by what was measured, relative to the median of its
@@ -303,6 +342,7 @@ impl Observation {
             sample_rate_hz: 2000.0,
             duration_s: 1.0,
             drive: None,
+            motion_tone: None,
             classification: Classification {
                 motion,
                 confidence: 1.0,
@@ -312,6 +352,9 @@ impl Observation {
             unsupported_pulses: 0,
             missed_pulses: 0,
             jump_samples: 1,
+            low_pass: false,
+            lags: Vec::new(),
+            late: Vec::new(),
             amplitudes: Vec::new(),
             response: Vec::new(),
             folded: None,

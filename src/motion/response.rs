@@ -5,7 +5,7 @@ use nalgebra::{Complex, Matrix4, Vector4};
 use serde::{Deserialize, Serialize};
 
 use crate::event::DriveTone;
-use crate::record::{Record, Role};
+use crate::record::{LowPass, Record, Role};
 use crate::signal::columns::{dot, subtract};
 use crate::signal::turns::Turns;
 
@@ -32,6 +32,19 @@ impl Response {
     /// Amplitude, SI.
     pub fn amplitude(&self) -> f64 {
         self.real.hypot(self.imaginary)
+    }
+
+    /// What a low-pass was given that made this of it.
+    fn before(&self, filter: LowPass, frequency_hz: f64) -> Self {
+        let rate = Complex::new(0.0, std::f64::consts::TAU * frequency_hz);
+        let passed = filter.transfer(rate);
+        let value = Complex::new(self.real, self.imaginary) / passed;
+        Self {
+            real: value.re,
+            imaginary: value.im,
+            error: self.error / passed.norm(),
+            ..*self
+        }
     }
 
     /// The same measured values if the channel has passed another high-pass than was assumed.
@@ -72,6 +85,10 @@ pub(super) fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
                 error: raw.2,
                 residual_rms: raw.3,
                 high_pass_hz: None,
+            };
+            let measured = match c.low_pass {
+                Some(filter) => measured.before(filter, drive.frequency_hz),
+                None => measured,
             };
             Some(measured.behind(c.high_pass_hz, drive.frequency_hz))
         })

@@ -52,6 +52,8 @@ pub enum Undetermined {
     },
     /// No impact, and no period.
     SettlingWithoutImpact,
+    /// What the motion misses closing by dies away: the record begins before it has settled.
+    NotSettled,
     /// Too few impacts for an irregular motion.
     FewImpacts,
     /// A simulation that is not periodic.
@@ -112,6 +114,11 @@ message_table! { Undetermined;
         "no impact was found, yet the motion does not repeat: still settling",
         "kein Stoß wurde gefunden, doch wiederholt sich die Bewegung nicht: noch nicht \
          eingeschwungen";
+    Self::NotSettled =>
+        "not settled: the record begins before the disturbance of the start, or of the last change \
+         of a setting, has died away",
+        "nicht eingeschwungen: die Aufzeichnung beginnt, bevor die Störung vom Anfang oder von der \
+         letzten Änderung einer Einstellung abgeklungen ist";
     Self::FewImpacts =>
         "too few impacts to recognise an irregular motion",
         "zu wenige Stöße, um eine unregelmäßige Bewegung zu erkennen";

@@ -15,6 +15,8 @@ use crate::identify::{Identification, Provenance, identify_campaign};
 use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs};
 use crate::record::calibrate::ChannelSetup;
+use crate::record::late::remainder_s;
+use crate::signal::robust;
 use labfiles::output::write_bytes;
 
 /// Name of the result's file.
@@ -42,12 +44,14 @@ pub fn nominal(campaign: &ResolvedCampaign) -> Nominal {
         static_deflection_m: campaign.rig.static_deflection_m,
         gain_uncertainty: campaign.rig.gain_uncertainty,
         corner_uncertainty: campaign.rig.corner_uncertainty,
+        clock_uncertainty: campaign.rig.clock_uncertainty,
         clearance_uncertainty_m: campaign.rig.clearance_uncertainty_m,
         mass_asymmetry: mass_asymmetry(&campaign.rig),
         effects: match &campaign.rig.effects {
             Some(kinds) => Effects::of(kinds),
             None => Effects::all(),
         },
+        flight: campaign.flight,
         ..delays(&campaign.channels)
     }
 }
@@ -71,13 +75,41 @@ fn delays(channels: &[ChannelSetup]) -> Nominal {
     nominal
 }
 
+/// Uncertainty of the delay of a low-pass whose corner and order jumps told, relative.
+const ROUGHLY: f64 = 0.5;
+
+/// What is stated, with what is left of the delays of channels whose whole samples were removed.
+fn nominal_of(campaign: &ResolvedCampaign, observed: &Observed) -> Nominal {
+    let mut nominal = nominal(campaign);
+    let late = observed.late();
+    let campaign = campaign.with_late(late);
+    let rates: Vec<f64> = observed
+        .observations
+        .iter()
+        .map(|o| o.sample_rate_hz)
+        .collect();
+    if let Some(rate_hz) = robust::median(&rates) {
+        for setup in &campaign.channels {
+            if let Some(i) = gain_index(setup.role) {
+                nominal.delays_s[i] = remainder_s(setup, rate_hz);
+                let found = late.iter().find(|l| l.role == setup.role);
+                if let Some(filter) = found.and_then(|l| l.low_pass) {
+                    // its corner is known roughly, and with it its delay
+                    nominal.delay_uncertainties_s[i] = Some(ROUGHLY * filter.delay_s());
+                }
+            }
+        }
+    }
+    nominal
+}
+
 /// What an identification of a campaign starts from.
 pub fn evidence<'a>(campaign: &ResolvedCampaign, observed: &'a Observed) -> Evidence<'a> {
     Evidence {
         rig: campaign.machine,
         observations: &observed.observations,
         brackets: &observed.brackets,
-        nominal: nominal(campaign),
+        nominal: nominal_of(campaign, observed),
         uncertainty: UncertaintyOptions {
             intervals: campaign.analysis.uncertainty,
             replicas: campaign.analysis.replicas,

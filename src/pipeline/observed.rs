@@ -7,7 +7,8 @@ use super::checkpoint;
 use super::error::{PipelineError, Progress, RefusedRecord};
 use super::observe;
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::motion::{Bracket, Observation, brackets, scale_drives};
+use crate::motion::{Bracket, LateChannel, Observation, brackets, late_channels, scale_drives};
+use labfiles::output::OutputError;
 
 /// All records as observed.
 #[derive(Debug, Clone)]
@@ -26,9 +27,8 @@ impl Observed {
     pub fn of(campaign: &ResolvedCampaign, progress: Progress<'_>) -> Result<Self, PipelineError> {
         let kept = BlockCache::none();
         let whole = campaign.records.len();
-        Self::from_observations(observe::observe_in_chunks(
-            campaign, &kept, whole, progress,
-        )?)
+        let observations = observe::observe_in_chunks(campaign, &kept, whole, progress)?;
+        Self::from_observations(aligned(campaign, observations, progress)?)
     }
 
     /// Observe all records of a campaign with checkpoints in `out`; with `resume` those of an
@@ -44,7 +44,12 @@ impl Observed {
         let kept = checkpoint::open(campaign, out, resume)?;
         let chunk = checkpoint::chunk_of(campaign.records.len());
         let observations = observe::observe_in_chunks(campaign, &kept, chunk, progress)?;
-        Self::from_observations(observations)
+        Self::from_observations(aligned(campaign, observations, progress)?)
+    }
+
+    /// The channels that were found late, and whose samples were moved back.
+    pub fn late(&self) -> &[LateChannel] {
+        self.observations.first().map_or(&[], |o| &o.late)
     }
 
     /// Forget the folded waveforms of all records.
@@ -75,4 +80,24 @@ impl Observed {
             brackets,
         })
     }
+}
+
+/// The observations; made again where they show that channels are later than stated, with what these show
+/// moved back.
+fn aligned(
+    campaign: &ResolvedCampaign,
+    observations: Vec<Observation>,
+    progress: Progress<'_>,
+) -> Result<Vec<Observation>, OutputError> {
+    let late = late_channels(&observations);
+    if late.is_empty() {
+        return Ok(observations);
+    }
+    let (campaign, kept) = (campaign.with_late(&late), BlockCache::none());
+    let whole = campaign.records.len();
+    let mut again = observe::observe_in_chunks(&campaign, &kept, whole, progress)?;
+    for observation in &mut again {
+        observation.late.clone_from(&late);
+    }
+    Ok(again)
 }

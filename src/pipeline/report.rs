@@ -121,9 +121,10 @@ pub fn content(
     found: &IdentificationFile,
     command_line: &str,
 ) -> Result<ReportContent, PipelineError> {
+    let aligned = campaign.with_late(observed.late());
     let read = |index: usize| {
-        let entry = campaign.records.get(index)?;
-        Some(read_one(campaign, entry))
+        let entry = aligned.records.get(index)?;
+        Some(read_one(&aligned, entry))
     };
     let compared = compare::compare(&Input {
         rig: campaign.machine,

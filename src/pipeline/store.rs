@@ -80,6 +80,7 @@ pub fn ingest(
         campaign: ResolvedCampaign {
             channels: roles,
             time: None,
+            time_unit_s: None,
             sample_rate_hz: None,
             records: entries,
             ..campaign.clone()
@@ -190,6 +191,9 @@ fn note_roles(roles: &mut Vec<ChannelSetup>, record: &Record) {
                 to_si: 1.0,
             }),
             high_pass_hz: channel.high_pass_hz,
+            low_pass: channel.low_pass,
+            // the channel has been moved back already by its filter's delay
+            delay_s: channel.low_pass.map_or(0.0, |filter| -filter.delay_s()),
             threshold: channel
                 .threshold
                 .map(|si| Quantity {

@@ -44,7 +44,7 @@ const RECORDS: &[(&str, Get<Observation>)] = &[
     ("frequency_hz", Get::Number(Observation::frequency_hz)),
     (
         "frequency_error_hz",
-        Get::Number(|o| Some(o.drive?.frequency_error_hz)),
+        Get::Number(|o| Some(o.tone()?.frequency_error_hz)),
     ),
     (
         "stated_frequency_hz",

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ContactContent, Flag, FlagCode, Role};
+use super::{ContactContent, Flag, FlagCode, LowPass, Role};
 use labfiles::units::{self, Dimension, Quantity, Scale, Unit};
 use labfiles::{ChannelInfo, DatasetInfo};
 
@@ -44,11 +44,43 @@ fn find_name(name: &str, dataset: &DatasetInfo) -> Option<usize> {
         .or_else(|| find_headed(name, dataset))
 }
 
-/// The channel whose column is headed so in the file, whose reader splits the unit off.
+/// The channel whose column is headed so in the file, whose reader splits off the unit, wherever it stands
+/// (`Position (m) Run #1`), and the run, if each is a dataset; or the signal of that label.
 fn find_headed(name: &str, dataset: &DatasetInfo) -> Option<usize> {
-    let (headed, unit) = units::split_unit(name);
-    unit?;
-    only_one(dataset, |c| c.name == headed && c.unit.as_deref() == unit)
+    let (headed, unit) = without_unit_inside(name);
+    let run = dataset.name.rsplit('/').next().unwrap_or_default();
+    let is = |c: &ChannelInfo| {
+        let bare = units::split_unit(&c.name).0;
+        let of_run =
+            |text: &str| [format!("{text} {run}"), format!("{run}: {text}")].contains(&headed);
+        let named = c.name == headed || of_run(&c.name) || bare == headed;
+        let label = c
+            .properties
+            .get("label")
+            .is_some_and(|label| *label == headed);
+        (named || label) && (unit.is_none() || c.unit == unit)
+    };
+    only_one(dataset, is)
+}
+
+/// A heading without the unit in its brackets, and the unit: the last brackets count.
+fn without_unit_inside(name: &str) -> (String, Option<String>) {
+    let brackets = [('[', ']'), ('(', ')')];
+    let found = brackets.iter().find_map(|(open, close)| {
+        let from = name.rfind(*open)?;
+        let length = name[from..].find(*close)?;
+        let unit = name[from + 1..from + length].trim();
+        let rest = [name[..from].trim(), name[from + length + 1..].trim()];
+        let rest: Vec<&str> = rest.into_iter().filter(|part| !part.is_empty()).collect();
+        units::parse_unit(unit).map(|_| (rest.join(" "), Some(unit.to_owned())))
+    });
+    found.unwrap_or_else(|| {
+        let (bare, unit) = units::split_unit(name);
+        match unit.filter(|u| units::parse_unit(u).is_some()) {
+            Some(unit) => (bare.to_owned(), Some(unit.to_owned())),
+            None => (name.trim().to_owned(), None),
+        }
+    })
 }
 
 fn only_one(dataset: &DatasetInfo, fits: impl Fn(&ChannelInfo) -> bool) -> Option<usize> {
@@ -74,6 +106,9 @@ pub struct ChannelSetup {
     pub sign: f64,
     /// Corner of the first-order high-pass that the signal carries, Hz.
     pub high_pass_hz: Option<f64>,
+    /// Low-pass that the signal has passed.
+    #[serde(default)]
+    pub low_pass: Option<LowPass>,
     /// How much later than the drive's channel it shows what happens, s.
     #[serde(default)]
     pub delay_s: f64,
@@ -95,6 +130,11 @@ pub struct ChannelSetup {
 }
 
 impl ChannelSetup {
+    /// How much later than the drive's channel it shows slow motion, its low-pass included, s.
+    pub fn whole_delay_s(&self) -> f64 {
+        self.delay_s + self.low_pass.map_or(0.0, |filter| filter.delay_s())
+    }
+
     /// A channel read as it is, in the unit the file states.
     pub fn plain(role: Role, source: ChannelKey) -> Self {
         Self {
@@ -105,6 +145,7 @@ impl ChannelSetup {
             offset: 0.0,
             sign: 1.0,
             high_pass_hz: None,
+            low_pass: None,
             delay_s: 0.0,
             delay_uncertainty_s: None,
             threshold: None,
@@ -257,13 +298,24 @@ fn unfit_scale(setup: &ChannelSetup, info: &ChannelInfo, unit: Unit) -> Flag {
 fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -> Result<(), Flag> {
     let role = setup.role;
     let wrong = |expected: &str| {
+        let turning = turning(role, found);
         let what = format!(
-            "channel '{}' of the role {} comes out as a {}, not as {expected}",
+            "channel '{}' of the role {} comes out as {}, not as {expected}",
             info.name,
             role.name(),
-            found.name()
+            turning.map_or_else(
+                || format!("a {}", found.name()),
+                |(what, _)| what.to_owned()
+            )
         );
-        let remedy = format!("correct unit and scale in [channels.{}]", role.name());
+        let correct = || format!("correct unit and scale in [channels.{}]", role.name());
+        let arm = |(_, scale): (&str, &str)| {
+            format!(
+                "state the arm at which the mass touches, or 1 m, in [channels.{}]: scale = \"{scale}\"",
+                role.name()
+            )
+        };
+        let remedy = turning.map_or_else(correct, arm);
         Err(flag(setup, &info.name, FlagCode::WrongUnit, what, &remedy))
     };
     let list = setup.content.is_list();
@@ -280,6 +332,16 @@ fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -
             level.dimension.name()
         )),
         _ => Ok(()),
+    }
+}
+
+/// What a motion of turning is, and the scale that makes one along a path of it.
+fn turning(role: Role, found: Dimension) -> Option<(&'static str, &'static str)> {
+    match found {
+        _ if !role.is_motion() => None,
+        Dimension::Angle => Some(("an angle", "0.15 m per rad")),
+        Dimension::Frequency => Some(("an angular rate", "0.15 m/s per rad/s")),
+        _ => None,
     }
 }
 
@@ -303,6 +365,40 @@ mod tests {
     use super::*;
 
     #[test]
+    fn an_angular_rate_needs_the_arm() {
+        let channel = ChannelInfo {
+            name: "gyro".into(),
+            unit: Some("rad/s".into()),
+            stored: StoredType::Float(64),
+            samples: 100,
+            sample_rate_hz: None,
+            start_time: None,
+            clock: labfiles::Clock::Shared,
+            start_s: None,
+            properties: BTreeMap::new(),
+        };
+        let dataset = DatasetInfo {
+            channels: vec![channel],
+            ..DatasetInfo::default()
+        };
+        let mut setup = ChannelSetup::plain(Role::VelocityX, ChannelKey::Name("gyro".into()));
+        let flag = bind(&setup, &dataset).unwrap_err();
+        assert_eq!(
+            flag.message,
+            "channel 'gyro' of the role velocity_x comes out as an angular rate, not as a velocity"
+        );
+        assert!(
+            flag.remedy.ends_with("scale = \"0.15 m/s per rad/s\""),
+            "{}",
+            flag.remedy
+        );
+        setup.scale = units::parse_scale("0.15 m/s per rad/s").unwrap();
+        let bound = bind(&setup, &dataset).unwrap();
+        assert!((bound.to_si.to_si - 0.15).abs() < 1e-12);
+        assert_eq!(bound.to_si.dimension, Dimension::Velocity);
+    }
+
+    #[test]
     fn a_channel_is_found_with_its_unit_as_its_column_is_headed() {
         let channel = |name: &str, unit: &str| ChannelInfo {
             name: name.into(),
@@ -311,8 +407,54 @@ mod tests {
             samples: 100,
             sample_rate_hz: None,
             start_time: None,
+            clock: labfiles::Clock::Shared,
+            start_s: None,
             properties: BTreeMap::new(),
         };
+        let runs = DatasetInfo {
+            name: "Run #1".into(),
+            channels: vec![channel("Time", "s"), channel("Position", "m")],
+            ..DatasetInfo::default()
+        };
+        for heading in [
+            "Position (m) Run #1",
+            "Position Run #1",
+            "Position (m)",
+            "Position",
+        ] {
+            assert_eq!(
+                ChannelKey::Name(heading.into()).find(&runs),
+                Some(1),
+                "{heading}"
+            );
+        }
+        for heading in ["Position (m) Run #2", "Position (mm) Run #1"] {
+            assert_eq!(
+                ChannelKey::Name(heading.into()).find(&runs),
+                None,
+                "{heading}"
+            );
+        }
+        let single = DatasetInfo {
+            channels: vec![channel("Time Run #1", "s"), channel("Position Run #1", "m")],
+            ..DatasetInfo::default()
+        };
+        for heading in ["Position (m) Run #1", "Position Run #1"] {
+            assert_eq!(
+                ChannelKey::Name(heading.into()).find(&single),
+                Some(1),
+                "{heading}"
+            );
+        }
+        let mut labelled = channel("scope.signals(1).values", "m/s");
+        labelled
+            .properties
+            .insert("label".into(), "velocity".into());
+        let scope = DatasetInfo {
+            channels: vec![labelled],
+            ..DatasetInfo::default()
+        };
+        assert_eq!(ChannelKey::Name("velocity".into()).find(&scope), Some(0));
         let dataset = DatasetInfo {
             channels: vec![
                 channel("time", "s"),

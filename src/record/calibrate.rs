@@ -3,9 +3,9 @@
 
 use super::bind::flag;
 pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
-use super::time_axis;
+use super::times::Clocks;
 use super::{Channel, ContactContent, Flag, FlagCode, Record, Role, Setting};
-use super::{condition, consistency, events};
+use super::{changes, condition, consistency, events, late};
 use crate::signal::whole;
 use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 
@@ -20,6 +20,8 @@ pub struct RecordSetup<'a> {
     pub channels: &'a [ChannelSetup],
     /// The channel with the time, if the file's reader cannot find it.
     pub time: Option<&'a ChannelKey>,
+    /// Seconds in the unit of a time axis that states none.
+    pub time_unit_s: Option<f64>,
     /// Samples per second, Hz, for files that do not state it.
     pub sample_rate_hz: Option<f64>,
     /// The setting as the laboratory states it.
@@ -96,6 +98,7 @@ fn empty(id: &str, setting: &Setting) -> Record {
 ///         dataset: 0,
 ///         channels: &channels,
 ///         time: None,
+///         time_unit_s: None,
 ///         sample_rate_hz: None,
 ///         setting: &setting,
 ///         driven: false,
@@ -115,15 +118,13 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
         return record;
     };
     let bound = bind_all(setup, dataset, &mut record.flags);
-    let axis = match time_axis::find(setup.time, dataset) {
-        Ok(axis) => axis.or_else(|| frames(setup, dataset)),
-        Err(flag) => {
-            record.flags.push(flag);
-            None
-        }
+    let content = content(setup);
+    let clocks = match content.is_list() {
+        true => Clocks::default(),
+        false => Clocks::of(setup, dataset, &bound, &mut record.flags),
     };
     let mut wanted: Vec<usize> = bound.iter().map(|(_, b)| b.index).collect();
-    wanted.extend(axis);
+    wanted.extend(&clocks.axes);
     let mut samples = match source.read(setup.dataset, &wanted) {
         Ok(samples) => samples,
         Err(error) => {
@@ -131,18 +132,13 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
             return record;
         }
     };
-    let times = axis.and_then(|index| seconds(samples.pop(), dataset, index));
-    let counts_frames = axis.is_some_and(|i| time_axis::counts_frames(dataset, i));
-    let mut times: Option<Vec<f64>> = match setup.sample_rate_hz.filter(|_| counts_frames) {
-        Some(rate_hz) => times.map(|t| t.iter().map(|n| n / rate_hz).collect()),
-        None => times,
-    };
-    let ranges = scale_all(&mut record, dataset, &bound, samples);
-    let content = content(setup);
+    let axes = samples.split_off(bound.len());
+    let (kept, ranges) = scale_all(&mut record, dataset, &bound, samples);
     if !content.is_list() {
-        condition::equal_lengths(&mut record, times.as_mut());
-        condition::trim_missing(&mut record, times.as_mut());
-        settle_rate(&mut record, setup, dataset, &bound, times.as_deref());
+        clocks.settle(&mut record, setup, dataset, (&kept, axes));
+    }
+    if content == ContactContent::Times {
+        keep_closings(source, setup, dataset, (&mut record, &kept));
     }
     if content != ContactContent::Signal {
         events::settle(&mut record, content);
@@ -153,20 +149,59 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
         let flags = consistency::inspect(&record);
         record.flags.extend(flags);
     }
+    late::align(&mut record, setup.channels);
     skip(&mut record, setup.skip_s);
     record
+}
+
+/// Keep of a list of changes the times at which the contact closes.
+fn keep_closings(
+    source: &dyn Source,
+    setup: &RecordSetup<'_>,
+    dataset: &DatasetInfo,
+    (record, kept): (&mut Record, &[usize]),
+) {
+    let Some((channel, &index)) = record
+        .channels
+        .iter_mut()
+        .zip(kept)
+        .find(|(c, _)| c.role == Role::Contact)
+    else {
+        return;
+    };
+    let states = changes::candidates(dataset, index).find_map(|state| {
+        let read = source
+            .read(setup.dataset, &[state])
+            .ok()?
+            .pop()?
+            .into_real()?;
+        Some((state, changes::levels(&channel.values, &read)?, read))
+    });
+    let Some((state, levels, states)) = states else {
+        return;
+    };
+    let closings = channel
+        .values
+        .iter()
+        .zip(states)
+        .filter(|(_, s)| *s == levels.closed);
+    channel.values = closings.map(|(time, _)| *time).collect();
+    let name = &dataset.channels[state].name;
+    let found = format!(
+        "the rows are changes of '{name}': the {} at which it goes to {} are the impacts",
+        channel.values.len(),
+        levels.closed
+    );
+    let remedy = "nothing, if the contact is closed while it is there";
+    record
+        .flags
+        .push(Flag::new(FlagCode::ContactChanges, Some(name), found, remedy).excluding(false));
 }
 
 /// What the channel of the contact contains.
 fn content(setup: &RecordSetup<'_>) -> ContactContent {
     let contact = setup.channels.iter().find(|c| c.role == Role::Contact);
     contact.map_or(ContactContent::Signal, |c| c.content)
-}
-
-/// A column that counts a camera's frames, if the rate of the frames is stated: it shows lost ones.
-fn frames(setup: &RecordSetup<'_>, dataset: &DatasetInfo) -> Option<usize> {
-    setup.sample_rate_hz?;
-    (0..dataset.channels.len()).find(|i| time_axis::counts_frames(dataset, *i))
 }
 
 fn no_dataset(source: &dyn Source, index: usize) -> Flag {
@@ -182,17 +217,7 @@ fn no_dataset(source: &dyn Source, index: usize) -> Flag {
     )
 }
 
-/// The time axis in s; `None` if it holds no real numbers.
-fn seconds(samples: Option<Samples>, dataset: &DatasetInfo, index: usize) -> Option<Vec<f64>> {
-    let Some(Samples::Real(mut times)) = samples else {
-        return None;
-    };
-    let factor = time_axis::seconds_per_unit(dataset, index);
-    times.iter_mut().for_each(|t| *t *= factor);
-    Some(times)
-}
-
-type BoundRole<'a> = (&'a ChannelSetup, Bound);
+pub(super) type BoundRole<'a> = (&'a ChannelSetup, Bound);
 
 fn bind_all<'a>(
     setup: &RecordSetup<'a>,
@@ -209,24 +234,26 @@ fn bind_all<'a>(
     bound
 }
 
-/// Scale the samples into the record; gives the converter's range of each channel kept.
+/// Scale the samples into the record; gives for each channel kept its index in the dataset, and the
+/// converter's range.
 fn scale_all(
     record: &mut Record,
     dataset: &DatasetInfo,
     bound: &[BoundRole<'_>],
     samples: Vec<Samples>,
-) -> Vec<Option<f64>> {
-    let mut ranges = Vec::with_capacity(bound.len());
+) -> (Vec<usize>, Vec<Option<f64>>) {
+    let (mut kept, mut ranges) = (Vec::new(), Vec::new());
     for ((channel, found), samples) in bound.iter().zip(samples) {
         match scaled(samples, channel, found, &dataset.channels[found.index]) {
             Ok(channel) => {
+                kept.push(found.index);
                 ranges.push(found.range_si);
                 record.channels.push(channel);
             }
             Err(flag) => record.flags.push(flag),
         }
     }
-    ranges
+    (kept, ranges)
 }
 
 fn scaled(
@@ -253,82 +280,9 @@ fn scaled(
         dimension: bound.to_si.dimension,
         values,
         high_pass_hz: setup.high_pass_hz,
+        low_pass: setup.low_pass,
         threshold: setup.threshold.map(|t| t.si),
     })
-}
-
-/// The sample rate: from the time axis, else as the file states, else as campaign.toml does.
-fn settle_rate(
-    record: &mut Record,
-    setup: &RecordSetup<'_>,
-    dataset: &DatasetInfo,
-    bound: &[BoundRole<'_>],
-    times: Option<&[f64]>,
-) {
-    let sample_rate_hz = times.and_then(|times| time_axis::inspect(times, &mut record.flags));
-    let stated = stated_rate(record, dataset, bound);
-    let rate = sample_rate_hz.or(stated).or(setup.sample_rate_hz);
-    match rate.filter(|r| r.is_finite() && *r > 0.0) {
-        Some(rate) => {
-            record.sample_rate_hz = rate;
-            record
-                .flags
-                .extend(contradicting_step(rate, dataset, bound));
-        }
-        None => record.flags.push(Flag::new(
-            FlagCode::NoSampleRate,
-            None,
-            "neither a time axis nor a sample rate states when the samples were taken",
-            "write sample_rate = \"2 kHz\" or time = \"…\" in [records]",
-        )),
-    }
-}
-
-/// Relative difference of rates that rounding of a printed step does not explain.
-const RATES_DIFFER: f64 = 5e-3;
-
-/// A step that a file states beside a time axis of another step.
-fn contradicting_step(
-    rate_hz: f64,
-    dataset: &DatasetInfo,
-    bound: &[BoundRole<'_>],
-) -> Option<Flag> {
-    let stated = bound.iter().find_map(|(_, b)| {
-        let text = dataset.channels[b.index].properties.get("Delta_X")?;
-        text.replace(',', ".").trim().parse::<f64>().ok()
-    });
-    let step_s = stated.filter(|s| s.is_finite() && *s > 0.0)?;
-    if (step_s * rate_hz - 1.0).abs() < RATES_DIFFER {
-        return None;
-    }
-    let found = format!(
-        "the header states a step of {step_s} s (Delta_X), the time channel has {:.6} s: the channel is \
-         used",
-        1.0 / rate_hz
-    );
-    let remedy = "check which of the two is right; without the time channel the step would be used";
-    Some(Flag::new(FlagCode::RateContradicts, None, found, remedy).excluding(false))
-}
-
-/// The rate that the file states for the channels; a flag if they differ.
-fn stated_rate(record: &mut Record, dataset: &DatasetInfo, bound: &[BoundRole<'_>]) -> Option<f64> {
-    let rates = bound.iter().filter_map(|(_, b)| {
-        let info = &dataset.channels[b.index];
-        info.sample_rate_hz.map(|rate| (rate, &info.name))
-    });
-    let mut first: Option<f64> = None;
-    for (rate, name) in rates {
-        let known = *first.get_or_insert(rate);
-        if (rate / known - 1.0).abs() > 1e-6 {
-            record.flags.push(Flag::new(
-                FlagCode::UnequalSampleRates,
-                Some(name),
-                format!("channel '{name}' has {rate} samples a second, others {known}"),
-                "record all channels at one rate, or leave the channel out",
-            ));
-        }
-    }
-    first
 }
 
 /// Leave out the start of the record.
@@ -355,7 +309,7 @@ fn all_skipped(duration_s: f64, skip_s: f64) -> Flag {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// A table of two columns, as a Record whose time axis is the first.
@@ -377,12 +331,60 @@ mod tests {
             dataset: 0,
             channels: &channels,
             time: None,
+            time_unit_s: None,
             sample_rate_hz: None,
             setting: &Setting::default(),
             driven: false,
             skip_s: 0.0,
         };
         calibrate(source.as_ref(), &setup)
+    }
+
+    /// Bounces of R = 0.8 as a logic analyser lists them: the contact is closed for 2 ms.
+    pub(crate) fn list_of_changes() -> String {
+        let mut text = String::from("Time [s],Channel 0\n0.000000000,0\n");
+        let mut at = 0.5;
+        for k in 0..12 {
+            text += &format!("{at:.9},1\n{:.9},0\n", at + 2e-3);
+            at += 0.5 * 0.8f64.powi(k);
+        }
+        text
+    }
+
+    #[test]
+    fn of_a_list_of_changes_those_that_close_the_contact_are_impacts() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("digital.csv");
+        std::fs::write(&path, list_of_changes()).unwrap();
+        let source = labfiles::open(&path).unwrap();
+        let contact = ChannelSetup {
+            content: ContactContent::Times,
+            ..ChannelSetup::plain(Role::Contact, ChannelKey::Name("Time".into()))
+        };
+        let setup = RecordSetup {
+            id: "digital",
+            dataset: 0,
+            channels: &[contact],
+            time: None,
+            time_unit_s: None,
+            sample_rate_hz: None,
+            setting: &Setting::default(),
+            driven: false,
+            skip_s: 0.0,
+        };
+        let record = calibrate(source.as_ref(), &setup);
+        let times = record.values(Role::Contact).unwrap();
+        assert_eq!(times.len(), 12);
+        let flights: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+        assert!(
+            flights.windows(2).all(|w| (w[1] / w[0] - 0.8).abs() < 1e-6),
+            "{flights:?}"
+        );
+        assert_eq!(
+            record.flags[0].message,
+            "the rows are changes of 'Channel 0': the 12 at which it goes to 1 are the impacts"
+        );
+        assert!(!record.excluded());
     }
 
     #[test]

@@ -76,6 +76,15 @@ pub(super) fn trim_missing(record: &mut Record, times: Option<&mut Vec<f64>>) {
     record.flags.push(trimmed(name, cut));
 }
 
+/// The range of a channel's samples without those that have no value at its ends; all where none has one.
+pub(super) fn filled(values: &[f64]) -> (usize, usize) {
+    let first = values.iter().position(|v| v.is_finite());
+    let last = values.iter().rposition(|v| v.is_finite());
+    first
+        .zip(last)
+        .map_or((0, values.len()), |(first, last)| (first, last + 1))
+}
+
 fn never_whole(record: &Record) -> Flag {
     let worst = record
         .channels
@@ -129,7 +138,56 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
         // Without a drive a body comes to rest.
         flags.extend(held(record));
     }
+    flags.extend(frozen(record));
     record.flags.extend(flags);
+}
+
+/// Fewest samples without a change that count as a frozen picture.
+const FEWEST_FROZEN: usize = 2;
+
+/// Part of the way that a motion would have made while the picture stood still, from which its jump is the
+/// motion that went on unseen.
+const UNSEEN_PART: f64 = 0.7;
+
+/// Displacements that stand still in the midst of a motion and then jump by as much as it would have gone on:
+/// a camera that repeats a picture. A coarse converter rests as long, but its steps are no greater after it.
+fn frozen(record: &Record) -> Option<Flag> {
+    let moving = |c: &&Channel| matches!(c.role, Role::DisplacementX | Role::DisplacementY);
+    record.channels.iter().filter(moving).find_map(|channel| {
+        let frozen = frozen_stretches(&channel.values);
+        let (first, length) = *frozen.first()?;
+        let found = format!(
+            "channel '{}' stands still {} times in the midst of a motion and then jumps, the first time for {} \
+             samples from sample {first} on: its pictures were frozen",
+            channel.name,
+            frozen.len(),
+            length + 1
+        );
+        let remedy = "leave out those records, or record again with a camera that keeps its pace";
+        Some(Flag::new(FlagCode::FrozenFrames, Some(&channel.name), found, remedy).excluding(false))
+    })
+}
+
+/// Where samples stand still although the motion goes on: the first sample and the number of steps.
+fn frozen_stretches(values: &[f64]) -> Vec<(usize, usize)> {
+    let step = |i: usize| values[i + 1] - values[i];
+    let mut found = Vec::new();
+    let mut i = 1;
+    while i + 1 < values.len() {
+        let length = (i..values.len() - 1)
+            .take_while(|k| step(*k) == 0.0)
+            .count();
+        let after = i + length;
+        if length >= FEWEST_FROZEN && after + 2 < values.len() {
+            let (before, jump, next) = (step(i - 1), step(after), step(after + 1));
+            let unseen = UNSEEN_PART * (length + 1) as f64 * before.abs().min(next.abs());
+            if before * next > 0.0 && before * jump > 0.0 && jump.abs() >= unseen {
+                found.push((i, length));
+            }
+        }
+        i = after + 1;
+    }
+    found
 }
 
 fn no_samples(record: &Record) -> Flag {
@@ -391,6 +449,31 @@ mod tests {
             flags[0].message.contains("20 samples from sample 499"),
             "{}",
             flags[0].message
+        );
+    }
+
+    #[test]
+    fn a_picture_that_stands_still_in_the_midst_of_a_motion_is_named() {
+        let moving: Vec<f64> = (0..300).map(|i| sine(i) + 1e-3 * (i % 7) as f64).collect();
+        let mut frozen = moving.clone();
+        let last = frozen[100];
+        frozen[101..104].fill(last);
+        assert_eq!(frozen_stretches(&moving), []);
+        assert_eq!(frozen_stretches(&frozen), [(100, 3)]);
+        // a coarse converter rests at each of its steps
+        let coarse: Vec<f64> = (0..300).map(|i| (sine(i) / 0.2).round() * 0.2).collect();
+        assert_eq!(frozen_stretches(&coarse), []);
+        // a ball at rest before it is let go
+        let let_go: Vec<f64> = (0..100)
+            .map(|i| f64::from((i - 50).max(0)).powi(2))
+            .collect();
+        assert_eq!(frozen_stretches(&let_go), []);
+        let mut record = Record::of(30.0, &[(Role::DisplacementX, &frozen)]);
+        inspect(&mut record, &[None], false);
+        assert_eq!(
+            record.flags[0].message,
+            "channel 'displacement_x' stands still 1 times in the midst of a motion and then jumps, the first \
+             time for 4 samples from sample 100 on: its pictures were frozen"
         );
     }
 

@@ -314,6 +314,7 @@ mod tests {
                 dimension: role.dimension().unwrap(),
                 values: (0..2000).map(|i| of(f64::from(i) / 2000.0)).collect(),
                 high_pass_hz: None,
+                low_pass: None,
                 threshold: None,
             })
             .collect();

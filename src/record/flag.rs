@@ -69,6 +69,10 @@ flag_codes! {
     DeadChannel = "dead_channel", "dead channel", "toter Kanal",
     /// A channel reaches the limits of its converter.
     Clipped = "clipped", "clipped", "übersteuert",
+    /// The rows are changes of the contact, of which those that close it count.
+    ContactChanges = "contact_changes", "changes of the contact", "Wechsel des Kontakts",
+    /// A camera's picture stood still, then jumped.
+    FrozenFrames = "frozen_frames", "frozen frames", "stehende Bilder",
     /// Samples are missing.
     DroppedSamples = "dropped_samples", "dropped samples", "fehlende Abtastwerte",
     /// Time stamps are repeated.
@@ -79,6 +83,16 @@ flag_codes! {
     TimeBackward = "time_backward", "time backward", "Zeit läuft zurück",
     /// The time axis is not uniform.
     TimeNotUniform = "time_not_uniform", "time not uniform", "Zeit nicht gleichmäßig",
+    /// The unit of the time axis is not known.
+    TimeUnitMissing = "time_unit_missing", "unit of time missing", "Einheit der Zeit fehlt",
+    /// The unit of the time axis was assumed.
+    TimeUnitAssumed = "time_unit_assumed", "unit of time assumed", "Einheit der Zeit angenommen",
+    /// Channels that begin at unlike times were put in place.
+    ChannelsShifted = "channels_shifted", "channels shifted", "Kanäle verschoben",
+    /// A channel does not state when it begins, others do.
+    StartMissing = "start_missing", "start missing", "Beginn fehlt",
+    /// Channels were not recorded at the same time.
+    ChannelsApart = "channels_apart", "channels apart", "Kanäle nicht gleichzeitig",
     /// No sample rate is known.
     NoSampleRate = "no_sample_rate", "no sample rate", "keine Abtastrate",
     /// The rate that the file states is not that of its time axis.

@@ -4,13 +4,18 @@
 //! [`Record`]s. A simulated record is the same type, so that one detector and one classifier
 //! judge experiment and simulation alike. This module does not use the model.
 
+mod alignment;
 mod bind;
 pub mod calibrate;
+pub mod changes;
 mod condition;
 pub mod consistency;
 mod events;
 mod flag;
+pub mod late;
+mod low_pass;
 pub mod time_axis;
+mod times;
 
 use serde::{Deserialize, Serialize};
 
@@ -18,6 +23,7 @@ use labfiles::units::Dimension;
 
 pub use events::ContactContent;
 pub use flag::{Flag, FlagCode};
+pub use low_pass::LowPass;
 
 /// What a channel measures on the rig.
 #[derive(
@@ -118,6 +124,8 @@ pub struct Channel {
     pub values: Vec<f64>,
     /// Corner of the first-order high-pass that the signal still carries, Hz; `None`: none.
     pub high_pass_hz: Option<f64>,
+    /// Low-pass that the signal has passed; `None`: none that matters.
+    pub low_pass: Option<LowPass>,
     /// Level between open and closed contact, SI; only for [`Role::Contact`].
     pub threshold: Option<f64>,
 }
@@ -271,6 +279,7 @@ impl Record {
             dimension: role.dimension().unwrap_or(Dimension::Voltage),
             values: values.to_vec(),
             high_pass_hz: None,
+            low_pass: None,
             threshold: (*role == Role::Contact).then_some(2.5),
         };
         Self {

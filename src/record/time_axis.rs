@@ -3,8 +3,7 @@
 use super::bind::ChannelKey;
 use super::{Flag, FlagCode};
 use crate::signal::whole;
-use labfiles::DatasetInfo;
-use labfiles::units;
+use labfiles::{ChannelInfo, DatasetInfo, StoredType, timing, units};
 
 /// Most steps by which a time axis without gaps may stray from equal steps.
 const MOST_STRAY_STEPS: f64 = 2.0;
@@ -34,17 +33,12 @@ fn by_name(dataset: &DatasetInfo) -> Option<usize> {
     if dataset.channels.iter().any(|c| c.sample_rate_hz.is_some()) {
         return None;
     }
-    dataset.channels.iter().position(|c| {
-        let (bare, symbol) = units::split_unit(&c.name);
-        let symbol = c.unit.as_deref().or(symbol);
-        let unit = symbol.and_then(units::parse_split_unit);
-        let named = matches!(bare.to_lowercase().as_str(), "t" | "time" | "zeit");
-        named && unit.is_none_or(|u| u.dimension == units::Dimension::Time)
-    })
+    let numbers = |c: &ChannelInfo| c.stored != StoredType::Text && timing::is_time_name(&c.name);
+    dataset.channels.iter().position(numbers)
 }
 
 /// Whether a channel counts the frames of a camera.
-pub(super) fn counts_frames(dataset: &DatasetInfo, index: usize) -> bool {
+pub fn counts_frames(dataset: &DatasetInfo, index: usize) -> bool {
     let info = &dataset.channels[index];
     let name = units::split_unit(&info.name).0.trim().to_lowercase();
     let named = [
@@ -59,19 +53,20 @@ pub(super) fn counts_frames(dataset: &DatasetInfo, index: usize) -> bool {
     info.unit.is_none() && named.contains(&name.as_str())
 }
 
-/// Factor to seconds of a time axis from its unit or its name (`time_ms`); 1 if neither states it.
-pub fn seconds_per_unit(dataset: &DatasetInfo, index: usize) -> f64 {
-    let info = &dataset.channels[index];
-    units::unit_of(info.unit.as_deref(), &info.name)
-        .filter(|u| u.dimension == units::Dimension::Time)
-        .map_or(1.0, |u| u.to_si)
+/// The usual step of a time axis, in its own unit.
+pub(super) fn usual_step(times: &[f64]) -> Option<f64> {
+    let steps = times.windows(2).map(|w| w[1] - w[0]).filter(|s| *s > 0.0);
+    let mut steps: Vec<f64> = steps.collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied()
 }
 
 /// Samples per second of a time axis in s, Hz; `None` if no step can be determined. What is wrong with it
 /// is noted in `flags`.
 ///
-/// Time stamps printed with few digits are taken as uniform as long as no stamp strays from a
-/// straight line by more than their own rounding.
+/// Time stamps printed with few digits, also such that many samples share one, are taken as uniform as long as
+/// no stamp strays from a straight line by more than their own rounding; the rate is that of the line nearest to
+/// all of them.
 pub fn inspect(times: &[f64], flags: &mut Vec<Flag>) -> Option<f64> {
     if times.len() < 2 || times.iter().any(|t| !t.is_finite()) {
         if !times.is_empty() {
@@ -89,13 +84,22 @@ pub fn inspect(times: &[f64], flags: &mut Vec<Flag>) -> Option<f64> {
     let quantile = |q: f64| steps[whole::index((steps.len() - 1) as f64 * q)];
     let mean = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
     let spread = quantile(0.95) - quantile(0.05);
-    if spread > 0.2 * mean {
+    let shared = quantile(0.5) <= 0.0;
+    if mean > 0.0 && (spread > 0.2 * mean || shared) {
         // steps that scatter: rounded stamps of a uniform axis, or no uniform axis
-        if strays(times, mean) > 1.05 * spread.max(mean) {
-            let what = format!("steps scatter by {spread:.3e} s about {mean:.3e} s");
+        let printed = steps.iter().copied().find(|s| *s > 0.0).filter(|_| shared);
+        let rounding = spread.max(mean).max(printed.unwrap_or(0.0));
+        let line = nearest_step(times);
+        if strays(times, line) > 1.05 * rounding {
+            let what = match printed {
+                Some(printed) => format!(
+                    "samples share stamps of {printed:.3e} s, and do not follow each other evenly between them"
+                ),
+                None => format!("steps scatter by {spread:.3e} s about {mean:.3e} s"),
+            };
             flags.push(not_uniform(&what));
         }
-        return Some(1.0 / mean);
+        return Some(1.0 / line);
     }
     regular(times, &in_order, quantile(0.5), flags)
 }
@@ -117,6 +121,17 @@ fn backward_at(times: &[f64], at: usize) -> Flag {
     );
     let remedy = "sort or re-export the record; it is left out";
     Flag::new(FlagCode::TimeBackward, None, what, remedy)
+}
+
+/// The step of the straight line nearest to times by least squares, s.
+fn nearest_step(times: &[f64]) -> f64 {
+    let middle = (times.len() - 1) as f64 / 2.0;
+    let mut sums = (0.0, 0.0);
+    for (i, t) in times.iter().enumerate() {
+        let x = i as f64 - middle;
+        sums = (sums.0 + x * (t - times[0]), sums.1 + x * x);
+    }
+    sums.0 / sums.1
 }
 
 /// How far times are at most from a straight line through the first, s.
@@ -211,6 +226,21 @@ mod tests {
             let axis = inspected(&t);
             assert!(axis.1.is_empty(), "{digits}: {:?}", axis.1);
             assert!((axis.0.unwrap() * 0.000_605_5 - 1.0).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn many_samples_may_share_a_printed_stamp() {
+        // 20 and 18.3 samples in each ms, printed to the ms: the step comes out to a millionth.
+        for step in [5e-5, 1e-3 / 18.3] {
+            let rounded = |t: &f64| (t * 1e3).floor() / 1e3;
+            let printed: Vec<f64> = uniform(40_000, step).iter().map(rounded).collect();
+            let axis = inspected(&printed);
+            assert!(axis.1.is_empty(), "{:?}", axis.1);
+            assert!((axis.0.unwrap() * step - 1.0).abs() < 3e-6, "{:?}", axis.0);
+            let mut lost = printed.clone();
+            lost.drain(9_000..9_100);
+            assert_eq!(codes(&inspected(&lost)), ["time_not_uniform"]);
         }
     }
 

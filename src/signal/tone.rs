@@ -40,7 +40,14 @@ pub struct Tone {
 /// assert!((found.offset - 0.5).abs() < 1e-8);
 /// ```
 pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Tone> {
-    let mut frequency_hz = peak_frequency(samples)? * rate_hz;
+    fit_from(samples, rate_hz, peak_frequency(samples)? * rate_hz)
+}
+
+/// Fit a tone with its frequency, starting at a given one.
+///
+/// `None` if the fit does not settle.
+pub fn fit_from(samples: &[f64], rate_hz: f64, start_hz: f64) -> Option<Tone> {
+    let mut frequency_hz = start_hz;
     for _ in 0..12 {
         let harmonic = Harmonic::new(samples, rate_hz, frequency_hz)?;
         let (step_hz, error_hz) = harmonic.frequency_step(rate_hz)?;

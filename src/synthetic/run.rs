@@ -327,6 +327,7 @@ pub fn calibrated(raw: &RawRecord, truth: &Truth, faults: &Faults) -> Record {
                     .map(|v| v * sensitivity.si_per_volt)
                     .collect(),
                 high_pass_hz: faults.high_pass_hz.filter(|_| filtered),
+                low_pass: None,
                 threshold: (role == Role::Contact).then_some(2.5),
             },
         )

@@ -4,10 +4,12 @@ use super::acquisition::RATE_HZ;
 use super::run::calibrated;
 use super::{Effects, Faults, Laboratory, Plan, Truth, records};
 use crate::event::{DetectSettings, Impact, RigKind, detect};
+use crate::motion::{ClassifySettings, LateChannel, late_channels, observe};
+use crate::record::{Record, Role};
 use crate::signal::robust;
 
-/// Impacts of a campaign of forty records with R = 0.7, as detected.
-fn impacts(effects: &Effects) -> Vec<Impact> {
+/// A campaign of forty records with R = 0.7.
+fn campaign(effects: &Effects) -> Vec<Record> {
     let laboratory = Laboratory {
         truth: Truth::symmetric(0.7, 12.0, 0.06, 1e-3),
         faults: Faults::default(),
@@ -18,10 +20,16 @@ fn impacts(effects: &Effects) -> Vec<Impact> {
         seed: 3,
     };
     let raw = records(&laboratory).unwrap();
-    let found = raw.iter().flat_map(|raw| {
-        let record = calibrated(raw, &laboratory.truth, &laboratory.faults);
-        detect(&record, RigKind::Double, &DetectSettings::default()).impacts
-    });
+    let calibrated = |raw| calibrated(raw, &laboratory.truth, &laboratory.faults);
+    raw.iter().map(calibrated).collect()
+}
+
+/// Its impacts as detected.
+fn impacts(effects: &Effects) -> Vec<Impact> {
+    let records = campaign(effects);
+    let found = records
+        .iter()
+        .flat_map(|record| detect(record, RigKind::Double, &DetectSettings::default()).impacts);
     found.filter(|i| i.dead_zone_s == 0.0).collect()
 }
 
@@ -97,5 +105,48 @@ fn valid_channels_that_are_late_by_different_delays_keep_their_restitution() {
         effects.delays_s[2..6].copy_from_slice(&delays_ms.map(|ms| 1e-3 * ms));
         let r = restitution(&impacts(&effects));
         assert!((r / 0.7 - 1.0).abs() < 0.01, "{delays_ms:?}: R = {r}");
+    }
+}
+
+/// The channels of a campaign that its jumps show to be late or filtered.
+fn late(records: &[Record]) -> Vec<LateChannel> {
+    let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
+    let observed = records
+        .iter()
+        .map(|record| observe(record, RigKind::Double, &detect, &classify));
+    late_channels(&observed.collect::<Vec<_>>())
+}
+
+#[test]
+fn valid_a_velocity_that_is_late_by_three_samples_is_told_by_its_jumps() {
+    assert_eq!(late(&campaign(&Effects::default())), []);
+    let mut effects = Effects::default();
+    effects.delays_s[2] = 1.5e-3;
+    let [x] = late(&campaign(&effects))[..] else {
+        panic!("one channel is late");
+    };
+    assert_eq!((x.role, x.low_pass), (Role::VelocityX, None));
+    // within half a sample
+    assert!((x.delay_s - 1.5e-3).abs() < 0.25e-3, "{}", x.delay_s);
+}
+
+#[test]
+fn valid_velocities_behind_a_low_pass_are_told_by_their_jumps() {
+    let mut records = campaign(&Effects::default());
+    let decay = (-std::f64::consts::TAU * 200.0 / RATE_HZ).exp();
+    for channel in records.iter_mut().flat_map(|r| &mut r.channels) {
+        if matches!(channel.role, Role::VelocityX | Role::VelocityY) {
+            let mut passed = channel.values[0];
+            for value in &mut channel.values {
+                passed = decay * passed + (1.0 - decay) * *value;
+                *value = passed;
+            }
+        }
+    }
+    let found = late(&records);
+    assert_eq!(found.len(), 2, "{found:?}");
+    for channel in found {
+        let filter = channel.low_pass.expect("a low-pass");
+        assert!((100.0..400.0).contains(&filter.corner_hz), "{filter:?}");
     }
 }

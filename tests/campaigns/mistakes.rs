@@ -130,7 +130,7 @@ fn valid_a_drive_that_was_not_recorded_is_named_and_r_holds() {
         format!("{head}{others}")
     };
     let found = Simulated::of("realistic").found_with("campaign.toml", without);
-    assert_eq!(first_suspicion(&found), "drive_not_measured");
+    assert_eq!(first_suspicion(&found), "phase_not_measured");
     let [low, high] = interval_of_r(&found);
     assert!(
         low < 0.75 && 0.75 < high && high - low < 0.1,

@@ -116,6 +116,16 @@ fn quantities() -> Vec<Case> {
             &["rig.clearance_uncertainty", "is out of range"],
         ),
         refused(
+            "an uncertainty of the clock that no clock has",
+            |lab| {
+                lab.edit(
+                    "restitution = 0.9",
+                    "restitution = 0.9\nclock_uncertainty = \"20 %\"",
+                );
+            },
+            &["rig.clock_uncertainty", "write a value from 0 to 0.05"],
+        ),
+        refused(
             "an effect that is not known",
             |lab| {
                 lab.edit(
@@ -278,6 +288,22 @@ fn channels() -> Vec<Case> {
             &[
                 "channels.velocity_x.high_pass",
                 "write 0 or a positive value",
+            ],
+        ),
+        refused(
+            "a low-pass of nine poles",
+            |lab| lab.edit("sign = 1", "low_pass = \"200 Hz\"\nlow_pass_order = 9"),
+            &[
+                "channels.velocity_x.low_pass_order",
+                "write a number from 1 to 8",
+            ],
+        ),
+        refused(
+            "the order of no low-pass",
+            |lab| lab.edit("sign = 1", "low_pass_order = 2"),
+            &[
+                "channels.velocity_x.low_pass_order",
+                "write low_pass = \"200 Hz\"",
             ],
         ),
         refused(

@@ -422,6 +422,44 @@ fn times() -> Vec<Case> {
             &["the time axis is not uniform", "2 of 3 records can be used"],
         ),
         refused(
+            "milliseconds without a unit",
+            |lab| {
+                lab.replace("r2.csv", "time [s]", "time");
+                lab.column("r2.csv", 0, |i, _| (10 * i).to_string());
+            },
+            &[
+                "time axis 'time' has no unit, and its numbers",
+                "by steps of 10, may be s, ms, µs or counts of samples",
+                "time_unit = \"ms\"",
+                "2 of 3 records can be used",
+            ],
+        ),
+        noted(
+            "a time axis without a unit",
+            |lab| lab.replace("r2.csv", "time [s]", "time"),
+            &["time axis 'time' has no unit: taken as seconds"],
+        ),
+        refused(
+            "times of unlike units",
+            |lab| lab.edit("[records]", "[records]\ntime_unit = \"ms\""),
+            &["the time axis 'time' has a unit of 1 s, campaign.toml states time_unit as 0.001 s"],
+        ),
+        refused(
+            "a unit of time that is none",
+            |lab| lab.edit("[records]", "[records]\ntime_unit = \"mm\""),
+            &["'mm' is no unit of time", "write s, ms, us, ns or min"],
+        ),
+        refused(
+            "a time that is printed too coarsely, with samples lost",
+            |lab| {
+                lab.column("r2.csv", 0, |i, t| {
+                    let lost = if i > 900 { 0.05 } else { 0.0 };
+                    format!("{:.2}", t + lost)
+                });
+            },
+            &["samples share stamps of", "2 of 3 records can be used"],
+        ),
+        refused(
             "no time axis and no sample rate",
             |lab| {
                 lab.lines("r2.csv", |i, line| {

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::source::{ChannelInfo, StoredType};
-use crate::units::{Dimension, parse_unit};
+use crate::source::ChannelInfo;
+use crate::units::{Dimension, parse_unit, split_unit};
 
 /// Attribute names that give samples per second, lower case.
-const RATE_KEYS: [&str; 11] = [
+const RATE_KEYS: [&str; 16] = [
     "sample_rate_hz",
     "sample_rate",
     "samplerate",
@@ -18,9 +18,14 @@ const RATE_KEYS: [&str; 11] = [
     "rate",
     "fs_hz",
     "fs",
+    "frame_rate",
+    "framerate",
+    "capture_rate",
+    "acquisition_rate",
+    "abtastrate",
 ];
 /// Attribute names that give the time between two samples, lower case.
-const STEP_KEYS: [&str; 9] = [
+const STEP_KEYS: [&str; 15] = [
     "dt",
     "dt_s",
     "delta_t",
@@ -30,6 +35,12 @@ const STEP_KEYS: [&str; 9] = [
     "sample_interval_s",
     "sampling_interval",
     "wf_increment",
+    "increment",
+    "tinc",
+    "x_increment",
+    "xincrement",
+    "sample_period",
+    "sampling_period",
 ];
 /// Attribute names that give the start of the acquisition, lower case.
 const START_KEYS: [&str; 7] = [
@@ -67,6 +78,76 @@ pub fn sample_rate_hz(attributes: &BTreeMap<String, String>) -> Option<f64> {
         .filter(|r| r.is_finite() && *r > 0.0)
 }
 
+/// Attribute names that give the time of a channel's first sample, lower case.
+const OFFSET_KEYS: [&str; 12] = [
+    "wf_start_offset",
+    "start_offset",
+    "start_offset_s",
+    "time_offset",
+    "t0",
+    "t0_s",
+    "t_0",
+    "t_start",
+    "tstart",
+    "start_s",
+    "start_time_s",
+    "x0",
+];
+
+/// When a channel's first sample was taken, s, as its attributes state it: a point in time, a time after it,
+/// or both together; points in time count from 1970.
+pub fn start_s(attributes: &BTreeMap<String, String>) -> Option<f64> {
+    let origin = crate::text::clock::Stamp {
+        days: Some(0),
+        seconds: 0.0,
+    };
+    let texts = [
+        "wf_start_time",
+        "start_time",
+        "acquisition_start",
+        "timestamp",
+    ];
+    let texts = texts.iter().find_map(|k| lookup(attributes, k));
+    let stamp = texts.and_then(|(_, text)| crate::text::clock::parse(text, false));
+    let stamp = stamp.map(|s| s.since(origin));
+    let numbers = OFFSET_KEYS.iter().chain(&["start_time", "start"]);
+    let offset = numbers
+        .copied()
+        .find_map(|k| quantity(attributes, k, Dimension::Time));
+    match (stamp, offset) {
+        (None, None) => None,
+        (stamp, offset) => Some(stamp.unwrap_or(0.0) + offset.unwrap_or(0.0)),
+    }
+}
+
+/// The attribute in which our own files keep when channels begin, as `contact=0.3|x=0`.
+pub(crate) const STARTS_KEY: &str = "channel_starts_s";
+
+/// Starts of channels as text under [`STARTS_KEY`]; `None` where all that are known are alike.
+pub(crate) fn starts_text(channels: &[ChannelInfo]) -> Option<String> {
+    let known: Vec<(&str, f64)> = channels
+        .iter()
+        .filter_map(|c| Some((c.name.as_str(), c.start_s?)))
+        .collect();
+    let (_, first) = *known.first()?;
+    let unlike = known.iter().any(|(_, start)| *start != first);
+    let one = |(name, start): &(&str, f64)| format!("{name}={start}");
+    unlike.then(|| known.iter().map(one).collect::<Vec<_>>().join("|"))
+}
+
+/// Give channels the starts that the attributes keep.
+pub(crate) fn apply_starts(channels: &mut [ChannelInfo], attributes: &BTreeMap<String, String>) {
+    let Some(text) = attributes.get(STARTS_KEY) else {
+        return;
+    };
+    for (name, start) in text.split('|').filter_map(|pair| pair.rsplit_once('=')) {
+        let start = start.parse::<f64>().ok().filter(|s| s.is_finite());
+        if let Some(channel) = channels.iter_mut().find(|c| c.name == name) {
+            channel.start_s = start;
+        }
+    }
+}
+
 /// The start of the acquisition as the attributes spell it, under `start_time`, `t0` and the like.
 pub fn start_time(attributes: &BTreeMap<String, String>) -> Option<String> {
     START_KEYS
@@ -96,19 +177,39 @@ fn same_key(a: &str, b: &str) -> bool {
 
 /// A number of a dimension in SI (frequencies in Hz): a bare number is SI already.
 fn quantity(attributes: &BTreeMap<String, String>, key: &str, wanted: Dimension) -> Option<f64> {
-    let (name, text) = lookup(attributes, key)?;
+    let bracketed = |name: &&String| {
+        let (bare, unit) = split_unit(name);
+        unit.is_some() && name.ends_with([']', ')']) && same_key(bare, key)
+    };
+    let by_bracket = || attributes.iter().find(|(name, _)| bracketed(name));
+    let (name, text) = lookup(attributes, key).or_else(by_bracket)?;
     let (number, beside) = number_and_unit(text)?;
     let companion = ["unit", "units"]
         .iter()
         .find_map(|s| attributes.get(&format!("{name}_{s}")).map(String::as_str));
-    let unit = Some(beside).filter(|u| !u.is_empty()).or(companion);
+    let in_name = || split_unit(name).1.filter(|_| bracketed(&name));
+    let unit = Some(beside)
+        .filter(|u| !u.is_empty())
+        .or(companion)
+        .or_else(in_name);
     match unit {
         None => Some(number),
         Some(symbol) => {
-            let unit = parse_unit(symbol).filter(|u| u.dimension == wanted)?;
-            Some(number * unit.to_si)
+            let rate = samples_per_second(symbol).filter(|_| wanted == Dimension::Frequency);
+            let unit = || Some(parse_unit(symbol).filter(|u| u.dimension == wanted)?.to_si);
+            Some(number * rate.or_else(unit)?)
         }
     }
+}
+
+/// Samples per second in a unit of rates as oscilloscopes print it: `kSa/s`, `MS/s`, `samples/s`.
+fn samples_per_second(symbol: &str) -> Option<f64> {
+    const RATES: [&str; 7] = ["Sa/s", "S/s", "samples/s", "Samples/s", "sps", "SPS", "1/s"];
+    let of = |text: &str| RATES.contains(&text.trim());
+    [("", 1.0), ("k", 1e3), ("K", 1e3), ("M", 1e6), ("G", 1e9)]
+        .iter()
+        .find(|(prefix, _)| symbol.trim().strip_prefix(prefix).is_some_and(of))
+        .map(|(_, factor)| *factor)
 }
 
 /// `2000 Hz` as a number and a unit (empty where none is written).
@@ -118,35 +219,6 @@ fn number_and_unit(text: &str) -> Option<(f64, &str)> {
         .filter(|&(_, n)| text.as_bytes().get(n) != Some(&b','))
         .or_else(|| crate::text::number::parse_prefix(text.as_bytes(), b','))?;
     Some((number, text[taken..].trim()))
-}
-
-/// Names of time axes, lower case; `time…` counts as well.
-const TIME_NAMES: [&str; 11] = [
-    "t",
-    "zeit",
-    "temps",
-    "tempo",
-    "tiempo",
-    "čas",
-    "cas",
-    "x_value",
-    "timestamp",
-    "elapsed",
-    "date",
-];
-
-/// Whether a name is that of a time axis.
-pub(crate) fn is_time_name(name: &str) -> bool {
-    let lower = name.trim().to_lowercase();
-    let word = lower.split([' ', '_', ':']).next().unwrap_or_default();
-    word == "time" || TIME_NAMES.contains(&word) || TIME_NAMES.contains(&lower.as_str())
-}
-
-/// Whether a channel is a time axis by its name, with a unit of time or none.
-pub fn is_time_axis(channel: &ChannelInfo) -> bool {
-    let unit = channel.unit.as_deref();
-    let time = unit.is_none_or(|u| parse_unit(u).is_some_and(|u| u.dimension == Dimension::Time));
-    time && is_time_name(&channel.name) && channel.stored != StoredType::Text
 }
 
 /// The parts of `a, b, c`, `a; b` or `["a", "b"]`.
@@ -185,6 +257,10 @@ mod tests {
             (&[("sample_rate_hz", "2000")][..], Some(2000.0)),
             (&[("Sample Rate", "2 kHz")], Some(2000.0)),
             (&[("dt", "0,0005")], Some(2000.0)),
+            (&[("Sampling Rate", "2.5 kSa/s")], Some(2500.0)),
+            (&[("Sample rate (kHz)", "2.5")], Some(2500.0)),
+            (&[("Sample Interval [ms]", "0.4")], Some(2500.0)),
+            (&[("Increment", "4e-4")], Some(2500.0)),
             (&[("dt", "0.5"), ("dt_units", "ms")], Some(2000.0)),
             (&[("fs", "0")], None),
             (&[("rate", "2000 mm")], None),

@@ -20,6 +20,8 @@ pub(crate) struct FileBytes {
     path: PathBuf,
     file: File,
     map: Option<Mmap>,
+    /// What its text says as bytes, instead of the file's own.
+    held: Option<Vec<u8>>,
 }
 
 impl FileBytes {
@@ -42,7 +44,16 @@ impl FileBytes {
             path: path.to_path_buf(),
             file,
             map,
+            held: None,
         })
+    }
+
+    /// The file with other bytes, into which its own were translated.
+    pub(crate) fn holding(self, bytes: Vec<u8>) -> Self {
+        Self {
+            held: Some(bytes),
+            ..self
+        }
     }
 
     /// Make sure that the file was not cut short since it was opened; one that grew or was
@@ -56,13 +67,13 @@ impl FileBytes {
             .metadata()
             .map_err(|e| ReadError::io(&self.path, &e))?
             .len();
-        if length >= self.size() {
+        if length >= self.mapped().len() as u64 {
             return Ok(());
         }
         Err(self.unsupported(
             length,
             format!("only {length}: it was cut short while it was read"),
-            format!("the file's {} bytes", self.size()),
+            format!("the file's {} bytes", self.mapped().len()),
             "Let no other program write the file while it is read, and run again.",
         ))
     }
@@ -74,6 +85,10 @@ impl FileBytes {
 
     /// All bytes.
     pub(crate) fn all(&self) -> &[u8] {
+        self.held.as_deref().unwrap_or_else(|| self.mapped())
+    }
+
+    fn mapped(&self) -> &[u8] {
         self.map.as_deref().unwrap_or(&[])
     }
 

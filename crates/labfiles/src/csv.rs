@@ -7,6 +7,7 @@ mod columns;
 mod dialect;
 mod front;
 pub(crate) mod header;
+mod parts;
 mod time_axis;
 
 use std::path::Path;
@@ -15,13 +16,16 @@ use crate::bytes::to_usize;
 use crate::csv::front::Front;
 pub(crate) use crate::csv::front::TEXTS_KEY;
 use crate::csv::header::Header;
+use crate::csv::parts::{Makeup, Part};
 use crate::csv::time_axis::TimeAxis;
+use crate::rate;
 use crate::source::{
-    ChannelInfo, DatasetInfo, ReadError, Reader, Samples, Source, StoredType, opened,
+    ChannelInfo, Clock, DatasetInfo, ReadError, Reader, Samples, Source, StoredType, opened,
 };
 use crate::text::TextFile;
 use crate::text::cells::{Cells, Lines};
 use crate::text::table::{self, Kind, Layout};
+use crate::timing::AxisUnit;
 
 /// Bytes at the front of a file from which its dialect is found.
 const HEAD_BYTES: usize = 1 << 16;
@@ -29,12 +33,13 @@ const HEAD_BYTES: usize = 1 << 16;
 pub(crate) struct CsvReader {
     text: TextFile,
     layout: Layout,
-    rows: usize,
+    /// Of each dataset the columns, and the number of rows.
+    parts: Vec<(Vec<usize>, usize)>,
 }
 
-/// A table of text that was opened.
+/// A table of text that was opened: one dataset, or one for each run beside others.
 pub(crate) struct OpenedTable {
-    pub(crate) dataset: DatasetInfo,
+    pub(crate) datasets: Vec<DatasetInfo>,
     pub(crate) notes: Vec<String>,
     pub(crate) reader: CsvReader,
 }
@@ -45,10 +50,10 @@ pub(crate) struct OpenedTable {
 /// If the file cannot be read, is empty, or no separator makes a table of numbers of it.
 pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let table = open_text(TextFile::open(path)?, "")?;
-    opened("csv", path, vec![table.dataset], table.notes, table.reader)
+    opened("csv", path, table.datasets, table.notes, table.reader)
 }
 
-/// Open the table in a text, as a dataset of a name.
+/// Open the table in a text, as datasets under a name.
 ///
 /// # Errors
 /// As [`open`].
@@ -58,26 +63,178 @@ pub(crate) fn open_text(text: TextFile, name: &str) -> Result<OpenedTable, ReadE
     let front = Front::read(&text, &head, quotes)?;
     let rows = front.rows(&head, quotes);
     let mut layout = front.layout(&text, &rows, quotes);
+    refuse_ambiguous(&text, &layout, &rows, &front.header)?;
     let (count, last) = table::count_rows(&text, &layout)?;
     table::refuse_ragged(&text, count, layout.kinds.len(), text.length())?;
     let mut notes = Vec::new();
     let last_row = last_row(&text, &layout, last, &mut notes)?;
-    let axis = time_axis::find(&front.header, &layout, &rows, last_row.as_deref(), count);
     layout.names.clone_from(&front.header.names);
-    notes.extend(axis.iter().flat_map(|a| a.note.clone()));
-    let dataset = DatasetInfo {
-        name: name.to_owned(),
-        ..dataset(front.header, &layout, count, axis.as_ref())
+    let own = front.is_own();
+    let mut header = front.header;
+    let times = time_axis::candidates(&header, &layout, &rows);
+    let (mut datasets, mut parts) = (Vec::new(), Vec::new());
+    let makeup = match own {
+        true => Makeup::One,
+        false => parts::find(&header, &layout.kinds, &rows, &times),
     };
+    match makeup {
+        Makeup::Runs(runs) => {
+            for run in runs {
+                let (dataset, rows) = run_of(&text, &layout, &header, &run, to_usize(count))?;
+                notes.extend(dataset.1);
+                datasets.push(dataset.0);
+                parts.push((run.columns, rows));
+            }
+        }
+        makeup => {
+            let mut columns: Vec<usize> = (0..layout.kinds.len()).collect();
+            if let Makeup::BesideRemarks(part, remarks) = &makeup {
+                name_beside(&mut header, part, remarks);
+                columns.clone_from(&part.columns);
+            }
+            let axis = time_axis::find(&header, &layout, &rows, last_row.as_deref(), count);
+            notes.extend(axis.iter().flat_map(|a| a.note.clone()));
+            let mut dataset = dataset(header, &layout, count, axis.as_ref());
+            if let Makeup::OwnTimes(own) = makeup {
+                for (channel, axis) in dataset.channels.iter_mut().zip(own) {
+                    channel.clock = axis.map_or(Clock::Shared, Clock::Axis);
+                }
+            }
+            keep_columns(&mut dataset, &columns);
+            datasets.push(dataset);
+            parts.push((columns, to_usize(count)));
+        }
+    }
+    for dataset in &mut datasets {
+        let own = dataset.name.as_str();
+        dataset.name = match (name, own) {
+            ("", own) => own.to_owned(),
+            (name, "") => name.to_owned(),
+            (name, own) => format!("{name}/{own}"),
+        };
+    }
     Ok(OpenedTable {
-        dataset,
+        datasets,
         notes,
         reader: CsvReader {
             text,
             layout,
-            rows: to_usize(count),
+            parts,
         },
     })
+}
+
+/// Refuse a table in which a mark may be that of decimals or of thousands.
+fn refuse_ambiguous(
+    text: &TextFile,
+    layout: &Layout,
+    rows: &columns::HeadRows<'_>,
+    header: &Header,
+) -> Result<(), ReadError> {
+    let decimal = layout.notation.decimal;
+    let Some((column, cell)) = columns::ambiguous(rows, &layout.kinds, decimal) else {
+        return Ok(());
+    };
+    let mark = char::from(decimal);
+    let cell = crate::text::decode(cell);
+    Err(ReadError::new(
+        text.path(),
+        "numbers with a decimal mark, or with their thousands separated",
+        format!("'{cell}' beside whole numbers of hundreds, where '{mark}' may be either"),
+        "Export the table without separators of thousands.",
+    )
+    .channel(header.names[column].clone()))
+}
+
+/// A run beside others as a dataset with its notes, and the number of its rows.
+type Run = ((DatasetInfo, Vec<String>), usize);
+
+/// A run beside others: its rows end with its last time, or where a shared time goes on with its last number.
+fn run_of(
+    text: &TextFile,
+    layout: &Layout,
+    header: &Header,
+    run: &Part,
+    count: usize,
+) -> Result<Run, ReadError> {
+    let ends = [
+        run.columns[0],
+        run.columns.get(1).copied().unwrap_or(run.columns[0]),
+    ];
+    let read = table::read_columns(text, layout, &ends, count)?;
+    let mut read = read.into_iter().filter_map(Samples::into_real);
+    let (times, values) = (
+        read.next().unwrap_or_default(),
+        read.next().unwrap_or_default(),
+    );
+    let end = |values: &[f64]| {
+        values
+            .iter()
+            .rposition(|v| v.is_finite())
+            .map_or(0, |i| i + 1)
+    };
+    let rows = end(&times).min(end(&values).max(1));
+    let unit = header.units[run.columns[0]].as_deref();
+    let head = &times[..rows.min(rate::HEAD_SAMPLES)];
+    let known = AxisUnit::of(unit, &run.names[0], head);
+    let last = times[..rows].last().copied();
+    let rate = known
+        .seconds()
+        .and_then(|s| rate::from_axis(head, last, rows as u64, s));
+    let axis = TimeAxis {
+        column: 0,
+        rate_hz: rate,
+        ..TimeAxis::default()
+    };
+    let own = Header {
+        names: run.names.clone(),
+        units: run
+            .columns
+            .iter()
+            .map(|&c| header.units[c].clone())
+            .collect(),
+        attributes: header.attributes.clone(),
+    };
+    let kinds = run.columns.iter().map(|&c| layout.kinds[c]).collect();
+    let part = Layout {
+        kinds,
+        ..layout.clone()
+    };
+    let info = DatasetInfo {
+        name: run.name.clone(),
+        ..dataset(own, &part, rows as u64, Some(&axis))
+    };
+    let note = known.note(&run.names[0]);
+    Ok(((info, note.into_iter().collect()), rows))
+}
+
+/// Name the columns of a table beside its remarks, which become attributes.
+fn name_beside(header: &mut Header, part: &Part, remarks: &[(String, String)]) {
+    let stated = |key: &str| {
+        remarks
+            .iter()
+            .find(|(k, _)| k == key)
+            .map(|(_, v)| v.clone())
+    };
+    for (k, (&column, name)) in part.columns.iter().zip(&part.names).enumerate() {
+        header.names[column].clone_from(name);
+        header.units[column] = match k {
+            0 => stated("Horizontal Units").or_else(|| Some("s".to_owned())),
+            _ => stated("Vertical Units"),
+        };
+    }
+    header.attributes.extend(remarks.iter().cloned());
+}
+
+/// Keep some of a dataset's channels, by their columns.
+fn keep_columns(dataset: &mut DatasetInfo, columns: &[usize]) {
+    if columns.len() == dataset.channels.len() {
+        return;
+    }
+    let place = |column: usize| columns.iter().position(|c| *c == column);
+    dataset.time_axis = dataset.time_axis.and_then(place);
+    let kept = columns.iter().map(|&c| dataset.channels[c].clone());
+    dataset.channels = kept.collect();
 }
 
 /// The cells of the last row; a last line without all its cells is noted as cut off.
@@ -122,6 +279,8 @@ fn dataset(header: Header, layout: &Layout, rows: u64, axis: Option<&TimeAxis>) 
         samples: rows,
         sample_rate_hz: rate,
         start_time: start.clone(),
+        clock: Clock::Shared,
+        start_s: None,
         properties: Default::default(),
     };
     let columns = header.names.into_iter().zip(header.units);
@@ -134,8 +293,10 @@ fn dataset(header: Header, layout: &Layout, rows: u64, axis: Option<&TimeAxis>) 
 }
 
 impl Reader for CsvReader {
-    fn read(&self, _: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
-        table::read_columns(&self.text, &self.layout, channels, self.rows)
+    fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+        let (columns, rows) = &self.parts[dataset];
+        let wanted: Vec<usize> = channels.iter().map(|&c| columns[c]).collect();
+        table::read_columns(&self.text, &self.layout, &wanted, *rows)
     }
 }
 

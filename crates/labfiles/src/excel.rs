@@ -37,14 +37,14 @@ pub(crate) fn recognises(front: &[u8]) -> bool {
 
 struct Workbook {
     tables: Vec<CsvReader>,
+    /// Of each dataset its table, and which part of it.
+    places: Vec<(usize, usize)>,
 }
 
 impl Reader for Workbook {
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
-        match self.tables.get(dataset) {
-            Some(table) => table.read(0, channels),
-            None => Ok(Vec::new()),
-        }
+        let (table, part) = self.places[dataset];
+        self.tables[table].read(part, channels)
     }
 }
 
@@ -68,13 +68,14 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         sheets.unwrap_or_else(|| Err(damaged(path, "contents that contradict each other")))?;
     let mut notes = Vec::new();
     let mut datasets: Vec<DatasetInfo> = Vec::new();
-    let mut tables = Vec::new();
+    let (mut tables, mut places) = (Vec::new(), Vec::new());
     for (name, text) in sheets {
         let opened = text.and_then(|text| csv::open_text(TextFile::of_bytes(path, text), &name));
         match opened {
             Ok(table) => {
                 notes.extend(table.notes.iter().map(|n| format!("sheet '{name}': {n}")));
-                datasets.push(table.dataset);
+                places.extend((0..table.datasets.len()).map(|part| (tables.len(), part)));
+                datasets.extend(table.datasets);
                 tables.push(table.reader);
             }
             Err(error) => notes.push(format!("sheet '{name}' is no table: {}", error.found)),
@@ -91,7 +92,7 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
             "Write the record into a sheet of its own, beginning with its heading.",
         ));
     }
-    opened("excel", path, datasets, notes, Workbook { tables })
+    opened("excel", path, datasets, notes, Workbook { tables, places })
 }
 
 fn whole(path: &Path) -> Result<Vec<u8>, ReadError> {

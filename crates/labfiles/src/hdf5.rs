@@ -27,6 +27,7 @@ use crate::hdf5::store::{Array, StoreError, Tree};
 use crate::numbers::Spacing;
 use crate::rate;
 use crate::source::{ChannelInfo, DatasetInfo, ReadError, Reader, Samples, Source, opened};
+use crate::timing::AxisUnit;
 
 /// The first bytes of an HDF5 file.
 pub(crate) const SIGNATURE: [u8; 8] = [0x89, b'H', b'D', b'F', b'\r', b'\n', 0x1A, b'\n'];
@@ -174,7 +175,8 @@ impl Hdf5Reader {
         let head = self.axis_values(array, locator, 0, head)?;
         let end = self.axis_values(array, locator, info.samples.checked_sub(1)?, 1)?;
         let end = end.first().copied();
-        rate::from_axis(&head, end, info.samples, info.unit.as_deref())
+        let unit = AxisUnit::of(info.unit.as_deref(), &info.name, &head).seconds()?;
+        rate::from_axis(&head, end, info.samples, unit)
     }
 
     fn axis_values(

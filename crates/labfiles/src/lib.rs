@@ -64,13 +64,14 @@ mod source;
 pub mod summary;
 mod tdms;
 mod text;
+pub mod timing;
 mod uff;
 pub mod units;
 mod wav;
 
 pub use open::open;
 pub use parquet::guard::is_caught as panic_is_caught;
-pub use source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType};
+pub use source::{ChannelInfo, Clock, DatasetInfo, ReadError, Samples, Source, StoredType};
 
 #[cfg(test)]
 mod conformance;

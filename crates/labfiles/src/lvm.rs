@@ -10,11 +10,12 @@ use crate::bytes::to_usize;
 use crate::lvm::scan::{Keys, Scan, Segment};
 use crate::rate;
 use crate::source::{
-    ChannelInfo, DatasetInfo, ReadError, Reader, Samples, Source, StoredType, opened,
+    ChannelInfo, Clock, DatasetInfo, ReadError, Reader, Samples, Source, StoredType, opened,
 };
+use crate::text::TextFile;
 use crate::text::cells::{Cells, Lines, Separator};
+use crate::text::number::{self, Notation};
 use crate::text::table::{self, Kind, Layout};
-use crate::text::{TextFile, number};
 
 /// Bytes of a table's head from which its rate is found.
 const HEAD_BYTES: usize = 1 << 15;
@@ -94,14 +95,17 @@ fn read_segment(
         .collect();
     let rates = rates(text, segment, &layout, &shown, &head)?;
     let is_time = |(_, c): &(usize, Column)| *c == Column::X(0) && header::x_is_time(segment, 0);
+    let starts = header::starts_s(keys, segment, &shown);
     let dataset = DatasetInfo {
         name,
         time_axis: shown.iter().position(is_time),
         channels: shown
             .iter()
-            .zip(rates)
-            .map(|(&(i, column), rate)| ChannelInfo {
+            .zip(rates.into_iter().zip(starts))
+            .map(|(&(i, column), (rate, start_s))| ChannelInfo {
                 sample_rate_hz: rate,
+                start_s,
+                clock: clock(segment, &shown, column),
                 ..channel(keys, segment, &layout, column, i)
             })
             .collect(),
@@ -133,8 +137,8 @@ fn rates(
         if let Column::X(first) = column {
             let values = x_values(layout, head, i);
             let last = end.get(i);
-            let last = last.and_then(|c| number::parse_cell(c, layout.decimal));
-            measured.insert(first, rate::from_axis(&values, last, segment.rows, None));
+            let last = last.and_then(|c| number::parse_cell(c, layout.notation.decimal));
+            measured.insert(first, rate::from_axis(&values, last, segment.rows, 1.0));
         }
     }
     let rate = |&(_, column): &(usize, Column)| {
@@ -144,10 +148,24 @@ fn rates(
         let own = measured.range(..=n).next_back().and_then(|(_, r)| *r);
         let step =
             header::value_for(&segment.keys, "Delta_X", n).and_then(|s| header::decimal_any(&s));
+        let own = own.filter(|_| measured.contains_key(&n) || !header::has_own_step(segment, n));
         own.or(step.map(|s| 1.0 / s))
             .filter(|r| r.is_finite() && *r > 0.0 && header::x_is_time(segment, n))
     };
     Ok(shown.iter().map(rate).collect())
+}
+
+/// Where a channel's times are: in the X column before it, which may be its own, or in a step of its own.
+fn clock(segment: &Segment, shown: &[(usize, Column)], column: Column) -> Clock {
+    let Column::Y(n) = column else {
+        return Clock::Shared;
+    };
+    let own = shown.iter().position(|(_, c)| *c == Column::X(n));
+    match own.filter(|_| n > 0) {
+        Some(axis) => Clock::Axis(axis),
+        None if header::has_own_step(segment, n) => Clock::Rate,
+        None => Clock::Shared,
+    }
 }
 
 /// The columns that the headings, or else the number of channels, make.
@@ -199,7 +217,7 @@ fn layout(
     let names = (0..columns.len()).map(|i| segment.headings.get(i).cloned().unwrap_or_default());
     Layout {
         separator,
-        decimal: header::decimal(keys, separator, head),
+        notation: Notation::plain(header::decimal(keys, separator, head)),
         kinds: kinds.collect(),
         names: names.collect(),
         start: segment.start,
@@ -225,7 +243,7 @@ fn has_remarks(layout: &Layout, columns: &[Column], head: &[u8]) -> bool {
 fn x_values(layout: &Layout, head: &[u8], column: usize) -> Vec<f64> {
     Lines::new(head, false)
         .filter_map(|(_, l)| Cells::new(l, layout.separator).nth(column))
-        .filter_map(|c| number::parse_cell(c, layout.decimal))
+        .filter_map(|c| number::parse_cell(c, layout.notation.decimal))
         .filter(|v| v.is_finite())
         .take(rate::HEAD_SAMPLES)
         .collect()
@@ -264,6 +282,8 @@ fn channel(
         samples: segment.rows,
         sample_rate_hz: None,
         start_time: start,
+        clock: Clock::Shared,
+        start_s: None,
         properties,
     }
 }

@@ -17,8 +17,9 @@ pub(crate) use crate::parquet::columns::SIGNATURE;
 use crate::parquet::shape::Origin;
 use crate::rate;
 use crate::source::{
-    ChannelInfo, DatasetInfo, ReadError, Reader, Samples, Source, StoredType, opened,
+    ChannelInfo, Clock, DatasetInfo, ReadError, Reader, Samples, Source, StoredType, opened,
 };
+use crate::timing::{self, AxisUnit};
 
 /// The key under which a footer keeps each record's attributes, as JSON.
 pub(crate) const RECORDS_KEY: &str = "impactid_records";
@@ -66,7 +67,7 @@ fn dataset(
     let mut channels: Vec<ChannelInfo> = plan.iter().map(|o| channel(columns, o)).collect();
     let time_axis = channels
         .iter()
-        .position(attribute::is_time_axis)
+        .position(timing::is_time_axis)
         .or_else(|| channels.iter().position(|c| c.stored == StoredType::Time));
     let mut attributes = columns.attributes.clone();
     attributes.remove(RECORDS_KEY);
@@ -77,9 +78,11 @@ fn dataset(
     if let Some(axis) = time_axis.filter(|_| rate.is_none())
         && let Samples::Real(values) = columns.read(plan[axis].column, &plan[axis].rows)?
     {
-        let unit = channels[axis].unit.as_deref();
+        let info = &channels[axis];
         let head = &values[..values.len().min(rate::HEAD_SAMPLES)];
-        rate = rate::from_axis(head, values.last().copied(), values.len() as u64, unit);
+        let unit = AxisUnit::of(info.unit.as_deref(), &info.name, head).seconds();
+        let of = |unit| rate::from_axis(head, values.last().copied(), values.len() as u64, unit);
+        rate = unit.and_then(of);
     }
     for channel in &mut channels {
         channel.sample_rate_hz = rate;
@@ -106,6 +109,8 @@ fn channel(columns: &Columns, origin: &Origin) -> ChannelInfo {
         samples: origin.rows.iter().map(|r| r.1).sum(),
         sample_rate_hz: None,
         start_time: None,
+        clock: Clock::Shared,
+        start_s: None,
         properties: BTreeMap::new(),
     }
 }

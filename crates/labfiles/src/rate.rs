@@ -1,22 +1,24 @@
 //! The rate at which samples follow, from a time axis.
 
-use crate::units::parse_unit;
-
 /// How many values at the front of a time axis give its usual step.
 pub(crate) const HEAD_SAMPLES: usize = 256;
 
-/// Samples per second of an axis, in s if its unit is not known: from its ends where the samples
-/// between them are complete, else from the usual steps of its head, so that dropped samples do not
-/// bend it.
+/// Samples per second of an axis whose unit has so many seconds: from its ends where the samples
+/// between them are complete or many share a printed time, else from the usual steps of its head, so that
+/// dropped samples do not bend it.
 ///
 /// `head` are the first values, `end` is the last of `count`. `None`: the axis does not climb or
 /// has fewer than two values.
-pub(crate) fn from_axis(
-    head: &[f64],
-    end: Option<f64>,
-    count: u64,
-    unit: Option<&str>,
-) -> Option<f64> {
+pub(crate) fn from_axis(head: &[f64], end: Option<f64>, count: u64, unit_s: f64) -> Option<f64> {
+    let between = count.checked_sub(1).filter(|n| *n > 0)? as f64;
+    if shares_stamps(head) {
+        let (last, steps) = match end {
+            Some(end) => (end, between),
+            None => (*head.last()?, head.len() as f64 - 1.0),
+        };
+        let rate = steps / (last - head.first()?) / unit_s;
+        return (rate.is_finite() && rate > 0.0).then_some(rate);
+    }
     let median = median_step(head)?;
     let usual: Vec<f64> = head
         .windows(2)
@@ -24,14 +26,18 @@ pub(crate) fn from_axis(
         .filter(|s| (s - median).abs() <= 0.5 * median)
         .collect();
     let step = usual.iter().sum::<f64>() / usual.len() as f64;
-    let between = count.checked_sub(1).filter(|n| *n > 0)? as f64;
     let whole = end.map(|e| (e - head[0]) / between).filter(|s| {
         // Ends and head must agree within half a sample, or within the head's own uncertainty.
         (s - step).abs() * between < 0.5 * step + 1e-3 * between * step
     });
     let rate = 1.0 / whole.unwrap_or(step);
-    let seconds = unit.and_then(parse_unit).map_or(1.0, |u| u.to_si);
-    rate.is_finite().then_some(rate / seconds)
+    rate.is_finite().then_some(rate / unit_s)
+}
+
+/// Whether many samples have the printed time of the one before, as where the printer rounds it.
+fn shares_stamps(head: &[f64]) -> bool {
+    let same = head.windows(2).filter(|w| w[0] == w[1]).count();
+    3 * same > head.len()
 }
 
 /// The median of the steps forward.
@@ -55,9 +61,13 @@ mod tests {
             .map(|i| (f64::from(i) / 1652.9 * 1e6).round() / 1e6)
             .collect();
         let end = (9_999.0 / 1652.9f64 * 1e6).round() / 1e6;
-        assert!((from_axis(&printed, Some(end), 10_000, None).unwrap() - 1652.9).abs() < 1e-3);
-        let gap = from_axis(&printed, Some(end + 3.0), 10_000, None).unwrap();
+        assert!((from_axis(&printed, Some(end), 10_000, 1.0).unwrap() - 1652.9).abs() < 1e-3);
+        let gap = from_axis(&printed, Some(end + 3.0), 10_000, 1.0).unwrap();
         assert!((gap - 1652.9).abs() < 0.5, "{gap}");
-        assert_eq!(from_axis(&[0.0, 0.0], None, 2, None), None);
+        assert_eq!(from_axis(&[0.0, 0.0], None, 2, 1.0), None);
+        // 20 samples share a stamp of 1 ms.
+        let coarse: Vec<f64> = (0..256).map(|i| f64::from(i / 20) * 1e-3).collect();
+        let rate = from_axis(&coarse, Some(0.999), 20_000, 1.0).unwrap();
+        assert!((rate / 20_000.0 - 1.0).abs() < 2e-3, "{rate}");
     }
 }

@@ -7,6 +7,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use crate::attribute;
+
 /// How a file stores the numbers of a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -42,6 +44,18 @@ impl StoredType {
     }
 }
 
+/// Where the times of a channel's samples are.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Clock {
+    /// In the time axis of its dataset, or in the rate that all of its channels share.
+    #[default]
+    Shared,
+    /// In a time axis of its own: the channel of this index in its dataset.
+    Axis(usize),
+    /// In its own rate, though its dataset has a time axis.
+    Rate,
+}
+
 /// A channel as its file describes it, before its samples are read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelInfo {
@@ -57,6 +71,11 @@ pub struct ChannelInfo {
     pub sample_rate_hz: Option<f64>,
     /// Start of the acquisition as ISO 8601 text, if the file states it.
     pub start_time: Option<String>,
+    /// Where the times of its samples are.
+    pub clock: Clock,
+    /// When its clock begins, s after an origin that the channels of its dataset share: of a time axis its
+    /// zero, of a rate the first sample. `None`: the file does not state it.
+    pub start_s: Option<f64>,
     /// All other properties the file gives, as text.
     pub properties: BTreeMap<String, String>,
 }
@@ -276,10 +295,13 @@ struct Opened<R> {
 pub(crate) fn opened<R: Reader + 'static>(
     format: &'static str,
     path: &Path,
-    datasets: Vec<DatasetInfo>,
+    mut datasets: Vec<DatasetInfo>,
     notes: Vec<String>,
     reader: R,
 ) -> Result<Box<dyn Source>, ReadError> {
+    for dataset in &mut datasets {
+        attribute::apply_starts(&mut dataset.channels, &dataset.attributes);
+    }
     Ok(Box::new(Opened {
         format,
         path: path.to_path_buf(),

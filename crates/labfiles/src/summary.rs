@@ -236,6 +236,8 @@ mod tests {
             samples: 0,
             sample_rate_hz: None,
             start_time: None,
+            clock: crate::source::Clock::Shared,
+            start_s: None,
             properties: Default::default(),
         }
     }

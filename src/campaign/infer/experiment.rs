@@ -3,8 +3,9 @@
 use super::{FolderContents, InferredChannel, Place, spread};
 use crate::event::{DetectSettings, Detection, FlightKind, RigKind, detect};
 use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
-use crate::record::{ContactContent, FlagCode, Record, Role, Setting};
-use crate::signal::{decay, onsets};
+use crate::record::{ContactContent, FlagCode, Record, Role, Setting, changes};
+use crate::signal::columns::{self, dot};
+use crate::signal::{decay, onsets, robust};
 use labfiles::DatasetInfo;
 use labfiles::units::{self, Dimension};
 
@@ -44,11 +45,30 @@ pub(super) fn is_event_list(set: &DatasetInfo) -> bool {
     (3..=MOST_EVENTS).contains(&rows) && timed > 0 && timed == set.channels.len()
 }
 
+/// The column of times of a list of changes.
+pub(super) fn changes_at(place: Place<'_>) -> Option<usize> {
+    let set = place.set();
+    let time = set.time_axis?;
+    let times = place.numbers(time);
+    let mut states = changes::candidates(set, time);
+    let found = states.any(|state| changes::levels(&times, &place.numbers(state)).is_some());
+    // a square wave that is sampled at even times changes with each row too
+    let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    let (least, greatest) = columns::extremes(&steps);
+    (found && greatest > 2.0 * least).then_some(time)
+}
+
 /// Find out what was measured, and set roles and signs for it.
 pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
     let Some(first) = places.first() else { return };
     if first.source.datasets().iter().any(is_event_list) {
         found.experiment = Experiment::Events(events(&mut found.channels));
+        return;
+    }
+    if let Some(time) = changes_at(*first) {
+        found.experiment = Experiment::Events(ContactContent::Times);
+        found.channels.iter_mut().for_each(|c| c.role = None);
+        found.channels[time].role = Some(Role::Contact);
         return;
     }
     let some = spread(places, MOST_RECORDS);
@@ -81,6 +101,9 @@ pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
     };
     if 2 * records.iter().filter(|r| decays(r)).count() > records.len() {
         found.experiment = Experiment::FreeDecay;
+        if two && records.iter().all(is_one_body) {
+            keep_one_mass(&mut found.channels);
+        }
         return;
     }
     let settings = DetectSettings {
@@ -158,6 +181,7 @@ fn read(place: Place<'_>, channels: &[InferredChannel]) -> Record {
         dataset: place.dataset,
         channels: &setups,
         time: None,
+        time_unit_s: None,
         sample_rate_hz: None,
         setting: &Setting::default(),
         driven: false,
@@ -180,6 +204,44 @@ fn decays(record: &Record) -> bool {
         let periods = d.samples as f64 / record.sample_rate_hz * d.natural_frequency_hz;
         d.residual_ratio < DECAY_LEAVES && periods > DECAY_PERIODS && d.damping_ratio < 0.5
     })
+}
+
+/// Correlation from which two sensors see one body, whichever way they point.
+const ONE_BODY: f64 = 0.9;
+
+/// Whether the sensors of both masses see one motion, as two on one beam do.
+fn is_one_body(record: &Record) -> bool {
+    let pairs = [
+        (Role::VelocityX, Role::VelocityY),
+        (Role::DisplacementX, Role::DisplacementY),
+        (Role::AccelerationX, Role::AccelerationY),
+    ];
+    let both = pairs
+        .iter()
+        .filter_map(|(x, y)| Some((record.values(*x)?, record.values(*y)?)));
+    let alike = |(x, y): (&[f64], &[f64])| correlation(x, y).abs() > ONE_BODY;
+    let mut both = both.peekable();
+    both.peek().is_some() && both.all(alike)
+}
+
+fn correlation(x: &[f64], y: &[f64]) -> f64 {
+    let centred = |v: &[f64]| -> Vec<f64> {
+        let mean = robust::mean(v);
+        v.iter().map(|value| value - mean).collect()
+    };
+    let (x, y) = (centred(x), centred(y));
+    let size = (dot(&x, &x) * dot(&y, &y)).sqrt();
+    if size > 0.0 { dot(&x, &y) / size } else { 0.0 }
+}
+
+/// Take the roles of the second mass away.
+fn keep_one_mass(channels: &mut [InferredChannel]) {
+    for channel in channels
+        .iter_mut()
+        .filter(|c| c.role.is_some_and(Role::is_of_y))
+    {
+        channel.role = None;
+    }
 }
 
 /// Signs of the channels as most impacts show them: all measured away, or both masses along one axis.

@@ -10,9 +10,9 @@ use std::path::{Path, PathBuf};
 
 use super::discovery::Opener;
 use super::run_table;
-use crate::record::Role;
+use crate::record::{Role, time_axis};
 use crate::signal::robust;
-use labfiles::{ChannelInfo, DatasetInfo, Samples, Source};
+use labfiles::{ChannelInfo, Clock, DatasetInfo, Samples, Source};
 
 pub use experiment::Experiment;
 
@@ -44,6 +44,10 @@ pub struct FolderContents {
     pub refused: Vec<(String, String)>,
     /// Whether the file has a time axis or a sample rate.
     pub timed: bool,
+    /// Whether it has neither but counts a camera's frames.
+    pub counts_frames: bool,
+    /// Number of records in all files.
+    pub records: usize,
     /// What was probably measured.
     pub experiment: Experiment,
 }
@@ -53,6 +57,8 @@ pub struct FolderContents {
 pub struct InferredChannel {
     /// Name in the file.
     pub name: String,
+    /// What the file calls its signal beside its name, if it does.
+    pub label: Option<String>,
     /// Unit in the file.
     pub unit: Option<String>,
     /// Number of samples.
@@ -94,6 +100,7 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
         .iter()
         .flat_map(|(_, s)| records_in(s.as_ref()))
         .collect();
+    found.records = places.len();
     if let (Some((path, _)), Some(first)) = (records.first(), places.first()) {
         found.example = slashed(path);
         describe(*first, &mut found);
@@ -219,6 +226,8 @@ fn describe(first: Place<'_>, found: &mut FolderContents) {
     found.attributes = set.attributes.clone();
     found.timed =
         set.time_axis.is_some() || set.channels.iter().any(|c| c.sample_rate_hz.is_some());
+    let frames = |i| time_axis::counts_frames(set, i);
+    found.counts_frames = !found.timed && (0..set.channels.len()).any(frames);
     found.channels = channels(first);
 }
 
@@ -228,16 +237,24 @@ fn channels(first: Place<'_>) -> Vec<InferredChannel> {
         let values = first.numbers(i);
         InferredChannel {
             name: info.name.clone(),
+            label: info.properties.get("label").cloned(),
             unit: info.unit.clone(),
             samples: info.samples,
             range: range(&values),
-            is_time: set.time_axis == Some(i),
+            is_time: set.time_axis == Some(i)
+                || time_axis::counts_frames(set, i)
+                || is_clock(set, i),
             role: None,
             levels: two_levels(&values),
             sign: 1,
         }
     };
     set.channels.iter().enumerate().map(seen).collect()
+}
+
+/// Whether a channel holds the times of others.
+fn is_clock(set: &DatasetInfo, index: usize) -> bool {
+    set.channels.iter().any(|c| c.clock == Clock::Axis(index))
 }
 
 /// Records whose signals are looked at, the first among them.
@@ -320,6 +337,7 @@ mod tests {
     fn seen(name: &str, unit: Option<&str>) -> InferredChannel {
         InferredChannel {
             name: name.into(),
+            label: None,
             unit: unit.map(str::to_owned),
             samples: 100,
             range: Some([-1.0, 1.0]),
@@ -401,6 +419,98 @@ mod tests {
         channels.iter_mut().for_each(|c| c.role = None);
         roles::assign(&mut channels);
         assert!(channels[3..].iter().all(|c| c.role.is_none()));
+    }
+
+    #[test]
+    fn a_list_of_changes_is_one_of_times() {
+        let folder = tempfile::tempdir().unwrap();
+        let list = crate::record::calibrate::tests::list_of_changes();
+        std::fs::write(folder.path().join("digital.csv"), list).unwrap();
+        let found = inspect_folder(folder.path(), &labfiles::open);
+        assert_eq!(
+            found.experiment,
+            Experiment::Events(crate::record::ContactContent::Times)
+        );
+        let role = |name: &str| found.channels.iter().find(|c| c.name == name).unwrap().role;
+        assert_eq!(
+            (role("Time"), role("Channel 0")),
+            (Some(Role::Contact), None)
+        );
+        let text = super::super::template::campaign_toml("digital", &found);
+        assert!(text.contains("channel = \"Time\""), "{text}");
+        assert!(text.contains("content = \"times\""), "{text}");
+    }
+
+    #[test]
+    fn runs_side_by_side_are_all_counted() {
+        let folder = tempfile::tempdir().unwrap();
+        let row = |i: i32| {
+            let y = (f64::from(i) * 0.2).sin();
+            format!(
+                "{:.2},{y:.4},{:.2},{y:.4}\n",
+                f64::from(i) * 0.02,
+                f64::from(i) * 0.02
+            )
+        };
+        let rows: String = (0..60).map(row).collect();
+        let text = format!("Time (s),Position (m),Time (s),Position (m)\n{rows}");
+        std::fs::write(folder.path().join("throws.csv"), text).unwrap();
+        let found = inspect_folder(folder.path(), &labfiles::open);
+        assert_eq!((found.files, found.records), (1, 2));
+        let position = found.channels.iter().find(|c| c.name == "Position");
+        assert_eq!(position.unwrap().role, Some(Role::DisplacementX));
+    }
+
+    fn roles_of(names: &[(&str, &str, f64)]) -> Vec<Option<Role>> {
+        let channel = |(name, unit, span): &(&str, &str, f64)| InferredChannel {
+            range: Some([-*span, *span]),
+            ..seen(name, Some(unit).filter(|u| !u.is_empty()).copied())
+        };
+        let mut channels: Vec<InferredChannel> = names.iter().map(channel).collect();
+        roles::assign(&mut channels);
+        channels.iter().map(|c| c.role).collect()
+    }
+
+    #[test]
+    fn axes_of_a_phone_and_coordinates_of_a_point_are_one_mass() {
+        let phone = ["x", "y", "z"].map(|axis| format!("Linear Acceleration {axis}"));
+        let spans = [0.1, 5.0, 0.2];
+        let named: Vec<(&str, &str, f64)> = phone
+            .iter()
+            .zip(spans)
+            .map(|(n, s)| (n.as_str(), "m/s^2", s))
+            .collect();
+        assert_eq!(roles_of(&named), [None, Some(Role::AccelerationX), None]);
+        let point = [("x", "m", 0.1), ("y", "m", 2.0)];
+        assert_eq!(roles_of(&point), [None, Some(Role::DisplacementX)]);
+        // two masses beside their drive, or two markers with three coordinates each
+        let rig = [
+            ("generator", "V", 1.0),
+            ("x", "mm/s", 1.0),
+            ("y", "mm/s", 1.0),
+        ];
+        assert_eq!(
+            roles_of(&rig),
+            [
+                Some(Role::Drive),
+                Some(Role::VelocityX),
+                Some(Role::VelocityY)
+            ]
+        );
+        let markers = [
+            ("b X", "mm", 500.0),
+            ("b Y", "mm", 1.0),
+            ("b Z", "mm", 1.0),
+            ("a X", "mm", 400.0),
+            ("a Y", "mm", 1.0),
+            ("a Z", "mm", 1.0),
+        ];
+        let roles = roles_of(&markers);
+        assert_eq!(
+            (roles[0], roles[3]),
+            (Some(Role::DisplacementY), Some(Role::DisplacementX))
+        );
+        assert!(roles.iter().flatten().count() == 2, "{roles:?}");
     }
 
     /// A folder of records of a generator and an unnamed switch, closed in those of the numbers given.

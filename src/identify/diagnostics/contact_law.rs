@@ -69,6 +69,23 @@ impl ContactLaw {
         self.criterion[0] > VERY_STRONG
     }
 
+    /// The point at which the speed after an impact exceeds that before it most surely, beyond three standard
+    /// errors: these speeds are not those of an impact.
+    pub fn gained(&self) -> Option<CurvePoint> {
+        let gain = |p: &CurvePoint| (p.restitution - 1.0) / p.standard_error;
+        let most = self.curve.iter().max_by(|a, b| gain(a).total_cmp(&gain(b)));
+        most.copied().filter(|p| gain(p) > 3.0)
+    }
+
+    /// The law as one of R, which is one at most.
+    #[must_use]
+    pub fn within_one(mut self) -> Self {
+        for point in &mut self.curve {
+            point.restitution = point.restitution.min(1.0);
+        }
+        self
+    }
+
     /// Where R is least and greatest, the slower first; `None` of a law without a curve.
     pub fn extremes(&self) -> Option<[CurvePoint; 2]> {
         let by = |a: &&CurvePoint, b: &&CurvePoint| a.restitution.total_cmp(&b.restitution);

@@ -3,10 +3,17 @@
 
 pub mod agreement;
 pub mod beyond;
+pub mod cause;
+pub mod change;
+pub mod clock;
 pub mod contact_law;
 pub mod contradicting_gap;
+pub mod doubt;
 pub mod influence;
+pub mod late_channel;
+pub mod missing;
 pub mod momentum;
+pub mod settling;
 pub mod stated_clearances;
 pub mod stated_frequencies;
 pub mod structure;
@@ -14,3 +21,4 @@ pub mod suspicion;
 pub mod swapped_channels;
 pub mod undeclared_high_pass;
 pub mod verdict;
+pub mod wrong_gains;

@@ -17,8 +17,12 @@ pub fn no_drive(observations: &[Observation]) -> Option<Finding> {
         .iter()
         .filter(|o| o.setting.stated_frequency_hz.is_some());
     let records = stating.clone().count();
+    let with_tone = stating.clone().filter(|o| o.motion_tone.is_some()).count();
     let none = records > 0 && stating.into_iter().all(|o| o.drive.is_none());
-    none.then_some(Finding::DriveNotMeasured { records })
+    none.then_some(match with_tone {
+        0 => Finding::DriveNotMeasured { records },
+        records => Finding::PhaseNotMeasured { records },
+    })
 }
 
 /// That more than half of the records that state a frequency are driven at another one.
@@ -44,8 +48,12 @@ pub fn contradicted(observations: &[Observation]) -> Option<Finding> {
 mod tests {
     use super::*;
     use crate::event::DriveTone;
+    use crate::identify::fit::parameters::Coordinate;
+    use crate::identify::fixture::{evidence, observed as observed_all, recorded};
+    use crate::identify::run::identify;
     use crate::motion::Motion;
-    use crate::record::Flag;
+    use crate::record::{Flag, Role};
+    use crate::signal::tone;
 
     fn observed(stated_hz: f64, frequency_hz: f64) -> Observation {
         let mut o = Observation::of("r", stated_hz, Motion::Impactless);
@@ -83,9 +91,44 @@ mod tests {
         let mut unseen = observed(8.0, 8.0);
         unseen.drive = None;
         let none = Finding::DriveNotMeasured { records: 1 };
-        assert_eq!(no_drive(&[unseen]), Some(none));
+        assert_eq!(no_drive(std::slice::from_ref(&unseen)), Some(none));
+        unseen.motion_tone = observed(8.0, 8.0).drive;
+        let phase = Finding::PhaseNotMeasured { records: 1 };
+        assert_eq!(no_drive(&[unseen]), Some(phase));
         let shuffled = [[8.0, 12.0], [10.0, 8.0], [12.0, 10.0]];
         let differ = Finding::FrequenciesOff { records: 3, of: 3 };
         assert_eq!(of(&shuffled), Some(differ));
+    }
+
+    #[test]
+    fn valid_amplitudes_at_stated_frequencies_tell_f0_beta_and_the_deflection() {
+        let mut records = recorded((0.8, 12.0), 80, 21);
+        for record in &mut records {
+            let drive = record
+                .values(Role::Drive)
+                .map(|v| tone::fit(v, record.sample_rate_hz));
+            let found = drive.flatten().expect("a drive").frequency_hz;
+            record.setting.stated_frequency_hz = Some((1e3 * found).round() / 1e3);
+            record.channels.retain(|c| c.role != Role::Drive);
+        }
+        let observations = observed_all(&records);
+        let found = identify(&evidence(&observations));
+        let phase = |f: &Finding| matches!(f, Finding::PhaseNotMeasured { .. });
+        assert!(found.suspicions.iter().any(phase), "{:?}", found.suspicions);
+        for (parameter, truth) in [
+            (Coordinate::Frequency, 12.0),
+            (Coordinate::Damping, 0.06),
+            (Coordinate::Deflection, 1e-3),
+            (Coordinate::Restitution, 0.8),
+        ] {
+            let estimate = found.joint.parameters.get(parameter).expect("an estimate");
+            let [low, high] = estimate.interval95.expect("an interval");
+            let half = 0.5 * (high - low);
+            let apart = (estimate.value.expect("a value") - truth).abs();
+            assert!(
+                apart < 1.5 * half && half < 0.3 * truth,
+                "{parameter:?}: {estimate:?}"
+            );
+        }
     }
 }

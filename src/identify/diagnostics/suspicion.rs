@@ -1,4 +1,4 @@
-//! Mistakes of the laboratory that the data give away: a gap stated wrongly, a gain or a corner
+//! Mistakes of the laboratory that the data give away: a gap stated wrongly, a corner
 //! far off, the channels of the two masses interchanged.
 //!
 //! A gap or an interchange is tested as an alternative: what would change if it were so, and how
@@ -10,15 +10,15 @@ use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::fit::parameters::{Coordinate, GAIN_ROLES, Parameters};
-use crate::identify::fit::{Block, Fit, mean_squares};
+use crate::identify::fit::{Block, Fit, Prior, mean_squares};
 use crate::identify::messages::Finding;
 use crate::identify::method_fit::MethodFit;
 use crate::signal::columns::dot;
 
 /// Standard errors from which a deviation is named.
 pub(super) const SURE: f64 = 6.0;
-/// Standard uncertainties of gains and corners from which one is named.
-const CHANNEL_LIMIT: f64 = 4.0;
+/// Standard uncertainties of corners and of differences between both sides from which one is named.
+const FAR_OFF: f64 = 4.0;
 /// Least relative deviation of a gap that is named.
 const GAP_LIMIT: f64 = 2e-3;
 /// Standard uncertainties, those of the clearances and of the fit combined, from which a gap is named
@@ -36,34 +36,48 @@ fn is_named(odd: &OddGap, uncertainty_m: f64) -> bool {
     }
 }
 
-/// Gains and corners of channels that are far outside what the laboratory states of them.
-pub fn channels(fit: &Fit, factor: f64, nominal: &Nominal) -> Vec<Finding> {
+/// Corners of channels that are far outside what the laboratory states of them.
+pub fn corners(fit: &Fit, factor: f64, nominal: &Nominal) -> Vec<Finding> {
     let of = |coordinate: &Coordinate| {
-        let (allowed, index) = match coordinate {
-            Coordinate::Gain(index) => (nominal.gain_uncertainty, index),
-            Coordinate::Corner(index) => (nominal.corner_uncertainty, index),
-            _ => return None,
+        let Coordinate::Corner(index) = *coordinate else {
+            return None;
         };
         let off = fit.parameters.coordinate(*coordinate);
         let error = fit.error(*coordinate)? * factor.sqrt();
-        let z_score = off / allowed.hypot(error).max(f64::MIN_POSITIVE);
-        let odd = z_score.abs() > CHANNEL_LIMIT && off.abs() > SURE * error;
-        let channel = *GAIN_ROLES.get(*index).filter(|_| odd)?;
-        let deviation = off.exp_m1();
-        Some(match coordinate {
-            Coordinate::Corner(_) => Finding::WrongCorner {
-                channel,
-                deviation,
-                z_score,
-            },
-            _ => Finding::WrongGain {
-                channel,
-                deviation,
-                z_score,
-            },
+        let allowed = nominal.corner_uncertainty.hypot(error);
+        let z_score = off / allowed.max(f64::MIN_POSITIVE);
+        let odd = z_score.abs() > FAR_OFF && off.abs() > SURE * error;
+        let channel = *GAIN_ROLES.get(index).filter(|_| odd)?;
+        Some(Finding::WrongCorner {
+            channel,
+            deviation: off.exp_m1(),
+            z_score,
         })
     };
     fit.free.iter().filter_map(of).collect()
+}
+
+/// Differences of both sides that are far outside what is stated or assumed of them.
+pub fn sides(fit: &Fit, priors: &[Prior]) -> Vec<Finding> {
+    let of = |prior: &Prior| {
+        let coordinate = prior.coordinate;
+        let side = matches!(
+            coordinate,
+            Coordinate::DriveAsymmetry
+                | Coordinate::StiffnessAsymmetry
+                | Coordinate::DampingAsymmetry
+                | Coordinate::MassAsymmetry
+        );
+        let difference = fit.parameters.coordinate(coordinate);
+        let deviations = (difference - prior.centre) / prior.deviation;
+        let odd = side && deviations.abs() > FAR_OFF;
+        odd.then_some(Finding::SidesUnlike {
+            coordinate,
+            difference,
+            deviations,
+        })
+    };
+    priors.iter().filter_map(of).collect()
 }
 
 /// A gap that fits the other records only with another clearance.
@@ -292,6 +306,22 @@ mod tests {
             },
             parts: Vec::new(),
         }
+    }
+
+    #[test]
+    fn sides_that_differ_by_more_than_is_stated_are_named() {
+        let mut found = found(1.0).fit;
+        found.parameters = found.parameters.with(Coordinate::MassAsymmetry, -0.041);
+        let of = |coordinate, deviation| sides(&found, &[Prior::new(coordinate, 0.0, deviation)]);
+        assert_eq!(of(Coordinate::MassAsymmetry, 0.02), []);
+        assert_eq!(of(Coordinate::Gap(0), 1e-6), []);
+        let named = of(Coordinate::MassAsymmetry, 0.01);
+        assert_eq!(
+            named[0].to_string(),
+            "the fit needs a mass_asymmetry of -4.1 %, 4.1 times its uncertainty off what is stated \
+             or assumed: weigh both masses and state mass_x and mass_y in [rig], and check springs, \
+             dashpots and drives of both sides"
+        );
     }
 
     #[test]

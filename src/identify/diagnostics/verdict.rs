@@ -2,8 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::identify::diagnostics::cause::Cause;
+use crate::identify::diagnostics::contact_law::CurvePoint;
 use crate::identify::diagnostics::structure::Grouping;
-use crate::identify::estimate::{Estimate, Status};
+use crate::identify::estimate::{Estimate, Status, not_identifiable};
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::impacts::ImpactBlock;
 use crate::identify::evidence::resonance::{self, ResonanceBlock};
@@ -38,7 +40,10 @@ pub fn judge_resonance(result: &mut MethodResult, block: &ResonanceBlock, fitted
                 point.frequency_hz,
                 point.drive_amplitude,
             );
-            let apart = (r.real - model.re).hypot(r.imaginary - model.im);
+            let apart = match point.phase_error_rad {
+                Some(_) => (r.real - model.re).hypot(r.imaginary - model.im),
+                None => (r.amplitude() - model.norm()).abs(),
+            };
             deviations.push(apart / model.norm().max(r.amplitude()));
         }
     }
@@ -143,6 +148,16 @@ pub fn judge_structure(result: &mut MethodResult, grouping: Grouping) {
     }
 }
 
+/// Speeds that impacts seem to gain are not those of impacts: they tell no R.
+pub fn judge_gained(result: &mut MethodResult, point: CurvePoint) {
+    result.fits = Some(false);
+    result.remarks.push(Remark::SpeedsGained {
+        speed_m_s: point.speed_m_s,
+        ratio: point.restitution,
+    });
+    result.parameters.restitution = Some(not_identifiable(Note::NotOfImpacts));
+}
+
 /// Mark R as not one number, with an interval that holds all of its values.
 fn not_one_number(estimate: &mut Estimate, values: &[f64]) {
     estimate.status = Status::Weak;
@@ -227,6 +242,8 @@ pub struct Basis<'a> {
     pub agreement: &'a Agreement,
     /// Mistakes of the laboratory that the data give away.
     pub suspicions: &'a [Finding],
+    /// The cause that explains other findings.
+    pub cause: Option<Cause>,
 }
 
 /// The verdict: the model does not fit if it does not fit the data of any one method.
@@ -237,7 +254,8 @@ pub fn verdict(basis: &Basis<'_>) -> Verdict {
         .collect();
     let unknown = with_status(&estimates, Status::NotIdentifiable);
     let weak = with_status(&estimates, Status::Weak);
-    let misfit = basis.methods.values().any(|m| m.fits == Some(false));
+    let misfit =
+        basis.methods.values().any(|m| m.fits == Some(false)) || basis.cause == Some(Cause::Change);
     let kind = if misfit {
         VerdictKind::DoesNotFit
     } else if estimates.is_empty() || !unknown.is_empty() {
@@ -251,7 +269,9 @@ pub fn verdict(basis: &Basis<'_>) -> Verdict {
     // x_st, which scales the lengths, is no answer by itself
     let answers = |v: &StatedValue| v.parameter != Coordinate::Deflection;
     let says_something = basis.agreement.agree.is_some() || values.iter().any(answers);
-    let second = says_something.then(|| Sentence::on_agreement(basis.agreement.agree));
+    // that methods which one cause bends agree says nothing
+    let bent = basis.cause.is_some_and(Cause::bends);
+    let second = (says_something && !bent).then(|| Sentence::on_agreement(basis.agreement.agree));
     let first = match kind {
         VerdictKind::DoesNotFit => Sentence::DoesNotFit,
         VerdictKind::NotIdentifiable if estimates.is_empty() => Sentence::NothingUsable,
@@ -303,6 +323,9 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
     findings.extend(noted);
     let disagreement = basis.agreement.disagreement().cloned();
     findings.extend(disagreement.map(|pair| Finding::Disagreement { pair }));
+    if let Some(cause) = basis.cause {
+        findings.retain(|finding| !cause.explains(finding));
+    }
     findings
 }
 
@@ -362,6 +385,7 @@ mod tests {
                 methods: &BTreeMap::new(),
                 agreement: &Agreement::default(),
                 suspicions: &[],
+                cause: None,
             })
         };
         assert_eq!(
@@ -394,12 +418,13 @@ mod tests {
                 pairs: vec![pair],
             },
             suspicions: &[],
+            cause: None,
         })
     }
 
     #[test]
     fn the_verdict_is_that_of_the_worst_parameter() {
-        // R is weak from 0.03 on and not identifiable from 0.15, f0 from 0.01 and 0.08
+        // as half widths R is weak from 0.05 on and not identifiable from 0.3, f0 from 2 and 16 %
         let kind = |r, f| judged(&joint(r, f), &[], true).kind;
         assert_eq!(kind(0.001, 0.001), VerdictKind::Identified);
         assert_eq!(kind(0.04, 0.001), VerdictKind::Weak);

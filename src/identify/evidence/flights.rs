@@ -94,6 +94,7 @@ impl FlightBlock {
         let records = observations
             .iter()
             .enumerate()
+            .filter(|(_, o)| !o.low_pass)
             .filter(|(_, o)| !o.excluded() && has_no_closed_form(&o.classification.motion))
             .filter_map(|(i, o)| flight_record(rig, i, o))
             .collect();

@@ -92,7 +92,7 @@ impl ImpactBlock {
         let mut pairs: Vec<SpeedPair> = observations
             .iter()
             .enumerate()
-            .filter(|(_, o)| !o.excluded())
+            .filter(|(_, o)| !o.excluded() && !o.low_pass)
             .flat_map(|(i, o)| o.impacts.iter().map(move |impact| (i, impact)))
             .filter(|(_, impact)| impact.dead_zone_s == 0.0)
             .filter(|(i, impact)| {

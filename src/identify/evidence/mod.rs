@@ -11,6 +11,7 @@ mod groups;
 pub mod high_pass;
 pub mod impacts;
 pub mod nearest_orbit;
+pub mod pickup;
 pub mod record_motion;
 pub mod reduced_record;
 pub mod resonance;
@@ -20,10 +21,11 @@ pub mod trajectory_record;
 pub mod waveform;
 pub mod weighing;
 
-use crate::event::RigKind;
+use crate::event::{FlightKind, RigKind};
 use crate::identify::evidence::boundary::BoundaryBlock;
 use crate::identify::evidence::flights::FlightBlock;
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
+use crate::identify::evidence::pickup::Pickups;
 use crate::identify::evidence::resonance::ResonanceBlock;
 use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::fit::effect::{Effect, Effects};
@@ -50,6 +52,8 @@ pub struct Nominal {
     pub gain_uncertainty: f64,
     /// Standard uncertainty of the corners of the channels' high-pass, relative.
     pub corner_uncertainty: f64,
+    /// Standard uncertainty of the sampler's clock, relative.
+    pub clock_uncertainty: f64,
     /// Standard uncertainty of each stated clearance, and of the zero that all share, m.
     pub clearance_uncertainty_m: f64,
     /// Delay of the motion channels against the drive's, s, by the index of their gains.
@@ -60,6 +64,8 @@ pub struct Nominal {
     pub mass_asymmetry: Option<[f64; 2]>,
     /// Effects that the fit allows beyond the model.
     pub effects: Effects,
+    /// What moves the masses between impacts.
+    pub flight: FlightKind,
 }
 
 impl Nominal {
@@ -205,7 +211,9 @@ impl Blocks {
             brackets,
             ..
         } = *evidence;
-        let (impact, impact_outliers) = impacts(rig, observations, impact_scatter);
+        let (mut impact, impact_outliers) = impacts(rig, observations, impact_scatter);
+        // records of springs whose drive was not recorded have no free flights
+        impact.free &= evidence.nominal.flight == FlightKind::ConstantForce;
         let mut blocks = Self {
             resonance: ResonanceBlock::new(rig, observations, relative_error),
             trajectory: TrajectoryBlock::new(rig, observations, relative_error),
@@ -221,6 +229,8 @@ impl Blocks {
         blocks.give_gaps_errors(evidence.nominal.clearance_uncertainty_m);
         let reach_m = reach_m(observations);
         (blocks.trajectory.reach_m, blocks.resonance.reach_m) = (reach_m, reach_m);
+        let pickups = Pickups::of(observations);
+        (blocks.trajectory.pickups, blocks.resonance.pickups) = (pickups, pickups);
         blocks.trajectory.effects = evidence.nominal.effects;
         blocks
     }

@@ -49,6 +49,8 @@ struct ChannelMotion {
     set: usize,
     /// The mass's displacement or velocity.
     motion: MassMotion,
+    /// What a settled low-pass passes of the drive's term and of the free vibration's.
+    low_pass: Option<[C64; 2]>,
     filter: Option<Filter>,
     delay: f64,
 }
@@ -145,10 +147,16 @@ impl<'a> RecordMotion<'a> {
         let set = phases.iter().position(|p| p.fit(&channel.points))?;
         let role = channel.role;
         let mass = of_role(&self.orbit, role);
+        let low_pass = channel.low_pass.map(|filter| {
+            let rate = self.own.natural_rate();
+            let drive = C64::new(0.0, self.eta);
+            [drive, mass.exponent].map(|pole| filter.transfer(pole * rate))
+        });
         let motion = match measured(role) {
             Measured::Displacement => *mass,
             Measured::Velocity => velocity(mass, self.eta),
         };
+        let motion = settled(motion, low_pass);
         let filter = channel.high_pass_hz.map(|corner_hz| {
             let corner_hz = corner_hz * self.own.corner(role);
             let corner = corner_hz / self.own.natural_frequency_hz;
@@ -162,6 +170,7 @@ impl<'a> RecordMotion<'a> {
             role,
             set,
             motion,
+            low_pass,
             filter,
             delay: self.own.delay_s(role) * self.own.natural_rate(),
         })
@@ -240,7 +249,7 @@ impl<'a> RecordMotion<'a> {
                 (Coordinate::Gain(gain), _) => {
                     slopes.alone(Column::Terms(self.only(values, *gain)))
                 }
-                (Coordinate::Effect(effect), _) if effect.is_acceleration() => {
+                (Coordinate::Effect(effect), _) if effect.is_perturbation() => {
                     slopes.alone(Column::Effect(*effect))
                 }
                 (_, Some(slope)) => {
@@ -401,6 +410,8 @@ impl<'a> RecordMotion<'a> {
             Measured::Displacement => *d_mass,
             Measured::Velocity => velocity_slope(mass, d_mass, eta),
         };
+        // What changes of the low-pass itself is a share ω/ω_c of that.
+        let change = settled(change, channel.low_pass);
         let delay = match direction.coordinate {
             Some(Coordinate::Frequency) => [channel.delay, channel.delay],
             Some(Coordinate::Delay(_)) => [channel.delay, 1e-3 * self.own.natural_rate()],
@@ -454,6 +465,18 @@ impl<'a> RecordMotion<'a> {
             Measured::Velocity => length * p.natural_rate(),
             Measured::Displacement => length,
         }
+    }
+}
+
+/// A motion, or its change, behind a low-pass that has settled.
+fn settled(motion: MassMotion, low_pass: Option<[C64; 2]>) -> MassMotion {
+    match low_pass {
+        Some([drive, free]) => MassMotion {
+            force: motion.force * drive,
+            mode: motion.mode * free,
+            ..motion
+        },
+        None => motion,
     }
 }
 
@@ -540,6 +563,7 @@ pub(super) mod tests {
                     role,
                     noise: 1.0,
                     high_pass_hz: (role != Role::VelocityX).then_some(0.5),
+                    low_pass: None,
                     points: points.clone(),
                 })
                 .to_vec(),
@@ -591,7 +615,7 @@ pub(super) mod tests {
             coordinates.extend([Coordinate::Corner(1), Coordinate::Corner(2)]);
             coordinates.extend([Coordinate::Delay(0), Coordinate::Delay(3)]);
             coordinates.extend([Coordinate::ScrewZero, Coordinate::Gap(1)]);
-            let effects = Effects::all().iter().filter(|e| !e.is_acceleration());
+            let effects = Effects::all().iter().filter(|e| !e.is_perturbation());
             coordinates.extend(effects.map(Coordinate::Effect));
             let slopes = motion.slopes(&here, &coordinates);
             for (coordinate, sum) in coordinates.into_iter().zip(&slopes.sums) {

@@ -4,6 +4,7 @@ use nalgebra::Complex;
 
 use crate::event::RigKind;
 use crate::identify::evidence::direction::{change, relative_length};
+use crate::identify::evidence::pickup::Pickups;
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::fit::Block;
 use crate::identify::fit::effect::{Effect, EffectKind};
@@ -13,6 +14,7 @@ use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
 use crate::motion::Response;
 use crate::record::Role;
+use crate::signal::columns::{dot, subtract};
 use impact_oscillator::model::flight::{Drive, dynamic_stiffness, forced_amplitude};
 use impact_oscillator::model::params::{Machine, Oscillator};
 use impact_oscillator::model::sensitivity::{Change, forced_slope};
@@ -28,8 +30,8 @@ pub struct ResonancePoint {
     pub drive_amplitude: f64,
     /// Standard error of the drive's frequency, relative.
     pub frequency_error: f64,
-    /// Standard error of the drive's phase, rad.
-    pub phase_error_rad: f64,
+    /// Standard error of the drive's phase, rad; `None` where it is not known, as the drive was not recorded.
+    pub phase_error_rad: Option<f64>,
     /// Place in the campaign, −½ … ½.
     pub place: f64,
     /// The groups of records that it belongs to.
@@ -55,12 +57,57 @@ impl ResonancePoint {
     }
 
     /// Complex changes of the responses over their errors, real and imaginary parts in turn.
+    ///
+    /// Where the drive's phase is not known, the changes of the amplitudes, and those of the phases but for
+    /// the one that all have in common.
     fn weighted(&self, changes: impl Iterator<Item = Complex<f64>>) -> Vec<f64> {
-        let errors = self.errors.iter().zip(changes);
-        errors
-            .flat_map(|(error, c)| [c.re / error, c.im / error])
-            .collect()
+        let scaled = self.errors.iter().zip(changes).map(|(error, c)| c / error);
+        if self.phase_error_rad.is_some() {
+            return scaled.flat_map(|c| [c.re, c.im]).collect();
+        }
+        let along =
+            |(c, measured): (Complex<f64>, Complex<f64>)| c * measured.conj() / measured.norm();
+        let turned: Vec<Complex<f64>> = scaled.zip(self.measured()).map(along).collect();
+        let sizes = self
+            .measured()
+            .zip(&self.errors)
+            .map(|(m, error)| m.norm() / error);
+        let across = without_common(turned.iter().map(|c| c.im).collect(), sizes.collect());
+        turned.iter().map(|c| c.re).chain(across).collect()
     }
+
+    /// The measured responses.
+    fn measured(&self) -> impl Iterator<Item = Complex<f64>> {
+        self.responses
+            .iter()
+            .map(|r| Complex::new(r.real, r.imaginary))
+    }
+
+    /// The turn of predicted responses that brings them closest to the measured ones.
+    fn turn(&self, predicted: &[Predicted]) -> Complex<f64> {
+        let pairs = self.measured().zip(predicted).zip(&self.errors);
+        let sum: Complex<f64> = pairs.map(|((m, p), e)| m * p.value.conj() / (e * e)).sum();
+        match sum.norm() > 0.0 {
+            true => sum / sum.norm(),
+            false => Complex::new(1.0, 0.0),
+        }
+    }
+}
+
+/// Values in coordinates across a direction: Householder's reflection that brings the direction onto the
+/// first axis, without that axis.
+fn without_common(mut values: Vec<f64>, mut direction: Vec<f64>) -> Vec<f64> {
+    let size = dot(&direction, &direction).sqrt();
+    if let Some(first) = direction.first_mut() {
+        *first += size.copysign(*first);
+        let square = dot(&direction, &direction);
+        if square > 0.0 {
+            let share = 2.0 * dot(&direction, &values) / square;
+            subtract(&mut values, share, &direction);
+        }
+        values.remove(0);
+    }
+    values
 }
 
 /// Responses of all impactless records.
@@ -74,6 +121,8 @@ pub struct ResonanceBlock {
     relative_error: f64,
     /// Displacement at which springs harden by the strength of that effect, m.
     pub reach_m: f64,
+    /// What channels may pick up from the drive.
+    pub pickups: Pickups,
 }
 
 impl ResonanceBlock {
@@ -84,12 +133,12 @@ impl ResonanceBlock {
             .enumerate()
             .filter(|(_, o)| !o.excluded() && !o.response.is_empty())
             .filter_map(|(i, o)| {
-                let drive = o.drive?;
+                let drive = o.tone()?;
                 Some(ResonancePoint {
                     observation: i,
                     frequency_hz: drive.frequency_hz,
                     frequency_error: drive.frequency_error_hz / drive.frequency_hz,
-                    phase_error_rad: o.drive_phase_error_rad(),
+                    phase_error_rad: o.drive.map(|_| o.drive_phase_error_rad()),
                     drive_amplitude: o.setting.drive_amplitude,
                     place: 0.0,
                     group: Group::default(),
@@ -110,6 +159,7 @@ impl ResonanceBlock {
             points,
             relative_error,
             reach_m: 1.0,
+            pickups: Pickups::default(),
         };
         block.allow(relative_error);
         block
@@ -409,6 +459,7 @@ struct Model<'a> {
     machine: Machine,
     eta: f64,
     responses: Vec<Predicted>,
+    pickups: Pickups,
 }
 
 /// Coordinates of a record's own that change its responses: all physical ones but R.
@@ -444,6 +495,12 @@ impl Model<'_> {
             Coordinate::Effect(Effect::Hardening) => self.over_force(0),
             Coordinate::Effect(Effect::Friction) => self.over_force(1),
             Coordinate::Effect(Effect::Drag) => self.over_force(2),
+            Coordinate::Effect(effect @ (Effect::PickupX | Effect::PickupY)) => {
+                let responses = self.point.responses.iter();
+                let unit = |r: &Response| self.pickups.unit(effect, r.role);
+                let unit = |r| Complex::from(unit(r) * self.point.drive_amplitude);
+                responses.map(unit).collect()
+            }
             _ => match self.parameters.own_slope(&self.at, coordinate) {
                 // The campaign's x_st moves with the record's own.
                 Some(slope) if coordinate == Coordinate::Deflection => {
@@ -517,6 +574,14 @@ impl ResonanceBlock {
                 }
             })
             .collect();
+        let mut responses: Vec<Predicted> = responses;
+        if point.phase_error_rad.is_none() {
+            let turn = point.turn(&responses);
+            for response in &mut responses {
+                response.value *= turn;
+                response.unit *= turn;
+            }
+        }
         Model {
             point,
             at,
@@ -524,6 +589,7 @@ impl ResonanceBlock {
             machine,
             eta,
             responses,
+            pickups: self.pickups,
         }
     }
 
@@ -536,21 +602,29 @@ impl ResonanceBlock {
     /// The errors that all responses of a point share, by what was measured: weights that follow the
     /// parameters would reward a model that moves more.
     fn whitening(&self, point: &ResonancePoint) -> Whitening {
-        let turn = Complex::new(0.0, point.phase_error_rad);
-        let turned = point.responses.iter();
-        let turned = turned.map(|r| turn * Complex::new(r.real, r.imaginary));
         let shifted = point.over_frequency.iter();
         let shifted = shifted.map(|slope| slope * point.frequency_error);
-        let mut columns = vec![point.weighted(turned)];
+        let mut columns = Vec::new();
+        if let Some(error) = point.phase_error_rad {
+            let turn = Complex::new(0.0, error);
+            columns.push(point.weighted(point.measured().map(|m| turn * m)));
+        }
         if !point.over_frequency.is_empty() {
             columns.push(point.weighted(shifted));
         }
         Whitening::new(&columns)
     }
 
-    fn apart(&self, point: &ResonancePoint, found: &[Predicted]) -> Vec<f64> {
-        let pairs = point.responses.iter().zip(found);
-        let apart = pairs.map(|(r, p)| Complex::new(r.real, r.imaginary) - p.value);
+    fn apart(&self, found: &Model<'_>) -> Vec<f64> {
+        let point = found.point;
+        let pairs = point.responses.iter().zip(&found.responses);
+        let apart = pairs.map(|(r, p)| {
+            let picked_up = [Effect::PickupX, Effect::PickupY].map(|effect| {
+                let unit = self.pickups.unit(effect, r.role) * point.drive_amplitude;
+                found.parameters.effect(effect) * unit
+            });
+            Complex::new(r.real, r.imaginary) - p.value - picked_up[0] - picked_up[1]
+        });
         point.weighted(apart)
     }
 }
@@ -562,7 +636,7 @@ impl Block for ResonanceBlock {
 
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let point = &self.points[item];
-        let mut out = self.apart(point, &self.model(point, parameters).responses);
+        let mut out = self.apart(&self.model(point, parameters));
         point.shared.apply(&mut out);
         Some(out)
     }
@@ -585,7 +659,7 @@ impl Block for ResonanceBlock {
             white(point.weighted(slopes.into_iter().map(|s| -s)))
         };
         let columns = coordinates.iter().map(column).collect();
-        Some((white(self.apart(point, &found.responses)), columns))
+        Some((white(self.apart(&found)), columns))
     }
 
     fn group(&self, item: usize) -> Option<Group> {
@@ -599,6 +673,9 @@ impl Block for ResonanceBlock {
             | Coordinate::ScrewZero
             | Coordinate::Gap(_)
             | Coordinate::Effect(Effect::ClearanceDrift) => false,
+            Coordinate::Effect(effect @ (Effect::PickupX | Effect::PickupY)) => {
+                self.pickups.has(effect)
+            }
             Coordinate::Effect(effect) => !matches!(
                 effect.kind(),
                 EffectKind::Harmonics | EffectKind::ContactDuration | EffectKind::SpringAsymmetry
@@ -613,6 +690,7 @@ mod tests {
     use super::*;
     use crate::identify::fit::Problem;
     use crate::identify::fit::block::difference;
+    use crate::motion::{Amplitude, Motion};
 
     /// Impactless records of two masses (m, k, b, F), by their own transfer functions.
     fn measured(masses: [[f64; 4]; 2]) -> ResonanceBlock {
@@ -637,7 +715,7 @@ mod tests {
                 frequency_hz,
                 drive_amplitude: 1.0,
                 frequency_error: 0.0,
-                phase_error_rad: 0.0,
+                phase_error_rad: Some(0.0),
                 place: 0.0,
                 group: Group::default(),
                 responses: responses.collect(),
@@ -651,6 +729,7 @@ mod tests {
             points: (0..20).map(point).collect(),
             relative_error: 0.0,
             reach_m: 1.0,
+            pickups: Pickups::default(),
         };
         block.allow(0.0);
         block
@@ -694,6 +773,13 @@ mod tests {
             Role::DisplacementX,
             Role::AccelerationY,
         ];
+        let mut amplitudes = Observation::of("r", 14.0, Motion::Impactless);
+        let of = |role| Amplitude {
+            role,
+            half_range: 0.2,
+            rms: 0.1,
+        };
+        amplitudes.amplitudes = vec![of(Role::VelocityX), of(Role::VelocityY)];
         let mut block = ResonanceBlock {
             rig: RigKind::Double,
             points: vec![ResonancePoint {
@@ -701,7 +787,7 @@ mod tests {
                 frequency_hz: 14.0,
                 drive_amplitude: 1.2,
                 frequency_error: 0.0,
-                phase_error_rad: 0.0,
+                phase_error_rad: Some(0.0),
                 place: 0.2,
                 group: Group::default(),
                 responses: roles
@@ -720,6 +806,7 @@ mod tests {
             }],
             relative_error: 1e-3,
             reach_m: 3e-3,
+            pickups: Pickups::of(&[amplitudes]),
         };
         block.allow(1e-3);
         let mut effects = [0.0; Effect::COUNT];
@@ -729,6 +816,7 @@ mod tests {
         effects[Effect::Friction.place()] = 0.03;
         effects[Effect::Drag.place()] = 0.02;
         effects[Effect::HystereticDamping.place()] = 0.1;
+        effects[Effect::PickupX.place()] = 3e-3;
         let p = Parameters {
             drive_asymmetry: 0.03,
             stiffness_asymmetry: -0.02,
@@ -755,6 +843,98 @@ mod tests {
             let size = crate::signal::robust::rms(&exact);
             for (e, f) in exact.iter().zip(found.expect("differences")) {
                 assert!((e - f).abs() < 1e-6 * size, "{coordinate:?}: {e} {f}");
+            }
+        }
+    }
+
+    /// A record of two velocities without noise at a rig's parameters, the drive's phase off by some angle.
+    fn unphased(angle: f64, at: &Parameters) -> ResonanceBlock {
+        let turn = Complex::from_polar(1.0, angle);
+        let response = |role: Role| {
+            let value = turn * predicted(at, RigKind::Double, role, 14.0, 1.0);
+            Response {
+                role,
+                real: value.re,
+                imaginary: value.im,
+                error: 1e-3 * value.norm(),
+                residual_rms: 0.0,
+                high_pass_hz: None,
+            }
+        };
+        let mut block = ResonanceBlock {
+            rig: RigKind::Double,
+            points: vec![ResonancePoint {
+                observation: 0,
+                frequency_hz: 14.0,
+                drive_amplitude: 1.0,
+                frequency_error: 0.0,
+                phase_error_rad: None,
+                place: 0.0,
+                group: Group::default(),
+                responses: [Role::VelocityX, Role::VelocityY].map(response).to_vec(),
+                errors: Vec::new(),
+                over_frequency: Vec::new(),
+                shared: Whitening::none(),
+            }],
+            relative_error: 0.0,
+            pickups: Pickups::default(),
+            reach_m: 3e-3,
+        };
+        block.allow(0.0);
+        block
+    }
+
+    #[test]
+    fn valid_without_a_phase_amplitudes_and_the_phase_between_the_masses_are_compared() {
+        let truth = Parameters {
+            stiffness_asymmetry: 0.03,
+            ..Parameters::symmetric(0.8, 12.6, 0.07, 1e-3)
+        };
+        for angle in [0.0, 1.0, -2.5] {
+            let block = unphased(angle, &truth);
+            let here = block.residuals(0, &truth).expect("residuals");
+            // two amplitudes and one phase
+            assert_eq!(here.len(), 3);
+            assert!(here.iter().all(|r| r.abs() < 1e-9), "{here:?}");
+            // amplitudes 1 % too small are ten errors of 0.1 % off, whatever the phase
+            let small = truth.with(
+                Coordinate::Deflection,
+                truth.coordinate(Coordinate::Deflection) - 0.01,
+            );
+            let off = block.residuals(0, &small).expect("residuals");
+            for amplitude in &off[..2] {
+                assert!(
+                    (amplitude - 1e3 * (1.0 - (-0.01f64).exp())).abs() < 1e-6,
+                    "{off:?}"
+                );
+            }
+            assert!(off[2].abs() < 1e-6);
+            // a phase of y against x of a milliradian is one error over √2
+            let mut late = block.clone();
+            let y = &mut late.points[0].responses[1];
+            let turned = Complex::new(y.real, y.imaginary) * Complex::from_polar(1.0, 1e-3);
+            (y.real, y.imaginary) = (turned.re, turned.im);
+            late.allow(0.0);
+            let off = late.residuals(0, &truth).expect("residuals");
+            assert!((off[2].abs() - 0.5f64.sqrt()).abs() < 1e-3, "{off:?}");
+        }
+    }
+
+    #[test]
+    fn valid_slopes_without_a_phase_are_those_of_finite_differences() {
+        let truth = Parameters::symmetric(0.8, 12.6, 0.07, 1e-3);
+        let block = unphased(0.7, &truth);
+        let coordinates = [
+            Coordinate::Frequency,
+            Coordinate::Damping,
+            Coordinate::DriveAsymmetry,
+        ];
+        let (here, columns) = block.slopes(0, &truth, &coordinates).expect("slopes");
+        for (coordinate, exact) in coordinates.iter().zip(columns) {
+            let found = difference(&truth, *coordinate, &here, |p| block.residuals(0, p));
+            let size = crate::signal::robust::rms(&exact);
+            for (e, f) in exact.iter().zip(found.expect("differences")) {
+                assert!((e - f).abs() < 1e-5 * size, "{coordinate:?}: {e} {f}");
             }
         }
     }

@@ -4,11 +4,12 @@ use rayon::prelude::*;
 
 use crate::event::RigKind;
 use crate::identify::evidence::nearest_orbit::NearestOrbit;
+use crate::identify::evidence::pickup::Pickups;
 use crate::identify::evidence::record_motion::{Column, RecordMotion, Slopes};
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::waveform::{Phases, Terms};
 use crate::identify::fit::Block;
-use crate::identify::fit::effect::{Effect, Effects};
+use crate::identify::fit::effect::{Effect, EffectKind, Effects};
 use crate::identify::fit::group::Group;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::rows::Rows;
@@ -31,6 +32,8 @@ pub struct TrajectoryBlock {
     pub effects: Effects,
     /// Displacement at which springs harden by the strength of that effect, m.
     pub reach_m: f64,
+    /// What channels may pick up from the drive.
+    pub pickups: Pickups,
 }
 
 impl TrajectoryBlock {
@@ -53,6 +56,7 @@ impl TrajectoryBlock {
             relative_error,
             effects: Effects::none(),
             reach_m: 1.0,
+            pickups: Pickups::default(),
         };
         block.allow(relative_error);
         block
@@ -185,8 +189,13 @@ impl TrajectoryBlock {
             let slopes = motion.over_clearance(&terms);
             shared.push(times(slopes, record.lone_clearance_error_m));
         }
-        let accelerations = self.effects.iter().filter(|e| e.is_acceleration());
-        let perturbations = motion.perturbations((&terms, &points), accelerations, self.reach_m);
+        let allowed = self.effects.iter().filter(|e| e.is_perturbation());
+        let (picked_up, forces): (Vec<Effect>, Vec<Effect>) =
+            allowed.partition(|e| e.kind() == EffectKind::Pickup);
+        let forces = forces.into_iter();
+        let mut perturbations = motion.perturbations((&terms, &points), forces, self.reach_m);
+        let picked_up = picked_up.into_iter().filter(|e| self.pickups.has(*e));
+        perturbations.extend(picked_up.map(|e| (e, motion.picked_up(&points, e, &self.pickups))));
         Some(Changes {
             shared,
             perturbations,
@@ -316,7 +325,7 @@ impl Block for TrajectoryBlock {
         match coordinate {
             Coordinate::Gap(i) => record.gap == Some(i),
             Coordinate::Gain(i) | Coordinate::Corner(i) | Coordinate::Delay(i) => record.has(i),
-            Coordinate::Effect(effect) if effect.is_acceleration() => {
+            Coordinate::Effect(effect) if effect.is_perturbation() => {
                 record.perturbations.iter().any(|(e, _)| *e == effect)
             }
             _ => true,

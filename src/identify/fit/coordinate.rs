@@ -120,6 +120,15 @@ impl Coordinate {
         if self.is_logarithm() { value } else { 1.0 }
     }
 
+    /// This coordinate's value of a physical one.
+    pub fn of_physical(self, value: f64) -> f64 {
+        if self.is_logarithm() {
+            value.ln()
+        } else {
+            value
+        }
+    }
+
     /// The physical value of one of this coordinate.
     pub fn physical(self, value: f64) -> f64 {
         if self.is_logarithm() {

@@ -71,6 +71,10 @@ pub enum Effect {
     HystereticDamping,
     /// Change of every clearance from the first record to the last, relative to `x_st`
     ClearanceDrift,
+    /// What the channel of mass x picks up from the drive, relative to its greatest amplitude
+    PickupX,
+    /// The same of mass y
+    PickupY,
 }
 
 /// Effects that a campaign may restrict the fit to, by name.
@@ -111,6 +115,8 @@ pub enum EffectKind {
     SpringAsymmetry,
     /// Hysteretic damping beside the viscous one
     HystereticDamping,
+    /// What channels pick up from the drive's generator
+    Pickup,
 }
 
 impl EffectKind {
@@ -135,7 +141,7 @@ impl Effect {
         self as usize
     }
 
-    /// Its kind, the standard deviation of its prior, and whether it is an acceleration.
+    /// Its kind, the standard deviation of its prior, and whether it perturbs the values.
     fn properties(self) -> (EffectKind, f64, bool) {
         match self {
             Self::SecondHarmonicCos
@@ -157,6 +163,7 @@ impl Effect {
             Self::SpringAsymmetry => (EffectKind::SpringAsymmetry, 5e-3, true),
             Self::HystereticDamping => (EffectKind::HystereticDamping, 0.1, false),
             Self::ClearanceDrift => (EffectKind::Drift, 1e-2, false),
+            Self::PickupX | Self::PickupY => (EffectKind::Pickup, 2e-3, true),
         }
     }
 
@@ -170,9 +177,9 @@ impl Effect {
         self.properties().1
     }
 
-    /// Whether it acts as a small extra acceleration along the orbit, so that its slopes are those
-    /// of a perturbation; the others change the parameters of a record.
-    pub fn is_acceleration(self) -> bool {
+    /// Whether it perturbs the values of an orbit, by a small extra acceleration or at the channel, so that
+    /// its slopes are those of a perturbation; the others change the parameters of a record.
+    pub fn is_perturbation(self) -> bool {
         self.properties().2
     }
 

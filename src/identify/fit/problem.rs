@@ -86,6 +86,8 @@ impl Precision {
     }
 }
 
+/// Standard deviations of a prior from which a fit that ended there is tried again.
+const FAR: f64 = 3.0;
 /// Least orthogonal share of a column of slopes: differences do not resolve less.
 const LEAST_SHARE: f64 = 1e-8;
 
@@ -109,6 +111,35 @@ impl Problem<'_> {
             residuals: factor.count() - self.priors.len(),
             report: minimum.report,
         })
+    }
+
+    /// Fit from a start and, where that ends far from what is known beforehand, once more with all of that
+    /// where it is expected; the better of both. In a narrow valley, as that of a gain, a mass and a force
+    /// that act alike, a fit may come to a halt on its way.
+    ///
+    /// # Errors
+    /// Those of [`Problem::fit`].
+    pub fn fit_from_both_ends(&self, start: Parameters) -> Result<Fit, FitError> {
+        let first = self.fit(start)?;
+        let again = self.as_expected(&first.parameters);
+        let second = again.and_then(|start| self.fit(start).ok());
+        Ok(match second {
+            Some(second) if second.cost < first.cost => second,
+            _ => first,
+        })
+    }
+
+    /// Parameters with all nuisances where they are expected; `None` where none is far from there, or the fit
+    /// only starts another.
+    fn as_expected(&self, at: &Parameters) -> Option<Parameters> {
+        if self.precision == Precision::Start {
+            return None;
+        }
+        let nuisance = |p: &&Prior| !Coordinate::PHYSICAL.contains(&p.coordinate);
+        let nuisances = || self.priors.iter().filter(nuisance);
+        let far = nuisances().any(|p| prior_residual(p, at).abs() > FAR);
+        let centred = |at: Parameters, p: &Prior| at.with(p.coordinate, p.centre);
+        far.then(|| nuisances().fold(*at, centred))
     }
 
     /// Sum of squared weighted residuals at given parameters; `None` if an item has no model.
@@ -314,4 +345,52 @@ impl LeastSquares for Problem<'_> {
 
 fn prior_residual(prior: &Prior, parameters: &Parameters) -> f64 {
     (parameters.coordinate(prior.coordinate) - prior.centre) / prior.deviation
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// R and a gain g that is 1 or −1 by the data.
+    struct TwoValleys;
+
+    impl Block for TwoValleys {
+        fn items(&self) -> usize {
+            2
+        }
+
+        fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
+            let gain = parameters.coordinate(Coordinate::Gain(0));
+            Some(match item {
+                0 => vec![1e3 * (parameters.restitution - 0.8)],
+                _ => vec![1e3 * (gain * gain - 1e-2)],
+            })
+        }
+
+        fn touches(&self, coordinate: Coordinate) -> bool {
+            matches!(coordinate, Coordinate::Restitution | Coordinate::Gain(0))
+        }
+    }
+
+    #[test]
+    fn a_fit_that_ends_far_from_what_is_stated_is_made_from_there_too() {
+        let gain = Coordinate::Gain(0);
+        let problem = |deviation: f64| Problem {
+            blocks: vec![(&TwoValleys, 1.0)],
+            priors: vec![Prior::new(gain, 0.05, deviation)],
+            free: vec![Coordinate::Restitution, gain],
+            ..Problem::default()
+        };
+        let start = Parameters::symmetric(0.7, 10.0, 0.05, 1e-3).with(gain, -0.2);
+        let ended = |fit: Fit| fit.parameters.coordinate(gain);
+        // −0.1 is five deviations from 0.05, 0.1 is one and a half
+        let tight = problem(0.03);
+        assert!((ended(tight.fit(start).expect("a fit")) + 0.1).abs() < 1e-2);
+        let found = tight.fit_from_both_ends(start).expect("a fit");
+        assert!((ended(found) - 0.1).abs() < 1e-2);
+        // with a wide prior both are expected, and the fit stays where it is
+        let wide = problem(0.1);
+        let found = wide.fit_from_both_ends(start).expect("a fit");
+        assert!((ended(found) + 0.1).abs() < 1e-2);
+    }
 }

@@ -135,6 +135,18 @@ pub(super) fn beyond(effect: Effect, rises: bool) -> [&'static str; 2] {
              greatest displacement: check that they are straight at rest",
             "die Federn sind zur anderen Masse hin weicher, um {strength} ± {error} % beim \
              größten Weg: prüfen, ob sie in Ruhe gerade sind";
+        (Effect::PickupX, _) =>
+            "the channel of mass x picks up {strength} ± {error} % of its greatest amplitude from \
+             the drive's generator: keep their cables apart, and connect their grounds at one point",
+            "der Kanal der Masse x nimmt {strength} ± {error} % seines größten Ausschlags vom \
+             Generator der Erregung auf: die Kabel trennen und ihre Bezugspotentiale an einem Punkt \
+             verbinden";
+        (Effect::PickupY, _) =>
+            "the channel of mass y picks up {strength} ± {error} % of its greatest amplitude from \
+             the drive's generator: keep their cables apart, and connect their grounds at one point",
+            "der Kanal der Masse y nimmt {strength} ± {error} % seines größten Ausschlags vom \
+             Generator der Erregung auf: die Kabel trennen und ihre Bezugspotentiale an einem Punkt \
+             verbinden";
         (Effect::HystereticDamping, true) =>
             "a share of {strength} ± {error} % of the damping falls with the drive's frequency, \
              as that inside of springs does (hysteretic damping): the damping ratio holds at \

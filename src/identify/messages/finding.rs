@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::beyond::beyond;
 use super::direction::direction;
-use super::{Note, PairAgreement, Reason, Remark, Sentence};
+use super::{Note, PairAgreement, Reason, Remark, Sentence, StatedValue};
+use crate::identify::diagnostics::cause::Cause;
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
@@ -38,6 +39,24 @@ pub enum Finding {
         /// How sure.
         z_score: f64,
     },
+    /// One of the gains of two channels is off, the data do not tell which.
+    GainsApart {
+        /// The channels, the one that reads more first.
+        channels: [Role; 2],
+        /// How much more it reads for the same motion, relative.
+        deviation: f64,
+        /// How sure.
+        z_score: f64,
+    },
+    /// A channel is later or earlier than stated.
+    LateChannel {
+        /// The channel.
+        channel: Role,
+        /// By how much it is later than stated, ms; negative where it is earlier.
+        later_ms: f64,
+        /// How sure.
+        z_score: f64,
+    },
     /// The corner of a channel's high-pass is far off the stated one.
     WrongCorner {
         /// The channel.
@@ -56,6 +75,22 @@ pub enum Finding {
         /// How sure.
         z_score: f64,
     },
+    /// A channel has passed a low-pass that is not stated.
+    UndeclaredLowPass {
+        /// The channel.
+        channel: Role,
+        /// Its corner, as jumps show it, Hz.
+        corner_hz: f64,
+    },
+    /// The masses, springs, dashpots or drives of both sides differ by far more than is stated or assumed.
+    SidesUnlike {
+        /// Which of them.
+        coordinate: Coordinate,
+        /// Relative difference, x less y.
+        difference: f64,
+        /// How many of its standard uncertainties that is off what is stated or assumed.
+        deviations: f64,
+    },
     /// The velocities of both masses are swapped.
     SwappedChannels {
         /// How sure.
@@ -70,6 +105,19 @@ pub enum Finding {
         /// Records in which both are known.
         of: usize,
     },
+    /// All stated frequencies are off by one small ratio: the sampler's clock is, or the generator.
+    ClockOrGenerator {
+        /// Measured over stated frequency, the mean.
+        ratio: f64,
+        /// Its standard error.
+        standard_error: f64,
+        /// Standard uncertainty of the clock, relative.
+        clock_uncertainty: f64,
+        /// Records in which both are known.
+        records: usize,
+        /// How sure.
+        z_score: f64,
+    },
     /// The drive's frequencies are not the stated ones in most records.
     FrequenciesOff {
         /// Records in which they contradict each other.
@@ -81,6 +129,33 @@ pub enum Finding {
     DriveNotMeasured {
         /// Records that state a frequency.
         records: usize,
+    },
+    /// No record shows its drive; the motions have its stated frequencies, and no phase.
+    PhaseNotMeasured {
+        /// Records whose motion has the stated frequency.
+        records: usize,
+    },
+    /// The records are of two rigs, one after the other.
+    RigChanged {
+        /// The first record after the change.
+        record: String,
+        /// Its number in the order of acquisition, from 1.
+        number: usize,
+        /// Number of records.
+        of: usize,
+        /// What differs, as it was before.
+        before: Vec<StatedValue>,
+        /// The same after.
+        after: Vec<StatedValue>,
+    },
+    /// Many records begin before their motion has settled.
+    RecordsNotSettled {
+        /// How many.
+        records: usize,
+        /// Of how many.
+        of: usize,
+        /// Time after which a thousandth of a disturbance is left, s.
+        wait_s: f64,
     },
     /// The stated clearances are all about twice those that the motions show; none of them is used.
     WholeGapsStated {
@@ -188,6 +263,28 @@ pub enum Finding {
 
 messages!(Finding);
 
+impl Finding {
+    /// The kind of cause that it names; `None` where it has no part in the fits.
+    pub fn cause(&self) -> Option<Cause> {
+        match self {
+            Self::UndeclaredHighPass { .. } => Some(Cause::Channel),
+            Self::RigChanged { .. } => Some(Cause::Change),
+            Self::RecordsNotSettled { records, of, .. } if 4 * records > *of => {
+                Some(Cause::Unsettled)
+            }
+            Self::WrongClearance { .. }
+            | Self::WrongGain { .. }
+            | Self::WrongCorner { .. }
+            | Self::SidesUnlike { .. }
+            | Self::SwappedChannels { .. } => Some(Cause::Statement),
+            Self::BeyondModel { .. } => Some(Cause::Effect),
+            Self::Misfit { remark, .. } => remark.cause(),
+            Self::Disagreement { .. } => Some(Cause::Symptom),
+            _ => None,
+        }
+    }
+}
+
 message_table! { Finding, key = template_key;
     Self::WrongClearance { stated_m, fitting_m, .. } =>
         "the gap stated with a clearance of {stated_mm} mm moves like one of {fitting_mm} mm: \
@@ -204,6 +301,34 @@ message_table! { Finding, key = template_key;
         channel = Value::Name(channel.name()),
         share = Value::Percent(deviation.abs(), 1),
         direction = direction(*deviation);
+    Self::GainsApart { channels: [high, low], deviation, .. } =>
+        "{high} reads {share} more than {low} for the same motion, and the data do not tell which \
+         is off: calibrate both, correct scale in [channels.{high}] or [channels.{low}], or state a \
+         larger gain_uncertainty in [rig]",
+        "{high} zeigt bei gleicher Bewegung {share} mehr als {low}; welcher Kanal falsch zeigt, \
+         sagen die Daten nicht: beide kalibrieren, scale in [channels.{high}] oder [channels.{low}] \
+         richtigstellen, oder eine größere gain_uncertainty in [rig] angeben",
+        high = Value::Name(high.name()),
+        low = Value::Name(low.name()),
+        share = Value::Percent(*deviation, 1);
+    Self::LateChannel { channel, later_ms, .. } =>
+        match *later_ms > 0.0 {
+            true => "{channel} shows the motion {time} ms later than stated: measure its delay and \
+                     state it as delay in [channels.{channel}]; all is corrected by it here",
+            false => "{channel} shows the motion {time} ms earlier than stated: check the delays of \
+                      it and of the drive's channel, and state it as delay in [channels.{channel}]; \
+                      all is corrected by it here",
+        },
+        match *later_ms > 0.0 {
+            true => "{channel} zeigt die Bewegung {time} ms später als angegeben: die Verzögerung \
+                     messen und als delay in [channels.{channel}] angeben; hier ist alles um sie \
+                     berichtigt",
+            false => "{channel} zeigt die Bewegung {time} ms früher als angegeben: die Verzögerungen \
+                      dieses Kanals und der Erregung prüfen und als delay in [channels.{channel}] \
+                      angeben; hier ist alles um sie berichtigt",
+        },
+        channel = Value::Name(channel.name()),
+        time = Value::Number(later_ms.abs(), 2);
     Self::WrongCorner { channel, deviation, .. } =>
         "the corner of the high-pass of {channel} is {share} too {direction} for the stated one: \
          correct high_pass in [channels.{channel}], or state a larger corner_uncertainty in [rig]",
@@ -222,6 +347,28 @@ message_table! { Finding, key = template_key;
          high_pass in [channels.{channel}] und den anderen angeben",
         channel = Value::Name(channel.name()),
         corner = Value::Shortest(two_digits(*corner_hz));
+    Self::UndeclaredLowPass { channel, corner_hz } =>
+        "{channel} takes longer for a jump than the contact is closed, as behind a low-pass of about \
+         {corner} Hz, and none is stated: look up the filters of vibrometer, amplifier and converter, \
+         and state low_pass and low_pass_order in [channels.{channel}]; here that corner is used, and \
+         the speeds at impacts are not",
+        "{channel} braucht für einen Sprung länger, als der Kontakt geschlossen ist, wie hinter einem \
+         Tiefpass von etwa {corner} Hz, und keiner ist angegeben: die Filter von Vibrometer, \
+         Verstärker und Wandler nachsehen und als low_pass und low_pass_order in \
+         [channels.{channel}] angeben; hier wird diese Grenzfrequenz verwendet, und die \
+         Geschwindigkeiten an Stößen werden es nicht",
+        channel = Value::Name(channel.name()),
+        corner = Value::Shortest(two_digits(*corner_hz));
+    Self::SidesUnlike { coordinate, difference, deviations } =>
+        "the fit needs a {coordinate} of {share}, {deviations} times its uncertainty off what is \
+         stated or assumed: weigh both masses and state mass_x and mass_y in [rig], and check springs, \
+         dashpots and drives of both sides",
+        "die Anpassung braucht {coordinate} = {share}, um das {deviations}-Fache der Unsicherheit neben \
+         dem, was angegeben oder angenommen ist: beide Massen wiegen und mass_x und mass_y in [rig] \
+         angeben, und Federn, Dämpfer und Antriebe beider Seiten prüfen",
+        coordinate = Value::Message(coordinate),
+        share = Value::Percent(*difference, 1),
+        deviations = Value::Number(deviations.abs(), 1);
     Self::SwappedChannels { .. } =>
         "all data fit far better with the velocities of both masses swapped: swap \
          [channels.velocity_x] and [channels.velocity_y], or the displacements",
@@ -237,6 +384,18 @@ message_table! { Finding, key = template_key;
         ratio = Value::Number(*ratio, 4),
         records = Value::Count(*records),
         of = Value::Count(*of);
+    Self::ClockOrGenerator { ratio, clock_uncertainty, records, .. } =>
+        "the measured drive is at {ratio} times the stated frequencies on average over {records} \
+         records, which the clock's {clock} ppm do not explain: the sampler's clock or the generator \
+         is off; measure both with a frequency counter and correct sample_rate or the stated \
+         frequencies: until then $f_0$ is known no better than that",
+        "die gemessene Erregung hat im Mittel über {records} Aufzeichnungen das {ratio}-fache der \
+         angegebenen Frequenzen, was die {clock} ppm des Taktes nicht erklären: der Abtasttakt oder \
+         der Generator ist falsch; beide mit einem Frequenzzähler messen und sample_rate oder die \
+         angegebenen Frequenzen richtigstellen: bis dahin ist $f_0$ nicht besser bekannt",
+        ratio = Value::Number(*ratio, 5),
+        clock = Value::Shortest(two_digits(1e6 * clock_uncertainty)),
+        records = Value::Count(*records);
     Self::FrequenciesOff { records, of } =>
         "the drive's frequency is not the stated one in {records} of {of} records: check that \
          each row of the run table names its own file",
@@ -251,6 +410,33 @@ message_table! { Finding, key = template_key;
          daher wird keine Bewegung benannt, und weder $f_0$ noch $β$ noch $x_st$ folgen: den \
          Generator oder seinen Strom aufzeichnen und den Kanal in [channels.drive] nennen",
         records = Value::Count(*records);
+    Self::PhaseNotMeasured { records } =>
+        "no record shows its drive: $f_0$, $β$ and $x_st$ rest on the amplitudes of the resonance \
+         curve at the frequencies that the motions of {records} records have, and no waveform is \
+         fitted: record the generator or its current, and name that channel in [channels.drive]",
+        "keine Aufzeichnung zeigt ihre Erregung: $f_0$, $β$ und $x_st$ beruhen auf den Amplituden der \
+         Resonanzkurve bei den Frequenzen, die die Bewegungen in {records} Aufzeichnungen haben, und \
+         kein Verlauf wird angepasst: den Generator oder seinen Strom aufzeichnen und den Kanal in \
+         [channels.drive] nennen",
+        records = Value::Count(*records);
+    Self::RigChanged { record, number, of, before, after } =>
+        "the records are not of one rig: before {record} (number {number} of {of}) they have {before}, \
+         from it on {after}: look for what was changed there (masses, springs, clamps, bumpers, \
+         amplifier, sensors), and identify both parts by themselves",
+        "die Aufzeichnungen sind nicht von einem Prüfstand: vor {record} (Nummer {number} von {of}) \
+         haben sie {before}, von da an {after}: suchen, was dort geändert wurde (Massen, Federn, \
+         Einspannungen, Puffer, Verstärker, Aufnehmer), und beide Teile für sich identifizieren",
+        record = Value::Name(record), number = Value::Count(*number), of = Value::Count(*of),
+        before = Value::list(before), after = Value::list(after);
+    Self::RecordsNotSettled { records, of, wait_s } =>
+        "{records} of {of} records begin before their motion has settled, so that their motions are \
+         not known, or named less surely: wait at least {wait} s after each change of a setting \
+         before recording",
+        "{records} von {of} Aufzeichnungen beginnen, bevor ihre Bewegung eingeschwungen ist, so dass \
+         ihre Bewegungen nicht oder weniger sicher bestimmt sind: nach jeder Änderung einer \
+         Einstellung mindestens {wait} s warten, ehe aufgezeichnet wird",
+        records = Value::Count(*records), of = Value::Count(*of),
+        wait = Value::Shortest(two_digits(*wait_s));
     Self::WholeGapsStated { ratio, records } =>
         "the masses hit as if the clearances were {ratio} times the stated ones in {records} \
          records: whole gaps are stated, a clearance is half of one; no clearance is used until the \
@@ -332,6 +518,7 @@ fn template_key(finding: &Finding) -> String {
             let way = if *strength > 0.0 { "above" } else { "below" };
             format!("{}_{}_zero", effect.name(), way)
         }
+        Finding::LateChannel { later_ms, .. } if *later_ms <= 0.0 => "early_channel".to_owned(),
         _ => finding.kind().to_owned(),
     }
 }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::FitError;
 use crate::identify::fit::parameters::Coordinate;
+use crate::identify::method::Method;
 use crate::message::Value;
 use crate::{message_table, messages};
 
@@ -35,8 +36,25 @@ pub enum Note {
     },
     /// Methods do not agree on it; the interval covers them.
     MethodsDisagree,
+    /// An instrument is off, as a finding says; the interval covers what that leaves open.
+    InstrumentOff,
+    /// Speeds after impacts exceed those before.
+    NotOfImpacts,
     /// R depends on the speed.
     NotOneNumber,
+    /// It changes during the campaign.
+    Changes,
+    /// No record has an impact.
+    WithoutImpact,
+    /// No record shows its drive or states its frequency.
+    NoFrequency,
+    /// A cause that the findings name bends the fits that it rests on.
+    Bent,
+    /// It is that of one method, which a cause that the findings name does not reach.
+    ByMethodAlone {
+        /// The method.
+        method: Method,
+    },
     /// The frequency changes over the decay.
     Drifts,
     /// Each specimen has parameters of its own.
@@ -92,9 +110,42 @@ message_table! { Note;
         "the methods do not agree on it: the interval is widened by their disagreement",
         "die Verfahren stimmen darin nicht überein: das Intervall ist um ihren Unterschied \
          verbreitert";
+    Self::InstrumentOff =>
+        "an instrument is off, see the finding: the interval is widened by what that leaves open",
+        "ein Messgerät zeigt falsch, siehe den Befund: das Intervall ist um das verbreitert, was \
+         das offen lässt";
+    Self::NotOfImpacts =>
+        "the speeds after impacts exceed those before: see the remark",
+        "die Geschwindigkeiten nach Stößen übersteigen die davor: siehe die Anmerkung";
     Self::NotOneNumber =>
         "$R$ is not one number here: see the remark on its change",
         "$R$ ist hier nicht eine Zahl: siehe die Anmerkung zu seiner Änderung";
+    Self::Changes =>
+        "is another before and after the change that the findings name; the interval holds both",
+        "ist vor und nach der Änderung, die die Befunde nennen, ein anderer Wert; das Intervall \
+         enthält beide";
+    Self::WithoutImpact =>
+        "no record has an impact, and only impacts tell it: record motions at clearances that the \
+         masses reach",
+        "keine Aufzeichnung hat einen Stoß, und nur Stöße sagen etwas darüber: Bewegungen bei \
+         Spielen aufzeichnen, die die Massen erreichen";
+    Self::NoFrequency =>
+        "no record shows its drive or states its frequency: record the generator or its current \
+         and name that channel in [channels.drive], or state drive_frequency",
+        "keine Aufzeichnung zeigt ihre Erregung oder gibt deren Frequenz an: den Generator oder \
+         seinen Strom aufzeichnen und den Kanal in [channels.drive] nennen, oder drive_frequency \
+         angeben";
+    Self::Bent =>
+        "rests on fits that the cause named in the findings bends: neither its value nor its \
+         interval is to be trusted until that is mended",
+        "beruht auf Anpassungen, die die in den Befunden genannte Ursache verfälscht: weder dem \
+         Wert noch dem Intervall ist zu trauen, bis sie behoben ist";
+    Self::ByMethodAlone { method } =>
+        "is that of one method alone ({method}), which the cause named in the findings does not \
+         reach",
+        "ist der eines Verfahrens allein ({method}), das die in den Befunden genannte Ursache nicht \
+         erreicht",
+        method = Value::Message(method);
     Self::Drifts =>
         "the frequency changes over the decay, so that it is no single $f_0$: see the remark",
         "die Frequenz ändert sich beim Ausschwingen und ist nicht ein $f_0$: siehe die Anmerkung";

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Item, Note};
+use crate::identify::diagnostics::cause::Cause;
 use crate::identify::diagnostics::structure::ImpactGroup;
 use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::message::{Message, Value};
@@ -33,7 +34,7 @@ impl GroupPoint {
     pub fn of(group: &ImpactGroup) -> Self {
         Self {
             group: group.group.clone(),
-            restitution: group.restitution,
+            restitution: group.restitution.min(1.0),
             half_width: NORMAL_975 * group.standard_error,
         }
     }
@@ -137,6 +138,13 @@ pub enum Remark {
         /// R at the faster end.
         faster: SpeedPoint,
     },
+    /// Speeds after impacts exceed those before.
+    SpeedsGained {
+        /// Approach speed before the impact, m/s.
+        speed_m_s: f64,
+        /// Speed after over speed before.
+        ratio: f64,
+    },
     /// R depends on the speed because a contact lasts several samples.
     LongContact {
         /// R at the slower end of its range.
@@ -234,6 +242,23 @@ pub enum Remark {
 
 messages!(Remark);
 
+impl Remark {
+    /// The kind of cause that it names, of a method that does not fit.
+    pub fn cause(&self) -> Option<Cause> {
+        match self {
+            Self::RestitutionChanges { .. }
+            | Self::LongContact { .. }
+            | Self::RestitutionByBounce { .. } => Some(Cause::Contact),
+            Self::RecordsDiffer { .. } => Some(Cause::Change),
+            Self::NotOneDegreeOfFreedom { .. }
+            | Self::WaveformsUnexplained { .. }
+            | Self::StatesDeviate { .. }
+            | Self::FewUsable { .. } => Some(Cause::Symptom),
+            _ => None,
+        }
+    }
+}
+
 message_table! { Remark;
     Self::OneDegreeOfFreedom { deviation } =>
         "the responses follow one degree of freedom within {share}",
@@ -292,6 +317,14 @@ message_table! { Remark;
         slow = Value::Number(slower.speed_m_s, 3),
         last = Value::Number(faster.restitution, 3),
         fast = Value::Number(faster.speed_m_s, 3);
+    Self::SpeedsGained { speed_m_s, ratio } =>
+        "the masses seem to part {ratio} times as fast as they met, at {speed} m/s, which no contact \
+         makes: a velocity is late, filtered or wrongly scaled; no coefficient of restitution follows \
+         from the speeds at impacts",
+        "die Massen scheinen bei {speed} m/s {ratio}-mal so schnell auseinanderzugehen, wie sie sich \
+         trafen, was kein Kontakt bewirkt: eine Geschwindigkeit ist verzögert, gefiltert oder falsch \
+         skaliert; aus den Geschwindigkeiten an Stößen folgt keine Stoßzahl",
+        ratio = Value::Number(*ratio, 1), speed = Value::Number(*speed_m_s, 3);
     Self::LongContact { slower, faster, samples } =>
         "$R$ goes from {first} at {slow} m/s to {last} at {fast} m/s, and a contact lasts {count} \
          samples: it is not an instantaneous impact, so one coefficient of restitution does not \

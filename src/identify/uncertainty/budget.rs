@@ -40,6 +40,49 @@ pub enum Source {
     FirstOrder,
     /// Disagreement between methods beyond their uncertainties.
     BetweenMethods,
+    /// What is stated of the sampler's clock.
+    Clock,
+    /// An instrument that is off, as a finding says.
+    InstrumentOff,
+}
+
+/// What a source beside the fit leaves open: standard uncertainties, of R absolute, of the others relative.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Further {
+    source: Source,
+    open: Vec<(Coordinate, f64)>,
+}
+
+impl Further {
+    /// Of a source.
+    pub fn new(source: Source, open: Vec<(Coordinate, f64)>) -> Self {
+        Self { source, open }
+    }
+
+    fn of(&self, parameter: Coordinate) -> f64 {
+        let own = self.open.iter().filter(|(c, _)| *c == parameter);
+        own.map(|(_, u)| u * u).sum::<f64>().sqrt()
+    }
+
+    /// Its row, of a joint fit of so many methods.
+    fn row(&self, estimated: &[(usize, Coordinate)], methods: usize) -> Row {
+        let by_methods = self.source == Source::BetweenMethods;
+        let (evaluation, freedom) = match by_methods {
+            true => (Evaluation::A, Some(methods.saturating_sub(1).max(1) as f64)),
+            false => (Evaluation::B, None),
+        };
+        let of_clock = (self.source == Source::Clock).then_some(1.0);
+        Row {
+            source: self.source,
+            evaluation,
+            standard_uncertainty: of_clock.and(self.open.first()).map(|(_, u)| *u),
+            degrees_of_freedom: freedom,
+            contributions: contributions(estimated, |_, c| {
+                let own = self.of(c);
+                (of_clock.filter(|_| own > 0.0), own)
+            }),
+        }
+    }
 }
 
 /// How an uncertainty was evaluated: from the scatter of observations, or otherwise.
@@ -108,14 +151,14 @@ fn finite(freedom: f64) -> Option<f64> {
     freedom.is_finite().then_some(freedom)
 }
 
-/// The budget of a joint fit of a problem whose blocks belong to the methods; `between_methods` are the
-/// standard uncertainties by their disagreement.
+/// The budget of a joint fit of a problem whose blocks belong to the methods, with what is open beside the
+/// fit.
 pub fn budget(
     problem: &Problem<'_>,
     methods: &[Method],
     found: &MethodFit,
     blocks: &Blocks,
-    between_methods: &[(Coordinate, f64)],
+    further: &[Further],
 ) -> Budget {
     let estimated = found.fit.estimated();
     let mut rows = noise_rows(methods, found, &estimated);
@@ -148,19 +191,9 @@ pub fn budget(
             (None, found.first_order(c).unwrap_or(0.0))
         }),
     });
-    let apart = |c: Coordinate| {
-        let mut all = between_methods.iter();
-        all.find(|(of, _)| *of == c).map_or(0.0, |(_, u)| *u)
-    };
-    if !between_methods.is_empty() {
-        rows.push(Row {
-            source: Source::BetweenMethods,
-            evaluation: Evaluation::A,
-            standard_uncertainty: None,
-            degrees_of_freedom: finite(methods.len().saturating_sub(1).max(1) as f64),
-            contributions: contributions(&estimated, |_, c| (None, apart(c))),
-        });
-    }
+    let present = further.iter().filter(|f| !f.open.is_empty());
+    rows.extend(present.map(|f| f.row(&estimated, methods.len())));
+    let apart = |c: Coordinate| further.iter().map(|f| f.of(c)).fold(0.0, f64::hypot);
     let combined = estimated.iter().filter_map(|(_, parameter)| {
         let spread = found.spread(*parameter)?;
         let standard_uncertainty = spread.error.hypot(apart(*parameter));
@@ -269,6 +302,8 @@ impl Budget {
                 Source::BetweenGroups { groups } => ("between_groups", groups.to_string()),
                 Source::FirstOrder => ("first_order", String::new()),
                 Source::BetweenMethods => ("between_methods", String::new()),
+                Source::Clock => ("clock", String::new()),
+                Source::InstrumentOff => ("instrument_off", String::new()),
                 Source::Stated {
                     coordinate,
                     clearance_m: Some(m),

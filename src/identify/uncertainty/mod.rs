@@ -7,6 +7,7 @@ pub mod band;
 pub mod bound;
 pub mod budget;
 pub mod coverage;
+pub mod distribution;
 pub mod options;
 pub mod posterior;
 pub mod profile;
@@ -63,6 +64,22 @@ pub struct Uncertainty {
     /// Bootstrap, where asked for.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub bootstrap: Vec<Bootstrapped>,
+}
+
+impl Uncertainty {
+    /// Without what it says of parameters whose estimates are not those of the joint fit.
+    #[must_use]
+    pub fn without(mut self, parameters: &[Coordinate]) -> Self {
+        let stays = |parameter: &Coordinate| !parameters.contains(parameter);
+        self.information_share.retain(|p, _| stays(p));
+        self.budget.combined.retain(|c| stays(&c.parameter));
+        for row in &mut self.budget.rows {
+            row.contributions.retain(|c| stays(&c.parameter));
+        }
+        self.profiles.retain(|curve| stays(&curve.parameter));
+        self.bootstrap.retain(|b| stays(&b.parameter));
+        self
+    }
 }
 
 /// What contains information on the parameters: a method, or the laboratory's own statements.

@@ -19,6 +19,10 @@ pub(super) enum Mistake {
     SwappedChannels,
     /// One channel's gain is 5 % off.
     WrongGain,
+    /// One channel's gain is off by its stated uncertainty: no mistake, and not to be called one.
+    GainOffByItsUncertainty,
+    /// The sampler's clock is 500 ppm off.
+    WrongClock,
 }
 
 impl Mistake {
@@ -58,15 +62,14 @@ impl Mistake {
                     swap_roles(record, Role::VelocityX, Role::VelocityY);
                 }
             }
-            Self::WrongGain => {
-                for record in records {
-                    let channel = record
-                        .channels
-                        .iter_mut()
-                        .find(|c| c.role == Role::DisplacementX);
-                    for v in channel.into_iter().flat_map(|c| &mut c.values) {
-                        *v *= 1.05;
-                    }
+            Self::WrongGain => amplify(records, 1.05),
+            Self::GainOffByItsUncertainty => amplify(records, 1.005),
+            Self::WrongClock => {
+                for stated in records
+                    .iter_mut()
+                    .filter_map(|r| r.setting.stated_frequency_hz.as_mut())
+                {
+                    *stated *= 1.0005;
                 }
             }
         }
@@ -81,7 +84,11 @@ impl Mistake {
                 matches!(finding, Finding::WrongClearance { .. })
             }
             Self::SwappedChannels => matches!(finding, Finding::SwappedChannels { .. }),
-            Self::WrongGain => matches!(finding, Finding::WrongGain { .. }),
+            Self::WrongGain | Self::GainOffByItsUncertainty => matches!(
+                finding,
+                Finding::WrongGain { .. } | Finding::GainsApart { .. }
+            ),
+            Self::WrongClock => matches!(finding, Finding::ClockOrGenerator { .. }),
         }
     }
 
@@ -108,6 +115,15 @@ pub(super) fn widen_one_gap(records: &mut [Record], by_m: f64) {
     for record in records {
         if record.setting.clearance_m == Some(gap) {
             record.setting.clearance_m = Some(gap + by_m);
+        }
+    }
+}
+
+/// Multiply the displacement of mass x.
+fn amplify(records: &mut [Record], factor: f64) {
+    for channel in records.iter_mut().flat_map(|r| &mut r.channels) {
+        if channel.role == Role::DisplacementX {
+            channel.values.iter_mut().for_each(|v| *v *= factor);
         }
     }
 }

@@ -158,6 +158,7 @@ fn settings(campaign: &ResolvedCampaign) -> String {
         rig,
         channels,
         time,
+        time_unit_s,
         sample_rate_hz,
         analysis,
         name: _,
@@ -171,5 +172,7 @@ fn settings(campaign: &ResolvedCampaign) -> String {
         published: _,
         sources: _,
     } = campaign;
-    format!("{machine:?} {flight:?} {rig:?} {channels:?} {time:?} {sample_rate_hz:?} {analysis:?}")
+    format!(
+        "{machine:?} {flight:?} {rig:?} {channels:?} {time:?} {time_unit_s:?} {sample_rate_hz:?} {analysis:?}"
+    )
 }

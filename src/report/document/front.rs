@@ -124,6 +124,7 @@ fn phrase(kind: EffectKind) -> Phrase {
         EffectKind::Drag => Phrase::DragOfTheAir,
         EffectKind::SpringAsymmetry => Phrase::SpringsStifferToOneSide,
         EffectKind::HystereticDamping => Phrase::HystereticDampingOfTheSprings,
+        EffectKind::Pickup => Phrase::PickupFromTheDrive,
     }
 }
 

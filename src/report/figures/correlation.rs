@@ -233,6 +233,8 @@ fn effect_phrase(effect: Effect) -> Phrase {
         Effect::SpringAsymmetry => Phrase::SpringAsymmetry,
         Effect::HystereticDamping => Phrase::HystereticDamping,
         Effect::ClearanceDrift => Phrase::ClearanceDrift,
+        Effect::PickupX => Phrase::PickupX,
+        Effect::PickupY => Phrase::PickupY,
     }
 }
 

@@ -86,6 +86,7 @@ fn amplitude_panel(curve: &ResonanceCurve, unit: PrintUnit, rect: Rect) -> Panel
 
 fn phase_panel(curve: &ResonanceCurve, rect: Rect) -> Panel {
     let phases = curve.points.iter().map(|p| p.phase_rad);
+    let phases = phases.filter(|phase| phase.is_finite());
     let values = phases
         .chain(curve.fitted.iter().map(|f| f[2]))
         .map(f64::to_degrees);
@@ -108,8 +109,10 @@ impl Series<'_> {
     ) {
         let radius = dots::radius(self.curve.points.len()) + 0.2;
         let colour = |point: &ResonancePoint| if point.used { look::BLUE } else { look::QUIET };
+        let all = self.curve.points.iter();
+        let known: Vec<&ResonancePoint> = all.filter(|p| value(p)[0].is_finite()).collect();
         canvas.layer(1);
-        for point in &self.curve.points {
+        for point in &known {
             let [y, error] = value(point);
             let low = if self.panel.y.log {
                 (y - error).max(self.panel.y.low)
@@ -121,7 +124,7 @@ impl Series<'_> {
                 .error_bar(canvas, point.frequency_hz, (low, y + error), bar);
         }
         let mut taken = Dots::default();
-        for point in &self.curve.points {
+        for point in known {
             let [y, _] = value(point);
             let colour = colour(point);
             let dot = DotLook {
@@ -184,8 +187,8 @@ fn csv(curve: &ResonanceCurve) -> String {
             Some(p.frequency_hz),
             Some(p.amplitude),
             Some(p.amplitude_error),
-            Some(p.phase_rad),
-            Some(p.phase_error_rad),
+            Some(p.phase_rad).filter(|phase| phase.is_finite()),
+            Some(p.phase_error_rad).filter(|error| error.is_finite()),
         ]);
     }
     for f in &curve.fitted {

@@ -144,6 +144,7 @@ fn real_rig() -> ReportContent {
         Effect::Drag,
         Effect::SpringAsymmetry,
         Effect::HystereticDamping,
+        Effect::PickupX,
     ];
     let findings = effects.map(|effect| Finding::BeyondModel {
         effect,
@@ -163,6 +164,10 @@ fn real_rig() -> ReportContent {
         (stated(Coordinate::Gap(0), Some(1e-3)), 1e-3),
         (Source::FirstOrder, 1e-3),
         (Source::BetweenMethods, 1e-3),
+        (Source::Clock, 1e-3),
+        (Source::InstrumentOff, 1e-3),
+        (stated(Coordinate::Effect(Effect::PickupX), None), 1e-3),
+        (stated(Coordinate::Effect(Effect::PickupY), None), 1e-3),
         (stated(Coordinate::ScrewZero, None), 1e-9),
     ];
     let rows = sources.map(|(source, uncertainty)| Row {

@@ -70,6 +70,7 @@ changes! {
     ("records.files", Classify, as_is, Replace(r#"run_table = "runs.csv""#, r#"files = "r?.csv""#));
     ("records.run_table", Classify, as_is, By(other_run_table));
     ("records.sample_rate", Classify, sampled_at_2_khz, Replace("2 kHz", "1 kHz"));
+    ("records.time_unit", Classify, without_unit_of_time, Add("records", r#"time_unit = "ms""#));
     ("records.time", Classify, with_spare_channels, Add("records", r#"time = "clock""#));
     ("records.clearance", Classify, bare_table, Add("records", r#"clearance = "2 mm""#));
     ("records.drive_frequency", Classify, bare_table, Add("records", r#"drive_frequency = "11 Hz""#));
@@ -87,6 +88,7 @@ changes! {
     ("rig.restitution", Html, one_record, Replace("= 0.9", "= 0.8"));
     ("rig.gain_uncertainty", Identify, synthetic, Replace(r#""0.5 %""#, r#""2 %""#));
     ("rig.corner_uncertainty", Identify, synthetic, Replace(r#""2 %""#, r#""8 %""#));
+    ("rig.clock_uncertainty", Identify, synthetic, Add("rig", r#"clock_uncertainty = "0.1 %""#));
     ("rig.mass_x", Identify, weighed, Replace(r#"mass_x = "1 kg""#, r#"mass_x = "1.02 kg""#));
     ("rig.mass_y", Identify, weighed, Replace(r#"mass_y = "1 kg""#, r#"mass_y = "1.02 kg""#));
     ("rig.mass_uncertainty", Identify, weighed, Add("rig", r#"mass_uncertainty = "5 %""#));
@@ -100,6 +102,8 @@ changes! {
     ("channels.ROLE.offset", Classify, as_is, Add("channels.contact", r#"offset = "3 V""#));
     ("channels.ROLE.sign", Classify, as_is, Replace("sign = 1", "sign = -1"));
     ("channels.ROLE.high_pass", Classify, as_is, Replace(r#""0.5 Hz""#, r#""2 Hz""#));
+    ("channels.ROLE.low_pass", Classify, as_is, Add("channels.velocity_x", r#"low_pass = "200 Hz""#));
+    ("channels.ROLE.low_pass_order", Classify, filtered, Replace("low_pass_order = 1", "low_pass_order = 4"));
     ("channels.ROLE.delay", Identify, synthetic, Add("channels.velocity_x", r#"delay = "0.1 ms""#));
     ("channels.ROLE.delay_uncertainty", Identify, synthetic, Add("channels.velocity_x", r#"delay_uncertainty = "5 us""#));
     ("channels.ROLE.threshold", Classify, as_is, Replace(r#""2.5 V""#, r#""6 V""#));
@@ -129,6 +133,12 @@ changes! {
 
 /// The campaign of the tests.
 fn as_is(_: &Lab) {}
+
+/// With a low-pass of the first order.
+fn filtered(lab: &Lab) {
+    let filter = "low_pass = \"200 Hz\"\nlow_pass_order = 1";
+    add(lab, "channels.velocity_x", filter);
+}
 
 /// Add a line below a table's head; without such a table it is added.
 pub(super) fn add(lab: &Lab, table: &str, line: &str) {
@@ -175,6 +185,13 @@ fn timed(lab: &Lab) {
 fn untimed(lab: &Lab) {
     for name in ["r1.csv", "r2.csv", "r3.csv"] {
         lab.lines(name, |_, line| Some(line.split_once(',')?.1.to_owned()));
+    }
+}
+
+/// Files whose time column states no unit.
+fn without_unit_of_time(lab: &Lab) {
+    for name in ["r1.csv", "r2.csv", "r3.csv"] {
+        lab.replace(name, "time [s]", "time");
     }
 }
 

@@ -2,7 +2,7 @@ use super::*;
 use crate::conformance::{named as samples, own};
 use crate::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
 use crate::open::open;
-use crate::source::{ChannelInfo, DatasetInfo, Samples};
+use crate::source::{ChannelInfo, Clock, DatasetInfo, Samples};
 use std::collections::BTreeMap;
 
 fn same(a: &DatasetInfo, b: &DatasetInfo) {
@@ -243,6 +243,8 @@ fn made(channels: &[(&str, Option<&str>, Samples)]) -> Made {
         samples: samples.len() as u64,
         sample_rate_hz: Some(250.0),
         start_time: None,
+        clock: Clock::Shared,
+        start_s: None,
         properties: BTreeMap::new(),
     };
     let dataset = DatasetInfo {
@@ -364,6 +366,36 @@ fn every_kind_of_channel_comes_back_from_every_target() {
             );
             assert!(alike(read, samples), "{name} {expected}: {read:?}");
         }
+    }
+}
+
+#[test]
+fn starts_of_channels_come_back_from_every_target() {
+    let numbers = |from: f64| Samples::Real((0..20).map(|i| from + f64::from(i)).collect());
+    let mut record = made(&[
+        ("x", Some("mm"), numbers(0.0)),
+        ("contact", Some("V"), numbers(5.0)),
+    ]);
+    record.datasets[0].channels[0].start_s = Some(0.0);
+    record.datasets[0].channels[1].start_s = Some(0.3);
+    let sources: [Box<dyn Source>; 1] = [Box::new(record)];
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["out.h5", "out.parquet", "out.csv", "out.uff"] {
+        let out = dir.path().join(name);
+        convert(
+            &sources,
+            Target::of(&out).unwrap(),
+            &out,
+            &Options::default(),
+        )
+        .unwrap();
+        let back = open(&out).unwrap();
+        let starts: Vec<Option<f64>> = back.datasets()[0]
+            .channels
+            .iter()
+            .map(|c| c.start_s)
+            .collect();
+        assert_eq!(starts, [Some(0.0), Some(0.3)], "{name}");
     }
 }
 

@@ -2,8 +2,9 @@
 
 use crate::csv::dialect::{self, Dialect};
 use crate::text::cells::{Cells, Separator};
+use crate::text::decode;
+use crate::text::number::{self, Notation};
 use crate::text::table::Kind;
-use crate::text::{decode, number};
 
 /// Rows at the front of a file from which kinds and time axis are found.
 pub(crate) struct HeadRows<'a> {
@@ -42,12 +43,12 @@ struct Judged {
 }
 
 impl Judged {
-    fn add(&mut self, cell: &[u8], decimal: u8) {
+    fn add(&mut self, cell: &[u8], notation: Notation) {
         if cell.is_empty() || self.filled == JUDGED_CELLS {
             return;
         }
         self.filled += 1;
-        if number::parse_cell(cell, decimal).is_some() {
+        if notation.parse(cell).is_some() {
             self.numbers += 1;
         } else if dialect::is_time(cell) {
             self.times += 1;
@@ -65,12 +66,50 @@ impl Judged {
     }
 }
 
+/// The most cells filled in any row of the head.
+pub(crate) fn filled(rows: &HeadRows<'_>) -> usize {
+    let filled = |row: Cells<'_>| {
+        let cells = row.enumerate().filter(|(_, cell)| !cell.is_empty());
+        cells.last().map_or(0, |(i, _)| i + 1)
+    };
+    rows.rows().map(filled).max().unwrap_or(0)
+}
+
+/// A cell that may be a number with three decimals or one with its thousands separated: all marked cells of its
+/// column have three digits behind the mark, others are whole numbers of hundreds, and nothing else in the
+/// table shows what the mark is.
+pub(crate) fn ambiguous<'a>(
+    rows: &HeadRows<'a>,
+    kinds: &[Kind],
+    decimal: u8,
+) -> Option<(usize, &'a [u8])> {
+    let other = if decimal == b'.' { b',' } else { b'.' };
+    let marked = |cell: &[u8]| cell.contains(&decimal);
+    let like_groups = |cell: &[u8]| number::parse_grouped(cell, other).is_some();
+    let proven = |cell: &[u8]| {
+        marked(cell) && number::parse_cell(cell, decimal).is_some() && !like_groups(cell)
+    };
+    if rows.rows().flatten().any(proven) {
+        return None;
+    }
+    let numbers = (0..kinds.len()).filter(|i| kinds[*i] == Kind::Number);
+    numbers.into_iter().find_map(|i| {
+        let cells = || rows.column(i).filter(|c| !c.is_empty()).take(JUDGED_CELLS);
+        let hundreds = |cell: &[u8]| {
+            let value = number::parse_cell(cell, decimal).filter(|_| !marked(cell));
+            value.is_some_and(|v| (100.0..1000.0).contains(&v.abs()))
+        };
+        let found = cells().find(|c| marked(c))?;
+        cells().any(hundreds).then_some((i, found))
+    })
+}
+
 /// The kinds of the columns by their first filled cells in the head.
 pub(crate) fn kinds(rows: &HeadRows<'_>, dialect: &Dialect) -> Vec<Kind> {
     let mut columns = vec![Judged::default(); dialect.columns];
     for row in rows.rows() {
         for (cell, column) in row.zip(&mut columns) {
-            column.add(cell, dialect.decimal);
+            column.add(cell, dialect.notation);
         }
         if columns.iter().all(|c| c.filled == JUDGED_CELLS) {
             break;

@@ -1,7 +1,8 @@
 //! How a text table is written, found from its first lines.
 
 use crate::text::cells::{Cells, Separator};
-use crate::text::{clock, decode, number};
+use crate::text::number::{self, Notation};
+use crate::text::{clock, decode};
 
 /// First characters that make a line a comment.
 pub(crate) const COMMENTS: &[u8] = b"#%!";
@@ -16,8 +17,8 @@ const LONGEST_TIME: usize = 80;
 pub(crate) struct Dialect {
     /// The separator between two cells.
     pub separator: Separator,
-    /// The decimal mark.
-    pub decimal: u8,
+    /// How its numbers are written.
+    pub notation: Notation,
     /// Number of columns.
     pub columns: usize,
 }
@@ -28,7 +29,7 @@ impl Dialect {
         let separator = Separator::Byte(b',');
         Self {
             separator,
-            decimal: b'.',
+            notation: Notation::plain(b'.'),
             columns: Cells::new(header, separator).count(),
         }
     }
@@ -55,7 +56,8 @@ pub(crate) fn detect(lines: &[&[u8]]) -> Option<Dialect> {
     let judged = judged(lines);
     let mut best: Option<(f64, Dialect)> = None;
     for (separator, decimal) in CANDIDATES {
-        let Some((score, columns)) = score(judged, separator, decimal) else {
+        let notation = notation(judged, separator, decimal);
+        let Some((score, columns)) = score(judged, separator, notation) else {
             continue;
         };
         let certain = score > 1.0;
@@ -64,7 +66,7 @@ pub(crate) fn detect(lines: &[&[u8]]) -> Option<Dialect> {
                 score,
                 Dialect {
                     separator,
-                    decimal,
+                    notation,
                     columns,
                 },
             ));
@@ -85,7 +87,7 @@ fn judged<'a, 'b>(lines: &'b [&'a [u8]]) -> &'b [&'a [u8]] {
 
 /// How well a dialect explains lines: the share of lines with the usual number of cells times
 /// the share of filled cells that hold a value; and that number of cells.
-fn score(lines: &[&[u8]], separator: Separator, decimal: u8) -> Option<(f64, usize)> {
+fn score(lines: &[&[u8]], separator: Separator, notation: Notation) -> Option<(f64, usize)> {
     let widths: Vec<usize> = lines
         .iter()
         .map(|l| Cells::new(l, separator).count())
@@ -99,7 +101,7 @@ fn score(lines: &[&[u8]], separator: Separator, decimal: u8) -> Option<(f64, usi
         .filter(|c| !c.is_empty())
     {
         filled += 1;
-        values += usize::from(is_value(cell, decimal));
+        values += usize::from(is_value(cell, notation));
     }
     if values == 0 {
         return None;
@@ -109,6 +111,19 @@ fn score(lines: &[&[u8]], separator: Separator, decimal: u8) -> Option<(f64, usi
     Some((score + if columns > 1 { 1e-6 } else { 0.0 }, columns))
 }
 
+/// How numbers with a decimal mark are written: a table in which the mark occurs may separate thousands by others.
+fn notation(lines: &[&[u8]], separator: Separator, decimal: u8) -> Notation {
+    let shows = |cell: &[u8]| {
+        let plain = cell.contains(&decimal) && number::parse_cell(cell, decimal).is_some();
+        plain || number::parse_grouped(cell, decimal).is_some_and(|(_, both)| both)
+    };
+    let mut cells = lines.iter().flat_map(|l| Cells::new(l, separator));
+    Notation {
+        decimal,
+        groups: cells.any(shows),
+    }
+}
+
 /// The most frequent number, the greatest of several.
 fn usual(widths: &[usize]) -> Option<usize> {
     let count = |w: usize| widths.iter().filter(|&&v| v == w).count();
@@ -116,11 +131,11 @@ fn usual(widths: &[usize]) -> Option<usize> {
 }
 
 /// Whether a cell holds a number (or states that there is none) or a point in time.
-pub(crate) fn is_value(cell: &[u8], decimal: u8) -> bool {
+pub(crate) fn is_value(cell: &[u8], notation: Notation) -> bool {
     if cell.is_empty() {
         return false;
     }
-    number::parse_cell(cell, decimal).is_some() || is_time(cell)
+    notation.parse(cell).is_some() || is_time(cell)
 }
 
 /// Whether a cell holds a point in time.
@@ -135,14 +150,15 @@ pub(crate) fn first_row(lines: &[&[u8]], dialect: &Dialect) -> Option<usize> {
     lines.iter().position(|line| {
         let cells: Vec<&[u8]> = Cells::new(line, dialect.separator).collect();
         let near = cells.len().abs_diff(dialect.columns) <= dialect.columns / 2;
-        near && (is_value_row(&cells, dialect) || agrees(&cells, &values, dialect))
+        let row = is_value_row(&cells, dialect) || agrees(&cells, &values, dialect);
+        near && row && !heads(&cells, &values, dialect)
     })
 }
 
 /// Whether some of the cells are filled, and most of those hold values.
 fn is_value_row(cells: &[&[u8]], dialect: &Dialect) -> bool {
     let filled = cells.iter().filter(|c| !c.is_empty()).count();
-    let values = cells.iter().filter(|c| is_value(c, dialect.decimal));
+    let values = cells.iter().filter(|c| is_value(c, dialect.notation));
     let values = values.count();
     values > 0 && 2 * values >= filled
 }
@@ -153,11 +169,24 @@ fn columns_of_values(lines: &[&[u8]], dialect: &Dialect) -> Vec<bool> {
     for line in lines {
         let cells = Cells::new(line, dialect.separator).zip(&mut columns);
         for (cell, (some, only)) in cells.filter(|(c, _)| !c.is_empty()) {
-            let value = is_value(cell, dialect.decimal);
+            let value = is_value(cell, dialect.notation);
             (*some, *only) = (*some || value, *only && value);
         }
     }
     columns.iter().map(|(some, only)| *some && *only).collect()
+}
+
+/// Whether a row has a word in the first column of values, or in most of them, as `x-axis,1,2` and
+/// `Sequence,Volt,-1e-3,4e-6` have, which head a table.
+fn heads(cells: &[&[u8]], columns: &[bool], dialect: &Dialect) -> bool {
+    let held = cells
+        .iter()
+        .zip(columns)
+        .filter(|(_, of_values)| **of_values);
+    let words = held.map(|(cell, _)| !cell.is_empty() && !is_value(cell, dialect.notation));
+    let words: Vec<bool> = words.collect();
+    let count = words.iter().filter(|w| **w).count();
+    words.first() == Some(&true) || 2 * count > words.len()
 }
 
 /// Whether a row has values in columns of values: in one at least, and no word in any.
@@ -170,7 +199,7 @@ fn agrees(cells: &[&[u8]], columns: &[bool], dialect: &Dialect) -> bool {
         .map(|(cell, _)| cell)
         .filter(|c| !c.is_empty())
         .peekable();
-    filled.peek().is_some() && filled.all(|c| is_value(c, dialect.decimal))
+    filled.peek().is_some() && filled.all(|c| is_value(c, dialect.notation))
 }
 
 #[cfg(test)]
@@ -190,7 +219,10 @@ mod tests {
                 of(text),
                 Dialect {
                     separator,
-                    decimal,
+                    notation: Notation {
+                        decimal,
+                        ..of(text).notation
+                    },
                     columns
                 },
                 "{text}"

@@ -5,7 +5,7 @@ use crate::csv::dialect::{self, Dialect};
 use crate::csv::header::{self, Header};
 use crate::source::ReadError;
 use crate::text::TextFile;
-use crate::text::cells::{Lines, is_row};
+use crate::text::cells::{Lines, Separator, is_row};
 use crate::text::table::{Kind, Layout};
 
 /// The remark that numbers the columns of texts, in what this program writes.
@@ -52,24 +52,30 @@ impl Front {
         };
         let first = first.and_then(|i| places.get(i));
         let first = *first.ok_or_else(|| no_table(text, "no row of numbers"))?;
-        let mut header = header::read(&lines[..first], &dialect);
+        let offset = offsets[first];
+        let rows = head_rows(&head[offset..], quotes, dialect.separator);
+        let filled = match texts {
+            Some(_) => dialect.columns,
+            None => columns::filled(&rows),
+        };
+        let (mut header, columns) = header::read(&lines[..first], &dialect, filled);
         header.attributes.remove(TEXTS_KEY);
         Ok(Self {
             header,
-            dialect,
-            offset: offsets[first],
+            dialect: Dialect { columns, ..dialect },
+            offset,
             texts,
         })
     }
 
+    /// Whether this program wrote the table.
+    pub(super) fn is_own(&self) -> bool {
+        self.texts.is_some()
+    }
+
     /// The rows of the head.
     pub(super) fn rows<'a>(&self, head: &'a [u8], quotes: bool) -> HeadRows<'a> {
-        let lines = Lines::new(&head[self.offset..], quotes);
-        let rows = lines.filter(|(_, l)| is_row(l, dialect::COMMENTS));
-        HeadRows {
-            lines: rows.map(|(_, l)| l).collect(),
-            separator: self.dialect.separator,
-        }
+        head_rows(&head[self.offset..], quotes, self.dialect.separator)
     }
 
     /// How the table is written; its columns have no names yet.
@@ -80,7 +86,7 @@ impl Front {
         };
         Layout {
             separator: self.dialect.separator,
-            decimal: self.dialect.decimal,
+            notation: self.dialect.notation,
             names: Vec::new(),
             start: text.start() + self.offset as u64,
             end: text.length(),
@@ -89,6 +95,16 @@ impl Front {
             kinds,
             comments: dialect::COMMENTS,
         }
+    }
+}
+
+/// The rows at the front of a table.
+fn head_rows(table: &[u8], quotes: bool, separator: Separator) -> HeadRows<'_> {
+    let lines = Lines::new(table, quotes);
+    let rows = lines.filter(|(_, l)| is_row(l, dialect::COMMENTS));
+    HeadRows {
+        lines: rows.map(|(_, l)| l).collect(),
+        separator,
     }
 }
 

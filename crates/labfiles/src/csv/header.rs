@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::csv::dialect::{COMMENTS, Dialect, is_value};
 use crate::text::cells::{Cells, decode_cell};
-use crate::text::decode;
+use crate::text::{decode, number};
+use crate::timing::is_unit_of_time;
 use crate::units::parse_unit;
 
 /// What the lines before the first row state.
@@ -24,27 +25,48 @@ const FURTHER_UNITS: [&str; 22] = [
     "dB", "m²", "Nm", "-", "counts", "h",
 ];
 
-/// Read the lines before the first row. `lines` are all of them, comments too, blank ones not.
-pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect) -> Header {
+/// Read the lines before the first row. `lines` are all of them, comments too, blank ones not; `filled` are
+/// the columns that rows fill. Gives the number of columns as well: those that are filled or named.
+pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header, usize) {
     let mut header = Header::default();
     let (comments, plain): (Vec<&[u8]>, Vec<&[u8]>) = lines.iter().partition(|l| is_comment(l));
     let mut rows: Vec<Vec<String>> = plain.iter().map(|l| cells(l, dialect)).collect();
+    take_values(&mut rows, filled, dialect, &mut header.attributes);
+    let named = rows
+        .iter()
+        .map(|row| filled_cells(row))
+        .filter(|n| *n <= dialect.columns);
+    let columns = named
+        .max()
+        .unwrap_or(0)
+        .max(filled)
+        .clamp(1, dialect.columns.max(1));
+    let dialect = &Dialect {
+        columns,
+        ..*dialect
+    };
     let units = units_row(&rows, dialect.columns);
     if units.is_some() {
         rows.pop();
     }
-    if let Some(names) = names_row(&rows, dialect.columns) {
+    let vernier = rows
+        .first()
+        .is_some_and(|row| row[0].starts_with("Vernier Format"));
+    if let Some(names) = names_row(&rows, dialect.columns, vernier) {
         header.names = rows.remove(names);
     } else if let Some(names) = commented_names(&comments, dialect) {
         header.names = names;
     }
     for mut row in rows {
-        let filled = row.iter().rposition(|c| !c.is_empty()).map_or(0, |i| i + 1);
-        row.truncate(filled);
-        remark(
-            &row.join(if row.len() == 2 { "=" } else { " " }),
-            &mut header.attributes,
-        );
+        row.truncate(filled_cells(&row));
+        match &row[..] {
+            // Sampling rate; 2500; Hz
+            [key, number, unit] if number::parse_cell(number.as_bytes(), b'.').is_some() => {
+                remark(&format!("{key}={number} {unit}"), &mut header.attributes);
+            }
+            [key, value] => remark(&format!("{key}={value}"), &mut header.attributes),
+            _ => remark(&row.join(" "), &mut header.attributes),
+        }
     }
     for comment in comments {
         let text = decode(comment.trim_ascii_start());
@@ -54,7 +76,58 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect) -> Header {
         );
     }
     name_columns(&mut header, &units.unwrap_or_default(), dialect.columns);
-    header
+    of_motion_capture(&mut header);
+    (header, columns)
+}
+
+/// Number of cells up to the last that is filled.
+fn filled_cells(row: &[String]) -> usize {
+    row.iter().rposition(|c| !c.is_empty()).map_or(0, |i| i + 1)
+}
+
+/// Take values out of headings that are wider than the rows: `tInc = 4e-9`, or a name above its value, as
+/// oscilloscopes write start and increment.
+fn take_values(
+    rows: &mut [Vec<String>],
+    filled: usize,
+    dialect: &Dialect,
+    attributes: &mut BTreeMap<String, String>,
+) {
+    let is_number =
+        |text: &String| number::parse_cell(text.as_bytes(), dialect.notation.decimal).is_some();
+    for row in rows.iter_mut() {
+        for cell in row.iter_mut().skip(filled).filter(|c| c.contains('=')) {
+            remark(cell, attributes);
+            cell.clear();
+        }
+    }
+    for at in 1..rows.len() {
+        let (above, below) = rows.split_at_mut(at);
+        let (Some(names), Some(values)) = (above.last_mut(), below.first_mut()) else {
+            continue;
+        };
+        for (name, value) in names.iter_mut().zip(values).skip(filled) {
+            if !name.is_empty() && !is_number(name) && !value.is_empty() && is_number(value) {
+                attributes.insert(std::mem::take(name), std::mem::take(value));
+            }
+        }
+    }
+}
+
+/// Tables of marker positions state their rate as FREQUENCY, and have mm.
+fn of_motion_capture(header: &mut Header) {
+    if !header.attributes.contains_key("NO_OF_FRAMES") {
+        return;
+    }
+    if let Some(rate) = header.attributes.get("FREQUENCY").cloned() {
+        header.attributes.insert("sample_rate_hz".to_owned(), rate);
+    }
+    for (name, unit) in header.names.iter().zip(&mut header.units) {
+        let position = [" X", " Y", " Z"].iter().any(|axis| name.ends_with(axis));
+        if unit.is_none() && position {
+            *unit = Some("mm".to_owned());
+        }
+    }
 }
 
 fn is_comment(line: &[u8]) -> bool {
@@ -71,23 +144,25 @@ fn cells(line: &[u8], dialect: &Dialect) -> Vec<String> {
 
 /// Whether a row of cells can head the table: its width, give or take an empty cell at the end.
 fn fits(row: &[String], columns: usize) -> bool {
-    let filled = row.iter().rposition(|c| !c.is_empty()).map_or(0, |i| i + 1);
+    let filled = filled_cells(row);
     filled > 0 && (row.len() == columns || filled == columns || row.len() == columns + 1)
 }
 
 /// Lines above the table among which its heading is looked for.
 const HEADING_LINES: usize = 4;
 
-/// The row that heads the table: of the last ones that fit, the one with most distinct columns.
-fn names_row(rows: &[Vec<String>], columns: usize) -> Option<usize> {
+/// The row that heads the table: of the last ones that fit, the one with most distinct columns; of those alike
+/// the last, or the `first`, where short names follow.
+fn names_row(rows: &[Vec<String>], columns: usize, first: bool) -> Option<usize> {
     let distinct = |row: &Vec<String>| {
         let filled = row.iter().filter(|c| !c.is_empty());
         filled.collect::<std::collections::BTreeSet<_>>().len()
     };
-    let first = rows.len().saturating_sub(HEADING_LINES);
-    (first..rows.len())
+    let from = rows.len().saturating_sub(HEADING_LINES);
+    let place = |i: usize| if first { rows.len() - i } else { i };
+    (from..rows.len())
         .filter(|i| fits(&rows[*i], columns))
-        .max_by_key(|i| (distinct(&rows[*i]), *i))
+        .max_by_key(|i| (distinct(&rows[*i]), place(*i)))
 }
 
 /// The last row, if it holds units under a row of names.
@@ -103,7 +178,8 @@ fn units_row(rows: &[Vec<String>], columns: usize) -> Option<Vec<Option<String>>
     (known > 0 && 2 * known >= filled.len()).then(|| {
         units
             .iter()
-            .map(|c| Some(unwrapped(c).to_owned()).filter(|u| !u.is_empty()))
+            // the numbers of the rows
+            .map(|c| Some(unwrapped(c).to_owned()).filter(|u| !u.is_empty() && u != "Sequence"))
             .collect()
     })
 }
@@ -118,7 +194,7 @@ fn commented_names(comments: &[&[u8]], dialect: &Dialect) -> Option<Vec<String>>
     let names = cells(body.trim_ascii(), dialect);
     let words = names
         .iter()
-        .all(|n| !n.is_empty() && !is_value(n.as_bytes(), dialect.decimal));
+        .all(|n| !n.is_empty() && !is_value(n.as_bytes(), dialect.notation));
     (names.len() == dialect.columns
         && words
         && (names.len() > 1 || !names[0].contains([':', '=', ' '])))
@@ -138,7 +214,8 @@ fn remark(text: &str, attributes: &mut BTreeMap<String, String>) {
 
 /// Whether a text is the symbol of a unit.
 fn is_unit(text: &str) -> bool {
-    parse_unit(text).is_some() || FURTHER_UNITS.contains(&text.trim())
+    let text = text.trim();
+    parse_unit(text).is_some() || FURTHER_UNITS.contains(&text) || is_unit_of_time(text)
 }
 
 /// A unit without the brackets around it.
@@ -209,10 +286,14 @@ fn name_columns(header: &mut Header, units: &[Option<String>], columns: usize) {
 mod tests {
     use super::*;
     use crate::text::cells::Separator;
+    use crate::text::number::Notation;
 
     const SEMICOLON: Dialect = Dialect {
         separator: Separator::Byte(b';'),
-        decimal: b',',
+        notation: Notation {
+            decimal: b',',
+            groups: false,
+        },
         columns: 3,
     };
 
@@ -220,7 +301,9 @@ mod tests {
         read(
             &lines.iter().map(|l| l.as_bytes()).collect::<Vec<_>>(),
             &SEMICOLON,
+            3,
         )
+        .0
     }
 
     #[test]

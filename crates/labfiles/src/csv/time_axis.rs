@@ -1,19 +1,19 @@
 //! Which column of a table is its time axis, and at which rate its rows follow.
 
-use crate::attribute::is_time_name;
 use crate::csv::columns::HeadRows;
 use crate::csv::header::Header;
 use crate::rate;
 use crate::text::table::{Kind, Layout};
-use crate::text::{clock, decode, number};
-use crate::units::{Dimension, parse_unit};
+use crate::text::{clock, decode};
+use crate::timing::{AxisUnit, StatedUnit, is_time_name, stated_unit};
+use crate::units::symbol_of;
 
 /// The time axis of a table.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct TimeAxis {
     /// The column.
     pub column: usize,
-    /// Its unit, if it is a number.
+    /// Its unit, as its name states it, or s of points in time.
     pub unit: Option<String>,
     /// Rows per second, Hz, if the axis gives them.
     pub rate_hz: Option<f64>,
@@ -37,13 +37,28 @@ pub(crate) fn find(
     let mut axis = found.next().or_else(|| unnamed(header, layout, rows))?;
     let head = head_of(layout, rows, axis.column);
     let end = last.and_then(|cells| cell_value(layout, cells.get(axis.column)?, axis.column, rows));
-    axis.rate_hz = rate::from_axis(&head, end, count, axis.unit.as_deref());
     if layout.kinds[axis.column] == Kind::Time {
         let first = rows.first(axis.column);
         axis.start = first.and_then(|c| stamp(layout, c)).map(clock::Stamp::iso);
-        axis.unit = axis.unit.or_else(|| Some("s".to_owned()));
+        axis.unit = Some("s".to_owned());
     }
+    let name = &header.names[axis.column];
+    let unit = header.units[axis.column].as_ref().or(axis.unit.as_ref());
+    let unit = AxisUnit::of(unit.map(String::as_str), name, &head);
+    axis.rate_hz = unit
+        .seconds()
+        .and_then(|s| rate::from_axis(&head, end, count, s));
+    axis.note = axis.note.or_else(|| unit.note(name));
     Some(axis)
+}
+
+/// All columns of numbers that may be time axes.
+pub(crate) fn candidates(header: &Header, layout: &Layout, rows: &HeadRows<'_>) -> Vec<usize> {
+    let columns = (0..layout.kinds.len()).filter(|&i| layout.kinds[i] == Kind::Number);
+    let of_time = columns.filter(|&i| candidate(header, layout, i).is_some());
+    of_time
+        .filter(|&i| climbs(&head_of(layout, rows, i)))
+        .collect()
 }
 
 /// A column whose kind, name or unit is of time.
@@ -58,26 +73,16 @@ fn candidate(header: &Header, layout: &Layout, column: usize) -> Option<TimeAxis
         Kind::Time => Some(sure(None)),
         Kind::Number => {
             let name = &header.names[column];
-            let unit = header.units[column].clone().or_else(|| unit_in_name(name));
-            let known = unit.as_deref().and_then(parse_unit);
-            if known.is_some_and(|u| u.dimension == Dimension::Time) {
-                return Some(sure(unit));
+            let own = header.units[column].as_deref();
+            match stated_unit(own, name) {
+                StatedUnit::Known(_) if own.is_some() => Some(sure(None)),
+                _ if !is_time_name(name) => None,
+                StatedUnit::Known(unit) => Some(sure(symbol_of(unit).map(str::to_owned))),
+                StatedUnit::Nothing => Some(sure(None)),
+                StatedUnit::Other(_) => None,
             }
-            (unit.is_none() && is_time_name(name)).then(|| TimeAxis {
-                column,
-                unit: Some("s".to_owned()),
-                note: Some(format!("time axis '{name}' has no unit: taken as seconds")),
-                ..TimeAxis::default()
-            })
         }
     }
-}
-
-/// The unit that a name such as `time_ms` ends in.
-fn unit_in_name(name: &str) -> Option<String> {
-    let (word, unit) = name.rsplit_once('_')?;
-    let time = parse_unit(unit).is_some_and(|u| u.dimension == Dimension::Time);
-    (time && is_time_name(word)).then(|| unit.to_owned())
 }
 
 /// A first column without a name that climbs evenly and is no mere count of rows.
@@ -98,7 +103,6 @@ fn unnamed(header: &Header, layout: &Layout, rows: &HeadRows<'_>) -> Option<Time
         let note = "first column climbs evenly and has no name: taken as time in seconds";
         TimeAxis {
             column: 0,
-            unit: Some("s".to_owned()),
             note: Some(note.to_owned()),
             ..TimeAxis::default()
         }
@@ -115,7 +119,7 @@ fn head_of(layout: &Layout, rows: &HeadRows<'_>, i: usize) -> Vec<f64> {
 
 fn cell_value(layout: &Layout, cell: &[u8], i: usize, rows: &HeadRows<'_>) -> Option<f64> {
     match layout.kinds[i] {
-        Kind::Number => number::parse_cell(cell, layout.decimal),
+        Kind::Number => layout.notation.parse(cell),
         Kind::Time => Some(stamp(layout, cell)?.since(stamp(layout, rows.first(i)?)?)),
         Kind::Text => None,
     }
@@ -131,20 +135,4 @@ fn climbs(values: &[f64]) -> bool {
             .windows(2)
             .all(|w| w[1] >= w[0] || w[0] - w[1] > 43_200.0)
         && values.first() != values.last()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_of_time() {
-        for name in ["time_s", "Time", "t", "X_Value", "Time (Run 1)", "Zeit"] {
-            assert!(is_time_name(name), "{name}");
-        }
-        for name in ["times", "velocity", "tone"] {
-            assert!(!is_time_name(name), "{name}");
-        }
-        assert_eq!(unit_in_name("time_ms").as_deref(), Some("ms"));
-    }
 }

@@ -81,7 +81,7 @@ impl Walk<'_> {
         self.found.variables.variables.len().saturating_sub(1)
     }
 
-    fn leave_out(&mut self, path: &Path, kind: &'static str) -> Result<(), StoreError> {
+    fn leave_out(&mut self, path: &Path, kind: String) -> Result<(), StoreError> {
         let refused = &mut self.found.variables.refused;
         refused.push((path.name.clone(), kind));
         Ok(())
@@ -99,7 +99,7 @@ impl Walk<'_> {
     fn group(&mut self, group: &Tree, path: &Path) -> Result<(), StoreError> {
         self.visit(path)?;
         if group.attributes.contains_key("MATLAB_sparse") {
-            return self.leave_out(path, "sparse");
+            return self.leave_out(path, "sparse".to_owned());
         }
         let references =
             |a: &&Array| a.element == Element::Reference && class(&a.attributes).is_empty();
@@ -153,7 +153,8 @@ impl Walk<'_> {
     fn array(&mut self, array: &Array, path: &Path) -> Result<(), StoreError> {
         self.visit(path)?;
         if array.attributes.contains_key("MATLAB_object_decode") {
-            return self.leave_out(path, "opaque object");
+            let class = array.attributes.get("MATLAB_class").map(Attr::text);
+            return self.leave_out(path, class.unwrap_or_else(|| "object".to_owned()));
         }
         if array.element == Element::Reference && !array.attributes.contains_key("MATLAB_empty") {
             return self.cell(array, path);

@@ -31,16 +31,14 @@ pub(crate) fn open(path: &Path, store: Store, tree: &Tree) -> Result<Box<dyn Sou
         )
     })?;
     if found.variables.leaves.is_empty() {
-        let left_out: Vec<String> = found.variables.left_out().collect();
-        return Err(ReadError::new(
-            path,
-            "arrays of numbers",
-            match left_out[..] {
-                [] => "no variables".to_owned(),
-                _ => left_out.join(", "),
-            },
-            "Save full arrays: full(x), or the object's numbers as a struct.",
-        ));
+        let none = || {
+            (
+                "no variables".to_owned(),
+                "Save arrays of numbers.".to_owned(),
+            )
+        };
+        let (left, remedy) = found.variables.nothing_read().unwrap_or_else(none);
+        return Err(ReadError::new(path, "arrays of numbers", left, remedy));
     }
     let Arranged {
         datasets,

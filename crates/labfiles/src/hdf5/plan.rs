@@ -19,7 +19,8 @@ use crate::hdf5::naming::{
 };
 use crate::hdf5::store::{Array, Attr, Attrs, StoreError, Tree};
 use crate::numbers::Spacing;
-use crate::source::{ChannelInfo, DatasetInfo};
+use crate::source::{ChannelInfo, Clock, DatasetInfo};
+use crate::timing::{is_time_name, main_axis, own_axes};
 
 /// The spacing of a single element.
 const ONE: Spacing = Spacing {
@@ -119,6 +120,7 @@ impl Plans {
                     let value = raw.ok().and_then(|r| e.decode(&r, ONE)?.into_real());
                     attributes.extend(value.map(|v| (array.name.clone(), Attr::Numbers(v))));
                 }
+                (e, 1) if e.is_number() && is_named_table(array) => sorted.tables.push(array),
                 (Element::Text, 0 | 1) => sorted.columns.push(array),
                 (e, 0 | 1) if e.is_number() => sorted.columns.push(array),
                 (e, 2) if e.is_number() => sorted.tables.push(array),
@@ -266,7 +268,7 @@ impl Record {
         let rows = orientation.samples(table);
         let time = columns
             .iter()
-            .find(|c| attribute::is_time_name(&c.name) && c.count() == Some(rows));
+            .find(|c| is_time_name(&c.name) && c.count() == Some(rows));
         time.into_iter().for_each(|c| record.column(c));
         record.table(table, inherited);
         let cells = table.count().unwrap_or(u64::MAX);
@@ -288,6 +290,8 @@ impl Record {
             samples: locator.spacing.count as u64,
             sample_rate_hz: None,
             start_time: None,
+            clock: Clock::Shared,
+            start_s: None,
             properties: BTreeMap::new(),
         });
         self.plan.channels.push(locator);
@@ -311,6 +315,7 @@ impl Record {
             let texts = Scope::of(&array.attributes).texts();
             channel.sample_rate_hz = attribute::sample_rate_hz(&texts);
             channel.start_time = attribute::start_time(&texts);
+            channel.start_s = attribute::start_s(&texts);
             channel.properties = texts;
         }
     }
@@ -353,7 +358,8 @@ impl Record {
             channel.sample_rate_hz = channel.sample_rate_hz.or(rate);
             channel.start_time = channel.start_time.take().or_else(|| start.clone());
         }
-        self.info.time_axis = self.info.channels.iter().position(attribute::is_time_axis);
+        self.info.time_axis = main_axis(&self.info.channels);
+        own_axes(&mut self.info.channels);
         (self.info, self.plan)
     }
 }
@@ -365,4 +371,9 @@ fn whole(array: &Array) -> Spacing {
         stride: array.element.bytes(),
         count: to_usize(array.count().unwrap_or(0)),
     }
+}
+
+/// Whether an array of samples × 1 names its one channel.
+fn is_named_table(array: &Array) -> bool {
+    array.shape.len() == 2 && names(Scope::of(&array.attributes), 1).is_some()
 }

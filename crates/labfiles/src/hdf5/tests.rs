@@ -49,6 +49,16 @@ fn valid_groups_of_arrays_of_many_types() {
 }
 
 #[test]
+fn valid_a_table_of_one_channel_has_its_name_and_its_attributes() {
+    let s = open(&own("one_channel.h5")).unwrap();
+    let info = &s.datasets()[0];
+    assert_eq!(info.channels[0].name, "position");
+    assert_eq!(info.attributes["frequency_hz"], "12.5");
+    assert_eq!(info.sample_rate_hz(), Some(2000.0));
+    assert!((real(&*s, 0, "position")[9] - wave(9)).abs() < 1e-15);
+}
+
+#[test]
 fn valid_channels_in_rows_and_a_table_beside_its_time() {
     let s = open(&own("rows_and_time.h5")).unwrap();
     let of = |name: &str| s.datasets().iter().position(|d| d.name == name).unwrap();

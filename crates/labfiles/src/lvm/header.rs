@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::Column;
 use crate::lvm::scan::{FIRST_WORDS, Keys, Segment};
 use crate::text::cells::Separator;
-use crate::text::number;
+use crate::text::{clock, number};
 
 /// The value of a header key for a channel; a single value holds for all.
 pub(super) fn value_for(keys: &Keys, key: &str, n: usize) -> Option<String> {
@@ -68,6 +69,51 @@ pub(super) fn start_time(keys: &Keys, n: usize) -> Option<String> {
     let date = value_for(keys, "Date", n)?.replace('/', "-");
     let time = value_for(keys, "Time", n)?.replace(',', ".");
     Some(format!("{date}T{time}"))
+}
+
+/// Whether the header states another step for a channel than for the first.
+pub(super) fn has_own_step(segment: &Segment, n: usize) -> bool {
+    let step = |n: usize| decimal_any(&value_for(&segment.keys, "Delta_X", n)?);
+    step(n)
+        .zip(step(0))
+        .is_some_and(|(own, first)| (own / first - 1.0).abs() > STEPS_DIFFER)
+}
+
+/// Relative difference of steps that their rounding does not explain.
+const STEPS_DIFFER: f64 = 5e-3;
+
+/// When the clocks of channels begin, s after that of the first: by their dates and times, and by `X0` where
+/// there is no X column. Absolute X values begin with 1904 for all.
+pub(super) fn starts_s(
+    keys: &Keys,
+    segment: &Segment,
+    shown: &[(usize, Column)],
+) -> Vec<Option<f64>> {
+    let absolute = keys
+        .get("Time_Pref")
+        .and_then(|v| v.first())
+        .is_some_and(|v| v == "Absolute");
+    let has_x = |n: usize| shown.iter().any(|(_, c)| *c == Column::X(n));
+    let stamp = |n: usize| clock::parse(&start_time(&segment.keys, n)?, false);
+    let origin = stamp(0);
+    let of = |n: usize| {
+        let x0 = |n: usize| decimal_any(&value_for(&segment.keys, "X0", n)?);
+        let x0 = match (has_x(0), n > 0 && has_x(n)) {
+            (_, true) => 0.0,
+            (true, false) => x0(n).zip(x0(0)).map_or(0.0, |(own, first)| own - first),
+            (false, false) => x0(n)?,
+        };
+        let after = match (origin, stamp(n)) {
+            (Some(origin), Some(stamp)) if !absolute => stamp.since(origin),
+            _ => 0.0,
+        };
+        Some(x0 + after).filter(|s| s.is_finite())
+    };
+    let start = |(_, column): &(usize, Column)| match column {
+        Column::Y(n) => of(*n),
+        Column::X(_) | Column::Comment => None,
+    };
+    shown.iter().map(start).collect()
 }
 
 /// What the headers state on the whole table.

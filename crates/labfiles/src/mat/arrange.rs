@@ -5,8 +5,11 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use super::text;
 use super::tree::{Content, Leaf, Tree};
 use crate::bytes::to_usize;
+use crate::csv::header::name_and_unit;
 use crate::numbers::Spacing;
-use crate::source::{ChannelInfo, DatasetInfo};
+use crate::source::{ChannelInfo, Clock, DatasetInfo};
+use crate::timing;
+use crate::units::{self, Dimension};
 
 /// Matrices with more columns than this are one channel, not one per column.
 const MOST_COLUMNS: u64 = 4096;
@@ -127,48 +130,106 @@ fn vector_lengths(tree: &Tree, leaves: &[usize]) -> BTreeSet<u64> {
         .collect()
 }
 
+/// The single numbers of a file by their paths in lower case.
+fn scalars(tree: &Tree) -> HashMap<String, &str> {
+    let numeric = tree.leaves.iter().filter(|leaf| leaf.is_numeric());
+    let valued =
+        numeric.filter_map(|leaf| Some((leaf.name.to_lowercase(), leaf.value.as_deref()?)));
+    valued.collect()
+}
+
 /// The last part of a path: `velocity` of `runs(2).velocity`.
 fn last_part(name: &str) -> &str {
     name.rsplit('.').next().unwrap_or(name)
 }
 
 fn is_time_name(name: &str) -> bool {
-    let name = last_part(name).to_lowercase();
-    matches!(
-        name.as_str(),
-        "t" | "time" | "time_s" | "t_s" | "zeit" | "zeit_s" | "timevector"
-    )
+    timing::is_time_name(last_part(name))
 }
+
+/// Names of scalars that give samples per second, lower case.
+const RATES: [&str; 17] = [
+    "fs",
+    "f_s",
+    "fsamp",
+    "samplerate",
+    "sample_rate",
+    "samplingrate",
+    "sampling_rate",
+    "sampling_frequency",
+    "samplingfrequency",
+    "sample_frequency",
+    "samplefrequency",
+    "srate",
+    "framerate",
+    "frame_rate",
+    "fps",
+    "wf_samples_per_second",
+    "capturerate",
+];
+
+/// Names of scalars that give the time between two samples, lower case.
+const STEPS: [&str; 15] = [
+    "dt",
+    "delta_t",
+    "deltat",
+    "tinterval",
+    "ts",
+    "timestep",
+    "time_step",
+    "sampleinterval",
+    "sample_interval",
+    "samplingtime",
+    "wf_increment",
+    "delta_x",
+    "xinc",
+    "x_inc",
+    "tstep",
+];
+
+/// Names of scalars that give the time of the first sample, lower case.
+const STARTS: [&str; 11] = [
+    "t0",
+    "t_0",
+    "tstart",
+    "t_start",
+    "start",
+    "start_time",
+    "starttime",
+    "start_offset",
+    "wf_start_offset",
+    "x0",
+    "toffset",
+];
 
 /// The sample rate that a scalar's name and value state, Hz.
 fn stated_rate(name: &str, value: &str) -> Option<f64> {
-    const RATES: [&str; 12] = [
-        "fs",
-        "fs_hz",
-        "f_s",
-        "samplerate",
-        "sample_rate",
-        "sample_rate_hz",
-        "samplingrate",
-        "sampling_rate",
-        "sampling_frequency",
-        "samplingfrequency",
-        "sample_frequency",
-        "srate",
-    ];
-    const STEPS: [&str; 4] = ["dt", "dt_s", "delta_t", "deltat"];
     let name = last_part(name).to_lowercase();
+    let (bare, symbol) = units::split_unit(&name);
+    let unit = symbol.map(units::parse_split_unit);
+    let of = |dimension: Dimension| match unit {
+        None => Some(1.0),
+        Some(unit) => unit.filter(|u| u.dimension == dimension).map(|u| u.to_si),
+    };
     let value = value
         .parse::<f64>()
         .ok()
         .filter(|v| v.is_finite() && *v > 0.0)?;
-    if RATES.contains(&name.as_str()) {
-        return Some(value);
-    }
-    STEPS
-        .contains(&name.as_str())
-        .then(|| value.recip())
-        .filter(|rate| rate.is_finite())
+    let rate = if RATES.contains(&bare) {
+        value * of(Dimension::Frequency)?
+    } else {
+        (STEPS.contains(&bare))
+            .then(|| of(Dimension::Time))?
+            .map(|s| (value * s).recip())?
+    };
+    Some(rate).filter(|r| r.is_finite())
+}
+
+/// What scalars state of one array alone.
+#[derive(Default)]
+struct OwnClock {
+    rate_hz: Option<f64>,
+    start_s: Option<f64>,
 }
 
 struct Builder<'t> {
@@ -177,6 +238,8 @@ struct Builder<'t> {
     texts: HashMap<&'t str, &'t str>,
     shared: BTreeMap<String, String>,
     times: Vec<usize>,
+    /// Single numbers by their paths in lower case.
+    scalars: HashMap<String, &'t str>,
 }
 
 impl<'t> Builder<'t> {
@@ -216,6 +279,32 @@ impl<'t> Builder<'t> {
             texts,
             shared,
             times,
+            scalars: scalars(tree),
+        }
+    }
+
+    /// What scalars beside an array in its struct, or those named after it (`x_dt`, `t0_x`), state of it.
+    fn own_clock(&self, name: &str) -> OwnClock {
+        let name = name.to_lowercase();
+        let parent = name.rsplit_once('.').map_or("", |(parent, _)| parent);
+        let find = |key: &str| {
+            let beside = (!parent.is_empty()).then(|| self.scalars.get(&format!("{parent}.{key}")));
+            let named = [
+                format!("{name}_{key}"),
+                format!("{key}_{name}"),
+                format!("{name}.{key}"),
+            ];
+            let named = || named.iter().find_map(|n| self.scalars.get(n));
+            beside.flatten().or_else(named).copied()
+        };
+        let rate = RATES
+            .iter()
+            .chain(&STEPS)
+            .find_map(|key| stated_rate(key, find(key)?));
+        let start = STARTS.iter().find_map(|key| find(key)?.parse::<f64>().ok());
+        OwnClock {
+            rate_hz: rate,
+            start_s: start.filter(|s| s.is_finite()),
         }
     }
 
@@ -287,9 +376,10 @@ impl<'t> Builder<'t> {
                 origins.push(Origin { leaf: *leaf, slice });
             }
         }
-        let is_time = |c: &ChannelInfo| c.samples > 1 && is_time_name(&c.name);
-        let named = channels.iter().position(is_time);
-        let time_axis = named.or_else(|| self.pairs(&origins, &mut channels));
+        timing::own_axes(&mut channels);
+        let named = timing::main_axis(&channels);
+        let pairs = self.pairs(&origins, &mut channels);
+        let time_axis = named.or(pairs);
         self.arranged.datasets.push(DatasetInfo {
             name,
             channels,
@@ -317,6 +407,7 @@ impl<'t> Builder<'t> {
                 continue;
             }
             time.unit = Some("s".to_owned());
+            signal.clock = Clock::Axis(i);
             signal.unit = unit.or(signal.unit.take());
             if let Some(name) = name {
                 signal.name = name;
@@ -353,15 +444,35 @@ impl<'t> Builder<'t> {
             let dims: Vec<String> = leaf.dims.iter().map(u64::to_string).collect();
             properties.insert("shape".into(), dims.join("x"));
         }
+        let own = self.own_clock(&leaf.name);
+        let differs = own
+            .rate_hz
+            .filter(|own| rate.is_none_or(|rate| (own / rate - 1.0).abs() > 1e-9));
+        let (label, in_label) = self.label(&leaf.name).map_or((None, None), |text| {
+            let (label, unit) = name_and_unit(&text);
+            (Some(label), unit)
+        });
+        properties.extend(label.map(|label| ("label".to_owned(), label)));
         ChannelInfo {
-            unit: self.unit(&leaf.name),
+            unit: self.unit(&leaf.name).or(in_label),
             name,
             stored: leaf.stored(),
             samples,
-            sample_rate_hz: rate.filter(|_| samples > 1 && leaf.is_numeric()),
+            sample_rate_hz: differs
+                .or(rate)
+                .filter(|_| samples > 1 && leaf.is_numeric()),
             start_time: None,
+            clock: differs.map_or(Clock::Shared, |_| Clock::Rate),
+            start_s: own.start_s,
             properties,
         }
+    }
+
+    /// The label beside the values of a signal, as Simulink's structures with time have it.
+    fn label(&self, name: &str) -> Option<String> {
+        let parent = name.strip_suffix(".values")?;
+        let label = self.texts.get(format!("{parent}.label").as_str())?;
+        Some(label.trim().to_owned()).filter(|label| !label.is_empty())
     }
 
     /// The unit of an array, where a text beside it states one: `x_unit`, `x_units`, or the

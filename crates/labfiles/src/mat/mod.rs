@@ -1,4 +1,4 @@
-//! MATLAB files of level 4 and level 5 (v4, v5, v6, v7 with compression), in both byte orders.
+//! MATLAB files of level 4 and level 5 (v4, v5, v6, v7 with compression), in both byte orders, and Octave's text.
 //! Level 7.3 is HDF5 and not read here.
 //!
 //! How a file maps to datasets and channels:
@@ -24,6 +24,7 @@ mod contents;
 mod element;
 mod inflate;
 pub(crate) mod names;
+mod octave;
 mod samples;
 #[cfg(test)]
 mod tests;
@@ -42,12 +43,17 @@ use super::source::{ReadError, Source, opened};
 
 /// Whether a file's first bytes (128 or more) are those of a MATLAB file of level 4 or 5.
 pub(crate) fn recognises(head: &[u8]) -> bool {
-    v5::byte_order(head).or(v4::byte_order(head)).is_some()
+    v5::byte_order(head).or(v4::byte_order(head)).is_some() || octave::recognises(head)
 }
 
 /// Open a MATLAB file of level 4 or 5: its variables are found, no samples are read.
 pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
-    let file = FileBytes::open(path)?;
+    let mut file = FileBytes::open(path)?;
+    if octave::recognises(file.all()) {
+        let (tree, bytes) = octave::scan(&file)?;
+        file = file.holding(bytes);
+        return arranged(file, tree);
+    }
     let head = file.all();
     let tree = match (v5::byte_order(head), v4::byte_order(head)) {
         (Some(order), _) => v5::scan(&file, order)?,
@@ -58,24 +64,25 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
             return Err(file.refuse(0, expected, found));
         }
     };
+    arranged(file, tree)
+}
+
+/// The variables found in a file as a source of records.
+fn arranged(file: FileBytes, tree: Tree) -> Result<Box<dyn Source>, ReadError> {
     refuse_if_nothing_left(&file, &tree)?;
     let Arranged {
         datasets,
         origins,
         notes,
     } = arrange::arrange(&tree);
+    let path = file.path().to_path_buf();
     let reader = samples::MatFile::new(file, tree, origins);
-    opened("mat", path, datasets, notes, reader)
+    opened("mat", &path, datasets, notes, reader)
 }
 
 fn refuse_if_nothing_left(file: &FileBytes, tree: &Tree) -> Result<(), ReadError> {
-    match (tree.leaves.is_empty(), tree.refused.first()) {
-        (true, Some((name, kind))) => Err(file.unsupported(
-            0,
-            format!("{kind} '{name}' and nothing else"),
-            "arrays of numbers",
-            "Save full arrays: full(x), or the object's numbers as a struct.",
-        )),
-        _ => Ok(()),
+    match tree.nothing_read() {
+        Some((found, remedy)) => Err(file.unsupported(0, found, "arrays of numbers", remedy)),
+        None => Ok(()),
     }
 }

@@ -428,6 +428,87 @@ fn broken_files_are_refused_at_a_byte() {
 }
 
 #[test]
+fn an_oscilloscopes_interval_and_a_structs_own_start_are_those_of_its_channels() {
+    let long = |name: &str| matrix(name, 4, 1, &[1.0, 2.0, 3.0, 4.0]);
+    let scope = [
+        matrix("Tstart", 1, 1, &[-0.1]),
+        matrix("Tinterval", 1, 1, &[4e-4]),
+        matrix("Length", 1, 1, &[4.0]),
+        long("A"),
+        long("B"),
+    ];
+    let source = opened(&file(&scope, false)).unwrap();
+    let rate = source.datasets()[0].sample_rate_hz().unwrap();
+    assert!((rate - 2500.0).abs() < 1e-9);
+
+    let fields = |t0: f64| {
+        vec![
+            matrix("", 1, 1, &[1e-3]),
+            matrix("", 1, 1, &[t0]),
+            matrix("", 4, 1, &[1.0, 2.0, 3.0, 4.0]),
+        ]
+    };
+    let names = ["dt", "t0", "data"];
+    let apart = [
+        structure("x", &[1, 1], &names, &fields(0.0)),
+        structure("contact", &[1, 1], &names, &fields(0.3)),
+    ];
+    let source = opened(&file(&apart, false)).unwrap();
+    let starts: Vec<_> = source.datasets()[0]
+        .channels
+        .iter()
+        .filter(|c| c.samples > 1)
+        .map(|c| (c.name.as_str(), c.start_s))
+        .collect();
+    assert_eq!(starts, [("x.data", Some(0.0)), ("contact.data", Some(0.3))]);
+}
+
+#[test]
+fn structures_with_time_have_labels_and_their_own_times() {
+    let signal = |label: &str| {
+        structure(
+            "",
+            &[1, 1],
+            &["values", "label"],
+            &[matrix("", 4, 1, &[1.0, 2.0, 3.0, 4.0]), string("", label)],
+        )
+    };
+    let scope = structure(
+        "scope",
+        &[1, 1],
+        &["time", "signals"],
+        &[
+            matrix("", 4, 1, &[0.0, 0.1, 0.2, 0.3]),
+            signal("velocity (m/s)"),
+        ],
+    );
+    let source = opened(&file(&[scope], false)).unwrap();
+    let record = &source.datasets()[0];
+    let values = &record.channels[record.channel_index("scope.signals.values").unwrap()];
+    assert_eq!(values.properties["label"], "velocity");
+    assert_eq!(values.unit.as_deref(), Some("m/s"));
+    assert_eq!(record.time_axis, record.channel_index("scope.time"));
+}
+
+#[test]
+fn what_is_not_read_is_named_with_what_to_save_instead() {
+    let sparse = |name: &str| array(5, &[1, 1], name, &[], false);
+    let all: Vec<Vec<u8>> = (0..9).map(|i| sparse(&format!("s{i}"))).collect();
+    let error = opened(&file(&all, false)).err().unwrap();
+    assert!(
+        error.found.starts_with("sparse 's0', sparse 's1'"),
+        "{error}"
+    );
+    assert!(
+        error
+            .found
+            .ends_with("sparse 's5' and 3 more and nothing else"),
+        "{error}"
+    );
+    assert!(error.remedy.contains("full(S)"), "{error}");
+}
+
+#[test]
 fn deep_nesting_is_refused_without_a_crash() {
     let mut inner = matrix("", 1, 1, &[1.0]);
     for _ in 0..2000 {

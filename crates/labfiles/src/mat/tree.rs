@@ -122,13 +122,59 @@ pub(crate) struct Tree {
     /// What was skipped or assumed.
     pub notes: Vec<String>,
     /// Names of variables that were left out because their kind is not read, with the kind.
-    pub refused: Vec<(String, &'static str)>,
+    pub refused: Vec<(String, String)>,
 }
 
 impl Tree {
     /// What of the file is not read.
     pub(crate) fn left_out(&self) -> impl Iterator<Item = String> {
         let refused = self.refused.iter();
-        refused.map(|(name, kind)| format!("{kind} '{name}' not read"))
+        refused.map(|(name, kind)| format!("{kind} '{name}' not read: {}", remedy(kind)))
+    }
+
+    /// What a file holds of which nothing is read, and what to save instead; `None` where something is read.
+    pub(crate) fn nothing_read(&self) -> Option<(String, String)> {
+        let (_, first) = self.refused.first().filter(|_| self.leaves.is_empty())?;
+        let named = self
+            .refused
+            .iter()
+            .take(NAMED)
+            .map(|(name, kind)| format!("{kind} '{name}'"));
+        let mut found = named.collect::<Vec<_>>().join(", ");
+        if let Some(more) = self.refused.len().checked_sub(NAMED).filter(|n| *n > 0) {
+            found = format!("{found} and {more} more");
+        }
+        let mut kinds: Vec<&str> = vec![first];
+        for (_, kind) in &self.refused {
+            if !kinds.contains(&kind.as_str()) {
+                kinds.push(kind);
+            }
+        }
+        let remedies = kinds.iter().take(3).map(|kind| remedy(kind).to_owned());
+        let mut remedies: Vec<String> = remedies.collect();
+        remedies.dedup();
+        Some((
+            format!("{found} and nothing else"),
+            format!(
+                "Save arrays of numbers or structs of them: {}.",
+                remedies.join("; ")
+            ),
+        ))
+    }
+}
+
+/// Variables that a message names.
+const NAMED: usize = 6;
+
+/// What to save instead of a variable of a kind.
+fn remedy(kind: &str) -> &'static str {
+    match kind {
+        "sparse" => "of a sparse matrix S full(S)",
+        "table" => "of a table T table2struct(T, 'ToScalar', true)",
+        "timetable" => "of a timetable T table2struct(timetable2table(T), 'ToScalar', true)",
+        "datetime" | "duration" => "of times t seconds(t - t(1))",
+        "string" => "of a string s char(s)",
+        "timeseries" => "of a timeseries s s.Time and s.Data",
+        _ => "of an object x the fields that are numbers",
     }
 }

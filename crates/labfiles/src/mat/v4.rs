@@ -120,7 +120,7 @@ fn variable(
     let real = part()?;
     let imaginary = if header.complex { Some(part()?) } else { None };
     if header.kind == 2 {
-        tree.refused.push((header.name, "sparse"));
+        tree.refused.push((header.name, "sparse".to_owned()));
         return Ok(());
     }
     let content = match (header.kind, imaginary) {

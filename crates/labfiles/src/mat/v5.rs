@@ -183,9 +183,11 @@ impl Walker<'_, '_> {
         let class = (flags & 0xff) as u8;
         let (logical, complex) = (flags & 0x200 != 0, flags & 0x800 != 0);
         if class == 17 {
+            let (name, next) = self.name(flags_tag.next, end)?;
             return Ok(Head {
                 class,
-                name: self.name(flags_tag.next, end)?.0,
+                name,
+                next,
                 ..Head::default()
             });
         }
@@ -253,10 +255,13 @@ impl Walker<'_, '_> {
             2 => self.structure(&head, head.next, end, &path),
             3 => self.object(&head, end, &path),
             4 => self.characters(&head, end, &path),
-            5 => self.leave_out(path.name, "sparse"),
+            5 => self.leave_out(path.name, "sparse".to_owned()),
             6..=15 => self.numeric(&head, end, &path),
             16 => self.function(&head, end, &path),
-            17 => self.leave_out(path.name, "opaque object"),
+            17 => {
+                let kind = self.class_of_object(&head, end);
+                self.leave_out(path.name, kind)
+            }
             other => {
                 Err(self
                     .elements
@@ -265,9 +270,19 @@ impl Walker<'_, '_> {
         }
     }
 
-    fn leave_out(&mut self, name: String, kind: &'static str) -> Result<(), ReadError> {
+    fn leave_out(&mut self, name: String, kind: String) -> Result<(), ReadError> {
         self.tree.refused.push((name, kind));
         Ok(())
+    }
+
+    /// The class of an opaque object, after its name and the name of its system of types.
+    fn class_of_object(&mut self, head: &Head, end: u64) -> String {
+        let mut class = || {
+            let (_, next) = self.name(head.next, end).ok()?;
+            Some(self.name(next, end).ok()?.0)
+        };
+        let class = class().filter(|name| !name.is_empty());
+        class.unwrap_or_else(|| "object".to_owned())
     }
 
     /// Check that `children` elements can follow in the bytes left.

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::attribute;
 use crate::parquet::columns::{Columns, Range};
 use crate::parquet::field::Field;
 use crate::source::{ReadError, StoredType};
+use crate::timing::is_time_name;
 
 /// Names of columns that name the record, lower case.
 const RECORD_NAMES: [&str; 9] = [
@@ -101,9 +101,7 @@ fn tidy(
     };
     let named = |f: &Field, names: &[&str]| names.contains(&f.name.to_lowercase().as_str());
     let mut fields = columns.fields.iter();
-    let time = fields
-        .clone()
-        .position(|f| attribute::is_time_name(&f.name));
+    let time = fields.clone().position(|f| is_time_name(&f.name));
     let unit =
         fields.position(|f| named(f, &["unit", "units"]) && f.stored == Some(StoredType::Text));
     let units = unit

@@ -6,8 +6,9 @@
 //!   names, so that records kept as groups of one file have channels of the same names. The
 //!   properties of the file and of the group are the dataset's attributes.
 //! - `unit_string` (else `NI_UnitDescription`) is the unit, 1/`wf_increment` the sample rate
-//!   unless `wf_xunit_string` names another unit than seconds, `wf_start_time` the start. All
+//!   in the unit of time that `wf_xunit_string` names (none of another quantity), `wf_start_time` the start. All
 //!   properties are kept as text.
+//! - `wf_start_time` and `wf_start_offset` state when a channel's first sample was taken.
 //! - `NI_Scale` chains of linear, polynomial and table scales are applied, also to `DAQmx` raw
 //!   data; a channel with another scaling is listed, and reading it is refused by the scaling's
 //!   name. A scaled channel is described as 64-bit floating point, with the raw type as a property.
@@ -32,12 +33,13 @@ use std::sync::Arc;
 use content::{Content, Object};
 use samples::Chunks;
 use scale::{Scaling, ScalingFault};
-use value::{Kind, Value};
+use value::{Kind, Stamp, Value};
 
 use super::bytes::FileBytes;
 use super::source::{
-    ChannelInfo, DatasetInfo, ReadError, Reader, Samples, Source, StoredType, opened,
+    ChannelInfo, Clock, DatasetInfo, ReadError, Reader, Samples, Source, StoredType, opened,
 };
+use super::timing::{StatedUnit, stated_unit};
 
 /// The scaling of a channel, or what of it is not done; shared by channels that inherit it.
 type Scale = Arc<Result<Scaling, ScalingFault>>;
@@ -145,6 +147,9 @@ fn records(file: &FileBytes, content: &Content) -> Result<Records, ReadError> {
         target.channels.push(info);
         channels[dataset].push((index, scale));
     }
+    for (dataset, channels) in datasets.iter_mut().zip(&channels) {
+        state_starts(dataset, channels, content);
+    }
     if let Some((root, _)) = owners.get(&[][..]) {
         share_root(root, &mut datasets, file.size());
     }
@@ -212,7 +217,9 @@ fn info(
         stored: if scaled { StoredType::Float(64) } else { raw },
         samples: object.samples,
         sample_rate_hz: sample_rate(&object.properties),
-        start_time: first.and_then(value::Stamp::iso8601).or(start),
+        start_time: first.and_then(Stamp::iso8601).or(start),
+        clock: Clock::Shared,
+        start_s: None,
         properties,
     })
 }
@@ -224,13 +231,58 @@ fn texts(properties: &BTreeMap<String, Value>) -> BTreeMap<String, String> {
         .collect()
 }
 
-/// 1/`wf_increment` where the abscissa is time.
-fn sample_rate(properties: &BTreeMap<String, Value>) -> Option<f64> {
-    let abscissa = properties
+/// When the first samples of a group's channels were taken, s after the first start that any of them states:
+/// `wf_start_time` and `wf_start_offset` together.
+fn state_starts(dataset: &mut DatasetInfo, channels: &[(usize, Scale)], content: &Content) {
+    let properties = channels
+        .iter()
+        .map(|(object, _)| &content.objects[*object].properties);
+    let starts: Vec<Start> = properties.map(Start::of).collect();
+    let origin = starts.iter().find_map(|s| s.stamp);
+    for (channel, start) in dataset.channels.iter_mut().zip(starts) {
+        let after = |origin| start.stamp.map(|stamp| stamp.seconds_since(origin));
+        let known = match origin {
+            Some(origin) => after(origin).map(|s| s + start.offset_s.unwrap_or(0.0)),
+            None => start.offset_s,
+        };
+        channel.start_s = known.filter(|s| s.is_finite() && channel.sample_rate_hz.is_some());
+    }
+}
+
+/// What a channel's properties state of its start.
+struct Start {
+    stamp: Option<Stamp>,
+    offset_s: Option<f64>,
+}
+
+impl Start {
+    fn of(properties: &BTreeMap<String, Value>) -> Self {
+        let stamp = match properties.get("wf_start_time") {
+            Some(Value::Time(stamp)) => Some(*stamp).filter(|s| s.seconds != 0),
+            _ => None,
+        };
+        let offset = properties.get("wf_start_offset").and_then(Value::number);
+        let offset_s = offset.zip(abscissa_s(properties)).map(|(n, unit)| n * unit);
+        Self { stamp, offset_s }
+    }
+}
+
+/// Seconds in the unit of the abscissa; `None` where it is not time.
+fn abscissa_s(properties: &BTreeMap<String, Value>) -> Option<f64> {
+    let text = properties
         .get("wf_xunit_string")
         .map(Value::text)
         .unwrap_or_default();
+    match stated_unit(Some(&text), "") {
+        StatedUnit::Known(unit) => Some(unit.to_si),
+        StatedUnit::Nothing => Some(1.0),
+        StatedUnit::Other(_) => None,
+    }
+}
+
+/// 1/`wf_increment` where the abscissa is time.
+fn sample_rate(properties: &BTreeMap<String, Value>) -> Option<f64> {
     let increment = properties.get("wf_increment").and_then(Value::number)?;
-    let rate = increment.recip();
-    (matches!(abscissa.as_str(), "" | "s") && rate.is_finite() && rate > 0.0).then_some(rate)
+    let rate = (increment * abscissa_s(properties)?).recip();
+    (rate.is_finite() && rate > 0.0).then_some(rate)
 }

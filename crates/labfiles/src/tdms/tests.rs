@@ -477,6 +477,32 @@ fn device_data_in_two_buffers_with_a_scale() {
 }
 
 #[test]
+fn channels_of_a_group_state_when_they_begin() {
+    let w = LITTLE;
+    let channel = |name: &str, stamp: i64, offset: f64, step: f64, unit: &str| {
+        let properties = [
+            w.property("wf_start_time", &Property::Time(stamp, 0)),
+            w.property("wf_start_offset", &Property::Float(offset)),
+            w.property("wf_increment", &Property::Float(step)),
+            w.property("wf_xunit_string", &Property::Text(unit)),
+        ];
+        w.object(&format!("/'run'/'{name}'"), w.index(10, 2), &properties)
+    };
+    let objects = [
+        w.object("/'run'", none(w), &[]),
+        channel("x", 3_800_000_000, 0.0, 1e-3, ""),
+        channel("late", 3_800_000_001, 0.25, 1e-3, "s"),
+        channel("in ms", 3_800_000_000, 300.0, 1.0, "ms"),
+        w.object("/'run'/'bare'", w.index(10, 2), &[]),
+    ];
+    let source = opened(&w.segment(NEW, &objects, &w.f64s(&[0.0; 8]))).unwrap();
+    let channels = &source.datasets()[0].channels;
+    let starts: Vec<Option<f64>> = channels.iter().map(|c| c.start_s).collect();
+    assert_eq!(starts, [Some(0.0), Some(1.25), Some(0.3), None]);
+    assert!((channels[2].sample_rate_hz.unwrap() - 1000.0).abs() < 1e-9);
+}
+
+#[test]
 fn digital_lines() {
     let w = LITTLE;
     let line = |bit: u32| device_index(w, true, 3, &[[0, 0, bit, 0]], &[1]);

@@ -1,7 +1,7 @@
 //! Reading text files in blocks of whole lines: what CSV and LVM share.
 //!
-//! A file is never held whole, except one in UTF-16 or with lines ended by carriage returns alone, which
-//! is transcoded once.
+//! A file is never held whole, except one in UTF-16 or one with lines ended by carriage returns alone, be
+//! they all or some, which is transcoded once.
 
 pub(crate) mod cells;
 pub(crate) mod clock;
@@ -56,9 +56,7 @@ impl TextFile {
         }
         if text.ends_lines_by_returns()? {
             let mut bytes = text.range(0, to_usize(text.length))?;
-            for byte in bytes.iter_mut().filter(|b| **b == b'\r') {
-                *byte = b'\n';
-            }
+            end_lines_alike(&mut bytes);
             text.backing = Backing::Memory(bytes);
         }
         Ok(text)
@@ -74,11 +72,11 @@ impl TextFile {
         }
     }
 
-    /// Whether lines end by carriage returns alone, as old Macintosh programs wrote them.
+    /// Whether a line at the front ends by a carriage return alone, as old Macintosh programs and some
+    /// instruments write them; [`table::count_rows`] refuses a later one.
     fn ends_lines_by_returns(&self) -> Result<bool, ReadError> {
         let front = self.range(0, BLOCK_BYTES)?;
-        let returns = memchr::memchr(b'\r', &front).is_some();
-        Ok(returns && memchr::memchr(b'\n', &front).is_none())
+        Ok(lone_return(&front).is_some())
     }
 
     /// The file's path.
@@ -174,6 +172,22 @@ impl TextFile {
             "Check that the file is a text table and that its quotes are closed.",
         )
         .at(at)
+    }
+}
+
+/// Place of the first carriage return before something else than a line feed; the last byte is not judged.
+pub(crate) fn lone_return(bytes: &[u8]) -> Option<usize> {
+    memchr::memchr_iter(b'\r', bytes).find(|&i| bytes.get(i + 1).is_some_and(|next| *next != b'\n'))
+}
+
+/// Make a line feed of each carriage return that has none after it.
+fn end_lines_alike(bytes: &mut [u8]) {
+    let mut from = 0;
+    while let Some(at) = memchr::memchr(b'\r', &bytes[from..]).map(|i| from + i) {
+        if bytes.get(at + 1) != Some(&b'\n') {
+            bytes[at] = b'\n';
+        }
+        from = at + 1;
     }
 }
 

@@ -129,6 +129,65 @@ fn slow(bytes: &[u8], decimal: u8) -> Option<f64> {
     std::str::from_utf8(text).ok()?.parse().ok()
 }
 
+/// Marks between groups of three digits.
+const GROUP_MARKS: [char; 8] = [
+    '.', ',', ' ', '\u{a0}', '\u{202f}', '\u{2009}', '\'', '\u{2019}',
+];
+
+/// A number whose thousands are separated, as `1.234,56` in a table with decimal commas, and whether it has a
+/// decimal part; without one the mark could be the decimal one of another table.
+pub(crate) fn parse_grouped(cell: &[u8], decimal: u8) -> Option<(f64, bool)> {
+    let text = crate::text::decode(cell.trim_ascii());
+    let body = text.strip_prefix(['-', '+', '\u{2212}']).unwrap_or(&text);
+    let (whole, fraction) = match body.split_once(char::from(decimal)) {
+        Some((whole, fraction)) => (whole, Some(fraction)),
+        None => (body, None),
+    };
+    let mark = whole.chars().find(|c| !c.is_ascii_digit())?;
+    let digits = |s: &str| s.bytes().all(|b| b.is_ascii_digit());
+    let mut groups = whole.split(mark);
+    groups
+        .next()
+        .filter(|g| (1..=3).contains(&g.len()) && !g.starts_with('0'))?;
+    let known = GROUP_MARKS.contains(&mark) && mark != char::from(decimal);
+    if !known || !groups.all(|g| g.len() == 3 && digits(g)) || !fraction.is_none_or(digits) {
+        return None;
+    }
+    let plain: String = whole.chars().filter(|c| *c != mark).collect();
+    let value: f64 = format!("{plain}.{}", fraction.unwrap_or("0"))
+        .parse()
+        .ok()?;
+    let negative = text.starts_with(['-', '\u{2212}']);
+    Some((if negative { -value } else { value }, fraction.is_some()))
+}
+
+/// How the numbers of a table are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Notation {
+    /// The decimal mark.
+    pub decimal: u8,
+    /// Whether a mark between groups of three digits separates thousands, also where no decimal mark shows it.
+    pub groups: bool,
+}
+
+impl Notation {
+    /// Numbers with a decimal mark whose thousands are not separated, or are where both marks show it.
+    pub(crate) fn plain(decimal: u8) -> Self {
+        Self {
+            decimal,
+            groups: false,
+        }
+    }
+
+    /// A cell as a number, as [`parse_cell`], also with its thousands separated.
+    pub(crate) fn parse(self, cell: &[u8]) -> Option<f64> {
+        parse_cell(cell, self.decimal).or_else(|| {
+            let (value, both) = parse_grouped(cell, self.decimal)?;
+            (both || self.groups).then_some(value)
+        })
+    }
+}
+
 /// Tokens by which instruments state that there is no number.
 const MISSING: [&str; 14] = [
     "", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---", "?", "*", "1.#qnan", "1.#ind",
@@ -165,6 +224,30 @@ pub(crate) fn parse_cell(cell: &[u8], decimal: u8) -> Option<f64> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn thousands_are_separated_where_all_groups_are_whole() {
+        let of = |text: &str, decimal| parse_grouped(text.as_bytes(), decimal);
+        assert_eq!(of("-2.387,95", b','), Some((-2387.95, true)));
+        assert_eq!(of("1,234,567.5", b'.'), Some((1_234_567.5, true)));
+        assert_eq!(of("1\u{a0}234,5", b','), Some((1234.5, true)));
+        assert_eq!(of("12'345.25", b'.'), Some((12_345.25, true)));
+        assert_eq!(of("2.388", b','), Some((2388.0, false)));
+        for text in [
+            "0.001",
+            "12.34",
+            "1.2345",
+            "1.234.56",
+            "1234.567",
+            "1..234",
+            "a.123",
+            "1.234,5e2",
+        ] {
+            assert_eq!(of(text, b','), None, "{text}");
+        }
+        assert_eq!(Notation::plain(b',').parse(b"2.388"), None);
+        assert_eq!(Notation::plain(b',').parse(b"2.388,5"), Some(2388.5));
+    }
 
     #[test]
     fn numbers_as_instruments_print_them() {

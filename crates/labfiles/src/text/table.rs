@@ -3,7 +3,8 @@
 use crate::source::{ReadError, Samples};
 use crate::text::cells::{Cells, Lines, Separator, decode_cell, is_row, line_at};
 use crate::text::clock::{self, Stamp};
-use crate::text::{TextFile, decode, number};
+use crate::text::number::{self, Notation};
+use crate::text::{TextFile, decode, lone_return};
 
 /// How the cells of a column are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,8 +22,8 @@ pub(crate) enum Kind {
 pub(crate) struct Layout {
     /// The separator between two cells.
     pub separator: Separator,
-    /// The decimal mark.
-    pub decimal: u8,
+    /// How its numbers are written.
+    pub notation: Notation,
     /// The kinds of the columns.
     pub kinds: Vec<Kind>,
     /// Names of the columns, for messages.
@@ -140,8 +141,11 @@ struct Fault {
 
 impl Fault {
     fn error(self, text: &TextFile, layout: &Layout, row: usize, position: u64) -> ReadError {
+        let mark = char::from(layout.notation.decimal);
         let expected = match layout.kinds.get(self.column) {
-            Some(Kind::Number) => "a number or an empty cell".to_owned(),
+            Some(Kind::Number) => {
+                format!("a number with the decimal mark '{mark}', or an empty cell")
+            }
             Some(Kind::Time) => "a point in time as in the rows before".to_owned(),
             _ => format!("{} cells in a row", layout.kinds.len()),
         };
@@ -181,7 +185,7 @@ fn plain_cells(block: &[u8], mut at: usize, layout: &Layout, columns: &mut [Colu
     for (done, column) in columns.iter_mut().enumerate() {
         let other = Plain { done, next: None };
         let (value, end) = match column {
-            Column::Number(_) => match number_cell(block, at, layout.decimal) {
+            Column::Number(_) => match number_cell(block, at, layout.notation.decimal) {
                 Some(read) => read,
                 None => return other,
             },
@@ -304,7 +308,7 @@ fn push(column: &mut Column, cell: &[u8], layout: &Layout) -> Option<()> {
     match column {
         Column::Skip => {}
         Column::Number(values) => {
-            values.push(number::parse_cell(cell, layout.decimal)?);
+            values.push(layout.notation.parse(cell)?);
         }
         Column::Time(times) => times.push(cell, layout.month_first)?,
         Column::Text(values) => values.push(decode_cell(cell)),
@@ -351,7 +355,21 @@ pub(crate) fn refuse_ragged(
     ))
 }
 
+/// A line that a carriage return alone ends, far behind the front of a file whose lines end otherwise.
+fn mixed_line_ends(text: &TextFile, row: u64, at: u64) -> ReadError {
+    ReadError::new(
+        text.path(),
+        "lines that all end alike",
+        format!("a carriage return without a line feed in row {}", row + 1),
+        "Save the file again with one kind of line ends.",
+    )
+    .at(at)
+}
+
 /// Count the rows of a table and find where the last begins.
+///
+/// # Errors
+/// If the file cannot be read, or a line ends by a carriage return alone.
 pub(crate) fn count_rows(
     text: &TextFile,
     layout: &Layout,
@@ -363,6 +381,9 @@ pub(crate) fn count_rows(
             let position = offset + at as u64;
             if position >= layout.end {
                 break;
+            }
+            if let Some(at) = lone_return(line).filter(|_| !layout.quotes) {
+                return Err(mixed_line_ends(text, rows, position + at as u64));
             }
             if is_row(line, layout.comments) {
                 rows += 1;

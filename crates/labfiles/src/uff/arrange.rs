@@ -6,7 +6,7 @@ use super::header::{Freedom, Header};
 use super::samples::{self, Side};
 use super::sets::{Function, Sets};
 use crate::bytes::FileBytes;
-use crate::source::{ChannelInfo, DatasetInfo, StoredType};
+use crate::source::{ChannelInfo, Clock, DatasetInfo, StoredType};
 
 /// The datasets of a file and the origins of their channels.
 pub(super) type Arranged = (Vec<DatasetInfo>, Vec<Vec<(usize, Side)>>);
@@ -28,6 +28,9 @@ fn same_abscissa(
     known: &mut Option<Vec<f64>>,
 ) -> bool {
     let (x, y) = (&first.header, &other.header);
+    if x.even && y.even && x.over_time() && y.over_time() {
+        return overlap(first, other);
+    }
     let alike = x.even == y.even && first.samples == other.samples && x.axes[0] == y.axes[0];
     if x.even || !alike {
         return alike && x.start == y.start && x.increment == y.increment;
@@ -39,7 +42,20 @@ fn same_abscissa(
     known.is_some() && *known == read(other)
 }
 
-/// Group functions that follow each other with the same abscissa; a channel that comes again with
+/// Whether two functions at even times have half of the time of the shorter in common: they then belong to
+/// one record, even where one begins later or has another rate.
+fn overlap(first: &Function, other: &Function) -> bool {
+    let span = |f: &Function| {
+        let unit = f.header.abscissa_s();
+        let length = f.samples as f64 * f.header.increment;
+        (f.header.start * unit, length * unit)
+    };
+    let ((x, long), (y, short)) = (span(first), span(other));
+    let common = (x + long).min(y + short) - x.max(y);
+    common >= 0.5 * long.min(short) && common > 0.0
+}
+
+/// Group functions that follow each other with the same abscissa, or at the same time; a channel that comes again with
 /// the same names, or at another time or load case, begins the next record.
 fn group(file: &FileBytes, functions: &[Function]) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
@@ -161,6 +177,8 @@ fn abscissa(function: &Function) -> ChannelInfo {
         samples: function.samples,
         sample_rate_hz: None,
         start_time: header.start_time(),
+        clock: Clock::Shared,
+        start_s: None,
         properties: BTreeMap::new(),
     }
 }
@@ -191,6 +209,8 @@ fn ordinate(sets: &Sets, function: &Function, name: String) -> ChannelInfo {
         samples: function.samples,
         sample_rate_hz: timed.then_some(rate),
         start_time: header.start_time(),
+        clock: Clock::Shared,
+        start_s: timed.then(|| header.start_s()),
         properties: header.properties(),
     }
 }

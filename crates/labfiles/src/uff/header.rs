@@ -188,9 +188,19 @@ impl Header {
 
     /// Samples per second, Hz, of an even abscissa of time; in s if it states no other unit.
     pub(super) fn sample_rate_hz(&self) -> f64 {
+        (self.increment * self.abscissa_s()).recip()
+    }
+
+    /// The first abscissa, s, of an even one of time.
+    pub(super) fn start_s(&self) -> f64 {
+        self.start * self.abscissa_s()
+    }
+
+    /// Seconds in the unit of an abscissa of time.
+    pub(super) fn abscissa_s(&self) -> f64 {
         let unit = self.axes[0].unit.as_deref().and_then(parse_unit);
         let unit = unit.filter(|u| u.dimension == Dimension::Time);
-        (self.increment * unit.map_or(1.0, |u| u.to_si)).recip()
+        unit.map_or(1.0, |u| u.to_si)
     }
 
     /// The third line as ISO 8601, if it is a date such as `18-Apr-16 13:49:58`.

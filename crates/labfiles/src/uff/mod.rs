@@ -36,7 +36,10 @@ use super::source::{ReadError, Reader, Samples, Source, opened};
 
 /// Whether a file's first line is the mark that begins a set: `    -1`.
 pub(crate) fn recognises(head: &[u8]) -> bool {
-    let line = head.split(|&b| b == b'\n').next().unwrap_or(&[]);
+    let line = head
+        .split(|b| matches!(b, b'\n' | b'\r'))
+        .next()
+        .unwrap_or(&[]);
     sets::is_mark(line)
 }
 

@@ -100,9 +100,11 @@ impl<'a> Scanner<'a> {
         if rest.is_empty() {
             return None;
         }
-        let end = memchr::memchr(b'\n', rest);
-        self.at = end.map_or(self.file.all().len(), |end| at + end + 1);
-        Some((at, &rest[..end.unwrap_or(rest.len())]))
+        let end = memchr::memchr2(b'\n', b'\r', rest);
+        let end = end.unwrap_or(rest.len());
+        let both = rest[end..].starts_with(b"\r\n");
+        self.at = (at + end + 1 + usize::from(both)).min(self.file.all().len());
+        Some((at, &rest[..end]))
     }
 
     /// A set, after the mark that begins it.

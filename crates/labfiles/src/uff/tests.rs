@@ -418,6 +418,40 @@ fn records_begin_where_a_channel_comes_again() {
 }
 
 /// Two records of two channels; second lines and load cases as given.
+#[test]
+fn functions_that_begin_later_are_channels_of_one_record() {
+    let text = |name, start: &str| {
+        let bytes = sweep(name, &[1.0; 8]).ascii();
+        let text = String::from_utf8(bytes).unwrap();
+        text.replacen(
+            "  0.00000E+00  2.50000E-01",
+            &format!("  {start}  2.50000E-01"),
+            1,
+        )
+    };
+    let bytes = text("x", "0.00000E+00") + &text("contact", "5.00000E-01");
+    let source = opened(bytes.as_bytes()).unwrap();
+    assert_eq!(source.datasets().len(), 1);
+    let starts: Vec<_> = source.datasets()[0]
+        .channels
+        .iter()
+        .map(|c| c.start_s)
+        .collect();
+    assert_eq!(starts, [Some(0.0), Some(0.5)]);
+    // functions of unlike times are records
+    let bytes = text("x", "0.00000E+00") + &text("contact", "5.00000E+01");
+    assert_eq!(opened(bytes.as_bytes()).unwrap().datasets().len(), 2);
+    // lines may end by carriage returns alone
+    let returns = text("x", "0.00000E+00").replace('\n', "\r");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("old.uff");
+    std::fs::write(&path, returns).unwrap();
+    assert_eq!(
+        crate::open(&path).unwrap().datasets()[0].channels[0].samples,
+        8
+    );
+}
+
 fn two_records(names: [&str; 4], cases: [i64; 4]) -> Vec<u8> {
     let functions = names.into_iter().zip(cases).enumerate();
     let one = |(index, (name, case)): (usize, (&str, i64))| {

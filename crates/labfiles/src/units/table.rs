@@ -110,6 +110,8 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("ms", Dimension::Time, 1e-3),
     ("us", Dimension::Time, 1e-6),
     ("µs", Dimension::Time, 1e-6),
+    ("μs", Dimension::Time, 1e-6),
+    ("ns", Dimension::Time, 1e-9),
     ("min", Dimension::Time, 60.0),
     ("kg", Dimension::Mass, 1.0),
     ("gram", Dimension::Mass, 1e-3),
@@ -118,6 +120,7 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("°", Dimension::Angle, std::f64::consts::PI / 180.0),
     ("1", Dimension::Number, 1.0),
     ("%", Dimension::Number, 1e-2),
+    ("ppm", Dimension::Number, 1e-6),
 ];
 
 /// The unit of a symbol; surrounding blanks are ignored, letters keep their case (`mN` is not

@@ -21,7 +21,7 @@ use chunks::{Format, Wave};
 
 use super::bytes::FileBytes;
 use super::numbers::{self, ByteOrder, Number, Spacing};
-use super::source::{ChannelInfo, DatasetInfo, ReadError, Reader, Samples, Source, opened};
+use super::source::{ChannelInfo, Clock, DatasetInfo, ReadError, Reader, Samples, Source, opened};
 use crate::bytes::to_usize;
 
 /// Whether a file's first bytes are those of a WAV file.
@@ -73,6 +73,8 @@ fn channel(wave: &Wave, k: u16) -> ChannelInfo {
         samples: wave.samples,
         sample_rate_hz: Some(f64::from(format.rate)),
         start_time: wave.start_time.clone(),
+        clock: Clock::Shared,
+        start_s: None,
         properties,
     }
 }

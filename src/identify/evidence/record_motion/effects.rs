@@ -1,6 +1,7 @@
 //! Change of a record's values by effects that act as a small extra acceleration along the orbit.
 
 use super::{ChannelMotion, Measured, MotionPoints, RecordMotion, measured};
+use crate::identify::evidence::pickup::Pickups;
 use crate::identify::evidence::waveform::Terms;
 use crate::identify::fit::effect::Effect;
 use impact_oscillator::model::params::Oscillator;
@@ -42,6 +43,17 @@ impl RecordMotion<'_> {
             together.iter().copied().zip(changes)
         });
         changes.collect()
+    }
+
+    /// What all points show of what a channel picks up from the drive, per unit of an effect's strength.
+    pub fn picked_up(&self, points: &MotionPoints<'_>, effect: Effect, of: &Pickups) -> Vec<f64> {
+        let channels = self.channels.iter().zip(points.times());
+        let values = channels.flat_map(|(channel, times)| {
+            let unit = of.unit(effect, channel.role) * self.record.drive_amplitude;
+            let phases = times.iter().map(|time| self.orbit.phase + self.eta * time);
+            phases.map(move |phase| unit * phase.cos())
+        });
+        values.collect()
     }
 
     fn course(&self) -> Course {

@@ -97,6 +97,8 @@ fn source(source: Source, locale: Locale<'_>) -> String {
         Source::Stated { coordinate, .. } => name(coordinate, locale),
         Source::FirstOrder => locale.translate(Phrase::BeyondFirstOrder),
         Source::BetweenMethods => locale.translate(Phrase::DisagreementOfMethods),
+        Source::Clock => locale.translate(Phrase::ClockOfSampler),
+        Source::InstrumentOff => locale.translate(Phrase::InstrumentThatIsOff),
     }
 }
 
@@ -107,9 +109,13 @@ pub fn budget_source(of: Source) -> String {
 
 /// The standard uncertainty of a source in its own unit.
 fn stated(row: &Row, locale: Locale<'_>) -> String {
-    let (Some(u), Source::Stated { coordinate, .. }) = (row.standard_uncertainty, row.source)
-    else {
+    let Some(u) = row.standard_uncertainty else {
         return "–".into();
+    };
+    let coordinate = match row.source {
+        Source::Stated { coordinate, .. } => coordinate,
+        Source::Clock => return format!("{} ppm", locale.significant(1e6 * u, 2)),
+        _ => return "–".into(),
     };
     let (factor, unit) = match coordinate {
         Coordinate::ScrewZero | Coordinate::Gap(_) => (1e3, "µm"),

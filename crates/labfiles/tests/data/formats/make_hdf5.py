@@ -46,6 +46,13 @@ with h5py.File("rows_and_time.h5", "w") as f:
     g["data"] = np.stack([x, y], axis=1)
     g["names"] = ["a", "b"]
 
+# One channel, samples x 1, with its name and the setting.
+with h5py.File("one_channel.h5", "w") as f:
+    d = f.create_dataset("record_01/signals", data=x[:, None])
+    d.attrs["channels"] = ["position"]
+    d.attrs["sample_rate_hz"] = 2000.0
+    d.attrs["frequency_hz"] = 12.5
+
 # A table of named fields, and three dimensions: records x samples x channels.
 with h5py.File("fields_and_cube.h5", "w") as f:
     rows = np.zeros(n, dtype=[("t", "f8"), ("n", "i4"), ("tag", "S4"), ("v", "f4")])

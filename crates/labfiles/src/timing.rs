@@ -1,0 +1,544 @@
+//! What names, units and values state of time: which column holds it, and in which unit.
+
+use crate::source::{ChannelInfo, Clock, StoredType};
+use crate::units::{Dimension, Unit, parse_quantity_of, parse_unit, symbol_of};
+
+/// First words of the names of time axes, lower case.
+const FIRST_WORDS: [&str; 9] = [
+    "t", "zeit", "temps", "tempo", "tiempo", "čas", "cas", "elapsed", "date",
+];
+
+/// Words that make a name that of a time axis wherever they stand.
+const WORDS: [&str; 5] = ["time", "zeit", "timestamp", "zeitstempel", "epoch"];
+
+/// Words of time stamps that count from 1970.
+const EPOCHS: [&str; 5] = ["timestamp", "zeitstempel", "epoch", "unix", "posix"];
+
+/// Units below a second, spelled out, and their lengths in s.
+const SPELLED: [(&str, f64); 17] = [
+    ("milliseconds", 1e-3),
+    ("millisekunden", 1e-3),
+    ("millisecond", 1e-3),
+    ("millisec", 1e-3),
+    ("millis", 1e-3),
+    ("msecs", 1e-3),
+    ("msec", 1e-3),
+    ("microseconds", 1e-6),
+    ("mikrosekunden", 1e-6),
+    ("microsecond", 1e-6),
+    ("microsec", 1e-6),
+    ("micros", 1e-6),
+    ("usecs", 1e-6),
+    ("usec", 1e-6),
+    ("nanoseconds", 1e-9),
+    ("nanos", 1e-9),
+    ("nsec", 1e-9),
+];
+
+/// Units of a second and longer, spelled out.
+const LONG: [(&str, f64); 12] = [
+    ("seconds", 1.0),
+    ("second", 1.0),
+    ("secs", 1.0),
+    ("sec", 1.0),
+    ("sekunden", 1.0),
+    ("secondes", 1.0),
+    ("minutes", 60.0),
+    ("minuten", 60.0),
+    ("min", 60.0),
+    ("hours", 3600.0),
+    ("stunden", 3600.0),
+    ("h", 3600.0),
+];
+
+/// Symbols of units below and at a second.
+const SYMBOLS: [(&str, f64); 6] = [
+    ("s", 1.0),
+    ("ms", 1e-3),
+    ("us", 1e-6),
+    ("µs", 1e-6),
+    ("μs", 1e-6),
+    ("ns", 1e-9),
+];
+
+fn of_time(to_si: f64) -> Unit {
+    Unit {
+        dimension: Dimension::Time,
+        to_si,
+    }
+}
+
+fn in_table(table: &[(&str, f64)], word: &str) -> Option<Unit> {
+    let found = table.iter().find(|(name, _)| *name == word);
+    found.map(|(_, to_si)| of_time(*to_si))
+}
+
+/// The words of a name in lower case, also those of `timeMs`.
+fn whole_words(name: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut lower = false;
+    for letter in name.chars() {
+        if !letter.is_alphanumeric() || (lower && letter.is_uppercase()) {
+            words.push(String::new());
+        }
+        if let Some(word) = words.last_mut().filter(|_| letter.is_alphanumeric()) {
+            word.extend(letter.to_lowercase());
+        }
+        lower = letter.is_lowercase();
+    }
+    words.retain(|w| !w.is_empty());
+    words
+}
+
+/// The words of a name with digits at their ends cut off.
+fn words(name: &str) -> Vec<String> {
+    let bare = |word: String| match without_digits(&word) {
+        // t1 is a temperature as well
+        short if short.len() > 1 => short.to_owned(),
+        _ => word,
+    };
+    whole_words(name).into_iter().map(bare).collect()
+}
+
+fn without_digits(word: &str) -> &str {
+    word.trim_end_matches(|c: char| c.is_ascii_digit())
+}
+
+/// Whether a name is that of a time axis: `t`, `Time (Run 1)`, `Zeit`, `timestamp`, `millis`, `t_us` ….
+pub fn is_time_name(name: &str) -> bool {
+    let words = words(name);
+    let Some(first) = words.first() else {
+        return false;
+    };
+    let spelled = |w: &String| in_table(&SPELLED, w).is_some();
+    let known = |w: &String| WORDS.contains(&w.as_str()) || spelled(w) || glued(w).is_some();
+    let alone = words.len() == 1
+        && (in_table(&LONG[..6], first).is_some()
+            || ["ms", "us", "µs", "μs"].contains(&first.as_str()));
+    let since = words.get(1).is_some_and(|w| w == "since") && unit_of_symbol(first).is_some();
+    FIRST_WORDS.contains(&first.as_str())
+        || words.iter().any(known)
+        || alone
+        || since
+        || name.trim().eq_ignore_ascii_case("x_value")
+}
+
+/// `timems`, `tms`: a word of time and a unit below a second in one.
+fn glued(word: &str) -> Option<Unit> {
+    let unit = ["timestamp", "time", "zeit", "t"]
+        .iter()
+        .find_map(|time| word.strip_prefix(time))?;
+    let short = ["ms", "us", "µs", "μs"].contains(&unit);
+    in_table(&SPELLED, unit).or_else(|| unit_of_symbol(unit).filter(|_| short))
+}
+
+fn unit_of_symbol(word: &str) -> Option<Unit> {
+    in_table(&SYMBOLS, word)
+}
+
+/// The unit of time that a text such as `ms`, `msec`, `Milliseconds`, `1e-3 s` or `10^-3 s` is.
+fn unit_of_text(text: &str) -> Option<Unit> {
+    let text = text.trim();
+    let known = parse_unit(text).filter(|u| u.dimension == Dimension::Time);
+    let lower = text.to_lowercase();
+    let power = lower
+        .replace("10^", "1e")
+        .replace("10⁻³", "1e-3")
+        .replace("10⁻⁶", "1e-6");
+    known
+        .or_else(|| in_table(&SPELLED, &lower))
+        .or_else(|| in_table(&LONG, &lower))
+        .or_else(|| unit_of_symbol(&lower))
+        .or_else(|| {
+            let scaled = parse_quantity_of(&power, Dimension::Time).ok();
+            scaled.filter(|s| *s > 0.0).map(of_time)
+        })
+}
+
+/// The unit of time in a name: spelled out anywhere (`millis since start`), or its symbol at the end, in
+/// brackets or before `since` (`time_ms`, `Time (ms) Run 1`, `tMs`).
+fn unit_in_name(name: &str) -> Option<Unit> {
+    let in_brackets = name.split(['(', '[', '{', '<']).skip(1);
+    let mut in_brackets = in_brackets.filter_map(|rest| rest.split([')', ']', '}', '>']).next());
+    if let Some(unit) = in_brackets.find_map(unit_of_text) {
+        return Some(unit);
+    }
+    let words = words(name);
+    let spelled = words
+        .iter()
+        .find_map(|w| in_table(&SPELLED, w).or_else(|| glued(w)));
+    let long = || words.iter().find_map(|w| in_table(&LONG, w));
+    let last = || {
+        words
+            .last()
+            .filter(|_| words.len() > 1)
+            .and_then(|w| unit_of_symbol(w))
+    };
+    let first = || {
+        let since = words.len() == 1 || words.get(1).is_some_and(|w| w == "since");
+        let symbol = words.first().filter(|w| since && w.chars().count() > 1);
+        symbol.and_then(|w| unit_of_symbol(w))
+    };
+    spelled.or_else(last).or_else(first).or_else(long)
+}
+
+/// Whether a text is a unit of time.
+pub(crate) fn is_unit_of_time(text: &str) -> bool {
+    unit_of_text(text).is_some()
+}
+
+/// What is stated of the unit of a time axis.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum StatedUnit {
+    /// A unit of time.
+    Known(Unit),
+    /// A unit that is none of time, or unknown.
+    Other(String),
+    /// None.
+    Nothing,
+}
+
+/// The unit that a time axis states: as its unit, else in its name.
+pub(crate) fn stated_unit(unit: Option<&str>, name: &str) -> StatedUnit {
+    match unit.map(str::trim).filter(|u| !u.is_empty()) {
+        Some(text) => match unit_of_text(text) {
+            Some(unit) => StatedUnit::Known(unit),
+            None => StatedUnit::Other(text.to_owned()),
+        },
+        None => unit_in_name(name).map_or(StatedUnit::Nothing, StatedUnit::Known),
+    }
+}
+
+/// The unit of a time axis, as it is stated, or as its values leave it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum AxisUnit {
+    /// As its unit or its name states.
+    Stated(Unit),
+    /// A time stamp that counts from 1970 in this unit.
+    Epoch(Unit),
+    /// None is stated: seconds.
+    Seconds,
+    /// None is stated, and the numbers may be of any: the first and the usual step.
+    Undetermined {
+        /// The first number.
+        first: f64,
+        /// The usual step from one to the next.
+        step: f64,
+    },
+    /// What is stated is no unit of time.
+    Other(String),
+}
+
+impl AxisUnit {
+    /// Of an axis with its unit, its name and its values.
+    ///
+    /// ```
+    /// use labfiles::timing::AxisUnit;
+    /// let seconds = |unit, name, values: &[f64]| AxisUnit::of(unit, name, values).seconds();
+    /// assert_eq!(seconds(Some("ms"), "Time", &[0.0, 1.0]), Some(1e-3));
+    /// assert_eq!(seconds(None, "elapsed_millis", &[0.0, 1.0]), Some(1e-3));
+    /// assert_eq!(seconds(None, "timestamp", &[1_486_512_345_678.0]), Some(1e-3));
+    /// assert_eq!(seconds(None, "Time", &[0.0, 0.5]), Some(1.0));
+    /// assert_eq!(seconds(None, "Time", &[0.0, 10.0, 20.0]), None);
+    /// ```
+    pub fn of(unit: Option<&str>, name: &str, values: &[f64]) -> Self {
+        let first = values.iter().copied().find(|v| v.is_finite());
+        match stated_unit(unit, name) {
+            StatedUnit::Known(unit) => Self::Stated(unit),
+            StatedUnit::Other(text) => Self::Other(text),
+            StatedUnit::Nothing => match first.and_then(|first| epoch_unit(name, first)) {
+                Some(unit) => Self::Epoch(unit),
+                None if is_undetermined(values) => Self::Undetermined {
+                    first: first.unwrap_or(f64::NAN),
+                    step: crate::rate::median_step(values).unwrap_or(f64::NAN),
+                },
+                None => Self::Seconds,
+            },
+        }
+    }
+
+    /// Seconds in the unit; `None` where it is not known.
+    pub fn seconds(&self) -> Option<f64> {
+        match self {
+            Self::Stated(unit) | Self::Epoch(unit) => Some(unit.to_si),
+            Self::Seconds => Some(1.0),
+            Self::Undetermined { .. } | Self::Other(_) => None,
+        }
+    }
+
+    /// What was assumed of the axis of a name, or why nothing was, in words; `None` where its unit is stated.
+    pub fn note(&self, name: &str) -> Option<String> {
+        match self {
+            Self::Stated(_) => None,
+            Self::Epoch(unit) => {
+                let symbol = symbol_of(*unit).unwrap_or("s");
+                Some(format!(
+                    "time axis '{name}' has no unit: taken as {symbol} since 1970"
+                ))
+            }
+            Self::Seconds => Some(format!("time axis '{name}' has no unit: taken as seconds")),
+            Self::Undetermined { first, step } => Some(format!(
+                "time axis '{name}' has no unit, and its numbers, {first} and on by steps of {step}, may be s, \
+                 ms, µs or counts of samples"
+            )),
+            Self::Other(unit) => Some(format!(
+                "time axis '{name}' is in '{unit}', which is no unit of time"
+            )),
+        }
+    }
+}
+
+/// Whether a channel is a time axis by its name, with a unit of time or none.
+pub fn is_time_axis(channel: &ChannelInfo) -> bool {
+    let stated = stated_unit(channel.unit.as_deref(), &channel.name);
+    let time = !matches!(stated, StatedUnit::Other(_));
+    time && is_time_name(&channel.name) && channel.stored != StoredType::Text
+}
+
+/// The time axis of a dataset: of several the one that is named for no channel alone.
+pub(crate) fn main_axis(channels: &[ChannelInfo]) -> Option<usize> {
+    let is_axis = |c: &ChannelInfo| c.samples > 1 && is_time_axis(c);
+    let general = channels
+        .iter()
+        .position(|c| is_axis(c) && stem(&c.name).is_empty());
+    general.or_else(|| channels.iter().position(is_axis))
+}
+
+/// Give the channels of a dataset with several time axes the one that is named for each: `contact.time` or
+/// `t_contact` for `contact`, or for `contact.values`.
+pub(crate) fn own_axes(channels: &mut [ChannelInfo]) {
+    let is_axis = |c: &ChannelInfo| c.samples > 1 && is_time_axis(c);
+    let stems = |(i, c): (usize, &ChannelInfo)| (i, stem(&c.name), c.samples);
+    let axes = channels.iter().enumerate().filter(|(_, c)| is_axis(c));
+    let axes: Vec<(usize, Vec<String>, u64)> = axes.map(stems).collect();
+    if axes.len() < 2 {
+        return;
+    }
+    for channel in channels.iter_mut().filter(|c| c.samples > 1 && !is_axis(c)) {
+        let mut named = whole_words(&channel.name);
+        let numbers = named
+            .iter()
+            .map(|w| w[without_digits(w).len()..].to_owned());
+        named.extend(numbers.collect::<Vec<_>>());
+        let fits = |(_, stem, samples): &&(usize, Vec<String>, u64)| {
+            *samples == channel.samples
+                && !stem.is_empty()
+                && stem.iter().all(|w| named.contains(w))
+        };
+        if let Some((axis, ..)) = axes
+            .iter()
+            .filter(fits)
+            .max_by_key(|(_, stem, _)| stem.len())
+        {
+            channel.clock = Clock::Axis(*axis);
+        }
+    }
+}
+
+/// The words of a time axis' name that are none of time, and the number after one of time: whose time it is.
+fn stem(name: &str) -> Vec<String> {
+    let of_time = |w: &str| {
+        let known = FIRST_WORDS.contains(&w) || WORDS.contains(&w);
+        known || unit_of_text(w).is_some() || glued(w).is_some()
+    };
+    let rest = |word: String| match without_digits(&word) {
+        bare if of_time(bare) => word[bare.len()..].to_owned(),
+        _ => word,
+    };
+    whole_words(name)
+        .into_iter()
+        .map(rest)
+        .filter(|w| !w.is_empty())
+        .collect()
+}
+
+/// Seconds since 1970 of the years 1973 and 2128: what a time stamp in s lies between.
+const EPOCH_S: [f64; 2] = [1e8, 5e9];
+
+/// The unit of a column that is called a time stamp, or an epoch, and counts from 1970: of s, ms, µs and ns
+/// one alone puts its first value into this age.
+fn epoch_unit(name: &str, first: f64) -> Option<Unit> {
+    let words = words(name);
+    let counts = words
+        .iter()
+        .any(|w| EPOCHS.iter().any(|e| w.starts_with(e)));
+    let split = words.windows(2).any(|w| w[0] == "time" && w[1] == "stamp");
+    let fits = |to_si: &f64| (EPOCH_S[0]..EPOCH_S[1]).contains(&(first * to_si));
+    let unit = [1.0, 1e-3, 1e-6, 1e-9].into_iter().find(fits)?;
+    (counts || split).then(|| of_time(unit))
+}
+
+/// A time without a unit beyond this is no time in s since the start of a record: 32 years.
+const LONGEST_S: f64 = 1e9;
+
+/// Whether times without a unit may be of any unit: whole numbers, as counts of ms and of samples are, or
+/// beyond 10⁹.
+fn is_undetermined(times: &[f64]) -> bool {
+    let mut finite = times.iter().filter(|t| t.is_finite()).peekable();
+    let Some(&&first) = finite.peek() else {
+        return false;
+    };
+    let whole = finite.clone().all(|t| t.fract() == 0.0);
+    let moves = finite.clone().any(|t| *t != first);
+    (whole && moves) || finite.any(|t| t.abs() > LONGEST_S)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_time() {
+        for name in [
+            "time_s",
+            "Time",
+            "t",
+            "X_Value",
+            "Time (Run 1)",
+            "Zeit",
+            "millis",
+            "Millis()",
+            "micros",
+            "timestamp",
+            "Time Stamp",
+            "elapsed_ms",
+            "timeMs",
+            "tMillis",
+            "t_us",
+            "ms",
+            "tms",
+            "epoch_ms",
+            "Run 1: Time",
+            "Elapsed Time",
+            "Zeitstempel",
+            "ms since start",
+            "seconds",
+            "Time2",
+        ] {
+            assert!(is_time_name(name), "{name}");
+        }
+        for name in [
+            "times", "velocity", "tone", "s", "min", "h", "items", "minimum", "bus", "tens",
+        ] {
+            assert!(!is_time_name(name), "{name}");
+        }
+    }
+
+    #[test]
+    fn channels_with_times_of_their_own_find_them_by_name() {
+        let channel = |name: &str| ChannelInfo {
+            name: name.into(),
+            unit: None,
+            stored: StoredType::Float(64),
+            samples: 100,
+            sample_rate_hz: None,
+            start_time: None,
+            clock: Clock::Shared,
+            start_s: None,
+            properties: Default::default(),
+        };
+        let clocks = |names: &[&str]| -> Vec<Clock> {
+            let mut channels: Vec<ChannelInfo> = names.iter().map(|n| channel(n)).collect();
+            own_axes(&mut channels);
+            channels.iter().map(|c| c.clock).collect()
+        };
+        let axis = Clock::Axis;
+        assert_eq!(
+            clocks(&["x.time", "x.values", "contact.time", "contact.values"])[1..],
+            [axis(0), Clock::Shared, axis(2)]
+        );
+        assert_eq!(
+            clocks(&["time_ch1", "time_ch2", "ch1", "ch2"])[2..],
+            [axis(0), axis(1)]
+        );
+        assert_eq!(
+            clocks(&["t", "t_contact", "x", "contact"])[2..],
+            [Clock::Shared, axis(1)]
+        );
+        assert_eq!(clocks(&["time", "x", "y"])[1..], [Clock::Shared; 2]);
+    }
+
+    #[test]
+    fn every_way_of_milliseconds_and_microseconds() {
+        let unit = |unit: Option<&str>, name: &str| match stated_unit(unit, name) {
+            StatedUnit::Known(unit) => Some(unit.to_si),
+            _ => None,
+        };
+        for name in [
+            "time_ms",
+            "Time (ms)",
+            "Time [ms]",
+            "Time, ms",
+            "Time/ms",
+            "Time / ms",
+            "Zeit in ms",
+            "timeMs",
+            "TIME_MS",
+            "tms",
+            "t_ms",
+            "ms",
+            "millis",
+            "millis()",
+            "time_millis",
+            "Time (msec)",
+            "Time (Milliseconds)",
+            "elapsed milliseconds",
+            "ms since start",
+            "timestamp_ms",
+            "Time.ms",
+            "Time (ms) Run #1",
+            "Zeit (Millisekunden)",
+            "Time (1e-3 s)",
+            "Time (10^-3 s)",
+            "Time{ms}",
+        ] {
+            assert_eq!(unit(None, name), Some(1e-3), "{name}");
+        }
+        for name in [
+            "time_us",
+            "Time (µs)",
+            "Time (μs)",
+            "t_us",
+            "micros",
+            "timestamp_us",
+            "Time (usec)",
+            "timeUs",
+            "microseconds since boot",
+            "tus",
+            "Zeit in µs",
+        ] {
+            assert_eq!(unit(None, name), Some(1e-6), "{name}");
+        }
+        for symbol in ["ms", "msec", "MS", "Milliseconds", "1e-3 s", "0.001 s"] {
+            assert_eq!(unit(Some(symbol), "Time"), Some(1e-3), "{symbol}");
+        }
+        for name in ["Time", "t", "timestamp", "Time US Eastern", "Time Run 1"] {
+            assert_eq!(stated_unit(None, name), StatedUnit::Nothing, "{name}");
+        }
+        assert_eq!(unit(None, "Time (s)"), Some(1.0));
+        assert_eq!(unit(None, "time_min"), Some(60.0));
+        assert_eq!(
+            stated_unit(Some("ticks"), "Time"),
+            StatedUnit::Other("ticks".into())
+        );
+    }
+
+    #[test]
+    fn time_stamps_count_from_1970_in_the_unit_that_gives_this_age() {
+        let unit = |name, first| epoch_unit(name, first).map(|u| u.to_si);
+        assert_eq!(unit("timestamp", 1_700_000_000.0), Some(1.0));
+        assert_eq!(unit("Time Stamp", 1.7e12), Some(1e-3));
+        assert_eq!(unit("epoch", 1.7e15), Some(1e-6));
+        assert_eq!(unit("unix time", 1.7e18), Some(1e-9));
+        assert_eq!(unit("time", 1.7e12), None);
+        assert_eq!(unit("timestamp", 12_000.0), None);
+    }
+
+    #[test]
+    fn whole_numbers_and_great_ones_may_be_of_any_unit() {
+        assert!(is_undetermined(&[0.0, 10.0, 20.0]));
+        assert!(is_undetermined(&[1.7e9, 1.7e9 + 0.01]));
+        assert!(!is_undetermined(&[0.0, 0.5, 1.0]));
+        assert!(!is_undetermined(&[0.0, 0.0]));
+    }
+}

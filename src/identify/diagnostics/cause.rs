@@ -1,0 +1,277 @@
+//! One cause, one finding: what bends the fits is named; what follows from it is not, and no parameter that
+//! it reaches is identified.
+//!
+//! Each finding has a cause of some kind ([`Finding::cause`]). Kinds that the model has no place for bend
+//! the fits of the methods that they reach: misfits of these, effects, gains and gaps that such fits find are
+//! its traces. Where several such kinds are found, the first one explains the others.
+
+use std::collections::BTreeMap;
+
+use crate::identify::estimate::{Estimate, Status};
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::identification::MethodResult;
+use crate::identify::messages::{Finding, Note};
+use crate::identify::method::Method;
+
+/// The kinds of causes, each before those that it explains.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Cause {
+    /// A channel shows something else than the motion at its time: late, filtered, mixed with another signal.
+    Channel,
+    /// The records are not of one rig in one state.
+    Change,
+    /// The contact has no single coefficient of restitution.
+    Contact,
+    /// Most records begin before their motions have settled.
+    Unsettled,
+    /// A stated number is wrong, and the fit carries its error.
+    Statement,
+    /// An effect beyond the model that the fit carries.
+    Effect,
+    /// A fit is worse than its noise, or methods differ.
+    Symptom,
+}
+
+impl Cause {
+    /// Whether the model has no place for it, so that it bends the fits that it reaches.
+    pub fn bends(self) -> bool {
+        self <= Self::Contact
+    }
+
+    /// Whether the data of a method can be bent by it.
+    pub fn reaches(self, method: Method) -> bool {
+        match self {
+            Self::Channel | Self::Change => true,
+            Self::Contact => !matches!(method, Method::Resonance | Method::FreeDecay),
+            Self::Unsettled | Self::Statement | Self::Effect | Self::Symptom => false,
+        }
+    }
+
+    /// Whether a finding is a trace of this cause, so that it is not named beside it.
+    pub fn explains(self, finding: &Finding) -> bool {
+        let later = finding.cause().is_some_and(|other| other > self);
+        if self == Self::Unsettled {
+            // what is still dying away looks like friction, drag and a force against frequency
+            return finding.cause() == Some(Self::Effect);
+        }
+        let reached = match finding {
+            Finding::Misfit { method, .. } => self.reaches(*method),
+            Finding::Disagreement { pair } => pair.methods.iter().any(|m| self.reaches(*m)),
+            // all others are read from the fit of all methods together
+            _ => true,
+        };
+        self.bends() && later && reached
+    }
+
+    /// The cause that explains the others, by the findings on the laboratory and the remarks of methods that do
+    /// not fit; the first of several.
+    pub fn leading(
+        suspicions: &[Finding],
+        methods: &BTreeMap<Method, MethodResult>,
+    ) -> Option<Self> {
+        let misfits = methods.values().filter(|m| m.fits == Some(false));
+        let remarks = misfits.flat_map(|m| &m.remarks);
+        let named = suspicions.iter().filter_map(Finding::cause);
+        let all = named.chain(remarks.filter_map(|remark| remark.cause()));
+        all.filter(|cause| *cause <= Self::Unsettled).min()
+    }
+
+    /// Withdraw from a joint result what this cause reaches: a parameter is that of the method, out of those
+    /// that the cause does not reach, that determines it best; without one it is weak. Gives the parameters that
+    /// another method's value replaces.
+    pub fn withdraw(
+        self,
+        joint: &mut MethodResult,
+        methods: &BTreeMap<Method, MethodResult>,
+    ) -> Vec<Coordinate> {
+        let mut replaced = Vec::new();
+        for parameter in Coordinate::PHYSICAL {
+            let Some(Some(estimate)) = joint.parameters.slot(parameter) else {
+                continue;
+            };
+            let telling = |reached: bool| {
+                let of = methods.iter();
+                of.filter(move |(method, _)| self.reaches(**method) == reached)
+                    .filter_map(move |(method, found)| {
+                        let own = found.parameters.get(parameter)?;
+                        Some((*method, own, half_width(own)?))
+                    })
+            };
+            if telling(true).next().is_none() {
+                continue;
+            }
+            let best = telling(false).min_by(|a, b| a.2.total_cmp(&b.2));
+            if let Some((method, own, _)) = best {
+                *estimate = Estimate {
+                    note: own.note.clone().or(Some(Note::ByMethodAlone { method })),
+                    ..own.clone()
+                };
+                replaced.push(parameter);
+            } else if estimate.value.is_some() {
+                estimate.status = Status::Weak;
+                let note = estimate.note.take();
+                let kept = note.filter(|n| *n == Note::NotOneNumber);
+                estimate.note = kept.or(Some(Note::Bent));
+            }
+        }
+        replaced
+    }
+}
+
+/// Half an estimate's interval, SI; `None` where it has none.
+fn half_width(estimate: &Estimate) -> Option<f64> {
+    estimate.interval95.map(|[low, high]| 0.5 * (high - low))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::estimate::estimate;
+    use crate::identify::fit::effect::Effect;
+    use crate::identify::messages::{PairAgreement, Remark};
+    use crate::record::Role;
+
+    fn changes() -> Remark {
+        Remark::RestitutionChanges {
+            slower: Default::default(),
+            faster: Default::default(),
+        }
+    }
+
+    /// Impacts whose R changes with the speed, and a resonance curve with β = 0.07.
+    fn methods() -> BTreeMap<Method, MethodResult> {
+        let mut impacts = MethodResult {
+            fits: Some(false),
+            remarks: vec![changes()],
+            ..MethodResult::default()
+        };
+        impacts.parameters.restitution = Some(estimate(Coordinate::Restitution, 0.8, 0.001));
+        let mut resonance = MethodResult::default();
+        let damping = |value: f64, error| Some(estimate(Coordinate::Damping, value.ln(), error));
+        resonance.parameters.damping_ratio = damping(0.07, 0.01);
+        let mut trajectories = MethodResult::default();
+        trajectories.parameters.damping_ratio = damping(0.062, 0.002);
+        BTreeMap::from([
+            (Method::Impacts, impacts),
+            (Method::Resonance, resonance),
+            (Method::Trajectories, trajectories),
+        ])
+    }
+
+    #[test]
+    fn a_law_of_the_contact_explains_what_waveforms_show_and_not_what_the_resonance_curve_does() {
+        let cause = Cause::leading(&[], &methods());
+        assert_eq!(cause, Some(Cause::Contact));
+        let gain = Finding::WrongGain {
+            channel: Role::VelocityX,
+            deviation: 0.03,
+            z_score: 9.0,
+        };
+        let drag = Finding::BeyondModel {
+            effect: Effect::Drag,
+            strength: 0.04,
+            standard_error: 0.001,
+            z_score: 40.0,
+        };
+        let misfit = |method, remark| Finding::Misfit { method, remark };
+        let waveforms = misfit(
+            Method::Trajectories,
+            Remark::WaveformsUnexplained { share: 0.1 },
+        );
+        let between = |methods| Finding::Disagreement {
+            pair: PairAgreement {
+                methods,
+                ..PairAgreement::default()
+            },
+        };
+        let apart = between([Method::Resonance, Method::Trajectories]);
+        for trace in [gain, drag, waveforms, apart] {
+            assert!(Cause::Contact.explains(&trace), "{trace}");
+        }
+        let curve = misfit(
+            Method::Resonance,
+            Remark::NotOneDegreeOfFreedom { deviation: 0.3 },
+        );
+        let own = misfit(Method::Impacts, changes());
+        let decays = between([Method::Resonance, Method::FreeDecay]);
+        let clock = Finding::FrequenciesOffAlike {
+            ratio: 1.001,
+            records: 9,
+            of: 9,
+        };
+        for other in [curve, own, decays, clock] {
+            assert!(!Cause::Contact.explains(&other), "{other}");
+        }
+    }
+
+    #[test]
+    fn a_channel_explains_the_law_that_it_makes_of_the_contact() {
+        let high_pass = Finding::UndeclaredHighPass {
+            channel: Role::VelocityX,
+            corner_hz: 1.0,
+            z_score: 20.0,
+        };
+        assert_eq!(
+            Cause::leading(&[high_pass], &methods()),
+            Some(Cause::Channel)
+        );
+        let law = Finding::Misfit {
+            method: Method::Impacts,
+            remark: changes(),
+        };
+        assert!(Cause::Channel.explains(&law));
+    }
+
+    #[test]
+    fn records_that_have_not_settled_explain_effects_alone() {
+        let early = |records| Finding::RecordsNotSettled {
+            records,
+            of: 72,
+            wait_s: 1.0,
+        };
+        let none = BTreeMap::new();
+        assert_eq!(Cause::leading(&[early(57)], &none), Some(Cause::Unsettled));
+        assert_eq!(Cause::leading(&[early(6)], &none), None);
+        let drag = Finding::BeyondModel {
+            effect: Effect::Drag,
+            strength: 0.04,
+            standard_error: 0.001,
+            z_score: 40.0,
+        };
+        let apart = Finding::Disagreement {
+            pair: PairAgreement::default(),
+        };
+        assert!(Cause::Unsettled.explains(&drag) && !Cause::Unsettled.explains(&apart));
+        assert!(!Cause::Unsettled.bends());
+    }
+
+    #[test]
+    fn what_the_fit_carries_explains_nothing() {
+        let gap = Finding::WrongClearance {
+            stated_m: 1e-3,
+            fitting_m: 1.1e-3,
+            z_score: 9.0,
+        };
+        assert_eq!(Cause::leading(&[gap], &BTreeMap::new()), None);
+        let apart = Finding::Disagreement {
+            pair: PairAgreement::default(),
+        };
+        assert!(!Cause::Statement.explains(&apart));
+    }
+
+    #[test]
+    fn a_reached_parameter_is_that_of_a_method_out_of_reach_or_weak() {
+        let mut joint = MethodResult::default();
+        joint.parameters.restitution = Some(estimate(Coordinate::Restitution, 0.8, 1e-3));
+        joint.parameters.damping_ratio = Some(estimate(Coordinate::Damping, 0.062f64.ln(), 2e-3));
+        let replaced = Cause::Contact.withdraw(&mut joint, &methods());
+        assert_eq!(replaced, [Coordinate::Damping]);
+        let [r, beta] = [joint.parameters.restitution, joint.parameters.damping_ratio];
+        let (r, beta) = (r.expect("R"), beta.expect("β"));
+        assert_eq!((r.status, r.note), (Status::Weak, Some(Note::Bent)));
+        assert!((beta.value.expect("a value") - 0.07).abs() < 1e-12);
+        assert_eq!(beta.status, Status::Identified);
+        let method = Method::Resonance;
+        assert_eq!(beta.note, Some(Note::ByMethodAlone { method }));
+    }
+}

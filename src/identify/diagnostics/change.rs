@@ -1,0 +1,473 @@
+//! Whether a campaign is of one rig: R, f0, β and `x_st` before and after some moment.
+//!
+//! First it is looked for where in the campaign, if anywhere, the fit of all would gain most by a change: by
+//! the rows of the records at the fit's optimum (a score test: no fit is made), by the records that the fit
+//! lost, and by R of the records' impacts. The two parts about that moment are then fitted each by itself,
+//! with allowances of their own, and compared.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::identify::estimate::{Estimate, Status, estimate_within};
+use crate::identify::evidence::{Blocks, Evidence};
+use crate::identify::fit::Problem;
+use crate::identify::fit::effect::Effect;
+use crate::identify::fit::normal::{Normal, inverse};
+use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::placed_rows::PlacedRows;
+use crate::identify::identification::MethodResult;
+use crate::identify::messages::{Finding, Note, StatedValue};
+use crate::identify::method::Method;
+use crate::identify::run::part_alone;
+use crate::identify::selection::Selection;
+use crate::identify::uncertainty::distribution::student_tail;
+use crate::identify::uncertainty::scatter::Spread;
+use crate::motion::Observation;
+use crate::signal::robust;
+
+/// Records that either part has at least.
+const FEWEST: usize = 6;
+/// Records whose rows are looked at for the moment of a change; of more, every second, third …
+const MOST: usize = 128;
+/// χ² of a change of all four parameters from which a moment is looked at: noise reaches it, the moment being
+/// free, in one of some thousand campaigns of a hundred records.
+const SUSPECT: f64 = 30.0;
+/// Standard deviations from which two parts differ in their lost records or in R of their impacts.
+const APART: f64 = 5.0;
+/// Level of the comparison of both parts; shared by the four parameters.
+const LEVEL: f64 = 1e-4;
+/// What the extrapolation of speeds and the length of contacts leave open in R of either part.
+const LEAST_OF_R: f64 = 5e-3;
+
+/// The least change that is one of the rig: the mean of a part moves by 3/4 of an accepted drift's
+/// deviations over the campaign where that is 1.5 deviations in size; twice that, three deviations, is
+/// beyond what a good laboratory accepts. R absolute, the others relative.
+fn least(parameter: Coordinate) -> f64 {
+    match parameter {
+        Coordinate::Restitution => LEAST_OF_R,
+        Coordinate::Frequency => 1.5 * Effect::FrequencyDrift.accepted(),
+        Coordinate::Damping => 1.5 * Effect::DampingDrift.accepted(),
+        _ => 1.5 * Effect::DeflectionDrift.accepted(),
+    }
+}
+
+/// A campaign of two rigs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    /// The first record after the change: its place in the order of acquisition, from 0.
+    rank: usize,
+    record: String,
+    /// What each part says of each parameter that both determine: the coordinate and how far it may be off.
+    parts: BTreeMap<Coordinate, [(f64, Spread); 2]>,
+}
+
+/// Where the records of a fit would most be of two rigs, and whether they are; `None` of one rig.
+pub fn change(
+    evidence: &Evidence<'_>,
+    (selection, problem, present): (&Selection<'_>, &Problem<'_>, &[Method]),
+    (at, factor): (&Parameters, f64),
+) -> Option<Change> {
+    let ranks = ranks(evidence.observations);
+    let of_rank = |rank: usize| ranks.iter().position(|r| *r == rank);
+    let suspects = [
+        by_impacts(&ranks, &selection.blocks),
+        by_rows(&ranks, problem, present, (&selection.blocks, at, factor)),
+        by_lost_records(&ranks, selection),
+    ];
+    let mut tried: Vec<usize> = Vec::new();
+    for rank in suspects.into_iter().flatten() {
+        if tried.contains(&rank) {
+            continue;
+        }
+        tried.push(rank);
+        let both = [false, true].map(|later| {
+            let within = |i: usize| (ranks[i] >= rank) == later;
+            part_alone(evidence, &within)
+        });
+        let [Some(before), Some(after)] = both else {
+            continue;
+        };
+        let parts: BTreeMap<Coordinate, [(f64, Spread); 2]> = before
+            .into_iter()
+            .filter_map(|(c, a)| Some((c, [a, *after.get(&c)?])))
+            .collect();
+        if parts.iter().any(|(c, both)| differs(*c, both)) {
+            let record = evidence.observations[of_rank(rank)?].record.clone();
+            return Some(Change {
+                rank,
+                record,
+                parts,
+            });
+        }
+    }
+    None
+}
+
+/// Whether a parameter of two parts differs beyond chance and beyond what drifts.
+fn differs(parameter: Coordinate, [(a, of_a), (b, of_b)]: &[(f64, Spread); 2]) -> bool {
+    let apart = b - a;
+    let variance = of_a.error.powi(2) + of_b.error.powi(2);
+    let uncertain = of_a.error.powi(4) / of_a.freedom + of_b.error.powi(4) / of_b.freedom;
+    let freedom = variance.powi(2) / uncertain;
+    let level = LEVEL / Coordinate::PHYSICAL.len() as f64;
+    apart.abs() > least(parameter) && student_tail(apart / variance.sqrt(), freedom) < level
+}
+
+/// The place of each record in the order of acquisition, from 0.
+fn ranks(observations: &[Observation]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..observations.len()).collect();
+    order.sort_by_key(|i| observations[*i].setting.sequence);
+    let mut ranks = vec![0; order.len()];
+    for (rank, i) in order.into_iter().enumerate() {
+        ranks[i] = rank;
+    }
+    ranks
+}
+
+/// The rank from which on a change of all four parameters explains most, by the records' rows at an
+/// optimum: with A and g the information and the gradient of all, B the columns of the parameters in the
+/// information of the records after it, C their own block of that and h their part of its gradient, the
+/// change is δ of [A B; Bᵀ C] [θ; δ] = −[g; h].
+fn by_rows(
+    ranks: &[usize],
+    problem: &Problem<'_>,
+    present: &[Method],
+    (blocks, at, factor): (&Blocks, &Parameters, f64),
+) -> Option<usize> {
+    let mut records: Vec<(usize, PlacedRows)> = Vec::new();
+    for ((block, weight), method) in problem.blocks.iter().zip(present) {
+        let owners: Vec<usize> = match method {
+            Method::Resonance => blocks
+                .resonance
+                .points
+                .iter()
+                .map(|p| p.observation)
+                .collect(),
+            Method::Trajectories => blocks
+                .trajectory
+                .records
+                .iter()
+                .map(|r| r.observation)
+                .collect(),
+            _ => continue,
+        };
+        let rows = problem.rows_of(*block, *weight, at);
+        if rows.len() == owners.len() {
+            records.extend(owners.into_iter().map(|i| ranks[i]).zip(rows));
+        }
+    }
+    records.sort_by_key(|(rank, _)| *rank);
+    let stride = records.len().div_ceil(MOST).max(1);
+    let records: Vec<(usize, PlacedRows)> = records.into_iter().step_by(stride).collect();
+    let free = problem.free.iter();
+    let places: Vec<usize> = free
+        .enumerate()
+        .filter(|(_, c)| Coordinate::PHYSICAL.contains(c))
+        .map(|(i, _)| i)
+        .collect();
+    let mut all = problem.priors_normal(at);
+    records.iter().for_each(|(_, rows)| all.inform(rows));
+    let mut after = Normal::zeros(problem.free.len());
+    let mut best: Option<(f64, usize)> = None;
+    for (k, (rank, rows)) in records.iter().enumerate().rev() {
+        after.inform(rows);
+        let enough = k >= FEWEST && records.len() - k >= FEWEST;
+        // records of one rank stay together
+        let begins = k > 0 && records[k - 1].0 < *rank;
+        if let Some(chi2) = (enough && begins)
+            .then(|| gain(&all, &after, &places))
+            .flatten()
+            && best.is_none_or(|(most, _)| chi2 > most)
+        {
+            best = Some((chi2, *rank));
+        }
+    }
+    best.filter(|(chi2, _)| *chi2 > SUSPECT * factor)
+        .map(|(_, rank)| rank)
+}
+
+/// χ² of a change of some coordinates in the records of `after`, all others being fitted to all.
+fn gain(all: &Normal, after: &Normal, places: &[usize]) -> Option<f64> {
+    let (n, m) = (all.gradient.len(), places.len());
+    let entry = |i: usize, k: usize| match (i < n, k < n) {
+        (true, true) => all.matrix[(i, k)],
+        (true, false) => after.matrix[(i, places[k - n])],
+        (false, true) => after.matrix[(places[i - n], k)],
+        (false, false) => after.matrix[(places[i - n], places[k - n])],
+    };
+    let covariance = inverse(&DMatrix::from_fn(n + m, n + m, entry))?;
+    let gradient = DVector::from_fn(n + m, |i, _| match i < n {
+        true => all.gradient[i],
+        false => after.gradient[places[i - n]],
+    });
+    let change = (&covariance * gradient).rows(n, m).into_owned();
+    let own = covariance.view((n, n), (m, m)).into_owned();
+    Some((change.transpose() * inverse(&own)? * &change)[(0, 0)])
+}
+
+/// The rank from which on most of the periodic records are lost, or before which they are.
+fn by_lost_records(ranks: &[usize], selection: &Selection<'_>) -> Option<usize> {
+    let kept = selection.blocks.trajectory.records.iter();
+    let mut records: Vec<(usize, f64)> = kept.map(|r| (ranks[r.observation], 0.0)).collect();
+    records.extend(selection.lost.iter().map(|r| (ranks[r.observation], 1.0)));
+    // a proportion's variance is at least that of one half record
+    let share = records.iter().map(|r| r.1).sum::<f64>() / records.len().max(1) as f64;
+    furthest(&mut records, (share * (1.0 - share)).sqrt())
+}
+
+/// The rank from which on R of the records' impacts is another, by their medians.
+fn by_impacts(ranks: &[usize], blocks: &Blocks) -> Option<usize> {
+    let mut of_records: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    for pair in &blocks.impact.pairs {
+        let own = of_records.entry(ranks[pair.observation]).or_default();
+        own.push(pair.after_m_s / pair.before_m_s);
+    }
+    let medians = of_records.into_iter();
+    let mut records: Vec<(usize, f64)> = medians
+        .filter_map(|(rank, ratios)| Some((rank, robust::median(&ratios)?)))
+        .collect();
+    records.sort_by_key(|r| r.0);
+    // the scatter of neighbours, which a change in one place does not widen
+    let steps: Vec<f64> = records
+        .windows(2)
+        .map(|w| (w[1].1 - w[0].1).abs())
+        .collect();
+    let typical = 1.4826 * robust::median(&steps)? / std::f64::consts::SQRT_2;
+    furthest(&mut records, typical.max(0.5 * LEAST_OF_R))
+}
+
+/// The rank from which on the mean of values differs most from that before, if that is beyond chance, the
+/// values having a standard deviation.
+fn furthest(records: &mut [(usize, f64)], deviation: f64) -> Option<usize> {
+    records.sort_by_key(|r| r.0);
+    let count = records.len();
+    let all: f64 = records.iter().map(|r| r.1).sum();
+    let (mut before, mut best) = (0.0, None);
+    for (k, (rank, value)) in records.iter().enumerate() {
+        if k >= FEWEST && count - k >= FEWEST {
+            let (a, b) = (k as f64, (count - k) as f64);
+            let apart = ((all - before) / b - before / a).abs();
+            let z_score = apart / (deviation * (a.recip() + b.recip()).sqrt());
+            if z_score > APART && best.is_none_or(|(most, _)| z_score > most) {
+                best = Some((z_score, *rank));
+            }
+        }
+        before += value;
+    }
+    best.map(|(_, rank)| rank)
+}
+
+impl Change {
+    /// What changed.
+    pub fn finding(&self, of: usize) -> Finding {
+        let changed = self.parts.iter().filter(|(c, both)| differs(**c, both));
+        let of_part = |part: usize| {
+            let values = changed.clone().filter_map(|(c, both)| {
+                let estimate = stated(*c, both[part]);
+                let [low, high] = estimate.interval95?;
+                Some(StatedValue {
+                    parameter: *c,
+                    value: estimate.value?,
+                    half_width: 0.5 * (high - low),
+                })
+            });
+            values.collect()
+        };
+        Finding::RigChanged {
+            record: self.record.clone(),
+            number: self.rank + 1,
+            of,
+            before: of_part(0),
+            after: of_part(1),
+        }
+    }
+
+    /// Put into a joint result what both parts say: of a parameter that differs both values, of another one
+    /// their mean.
+    pub fn tell(&self, joint: &mut MethodResult) -> Vec<Coordinate> {
+        for (parameter, both) in &self.parts {
+            let Some(slot) = joint.parameters.slot(*parameter) else {
+                continue;
+            };
+            *slot = Some(match differs(*parameter, both) {
+                true => between(*parameter, both),
+                false => stated(*parameter, mean(both)),
+            });
+        }
+        self.parts.keys().copied().collect()
+    }
+}
+
+fn stated(parameter: Coordinate, (value, spread): (f64, Spread)) -> Estimate {
+    estimate_within(parameter, value, spread, None)
+}
+
+/// The weighted mean of two values; its error is at least that of the better one, as both share errors of
+/// instruments.
+fn mean([(a, of_a), (b, of_b)]: &[(f64, Spread); 2]) -> (f64, Spread) {
+    let weights = [of_a, of_b].map(|s| s.half95().powi(-2));
+    let value = (weights[0] * a + weights[1] * b) / (weights[0] + weights[1]);
+    let better = if of_a.half95() < of_b.half95() {
+        of_a
+    } else {
+        of_b
+    };
+    (value, *better)
+}
+
+/// An estimate that holds both of two values, and is neither.
+fn between(parameter: Coordinate, both: &[(f64, Spread); 2]) -> Estimate {
+    let half = |spread: &Spread| spread.half95();
+    let low = both
+        .iter()
+        .map(|(v, s)| v - half(s))
+        .fold(f64::INFINITY, f64::min);
+    let high = both
+        .iter()
+        .map(|(v, s)| v + half(s))
+        .fold(f64::NEG_INFINITY, f64::max);
+    let value = parameter.physical(0.5 * (low + high));
+    let interval = [low, high].map(|v| parameter.physical(v));
+    let error = 0.5 * (both[1].0 - both[0].0).abs();
+    Estimate {
+        value: Some(value),
+        standard_error: Some(error * parameter.slope(value)),
+        interval95: Some(match parameter {
+            Coordinate::Restitution => [interval[0].max(0.0), interval[1].min(1.0)],
+            _ => interval,
+        }),
+        status: Status::Weak,
+        note: Some(Note::Changes),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::VerdictKind;
+    use crate::identify::fixture::{evidence, observed, recorded};
+    use crate::identify::run::identify;
+    use crate::record::Record;
+
+    /// A measurement of the first of two numbers, or of their sum, with a unit error.
+    fn measured(value: f64, both: bool) -> PlacedRows {
+        PlacedRows {
+            places: vec![0, 1],
+            slopes: DMatrix::from_row_slice(1, 2, &[-1.0, if both { -1.0 } else { 0.0 }]),
+            residuals: DVector::from_element(1, value),
+        }
+    }
+
+    #[test]
+    fn valid_the_gain_of_a_change_is_that_of_two_means() {
+        // The first number is 0 in 8 measurements and 3 in 12 more; the second is known from as many, and
+        // does not differ. At the mean of all, 1.8:
+        let rows = |shift: f64, count: usize| {
+            (0..count)
+                .flat_map(move |_| [measured(shift - 1.8, false), measured(shift - 1.8, true)])
+        };
+        let (mut all, mut after) = (Normal::zeros(2), Normal::zeros(2));
+        rows(0.0, 8).for_each(|row| all.inform(&row));
+        for row in rows(3.0, 12) {
+            all.inform(&row);
+            after.inform(&row);
+        }
+        // Two measurements in each of 8 and of 12, their difference 3: 9/(1/16 + 1/24).
+        let chi2 = gain(&all, &after, &[0]).expect("regular");
+        assert!(
+            (chi2 - 9.0 / (1.0 / 16.0 + 1.0 / 24.0)).abs() < 1e-9,
+            "{chi2}"
+        );
+    }
+
+    #[test]
+    fn valid_the_moment_of_a_step_is_found_and_none_where_chance_explains_it() {
+        let values = |step: f64| -> Vec<(usize, f64)> {
+            let scatter = [0.3, -0.9, 1.1, -0.2, 0.6, -1.0];
+            let value = |k: usize| scatter[k % 6] + if k >= 17 { step } else { 0.0 };
+            (0..40).map(|k| (k, value(k))).collect()
+        };
+        assert_eq!(furthest(&mut values(3.0), 1.0), Some(17));
+        assert_eq!(furthest(&mut values(-3.0), 1.0), Some(17));
+        assert_eq!(furthest(&mut values(0.0), 1.0), None);
+    }
+
+    #[test]
+    fn a_parameter_differs_where_its_change_is_beyond_chance_and_beyond_what_drifts() {
+        let of = |parameter: Coordinate, apart: f64, error: f64| {
+            differs(parameter, &[0.0, apart].map(|v| (v, Spread::known(error))))
+        };
+        assert!(of(Coordinate::Restitution, 0.02, 1e-3));
+        assert!(!of(Coordinate::Restitution, 0.02, 6e-3));
+        assert!(!of(Coordinate::Restitution, 0.004, 1e-4));
+        // f0 may drift by 0.3 %
+        assert!(of(Coordinate::Frequency, 0.01, 1e-4));
+        assert!(!of(Coordinate::Frequency, 0.003, 1e-4));
+    }
+
+    #[test]
+    fn valid_a_campaign_of_two_rigs_is_named_where_the_rig_changes_and_one_of_one_is_not() {
+        let one = |rig, seed| recorded(rig, 36, seed);
+        let half = one((0.8, 12.0), 11);
+        let of = |other: Vec<Record>| {
+            let observations = observed(&[half.clone(), other].concat());
+            let found = identify(&evidence(&observations));
+            let changed = found
+                .suspicions
+                .into_iter()
+                .find_map(|finding| match finding {
+                    Finding::RigChanged {
+                        number,
+                        before,
+                        after,
+                        ..
+                    } => Some((number, before, after)),
+                    _ => None,
+                });
+            (found.verdict.kind, changed)
+        };
+        let (kind, changed) = of(one((0.8, 12.0), 12));
+        assert_eq!((kind, changed), (VerdictKind::Identified, None));
+        let (kind, changed) = of(one((0.77, 12.1), 12));
+        assert_eq!(kind, VerdictKind::DoesNotFit);
+        let (number, before, after) = changed.expect("a change");
+        assert!((35..=39).contains(&number), "{number}");
+        for (values, truth) in [(before, [0.8, 12.0]), (after, [0.77, 12.1])] {
+            let named: Vec<Coordinate> = values.iter().map(|v| v.parameter).collect();
+            assert_eq!(named, [Coordinate::Restitution, Coordinate::Frequency]);
+            for (value, truth) in values.iter().zip(truth) {
+                let apart = (value.value - truth).abs();
+                assert!(apart < 1.5 * value.half_width, "{values:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn both_values_stand_in_the_result_and_in_the_finding() {
+        let known = |value: f64| (value, Spread::known(1e-3));
+        let f0 = 12f64.ln();
+        let change = Change {
+            rank: 36,
+            record: "r37".into(),
+            parts: BTreeMap::from([
+                (Coordinate::Restitution, [known(0.8), known(0.76)]),
+                (Coordinate::Frequency, [known(f0), known(f0 + 1e-4)]),
+            ]),
+        };
+        let mut joint = MethodResult::default();
+        assert_eq!(change.tell(&mut joint).len(), 2);
+        let r = joint.parameters.restitution.expect("R");
+        assert_eq!((r.status, r.note), (Status::Weak, Some(Note::Changes)));
+        let [low, high] = r.interval95.expect("an interval");
+        assert!((low - 0.758_04).abs() < 1e-5 && (high - 0.801_96).abs() < 1e-5);
+        let f0 = joint.parameters.natural_frequency_hz.expect("f0");
+        assert_eq!(f0.status, Status::Identified);
+        assert_eq!(
+            change.finding(72).to_string(),
+            "the records are not of one rig: before r37 (number 37 of 72) they have R = 0.8000 ± \
+             0.0020, from it on R = 0.7600 ± 0.0020: look for what was changed there (masses, \
+             springs, clamps, bumpers, amplifier, sensors), and identify both parts by themselves"
+        );
+    }
+}

@@ -1,0 +1,67 @@
+//! What a mistake that the data give away leaves open in the estimates.
+
+use crate::identify::estimate;
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::identification::MethodResult;
+use crate::identify::messages::{Finding, Note};
+use crate::identify::method_fit::MethodFit;
+
+/// How far a parameter may be off beside its own uncertainty.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Doubt {
+    /// The parameter.
+    pub parameter: Coordinate,
+    /// Standard uncertainty, of R absolute, of the others relative.
+    pub by: f64,
+    /// Why.
+    pub note: Note,
+}
+
+/// A mistake that the data give away, and what it leaves open.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Suspicion {
+    /// The mistake.
+    pub finding: Finding,
+    /// What it leaves open.
+    pub doubts: Vec<Doubt>,
+}
+
+impl From<Finding> for Suspicion {
+    fn from(finding: Finding) -> Self {
+        Self {
+            finding,
+            doubts: Vec::new(),
+        }
+    }
+}
+
+impl Doubt {
+    /// Of a parameter of a fit, where it exceeds the fit's own standard error.
+    pub fn material(found: &MethodFit, parameter: Coordinate, by: f64, note: Note) -> Option<Self> {
+        let doubt = Self {
+            parameter,
+            by,
+            note,
+        };
+        let error = found.spread(parameter)?.error;
+        (by > error).then_some(doubt)
+    }
+}
+
+/// The mistakes, and all that they leave open.
+pub fn parted(suspicions: Vec<Suspicion>) -> (Vec<Finding>, Vec<Doubt>) {
+    let (findings, doubts): (Vec<_>, Vec<_>) = suspicions
+        .into_iter()
+        .map(|s| (s.finding, s.doubts))
+        .unzip();
+    (findings, doubts.concat())
+}
+
+/// Widen a joint result by all that is in doubt.
+pub fn widen(joint: &mut MethodResult, doubts: &[Doubt]) {
+    for doubt in doubts {
+        if let Some(Some(estimate)) = joint.parameters.slot(doubt.parameter) {
+            *estimate = estimate::in_doubt(doubt.parameter, estimate, doubt.by, doubt.note.clone());
+        }
+    }
+}

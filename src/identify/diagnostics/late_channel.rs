@@ -1,0 +1,56 @@
+//! Channels whose delay is far off the stated one: found by the impacts before the fit, or by the fit.
+
+use crate::identify::diagnostics::doubt::Suspicion;
+use crate::identify::evidence::{Blocks, Nominal};
+use crate::identify::fit::parameters::{Coordinate, GAIN_ROLES};
+use crate::identify::messages::Finding;
+use crate::identify::method_fit::MethodFit;
+use crate::motion::Observation;
+
+/// Standard deviations of what is stated from which a delay is named.
+const SURE: f64 = 4.0;
+/// Least part of a delay's prior variance that the data take away for it to be judged.
+const INFORMED: f64 = 0.1;
+
+/// The channels that are later or earlier than stated; what they showed was moved where impacts told it, and
+/// the fit allows for the rest, so that nothing is left in doubt.
+pub fn late_channels(
+    observations: &[Observation],
+    found: Option<&MethodFit>,
+    (blocks, nominal): (&Blocks, &Nominal),
+) -> Vec<Suspicion> {
+    let moved = observations.first().map_or(&[][..], |o| &o.late[..]);
+    let of = |(i, channel): (usize, &_)| {
+        let moved = moved.iter().find(|l| l.role == *channel);
+        if let Some(filter) = moved.and_then(|l| l.low_pass) {
+            let found = Finding::UndeclaredLowPass {
+                channel: *channel,
+                corner_hz: filter.corner_hz,
+            };
+            return Some(found.into());
+        }
+        let moved_ms = moved.map_or(0.0, |l| 1e3 * l.delay_s);
+        let stated_s = nominal.delay_uncertainties_s[i].unwrap_or(blocks.half_sample_s());
+        let centre_ms = 1e3 * nominal.delays_s[i];
+        let by_fit = found.and_then(|f| beyond_stated(f, i, [centre_ms, 1e3 * stated_s]));
+        let (rest_ms, sure) = by_fit.unwrap_or((0.0, 0.0));
+        let finding = Finding::LateChannel {
+            channel: *channel,
+            later_ms: moved_ms + rest_ms,
+            z_score: sure + moved_ms / (1e3 * stated_s).max(f64::MIN_POSITIVE),
+        };
+        (moved.is_some() || sure.abs() > SURE).then(|| finding.into())
+    };
+    GAIN_ROLES.iter().enumerate().filter_map(of).collect()
+}
+
+/// How far a fit has a delay off the centre of its prior, ms, and the statistic of that: a delay that is as
+/// stated lies about the centre with the prior's variance less that of the fit.
+fn beyond_stated(found: &MethodFit, i: usize, [centre, stated]: [f64; 2]) -> Option<(f64, f64)> {
+    let coordinate = Coordinate::Delay(i);
+    let variance = found.fit.error(coordinate)?.powi(2) * found.factor;
+    let told = stated.powi(2) - variance;
+    let between = found.spread(coordinate)?.between_groups;
+    let off = found.fit.parameters.coordinate(coordinate) - centre;
+    (told > INFORMED * stated.powi(2)).then(|| (off, off / told.sqrt().hypot(between)))
+}

@@ -1,0 +1,202 @@
+//! A gain that is far off its stated value, and what that leaves open in the estimates.
+//!
+//! Gains that are as stated, each within its standard uncertainty u, have errors g in a fit with the
+//! covariance S = u²I − C, C being that of the fit: what all have in common the data hardly tell, so
+//! that C is near u² along it and S near zero. If one gain k is off, the statistic that tells it best is
+//! `g_k/√S_kk`, and it is off by `g_k u²/S_kk`. The gain with the greatest statistic is named; where another
+//! explains the data nearly as well, as of two gains alone, both are, and the data do not tell which.
+
+use nalgebra::DMatrix;
+
+use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
+use crate::identify::fit::parameters::{Coordinate, GAIN_ROLES};
+use crate::identify::messages::{Finding, Note};
+use crate::identify::method_fit::MethodFit;
+use crate::record::Role;
+
+/// Standard deviations from which a gain is named: chance makes one of two differ so in 0.3 %. What masses
+/// that were made alike may differ hides the difference of their gains, so that a gain ten times its
+/// uncertainty off is about four standard deviations off.
+const SURE: f64 = 3.0;
+/// Least part of a gain's prior variance that the data take away for it to be judged.
+const INFORMED: f64 = 0.1;
+/// Difference of the squared statistics of two gains below which the data do not tell which is off.
+const TOLD: f64 = 9.0;
+
+/// A gain that may be off.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    channel: Role,
+    place: usize,
+    /// Its logarithm as fitted.
+    found: f64,
+    /// u² less its variance in the fit.
+    told: f64,
+    z_score: f64,
+}
+
+impl Candidate {
+    /// How far off it is if the others are as stated.
+    fn off(&self, stated: f64) -> f64 {
+        self.found * stated.powi(2) / self.told
+    }
+}
+
+/// The gain that is off, of standard uncertainty `stated`, with what it leaves open.
+pub fn wrong_gain(found: &MethodFit, stated: f64) -> Option<Suspicion> {
+    let covariance = &found.fit.covariance * found.factor;
+    let mut candidates: Vec<Candidate> = candidates(found, &covariance, stated);
+    candidates.sort_by(|a, b| b.z_score.abs().total_cmp(&a.z_score.abs()));
+    let worst = *candidates.first().filter(|c| c.z_score.abs() > SURE)?;
+    let also = candidates.get(1).copied();
+    let also = also.filter(|c| worst.z_score.powi(2) - c.z_score.powi(2) < TOLD);
+    let finding = match also {
+        None => Finding::WrongGain {
+            channel: worst.channel,
+            deviation: worst.off(stated).exp_m1(),
+            z_score: worst.z_score,
+        },
+        Some(other) => apart([worst, other], stated),
+    };
+    let moved = |parameter: Coordinate, k: &Candidate| {
+        let place = found.fit.free.iter().position(|c| *c == parameter)?;
+        Some((covariance[(place, k.place)] * k.found / k.told).abs())
+    };
+    let open = Coordinate::PHYSICAL.into_iter().filter_map(|parameter| {
+        let each = [Some(worst), also].into_iter().flatten();
+        let by = each
+            .filter_map(|k| moved(parameter, &k))
+            .fold(0.0, f64::max);
+        Doubt::material(found, parameter, by, Note::InstrumentOff)
+    });
+    Some(Suspicion {
+        finding,
+        doubts: open.collect(),
+    })
+}
+
+/// Two gains of which one is off, the one that reads more first.
+fn apart(pair: [Candidate; 2], stated: f64) -> Finding {
+    let [a, b] = pair;
+    let [high, low] = if a.found > b.found { [a, b] } else { [b, a] };
+    let deviation = 0.5 * (high.off(stated) - low.off(stated));
+    Finding::GainsApart {
+        channels: [high.channel, low.channel],
+        deviation: deviation.exp_m1(),
+        z_score: a.z_score.abs(),
+    }
+}
+
+fn candidates(found: &MethodFit, covariance: &DMatrix<f64>, stated: f64) -> Vec<Candidate> {
+    let places = found.fit.free.iter().enumerate();
+    let of = |(place, coordinate): (usize, &Coordinate)| {
+        let Coordinate::Gain(index) = *coordinate else {
+            return None;
+        };
+        let told = stated.powi(2) - covariance[(place, place)];
+        if told < INFORMED * stated.powi(2) {
+            return None;
+        }
+        let gain = found.fit.parameters.coordinate(*coordinate);
+        let between = found.spread(*coordinate)?.between_groups;
+        Some(Candidate {
+            channel: *GAIN_ROLES.get(index)?,
+            place,
+            found: gain,
+            told,
+            z_score: gain / told.sqrt().hypot(between),
+        })
+    };
+    places.filter_map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::fit::parameters::Parameters;
+    use crate::identify::fit::{Fit, FitReport};
+    use crate::identify::uncertainty::scatter::Scatter;
+
+    const STATED: f64 = 5e-3;
+
+    /// A fit of `x_st` and gains that are off by `true_errors`, of which the data know each one's sum with
+    /// ln `x_st` within 1e-4, and `x_st` itself not at all.
+    fn found(true_errors: &[f64]) -> MethodFit {
+        let count = true_errors.len();
+        // Unknowns: ln x_st, then the gains. Information of the data and of the priors.
+        let mut information = DMatrix::zeros(count + 1, count + 1);
+        let mut score = nalgebra::DVector::zeros(count + 1);
+        let weight = 1e8;
+        for (i, error) in true_errors.iter().enumerate() {
+            for (a, b) in [(0, 0), (0, i + 1), (i + 1, 0), (i + 1, i + 1)] {
+                information[(a, b)] += weight;
+            }
+            score[0] += weight * error;
+            score[i + 1] += weight * error;
+            information[(i + 1, i + 1)] += STATED.powi(-2);
+        }
+        let covariance = information.try_inverse().expect("regular");
+        let solution: nalgebra::DVector<f64> = &covariance * score;
+        let mut free = vec![Coordinate::Deflection];
+        let mut parameters = Parameters::symmetric(0.8, 12.0, 0.05, solution[0].exp());
+        for i in 0..count {
+            free.push(Coordinate::Gain(i));
+            parameters = parameters.with(Coordinate::Gain(i), solution[i + 1]);
+        }
+        MethodFit {
+            fit: Fit {
+                parameters,
+                free,
+                covariance,
+                cost: 1.0,
+                residuals: 1,
+                report: FitReport::default(),
+            },
+            factor: 1.0,
+            reduced: 1.0,
+            scatter: Scatter::default(),
+            parts: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn of_two_gains_the_data_do_not_tell_which_is_off() {
+        let suspicion = wrong_gain(&found(&[0.05, 0.0]), STATED).expect("a suspicion");
+        let Finding::GainsApart {
+            channels,
+            deviation,
+            z_score,
+        } = suspicion.finding
+        else {
+            panic!("{suspicion:?}");
+        };
+        assert_eq!(channels, [Role::VelocityX, Role::VelocityY]);
+        assert!((deviation - 0.05f64.exp_m1()).abs() < 1e-4, "{deviation}");
+        // 5 % over √2 · 0.5 %
+        assert!((z_score - 7.07).abs() < 0.01, "{z_score}");
+        // x_st is off by half of it one way or the other
+        let doubt = &suspicion.doubts[0];
+        assert_eq!(doubt.parameter, Coordinate::Deflection);
+        assert!((doubt.by - 0.025).abs() < 1e-4, "{doubt:?}");
+    }
+
+    #[test]
+    fn of_three_gains_the_one_that_is_off_is_named() {
+        let suspicion = wrong_gain(&found(&[0.0, -0.05, 0.0]), STATED).expect("a suspicion");
+        let Finding::WrongGain {
+            channel, deviation, ..
+        } = suspicion.finding
+        else {
+            panic!("{suspicion:?}");
+        };
+        assert_eq!(channel, Role::VelocityY);
+        assert!((deviation - (-0.05f64).exp_m1()).abs() < 1e-4);
+    }
+
+    #[test]
+    fn gains_within_what_is_stated_and_what_all_have_in_common_are_not_named() {
+        assert!(wrong_gain(&found(&[0.005, 0.0]), STATED).is_none());
+        assert!(wrong_gain(&found(&[0.008, -0.006, 0.003]), STATED).is_none());
+        assert!(wrong_gain(&found(&[0.05, 0.05]), STATED).is_none());
+    }
+}

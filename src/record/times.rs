@@ -1,0 +1,289 @@
+//! When the samples of a record were taken: by a time axis, by a rate, or by a clock of each channel.
+
+use super::alignment::{self, Timing};
+use super::calibrate::{BoundRole, RecordSetup};
+use super::{Flag, FlagCode, Record};
+use super::{condition, time_axis};
+use labfiles::timing::AxisUnit;
+use labfiles::{Clock, DatasetInfo, Samples};
+
+/// The clocks of a record's channels, from metadata alone.
+#[derive(Debug, Default)]
+pub(super) struct Clocks {
+    /// Time axes that must be read: indices in the dataset.
+    pub(super) axes: Vec<usize>,
+    /// Whether the channels must be aligned: they have several axes or rates, or begin at unlike times.
+    apart: bool,
+}
+
+/// The time axis of a channel; `None`: its rate.
+fn axis_of(
+    setup: &RecordSetup<'_>,
+    dataset: &DatasetInfo,
+    channel: usize,
+    shared: Option<usize>,
+) -> Option<usize> {
+    match dataset.channels[channel].clock {
+        // what campaign.toml names is the time of all
+        _ if setup.time.is_some() => shared,
+        Clock::Shared => shared,
+        Clock::Axis(axis) => Some(axis),
+        Clock::Rate => None,
+    }
+}
+
+/// The axis that all channels share which have none of their own.
+fn shared_axis(setup: &RecordSetup<'_>, dataset: &DatasetInfo) -> Result<Option<usize>, Flag> {
+    let found = time_axis::find(setup.time, dataset)?;
+    Ok(found.or_else(|| frames(setup, dataset)))
+}
+
+/// A column that counts a camera's frames, if the rate of the frames is stated: it shows lost ones.
+fn frames(setup: &RecordSetup<'_>, dataset: &DatasetInfo) -> Option<usize> {
+    setup.sample_rate_hz?;
+    (0..dataset.channels.len()).find(|i| time_axis::counts_frames(dataset, *i))
+}
+
+impl Clocks {
+    /// Of the channels that roles are bound to.
+    pub(super) fn of(
+        setup: &RecordSetup<'_>,
+        dataset: &DatasetInfo,
+        bound: &[BoundRole<'_>],
+        flags: &mut Vec<Flag>,
+    ) -> Self {
+        let shared = shared_axis(setup, dataset).unwrap_or_else(|flag| {
+            flags.push(flag);
+            None
+        });
+        let each = bound
+            .iter()
+            .map(|(_, b)| axis_of(setup, dataset, b.index, shared));
+        let each: Vec<Option<usize>> = each.collect();
+        let mut axes: Vec<usize> = each.iter().copied().flatten().collect();
+        axes.sort_unstable();
+        axes.dedup();
+        let mixed = axes.len() > 1 || (!axes.is_empty() && each.contains(&None));
+        let starts = bound
+            .iter()
+            .filter_map(|(_, b)| dataset.channels[b.index].start_s);
+        let unlike = starts
+            .clone()
+            .any(|s| starts.clone().any(|other| (s - other).abs() > 1e-9));
+        Self {
+            axes,
+            apart: mixed || unlike,
+        }
+    }
+
+    /// Give the record its sample rate: `kept` are the indices of its channels in the dataset, `axes` the samples
+    /// of the time axes.
+    pub(super) fn settle(
+        &self,
+        record: &mut Record,
+        setup: &RecordSetup<'_>,
+        dataset: &DatasetInfo,
+        (kept, axes): (&[usize], Vec<Samples>),
+    ) {
+        let read = self.axes.iter().zip(axes);
+        let mut times: Vec<Option<Vec<f64>>> = read
+            .map(|(axis, samples)| seconds(samples, setup, (dataset, *axis), &mut record.flags))
+            .collect();
+        if self.apart {
+            self.align(record, setup, dataset, (kept, &times));
+            return;
+        }
+        let mut times = times.first_mut().and_then(Option::take);
+        condition::equal_lengths(record, times.as_mut());
+        condition::trim_missing(record, times.as_mut());
+        settle_rate(record, setup, dataset, (kept, times.as_deref()));
+    }
+
+    /// Put channels with clocks of their own on one axis.
+    fn align(
+        &self,
+        record: &mut Record,
+        setup: &RecordSetup<'_>,
+        dataset: &DatasetInfo,
+        (kept, times): (&[usize], &[Option<Vec<f64>>]),
+    ) {
+        let shared = shared_axis(setup, dataset).unwrap_or(None);
+        let mut timings = Vec::with_capacity(kept.len());
+        for (i, &index) in kept.iter().enumerate() {
+            let values = &mut record.channels[i].values;
+            let (first, last) = condition::filled(values);
+            values.truncate(last);
+            values.drain(..first);
+            let info = &dataset.channels[index];
+            let axis = axis_of(setup, dataset, index, shared);
+            let axis = axis.and_then(|axis| self.axes.iter().position(|a| *a == axis));
+            let own = axis.and_then(|axis| times[axis].as_deref());
+            let own = own.map(|t| &t[first.min(t.len())..last.min(t.len())]);
+            let measured = own.and_then(|own| time_axis::inspect(own, &mut record.flags));
+            let rate = measured.or(info.sample_rate_hz).or(setup.sample_rate_hz);
+            let Some(rate_hz) = rate.filter(|r| r.is_finite() && *r > 0.0) else {
+                no_rate(record);
+                return;
+            };
+            let start_s = match own.and_then(|own| own.first()) {
+                Some(first_s) => Some(first_s + info.start_s.unwrap_or(0.0)),
+                None => info.start_s.map(|s| s + first as f64 / rate_hz),
+            };
+            timings.push(Timing { rate_hz, start_s });
+        }
+        record.sample_rate_hz = alignment::align(record, &timings).unwrap_or(0.0);
+    }
+}
+
+/// A time axis in s; `None` if it holds no real numbers, or in no unit that is known.
+fn seconds(
+    samples: Samples,
+    setup: &RecordSetup<'_>,
+    (dataset, axis): (&DatasetInfo, usize),
+    flags: &mut Vec<Flag>,
+) -> Option<Vec<f64>> {
+    let Samples::Real(mut times) = samples else {
+        return None;
+    };
+    let info = &dataset.channels[axis];
+    let stated_hz = setup.sample_rate_hz.or(info.sample_rate_hz);
+    let factor = match (
+        time_axis::counts_frames(dataset, axis),
+        setup.sample_rate_hz,
+    ) {
+        (true, Some(rate_hz)) => rate_hz.recip(),
+        _ => {
+            let unit = AxisUnit::of(info.unit.as_deref(), &info.name, &times);
+            match unit_s(&unit, &info.name, setup.time_unit_s, flags) {
+                Some(factor) => factor,
+                // counts of samples at a rate that is stated
+                None => match (stated_hz, time_axis::usual_step(&times)) {
+                    (Some(rate_hz), Some(step)) => (rate_hz * step).recip(),
+                    _ => {
+                        flags.push(unit_missing(&unit, &info.name));
+                        return None;
+                    }
+                },
+            }
+        }
+    };
+    times.iter_mut().for_each(|t| *t *= factor);
+    Some(times)
+}
+
+/// Seconds in the unit of a time axis; what is assumed, and what contradicts campaign.toml, is noted.
+fn unit_s(
+    unit: &AxisUnit,
+    name: &str,
+    stated_s: Option<f64>,
+    flags: &mut Vec<Flag>,
+) -> Option<f64> {
+    let own_s = unit.seconds();
+    match (unit, own_s, stated_s) {
+        (AxisUnit::Stated(_), Some(own), Some(stated)) if (own / stated - 1.0).abs() > 1e-9 => {
+            let found = format!(
+                "the time axis '{name}' has a unit of {own} s, campaign.toml states time_unit as {stated} s"
+            );
+            let remedy = "remove time_unit from [records], or correct it";
+            flags.push(Flag::new(FlagCode::WrongUnit, Some(name), found, remedy));
+            Some(own)
+        }
+        (AxisUnit::Stated(_), own, _) => own,
+        (_, _, Some(stated)) => Some(stated),
+        (_, own, None) => {
+            let note = own.and_then(|_| unit.note(name));
+            flags.extend(note.map(|note| {
+                let remedy = "state time_unit in [records] if it is another";
+                Flag::new(FlagCode::TimeUnitAssumed, Some(name), note, remedy).excluding(false)
+            }));
+            own
+        }
+    }
+}
+
+fn unit_missing(unit: &AxisUnit, name: &str) -> Flag {
+    let found = unit.note(name).unwrap_or_default();
+    let remedy = "write the unit of the time in [records]: time_unit = \"ms\" (or s, us, ns), or sample_rate = \
+                  \"…\" if it counts samples";
+    Flag::new(FlagCode::TimeUnitMissing, Some(name), found, remedy)
+}
+
+/// The sample rate: from the time axis, else as the file states, else as campaign.toml does.
+fn settle_rate(
+    record: &mut Record,
+    setup: &RecordSetup<'_>,
+    dataset: &DatasetInfo,
+    (kept, times): (&[usize], Option<&[f64]>),
+) {
+    let measured = times.and_then(|times| time_axis::inspect(times, &mut record.flags));
+    let stated = stated_rate(record, dataset, kept);
+    let rate = measured.or(stated).or(setup.sample_rate_hz);
+    match rate.filter(|r| r.is_finite() && *r > 0.0) {
+        Some(rate) => {
+            record.sample_rate_hz = rate;
+            record.flags.extend(contradicting_step(rate, dataset, kept));
+        }
+        None => no_rate(record),
+    }
+}
+
+/// Note that no rate is known, unless it is noted why.
+fn no_rate(record: &mut Record) {
+    let why = [
+        FlagCode::TimeUnitMissing,
+        FlagCode::TimeUnreadable,
+        FlagCode::TimeBackward,
+    ];
+    if record.flags.iter().any(|f| why.contains(&f.code)) {
+        return;
+    }
+    record.flags.push(Flag::new(
+        FlagCode::NoSampleRate,
+        None,
+        "neither a time axis nor a sample rate states when the samples were taken",
+        "write sample_rate = \"2 kHz\" or time = \"…\" in [records]",
+    ));
+}
+
+/// Relative difference of rates that rounding of a printed step does not explain.
+const RATES_DIFFER: f64 = 5e-3;
+
+/// A step that a file states beside a time axis of another step.
+fn contradicting_step(rate_hz: f64, dataset: &DatasetInfo, kept: &[usize]) -> Option<Flag> {
+    let stated = kept.iter().find_map(|&index| {
+        let text = dataset.channels[index].properties.get("Delta_X")?;
+        text.replace(',', ".").trim().parse::<f64>().ok()
+    });
+    let step_s = stated.filter(|s| s.is_finite() && *s > 0.0)?;
+    if (step_s * rate_hz - 1.0).abs() < RATES_DIFFER {
+        return None;
+    }
+    let found = format!(
+        "the header states a step of {step_s} s (Delta_X), the time channel has {:.6} s: the channel is \
+         used",
+        1.0 / rate_hz
+    );
+    let remedy = "check which of the two is right; without the time channel the step would be used";
+    Some(Flag::new(FlagCode::RateContradicts, None, found, remedy).excluding(false))
+}
+
+/// The rate that the file states for the channels; a flag if they differ.
+fn stated_rate(record: &mut Record, dataset: &DatasetInfo, kept: &[usize]) -> Option<f64> {
+    let rates = kept.iter().filter_map(|&index| {
+        let info = &dataset.channels[index];
+        info.sample_rate_hz.map(|rate| (rate, &info.name))
+    });
+    let mut first: Option<f64> = None;
+    for (rate, name) in rates {
+        let known = *first.get_or_insert(rate);
+        if (rate / known - 1.0).abs() > 1e-6 {
+            record.flags.push(Flag::new(
+                FlagCode::UnequalSampleRates,
+                Some(name),
+                format!("channel '{name}' has {rate} samples a second, others {known}"),
+                "record all channels at one rate, or leave the channel out",
+            ));
+        }
+    }
+    first
+}
