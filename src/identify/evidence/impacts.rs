@@ -66,7 +66,14 @@ pub struct ImpactBlock {
     corners: [bool; 4],
     /// Whether the impacts are between free flights, of records without a drive.
     pub free: bool,
+    /// What springs and drive, not the contact, add to the separation speed in the median of the contacts that
+    /// last, over the approach speed, as a spring and a damper have it.
+    pub push: f64,
 }
+
+/// Root mean square of what other laws of contact make of that push less what a spring and a damper make of it, over
+/// the latter: five laws for R of 0.5 to 0.9 (`fit::contact_laws`).
+pub(crate) const PUSH_OF_LAWS: f64 = 2.0;
 
 /// Share of the error of an impact between free flights that all have in common.
 const COMMON: f64 = 0.4;
@@ -115,8 +122,14 @@ impl ImpactBlock {
             .all(|p: &SpeedPair| observations[p.observation].drive.is_none());
         Self {
             free,
+            push: push(observations),
             ..Self::of_pairs(pairs, relative_error)
         }
+    }
+
+    /// What the unknown law of contact leaves open in R.
+    pub fn open_by_law(&self) -> f64 {
+        PUSH_OF_LAWS * self.push
     }
 
     /// What all impacts between free flights have in common of their errors: how their contacts are timed.
@@ -142,6 +155,7 @@ impl ImpactBlock {
             relative_error,
             corners,
             free: false,
+            push: 0.0,
         }
     }
 
@@ -212,6 +226,16 @@ impl ImpactBlock {
         let noise = pair.error_m_s * 1f64.hypot(restitution);
         noise.hypot(self.relative_error * pair.before_m_s)
     }
+}
+
+/// Median of |push| over the approach speed, of the contacts that last.
+fn push(observations: &[Observation]) -> f64 {
+    let impacts = observations.iter().flat_map(|o| &o.impacts);
+    let pushed = impacts.filter_map(|i| {
+        let before = i.approach_speed_before_m_s.filter(|v| *v > 0.0)?;
+        Some((i.external_push_m_s? / before).abs())
+    });
+    crate::signal::robust::median(&pushed.collect::<Vec<f64>>()).unwrap_or(0.0)
 }
 
 impl Block for ImpactBlock {

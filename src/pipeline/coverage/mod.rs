@@ -164,16 +164,33 @@ fn parameters(truth: &Truth) -> Parameters {
     }
 }
 
-/// Run a study of that many campaigns on rigs with these effects, and of `few` for each mistake.
+/// What a study simulates.
+#[derive(Debug, Clone)]
+pub struct CoveragePlan {
+    /// Number of campaigns.
+    pub campaigns: usize,
+    /// Number of further campaigns for each mistake.
+    pub mistakes: usize,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Effects of the rig.
+    pub rig: RigSpec,
+    /// Step of the sweeps past the end of z = 1 as a share of f0; `None`: campaigns of every motion.
+    pub step: Option<f64>,
+}
+
+/// Run a study.
 ///
 /// # Errors
 /// Where a simulation refuses its parameters.
-pub fn study(
-    [campaigns, few]: [usize; 2],
-    seed: u64,
-    rig: &RigSpec,
-    progress: Progress<'_>,
-) -> Result<Coverage, PipelineError> {
+pub fn study(plan: &CoveragePlan, progress: Progress<'_>) -> Result<Coverage, PipelineError> {
+    let CoveragePlan {
+        campaigns,
+        mistakes: few,
+        seed,
+        ref rig,
+        step: of_f0,
+    } = *plan;
     let total = (campaigns + few * (1 + Mistake::ALL.len())) as u64;
     let done = AtomicU64::new(0);
     let step = || {
@@ -182,7 +199,11 @@ pub fn study(
     let main: Vec<(Statement, Trial)> = (0..campaigns as u64)
         .into_par_iter()
         .map(|i| {
-            let draw = draw(seed, i, Reach::Full, rig);
+            let whole = draw(seed, i, Reach::Full, rig);
+            let draw = match of_f0 {
+                Some(share) => whole.with_step(share, rig),
+                None => whole,
+            };
             let seen = campaign(&draw, None)?;
             let trial = trial(&seen, &draw);
             step();
