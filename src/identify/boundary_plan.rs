@@ -1,11 +1,14 @@
-//! Where to step a drive's frequency more finely so that the measured boundaries alone determine R twice as well.
+//! R from measured boundaries alone, and where to step a drive's frequency more finely so that they determine it twice
+//! as well.
 
 use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::boundary::{BoundaryBlock, predicted_hz};
 use crate::identify::fit::parameters::Parameters;
-use crate::identify::methods::succeeded;
+use crate::identify::identification::MethodResult;
+use crate::identify::methods::{self, succeeded};
+use crate::identify::results;
 use crate::identify::selection::Selection;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::surroundings::Surroundings;
@@ -40,29 +43,79 @@ pub struct BoundaryPlan {
 /// Parts into which each bracket is divided at most: beyond, what acts on boundaries beside R is what is left.
 const MOST_PARTS: u32 = 64;
 
+/// What the boundaries alone say, and what else acts on them.
+struct Alone<'a> {
+    selection: Selection<'a>,
+    surroundings: Surroundings,
+    curve: Parameters,
+    posterior: Posterior,
+}
+
+impl<'a> Alone<'a> {
+    /// Of brackets near the boundaries of given parameters, else of those that the resonance curve and the speeds at
+    /// impacts tell.
+    fn of(evidence: &'a Evidence<'a>, fitted: Option<&Parameters>) -> Option<Self> {
+        let mut selection = Selection::new(evidence);
+        let resonance = selection.resonance();
+        let curve = succeeded(&resonance)?;
+        let start = match fitted {
+            Some(fitted) => *fitted,
+            None => {
+                let about = curve.fit.parameters;
+                let impacts = methods::impacts(&selection.blocks, &evidence.nominal, about);
+                let restitution = succeeded(&impacts)?.fit.parameters.restitution;
+                Parameters {
+                    restitution: restitution.clamp(0.0, 1.0),
+                    ..about
+                }
+            }
+        };
+        selection.choose_brackets(&start);
+        let surroundings = Surroundings::new(&selection.blocks, &evidence.nominal, curve);
+        let block = &selection.blocks.boundary;
+        let posterior = posterior::of_brackets(block, &surroundings, None)?;
+        Some(Self {
+            posterior,
+            surroundings,
+            curve: curve.fit.parameters,
+            selection,
+        })
+    }
+
+    /// Half of R's interval with other brackets.
+    fn half_width(&self, block: &BoundaryBlock) -> Option<f64> {
+        let found = posterior::of_brackets(block, &self.surroundings, None)?;
+        Some(half_width(&found))
+    }
+}
+
+fn half_width(found: &Posterior) -> f64 {
+    let [low, high] = found.interval95;
+    0.5 * (high - low)
+}
+
+/// R as the boundaries alone have it, beside the impactless records: no waveform enters. `None` where they do not
+/// determine it.
+pub fn restitution(evidence: &Evidence<'_>) -> Option<MethodResult> {
+    let alone = Alone::of(evidence, None)?;
+    let blocks = &alone.selection.blocks;
+    Some(results::posterior(blocks, &alone.posterior, &alone.curve))
+}
+
 /// The coarsest steps through the ends of z = 1 with which the boundaries alone would hold R in half of its interval now,
 /// or the finest considered; `None` where boundaries do not determine R, or none is the end of z = 1.
 pub fn halving(evidence: &Evidence<'_>, fitted: &Parameters) -> Option<BoundaryPlan> {
-    let mut selection = Selection::new(evidence);
-    let resonance = selection.resonance();
-    selection.choose_brackets(fitted);
-    let curve = succeeded(&resonance)?;
-    let block = &selection.blocks.boundary;
-    let surroundings = Surroundings::new(&selection.blocks, &evidence.nominal, curve);
-    let half = |block: &BoundaryBlock| {
-        let found = posterior::of_brackets(block, &surroundings, None)?;
-        let [low, high] = found.interval95;
-        Some((0.5 * (high - low), found))
-    };
-    let (now, found) = half(block)?;
+    let alone = Alone::of(evidence, Some(fitted))?;
+    let block = &alone.selection.blocks.boundary;
     if !block.brackets.iter().any(is_end) {
         return None;
     }
+    let now = half_width(&alone.posterior);
     let mut parts = 1;
     loop {
         parts *= 2;
-        let finer = divided(block, &found, curve.fit.parameters, parts);
-        let (then, _) = half(&finer)?;
+        let finer = divided(block, &alone.posterior, alone.curve, parts);
+        let then = alone.half_width(&finer)?;
         let halved = then <= 0.5 * now;
         if halved || parts == MOST_PARTS {
             return Some(BoundaryPlan {

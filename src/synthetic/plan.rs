@@ -82,8 +82,8 @@ impl Plan {
     /// The resonance curve, and at several gaps upward sweeps past the end of z = 1 in steps of a share of f0; `offset`
     /// (0 to 1) is where in a step the boundary of the ideal model lies.
     pub fn past_the_end(truth: &Truth, step: f64, offset: f64) -> Self {
-        let (f0, x_st) = (truth.natural_frequency_hz, truth.static_deflection_m);
-        let open = OPEN_GAP * 0.5 / truth.damping_ratio * x_st;
+        let (f0, x_st) = (truth.natural_frequency_hz(), truth.static_deflection_m());
+        let open = OPEN_GAP * 0.5 / truth.damping_ratio() * x_st;
         let mut steps = Vec::new();
         push_sweep(
             &mut steps,
