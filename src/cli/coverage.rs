@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::simulate::within;
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Progress, Verbosity};
 use crate::identify::uncertainty::coverage::Score;
-use crate::pipeline::coverage::{self, MotionTally, Tallies, Tally};
+use crate::pipeline::coverage::{self, CoveragePlan, MotionTally, Tallies, Tally};
 use crate::synthetic::RigSpec;
 use labfiles::output::write_bytes;
 
@@ -18,7 +19,12 @@ pub(super) struct Coverage {
     /// Number of campaigns
     #[arg(long, value_name = "N", default_value_t = 100)]
     campaigns: usize,
-    /// Number of further campaigns for each mistake of the laboratory [default: a fifth of --campaigns]
+    /// Sweep past the end of z = 1 at several gaps in steps of this share of f0, for R from the measured
+    /// boundaries [default: campaigns of every motion]
+    #[arg(long, value_name = "SHARE", value_parser = within(1e-3, 0.2))]
+    step: Option<f64>,
+    /// Number of further campaigns for each mistake of the laboratory [default: a fifth of --campaigns; none with
+    /// --step]
     #[arg(long, value_name = "N")]
     mistakes: Option<usize>,
     /// Seed of everything random
@@ -40,6 +46,7 @@ Example:
   impactid study coverage --campaigns 300 --seed 1 --json
   impactid study coverage --campaigns 100 --rig realistic
   impactid study coverage --campaigns 100 --rig friction=0.015,contact=0.3
+  impactid study coverage --campaigns 60 --rig realistic --step 0.01
 
 Each campaign has a truth, noise and faults of its own. Errors of R are absolute, those of the \
 other parameters relative. `bound` is the Cramér–Rao bound: no unbiased estimator errs less.";
@@ -51,9 +58,18 @@ impl Coverage {
     /// [`Failure`] where a simulation refuses its parameters.
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let bar = Progress::new(verbosity, "campaigns", self.campaigns as u64);
-        let few = self.mistakes.unwrap_or(self.campaigns.div_ceil(5));
-        let counts = [self.campaigns, few];
-        let found = coverage::study(counts, self.seed, &self.rig, &|_, done, total| {
+        let few = match self.step {
+            Some(_) => 0,
+            None => self.campaigns.div_ceil(5),
+        };
+        let plan = CoveragePlan {
+            campaigns: self.campaigns,
+            mistakes: self.mistakes.unwrap_or(few),
+            seed: self.seed,
+            rig: self.rig,
+            step: self.step,
+        };
+        let found = coverage::study(&plan, &|_, done, total| {
             bar.set(done, total);
         })?;
         drop(bar);

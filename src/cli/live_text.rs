@@ -178,7 +178,7 @@ fn answer(found: &Identification) -> String {
     if let Some(frequency) = &joint.natural_frequency_hz {
         text += &format!(", f0 = {} Hz", with_error(frequency));
     }
-    text += "\n";
+    text += " (95 %)\n";
     if let Some((source, share)) = greatest_item(found) {
         let percent = 1e2 * share;
         text += &format!("most of R's uncertainty: {source} ({percent:.0} % of the variance)\n");

@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::stdout::print_json;
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
+use crate::identify::boundary_plan::BoundaryPlan;
 use crate::motion::Motion;
 use crate::pipeline::plan;
 
@@ -33,7 +34,9 @@ Example:
 
 The settings are within the frequencies and gaps of the campaign. Each assumes that those \
 above it are measured, with records as long and as noisy as those of the campaign. What the \
-interval allows for beyond noise stays in the errors: more records do not reduce it.
+interval allows for beyond noise stays in the errors: more records do not reduce it. Below them: \
+how finely to step through the ends of z = 1 so that R's interval from the measured boundaries alone \
+is halved.
 Exit codes: 0 success; 1 nothing can be proposed; 2 bad input.";
 
 impl Plan {
@@ -63,7 +66,44 @@ impl Plan {
     }
 }
 
+/// How to step through the ends of z = 1, for R from the boundaries alone.
+fn boundaries(plan: &BoundaryPlan) -> String {
+    let (now, then) = (plan.half_width95_now, plan.half_width95_then);
+    let mut text = match plan.halved {
+        true => format!(
+            "R from the measured boundaries alone is ± {now:.2e} (95 %); it would be ± {then:.2e} with these upward \
+             sweeps past the end of z = 1:\n"
+        ),
+        false => format!(
+            "R from the measured boundaries alone is ± {now:.2e} (95 %). Finer steps do not halve it: with these it \
+             would be ± {then:.2e}, and the rest is what acts on boundaries beside R (f0, β, x_st and clearances as \
+             they are known, the length of contacts):\n"
+        ),
+    };
+    text += &format!(
+        "{:>13} {:>12} {:>12} {:>12}\n",
+        "clearance, mm", "from, Hz", "to, Hz", "step, Hz"
+    );
+    for sweep in &plan.sweeps {
+        text += &format!(
+            "{:>13.4} {:>12.3} {:>12.3} {:>12.4}\n",
+            1e3 * sweep.clearance_m,
+            sweep.from_hz,
+            sweep.to_hz,
+            sweep.step_hz
+        );
+    }
+    text
+}
+
 fn print_table(found: &plan::Plan) {
+    print_settings(found);
+    if let Some(plan) = &found.boundaries {
+        print!("{}", boundaries(plan));
+    }
+}
+
+fn print_settings(found: &plan::Plan) {
     if let (Some(r), Some(error)) = (found.restitution, found.restitution_error_now) {
         println!("R = {r:.6}, standard error now {error:.2e}");
     }
@@ -85,5 +125,38 @@ fn print_table(found: &plan::Plan) {
             p.clearance_ratio,
             p.restitution_error_after
         );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::boundary_plan::FineSweep;
+
+    #[test]
+    fn what_finer_steps_make_of_boundaries_is_said() {
+        let plan = |halved| BoundaryPlan {
+            half_width95_now: 0.057,
+            half_width95_then: 0.02,
+            halved,
+            sweeps: vec![FineSweep {
+                clearance_m: 1.25e-3,
+                from_hz: 13.8,
+                to_hz: 14.6,
+                step_hz: 0.1,
+            }],
+        };
+        let text = boundaries(&plan(true));
+        assert!(
+            text.starts_with(
+                "R from the measured boundaries alone is ± 5.70e-2 (95 %); it would be ± 2.00e-2"
+            ),
+            "{text}"
+        );
+        assert!(
+            text.ends_with("1.2500       13.800       14.600       0.1000\n"),
+            "{text}"
+        );
+        assert!(boundaries(&plan(false)).contains("do not halve it"));
     }
 }

@@ -195,7 +195,7 @@ pub(super) struct Campaign {
 const DEFAULT_RECORDS: usize = 200;
 
 /// Reads a number from `low` to `high`.
-fn within(low: f64, high: f64) -> impl Fn(&str) -> Result<f64, String> + Clone {
+pub(super) fn within(low: f64, high: f64) -> impl Fn(&str) -> Result<f64, String> + Clone {
     move |text| match text.parse::<f64>() {
         Ok(value) if (low..=high).contains(&value) => Ok(value),
         Ok(_) => Err(format!("it must lie between {low} and {high}")),

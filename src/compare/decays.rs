@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::input::Input;
-use super::replays::Signal;
+use super::traces::Signal;
 use crate::identify::Reason;
 use crate::motion::Observation;
 use crate::record::{Channel, Record};

@@ -12,6 +12,7 @@ mod plane;
 mod records;
 mod replays;
 mod single;
+mod traces;
 
 pub use decays::FreeDecay;
 pub use evidence::{
@@ -22,8 +23,9 @@ pub use input::Input;
 pub use left_out::{Unusable, UnusableReason};
 pub use plane::{BoundaryCurve, RegionMap};
 pub use records::{BracketRow, Overview, RecordRow};
-pub use replays::{Comparison, Signal, Trace};
+pub use replays::Comparison;
 pub use single::{Beside, WhyNot, beside};
+pub use traces::{Signal, Trace};
 
 /// What the figures of the theory draw.
 pub(crate) use impact_oscillator::atlas::{

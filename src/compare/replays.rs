@@ -5,40 +5,12 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::input::{Input, place};
-use crate::event::DetectSettings;
-use crate::event::{Detection, DriveTone, detect};
+use super::traces::{Cut, Trace, largest_residual, traces};
+use crate::event::{DetectSettings, DriveTone, detect};
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::replay::{Replay, Stretch};
 use crate::motion::{Motion, Observation};
-use crate::record::{Record, Role};
-use crate::signal::drift::fitted_line;
-use crate::signal::robust::rms;
-use crate::signal::whole;
-use labfiles::units::Dimension;
-
-/// A sampled signal on its own time axis.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Signal {
-    /// Time, s.
-    pub time_s: Vec<f64>,
-    /// Values, SI, one per time.
-    pub values: Vec<f64>,
-}
-
-/// One channel of a comparison: measured, simulated, and their difference.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Trace {
-    /// What the channel measures.
-    pub role: Role,
-    /// Its dimension, hence its SI unit.
-    pub dimension: Dimension,
-    /// As measured.
-    pub measured: Signal,
-    /// As simulated, if the model has it.
-    pub simulated: Option<Signal>,
-    /// Measured less simulated.
-    pub residual: Option<Signal>,
-}
+use crate::record::Record;
 
 /// A record compared with its simulation, from a zero phase of the drive on.
 #[derive(Debug, Clone, PartialEq)]
@@ -138,8 +110,14 @@ pub(super) fn comparison(
     let stretch = stretch(drive, periods);
     let simulation = parameters.and_then(|p| Replay::of(input.rig, *p, o, &stretch));
     let (eta, rho) = parameters.map_or((None, None), |p| place(p, o));
-    let traces = traces(record, &detection, &stretch, simulation.as_ref());
     let motion = &o.classification.motion;
+    let cut = Cut {
+        stretch,
+        repeats_after_s: repeats_after_periods(motion).map(|n| n * drive.period_s()),
+        impacts: &o.impacts,
+        simulation: simulation.as_ref(),
+    };
+    let traces = traces(record, &detection.kinematics, &cut);
     let simulated_motion = simulation.as_ref().map(|s| {
         let same = largest_residual(&traces) < SAME_MOTION;
         if same { motion } else { &s.motion }.clone()
@@ -161,6 +139,15 @@ pub(super) fn comparison(
     })
 }
 
+/// Drive periods after which a motion repeats; `None` where it does not.
+fn repeats_after_periods(motion: &Motion) -> Option<f64> {
+    match motion {
+        Motion::Periodic { periods_n, .. } => Some(f64::from(*periods_n)),
+        Motion::Impactless => Some(1.0),
+        _ => None,
+    }
+}
+
 /// The stretch of a record that is shown: from the first zero phase of its drive.
 fn stretch(drive: DriveTone, periods: u32) -> Stretch {
     let period_s = drive.period_s();
@@ -171,151 +158,22 @@ fn stretch(drive: DriveTone, periods: u32) -> Stretch {
     }
 }
 
-/// The samples of a stretch, their time counted from its start.
-fn cut(values: &[f64], rate_hz: f64, stretch: &Stretch) -> Signal {
-    let first = whole::index((stretch.start_s * rate_hz).ceil());
-    let end = whole::index(((stretch.start_s + stretch.length_s) * rate_hz).floor()) + 1;
-    let range = first.min(values.len())..end.min(values.len());
-    let time_s = range.clone().map(|i| i as f64 / rate_hz - stretch.start_s);
-    Signal {
-        time_s: time_s.collect(),
-        values: values[range].to_vec(),
-    }
-}
-
-/// Greatest residual of a channel over its own size.
-fn largest_residual(traces: &[Trace]) -> f64 {
-    let ratios = traces.iter().filter_map(|t| {
-        let residual = t.residual.as_ref()?;
-        Some(rms(&residual.values) / rms(&t.measured.values))
-    });
-    ratios.fold(0.0, f64::max)
-}
-
-fn traces(
-    record: &Record,
-    detection: &Detection,
-    stretch: &Stretch,
-    simulation: Option<&Replay>,
-) -> Vec<Trace> {
-    let k = &detection.kinematics;
-    let (length, velocity) = (Dimension::Length, Dimension::Velocity);
-    let moving = [
-        (Role::DisplacementX, length, &k.x.displacement),
-        (Role::DisplacementY, length, &k.y.displacement),
-        (Role::VelocityX, velocity, &k.x.velocity),
-        (Role::VelocityY, velocity, &k.y.velocity),
-    ];
-    let compared = moving.into_iter().filter_map(|(role, dimension, series)| {
-        let measured = cut(&series.as_ref()?.values, k.rate_hz, stretch);
-        Some(compared(role, dimension, measured, simulation))
-    });
-    let others = [Role::Contact, Role::FrameX, Role::FrameY].into_iter();
-    let measured_alone = others.filter_map(|role| {
-        let channel = record.channel(role)?;
-        Some(Trace {
-            role,
-            dimension: channel.dimension,
-            measured: cut(&channel.values, k.rate_hz, stretch),
-            simulated: None,
-            residual: None,
-        })
-    });
-    compared.chain(measured_alone).collect()
-}
-
-/// One channel beside its simulation. Its constant part, which no channel measures, and its slow
-/// drift are taken out: the straight line through measured less simulated.
-fn compared(
-    role: Role,
-    dimension: Dimension,
-    mut measured: Signal,
-    simulation: Option<&Replay>,
-) -> Trace {
-    let simulated = simulation.and_then(|s| s.values(role, &measured.time_s));
-    let signal = |values| Signal {
-        time_s: measured.time_s.clone(),
-        values,
-    };
-    let residual = simulated.as_ref().map(|simulated| {
-        let (offset, slope) =
-            fitted_line(&measured.time_s, &difference(&measured.values, simulated));
-        for (t, value) in measured.time_s.iter().zip(&mut measured.values) {
-            *value -= offset + slope * t;
-        }
-        difference(&measured.values, simulated)
-    });
-    Trace {
-        role,
-        dimension,
-        simulated: simulated.map(signal),
-        residual: residual.map(signal),
-        measured,
-    }
-}
-
-fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a - b).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn ramp(samples: usize) -> Vec<f64> {
-        (0..samples).map(|i| i as f64).collect()
-    }
-
-    fn drive(phase_rad: f64) -> DriveTone {
-        DriveTone {
-            frequency_hz: 10.0,
-            frequency_error_hz: 0.0,
-            phase_rad,
-            amplitude: 1.0,
-            residual_ratio: 0.0,
-        }
-    }
-
     #[test]
     fn a_stretch_begins_at_a_zero_phase_of_the_drive() {
+        let drive = DriveTone {
+            frequency_hz: 10.0,
+            frequency_error_hz: 0.0,
+            phase_rad: 0.25 * std::f64::consts::TAU,
+            amplitude: 1.0,
+            residual_ratio: 0.0,
+        };
         // a quarter of a period has passed at the first sample: three quarters to go
-        let quarter = stretch(drive(0.25 * std::f64::consts::TAU), 2);
+        let quarter = stretch(drive, 2);
         assert!((quarter.start_s - 0.075).abs() < 1e-12);
         assert!((quarter.length_s - 0.2).abs() < 1e-12);
-        // 75.075 and 275.275 samples
-        let cut = cut(&ramp(400), 1001.0, &quarter);
-        assert_eq!((cut.values[0], cut.values.len()), (76.0, 200));
-        assert!((cut.time_s[0] - 0.925 / 1001.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_stretch_ends_with_its_record() {
-        let whole = stretch(drive(0.0), 4);
-        let cut = cut(&ramp(250), 1000.0, &whole);
-        assert_eq!((cut.values[0], cut.values.len()), (100.0, 150));
-    }
-
-    #[test]
-    fn the_largest_residual_counts_relative_to_its_own_channel() {
-        let trace = |measured: f64, residual: Option<f64>| {
-            let signal = |v| Signal {
-                time_s: vec![0.0, 1.0],
-                values: vec![v, -v],
-            };
-            Trace {
-                role: Role::VelocityX,
-                dimension: Dimension::Velocity,
-                measured: signal(measured),
-                simulated: None,
-                residual: residual.map(signal),
-            }
-        };
-        let traces = [
-            trace(2.0, Some(0.1)),
-            trace(0.1, Some(0.02)),
-            trace(1.0, None),
-        ];
-        assert!((largest_residual(&traces) - 0.2).abs() < 1e-12);
-        assert_eq!(largest_residual(&traces[2..]), 0.0);
     }
 }

@@ -20,10 +20,9 @@ fn the_fitted_model_replays_the_records_it_was_fitted_to() {
     for c in compared.comparisons.iter().filter(|c| simple(&c.motion)) {
         assert_eq!(c.simulated_motion.as_ref(), Some(&c.motion), "{}", c.record);
         for trace in c.traces.iter().filter(|t| t.simulated.is_some()) {
-            let residual = trace.residual.as_ref().expect("a residual");
-            let ratio = crate::signal::robust::rms(&residual.values)
-                / crate::signal::robust::rms(&trace.measured.values);
-            assert!(ratio < 0.05, "{} {}: {ratio}", c.record, trace.role.name());
+            let [residual, whole] = trace.residual_and_whole().expect("a residual");
+            let ratio = residual / whole;
+            assert!(ratio < 0.01, "{} {}: {ratio}", c.record, trace.role.name());
         }
     }
 }

@@ -3,7 +3,6 @@
 
 use crate::event::drive::DriveTone;
 use crate::event::kinematics::Series;
-use crate::signal::interpolation::later;
 use crate::signal::whole;
 use crate::signal::{drift, robust};
 
@@ -85,7 +84,7 @@ fn period_line(velocity: &Series, drive: Option<&DriveTone>, rate_hz: f64) -> Op
         return Some((robust::mean(values), 0.0));
     };
     let slope = if velocity.high_pass_hz.is_some() {
-        strobed_slope(values, period)
+        drift::strobed_slope(values, period)
     } else {
         0.0
     };
@@ -97,12 +96,6 @@ fn period_line(velocity: &Series, drive: Option<&DriveTone>, rate_hz: f64) -> Op
     let whole = (level.len() as f64 / period - 1e-9).floor() * period;
     let offset = integral(&level, 0.0, whole.min(level.len() as f64 - 2.0))? / whole;
     Some((offset, slope))
-}
-
-fn strobed_slope(values: &[f64], period: f64) -> f64 {
-    let later = later(values, period);
-    let differences: Vec<f64> = later.iter().zip(values).map(|(a, b)| a - b).collect();
-    robust::median(&differences).unwrap_or(0.0) / period
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 //! [`uncertainty`] and [`diagnostics`] (does the model fit, do the methods agree, was there a mistake). What it states is typed
 //! ([`messages`]); sentences are made when it is printed.
 
+pub mod boundary_plan;
 pub mod bracket_midpoints;
 pub mod decay;
 pub mod diagnostics;

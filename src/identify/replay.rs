@@ -1,7 +1,7 @@
 //! A record replayed: the fitted model's motion at its setting, in step with its drive.
 //!
 //! The model may have several motions there: the one that was seen is looked for from the states after
-//! the first measured impacts, from rest and from a lively state.
+//! the first measured impacts, from the steady motion of a record without one, from rest and from a lively state.
 
 use std::f64::consts::TAU;
 
@@ -12,8 +12,8 @@ use crate::motion::{Motion, Observation};
 use crate::record::Role;
 use impact_oscillator::atlas::MapSettings;
 use impact_oscillator::atlas::map::{End, Start, march_from};
-use impact_oscillator::model::flight::State;
-use impact_oscillator::model::params::{Initial, Machine, Setting};
+use impact_oscillator::model::flight::{Drive, State, forced_amplitude};
+use impact_oscillator::model::params::{Initial, Machine, Oscillator, Setting};
 use impact_oscillator::model::simulate::{Simulator, Trajectory};
 
 /// Most measured impacts after which a simulation is started.
@@ -95,16 +95,18 @@ impl Replay {
         })
     }
 
-    /// A channel's values, SI, gain included, at times from the stretch's start; `None` of one that the
+    /// A channel's values, SI, gain and delay included, at times from the stretch's start; `None` of one that the
     /// model does not have.
     pub fn values(&self, role: Role, times_s: &[f64]) -> Option<Vec<f64>> {
         let value = |state: &State| {
             let value = channel_value(&self.parameters, self.drive_amplitude, role, state);
             value.is_finite().then_some(value)
         };
-        let states = times_s
-            .iter()
-            .map(|t| self.trajectory.at(self.start_tau + t * self.omega));
+        let delay_s = self.parameters.delay_s(role);
+        let states = times_s.iter().map(|t| {
+            let tau = self.start_tau + (t - delay_s) * self.omega;
+            self.trajectory.at(tau)
+        });
         states.map(|state| value(&state)).collect()
     }
 }
@@ -128,7 +130,8 @@ fn settled(
     ends.iter().find(same).or(ends.first()).copied()
 }
 
-/// Starts to be tried: after each of the first measured impacts, from rest, from a lively state.
+/// Starts to be tried: after each of the first measured impacts or, without one, the steady motion; from rest, from
+/// a lively state.
 fn starts(
     machine: &Machine,
     setting: Setting,
@@ -156,12 +159,29 @@ fn starts(
         Some((touching(after), i.drive_phase_rad?))
     });
     let mut starts: Vec<(Initial, f64)> = measured.take(MOST_STARTS).collect();
+    if o.classification.motion == Motion::Impactless {
+        starts.push((steady(machine, setting), 0.0));
+    }
     let lively = match machine.y {
         Some(_) => Initial::both(0.0, LIVELY_SPEED),
         None => touching(-LIVELY_SPEED),
     };
     starts.extend([(Initial::rest(), 0.0), (lively, 0.0)]);
     starts
+}
+
+/// The steady motion without impacts, at phase 0 of the drive.
+fn steady(machine: &Machine, setting: Setting) -> Initial {
+    let eta = setting.frequency_ratio;
+    let drive = Drive { eta, phase: 0.0 };
+    let state = |mass: &Oscillator| {
+        let amplitude = forced_amplitude(mass, drive);
+        // Re(F e^{iητ}) and its rate at τ = 0
+        (amplitude.re, -eta * amplitude.im)
+    };
+    let (x, vx) = state(&machine.x);
+    let (y, vy) = machine.y.as_ref().map_or((0.0, 0.0), state);
+    Initial { x, vx, y, vy }
 }
 
 /// Whole drive periods by which the simulation has to be shifted so that its impacts fall where

@@ -143,40 +143,41 @@ fn thinned(evidence: &Evidence<'_>) -> Option<Remark> {
     })
 }
 
-/// R from the brackets, by its posterior where the resonance curve determines the rest.
-pub fn boundaries(
-    blocks: &Blocks,
-    fitted: &FitResult,
-    posterior: Option<&Posterior>,
-) -> MethodResult {
+/// All four parameters from the brackets, where no resonance curve is beside them.
+pub fn boundaries(blocks: &Blocks, fitted: &FitResult) -> MethodResult {
     let brackets = blocks.boundary.brackets.len();
     let tells = match fitted {
         Ok(found) => found.fit.free.clone(),
         Err(_) => Coordinate::PHYSICAL.to_vec(),
     };
-    let mut result = methods::result(fitted, &tells, brackets, 2 * brackets);
-    if let Some(posterior) = posterior {
-        let (value, error) = posterior.restitution;
-        let mut estimate = estimate::estimate(Coordinate::Restitution, value, error);
-        estimate.interval95 = estimate.interval95.map(|_| posterior.interval95);
-        result.parameters.restitution = Some(estimate);
-        let (value, error) = posterior.ln_deflection;
-        let deflection = estimate::estimate(Coordinate::Deflection, value, error);
-        result.parameters.static_deflection_m = Some(deflection);
-        let about = fitted.as_ref().ok().map(|found| Parameters {
-            restitution: posterior.restitution.0,
-            ..found.fit.parameters
-        });
-        let midpoints = about.and_then(|at| bracket_midpoints::restitution(&blocks.boundary, &at));
-        result
-            .remarks
-            .extend(midpoints.as_ref().and_then(by_midpoints));
-        result.restitution_by_midpoints = midpoints;
-        let early = posterior
-            .early
-            .map(|distance| Remark::EarlyJumps { distance });
-        result.remarks.extend(early);
-    }
+    methods::result(fitted, &tells, brackets, 2 * brackets)
+}
+
+/// R from the brackets by its posterior, the rest as the resonance curve has it: that is the curve's to say.
+pub fn posterior(blocks: &Blocks, posterior: &Posterior, curve: &Parameters) -> MethodResult {
+    let brackets = blocks.boundary.brackets.len();
+    let (value, error) = posterior.restitution;
+    let mut estimate = estimate::estimate(Coordinate::Restitution, value, error);
+    estimate.interval95 = estimate.interval95.map(|_| posterior.interval95);
+    let about = Parameters {
+        restitution: value,
+        ..*curve
+    };
+    let midpoints = bracket_midpoints::restitution(&blocks.boundary, &about);
+    let early = posterior.early;
+    let mut result = MethodResult {
+        observations: brackets,
+        records: 2 * brackets,
+        ..MethodResult::default()
+    };
+    result.parameters.restitution = Some(estimate);
+    result
+        .remarks
+        .extend(midpoints.as_ref().and_then(by_midpoints));
+    result
+        .remarks
+        .extend(early.map(|distance| Remark::EarlyJumps { distance }));
+    result.restitution_by_midpoints = midpoints;
     result
 }
 

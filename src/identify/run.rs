@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::identify::diagnostics::agreement::{agreement, between_methods};
+use crate::identify::diagnostics::agreement::{agreement, between_methods, which_restitution};
 use crate::identify::diagnostics::beyond;
 use crate::identify::diagnostics::cause::Cause;
 use crate::identify::diagnostics::change::{self, Change};
@@ -36,6 +36,7 @@ use crate::identify::selection::Selection;
 use crate::identify::uncertainty::budget::{self, Further, Source};
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::scatter::Spread;
+use crate::identify::uncertainty::surroundings::Surroundings;
 use crate::identify::uncertainty::{self, Uncertainty};
 use crate::identify::{decay, estimate, flight_times, residuals, results};
 use crate::motion::Observation;
@@ -139,6 +140,9 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         // Flights take the rig for ideal, and its channels for simultaneous.
         false => agreement(&without(&methods, Method::Flights)),
     };
+    if let Some(impacts) = methods.get_mut(&Method::Impacts) {
+        impacts.remarks.extend(which_restitution(&agreement));
+    }
     let apart = between_methods(&methods, &agreement, &joint);
     for (parameter, by) in &apart {
         if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
@@ -287,6 +291,7 @@ fn without(
 /// Every method's fit, and all together.
 struct Fits {
     alone: Alone,
+    /// Where the resonance curve determines nothing; else the brackets' posterior stands for them.
     boundaries: Option<FitResult>,
     joint: Option<FitResult>,
     /// Where the joint fit started, and the weights of its blocks.
@@ -421,13 +426,17 @@ impl IdentificationRun<'_> {
 
     /// Boundaries and all together, beside what the other methods tell alone.
     fn together(&mut self, start: Parameters, alone: Alone) -> Fits {
-        let boundaries = self.selection.boundaries(start);
+        self.selection.choose_brackets(&start);
+        let (blocks, nominal) = (&self.selection.blocks, &self.evidence.nominal);
         let waveforms = succeeded(&alone.trajectories).map(|f| &f.fit.parameters);
         self.posterior = succeeded(&alone.resonance).and_then(|found| {
-            let error = found.fit.error(Coordinate::Deflection)? * found.factor.sqrt();
-            let about = (&found.fit.parameters, error.min(0.3));
-            posterior::of_brackets(&self.selection.blocks.boundary, about, waveforms)
+            let surroundings = Surroundings::new(blocks, nominal, found);
+            posterior::of_brackets(&blocks.boundary, &surroundings, waveforms)
         });
+        let boundaries = match self.posterior {
+            Some(_) => None,
+            None => methods::boundaries(blocks, nominal, start),
+        };
         let weight = |attempt: &Option<FitResult>| succeeded(attempt).map(|f| 1.0 / f.factor);
         // Flights rest on the speeds at impacts; waveforms tell the same better than either.
         let flown = weight(&alone.flights).filter(|_| succeeded(&alone.trajectories).is_none());
@@ -445,10 +454,7 @@ impl IdentificationRun<'_> {
         let weights: Weights = [
             (Method::Resonance, weight(&alone.resonance)),
             (Method::Trajectories, weight(&alone.trajectories)),
-            (
-                Method::Boundaries,
-                weight(&boundaries).filter(|_| self.posterior.is_none()),
-            ),
+            (Method::Boundaries, weight(&boundaries)),
             (Method::Impacts, impact_weight.filter(|_| flown.is_none())),
             (Method::Flights, flown),
         ]
@@ -728,8 +734,15 @@ impl IdentificationRun<'_> {
     /// What each method found.
     fn results(&self, fits: &Fits) -> BTreeMap<Method, MethodResult> {
         let blocks = &self.selection.blocks;
-        let posterior = self.posterior.as_ref();
         let together = succeeded(&fits.joint).map(|j| &j.fit);
+        let curve = succeeded(&fits.alone.resonance).map(|f| &f.fit.parameters);
+        let boundaries = match self.posterior.as_ref().zip(curve) {
+            Some((found, curve)) => Some(results::posterior(blocks, found, curve)),
+            None => fits
+                .boundaries
+                .as_ref()
+                .map(|a| results::boundaries(blocks, a)),
+        };
         let found = [
             fits.alone
                 .resonance
@@ -739,10 +752,7 @@ impl IdentificationRun<'_> {
                 let result = results::trajectories(blocks, a, self.evidence);
                 (Method::Trajectories, result)
             }),
-            fits.boundaries.as_ref().map(|a| {
-                let result = results::boundaries(blocks, a, posterior);
-                (Method::Boundaries, result)
-            }),
+            boundaries.map(|result| (Method::Boundaries, result)),
             fits.alone.impacts.as_ref().map(|a| {
                 let result = results::impacts(blocks, a, self.evidence, together);
                 (Method::Impacts, result)

@@ -258,11 +258,11 @@ impl<'a> Selection<'a> {
         }
     }
 
-    /// Fit the brackets; those that no boundary reaches, or that lie far from it, are named.
-    pub fn boundaries(&mut self, start: Parameters) -> Option<FitResult> {
+    /// Choose the brackets: those that no boundary reaches, or that lie far from it, are left out and named.
+    pub fn choose_brackets(&mut self, start: &Parameters) {
         let rig = self.evidence.rig;
         let far = |bracket: &mut Bracket| {
-            let predicted = boundary::predicted_hz(bracket, &start, rig);
+            let predicted = boundary::predicted_hz(bracket, start, rig);
             !predicted.is_some_and(|f| {
                 (f - bracket.middle_hz()).abs() <= 3.0 * bracket.width_hz() + 0.02 * f
             })
@@ -271,8 +271,7 @@ impl<'a> Selection<'a> {
         for bracket in brackets.extract_if(.., far).collect::<Vec<_>>() {
             self.note_bracket(&bracket, Reason::FarFromBoundary);
         }
-        self.blocks.boundary.fit_early_scale(&start);
-        methods::boundaries(&self.blocks, &self.evidence.nominal, start)
+        self.blocks.boundary.fit_early_scale(start);
     }
 
     /// Leave the records and brackets of one gap out; false where nothing would remain.

@@ -50,6 +50,9 @@ pub struct Bracket {
     pub frequency_high_hz: f64,
     /// Direction in which it was crossed.
     pub sweep: Sweep,
+    /// Place in the campaign by the order of acquisition: −½ (first record) to ½ (last).
+    #[serde(default)]
+    pub place: f64,
     /// Motion before, as a label.
     pub from: String,
     /// Motion after, as a label.
@@ -106,22 +109,30 @@ impl Bracket {
 /// assert_eq!([found[0].frequency_low_hz, found[0].frequency_high_hz], [13.8, 13.9]);
 /// ```
 pub fn brackets(observations: &[Observation]) -> Vec<Bracket> {
-    let mut usable: Vec<&Observation> = observations
-        .iter()
-        .filter(|o| {
+    let mut ordered: Vec<&Observation> = observations.iter().collect();
+    ordered.sort_by_key(|o| o.setting.sequence);
+    let last = ordered.len().saturating_sub(1).max(1) as f64;
+    let usable: Vec<(f64, &Observation)> = ordered
+        .into_iter()
+        .enumerate()
+        .filter(|(_, o)| {
             !o.excluded() && !matches!(o.classification.motion, Motion::Undetermined { .. })
         })
-        .filter(|o| o.setting.sweep != Sweep::Unknown)
-        .filter(|o| o.frequency_hz().is_some() && o.setting.clearance_m.is_some())
+        .filter(|(_, o)| o.setting.sweep != Sweep::Unknown)
+        .filter(|(_, o)| o.frequency_hz().is_some() && o.setting.clearance_m.is_some())
+        .map(|(rank, o)| (rank as f64 / last - 0.5, o))
         .collect();
-    usable.sort_by_key(|o| o.setting.sequence);
-    usable
-        .windows(2)
-        .filter_map(|pair| bracket(pair[0], pair[1]))
-        .collect()
+    let found = usable.windows(2).filter_map(|pair| {
+        let [(before_place, before), (after_place, after)] = pair else {
+            return None;
+        };
+        let place = 0.5 * (before_place + after_place);
+        bracket(before, after, place)
+    });
+    found.collect()
 }
 
-fn bracket(before: &Observation, after: &Observation) -> Option<Bracket> {
+fn bracket(before: &Observation, after: &Observation, place: f64) -> Option<Bracket> {
     let (a, b) = (before.frequency_hz()?, after.frequency_hz()?);
     let rising = b > a;
     let one_run = before.setting.clearance_m == after.setting.clearance_m
@@ -140,6 +151,7 @@ fn bracket(before: &Observation, after: &Observation) -> Option<Bracket> {
         frequency_low_hz: a.min(b),
         frequency_high_hz: a.max(b),
         sweep: before.setting.sweep,
+        place,
         from: before.classification.motion.label(),
         to: after.classification.motion.label(),
         records: [before.record.clone(), after.record.clone()],

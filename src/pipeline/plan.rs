@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::campaign::resolved::ResolvedCampaign;
+use crate::identify::boundary_plan::{BoundaryPlan, halving};
 use crate::identify::plan::{Obstacle, Proposal, propose};
 use crate::motion::Motion;
 use crate::pipeline::json::write_json;
@@ -20,7 +21,10 @@ pub struct Plan {
     pub restitution_error_now: Option<f64>,
     /// The settings, the best first.
     pub proposals: Vec<Proposal>,
-    /// Why there are none.
+    /// Finer sweeps past the ends of z = 1, and R's interval from boundaries alone with them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boundaries: Option<BoundaryPlan>,
+    /// Why there are no proposals.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub obstacle: Option<Obstacle>,
 }
@@ -48,11 +52,14 @@ pub fn plan(
         Ok(proposals) => (proposals, None),
         Err(obstacle) => (Vec::new(), Some(obstacle)),
     };
+    let fitted = found.identification.joint_fit.as_ref();
+    let boundaries = fitted.and_then(|joint| halving(&evidence, &joint.fit.parameters));
     let now = found.identification.joint.parameters.restitution.as_ref();
     let plan = Plan {
         restitution: now.and_then(|r| r.value),
         restitution_error_now: now.and_then(|r| r.standard_error),
         proposals,
+        boundaries,
         obstacle,
     };
     progress("map", 0, 1);

@@ -1,5 +1,8 @@
 //! Undoing the first-order high-pass of an integrator, and the drift this leaves.
 
+use super::interpolation::later;
+use super::robust;
+
 /// Undo a first-order high-pass of the given corner: x = y + `ω_c` ∫ y dt.
 ///
 /// The high-pass takes x to y by y' + `ω_c` y = x', so the inverse is exact but for one constant
@@ -33,7 +36,7 @@ pub fn undo_high_pass(samples: &[f64], rate_hz: f64, corner_hz: f64) -> Vec<f64>
 /// Offset and slope of the straight line through values over times, by least squares; the slope is
 /// zero if all times are equal.
 pub fn fitted_line(times: &[f64], values: &[f64]) -> (f64, f64) {
-    let (mean_time, mean) = (super::robust::mean(times), super::robust::mean(values));
+    let (mean_time, mean) = (robust::mean(times), robust::mean(values));
     let (mut shear, mut spread) = (0.0, 0.0);
     for (t, v) in times.iter().zip(values) {
         shear += (t - mean_time) * (v - mean);
@@ -41,6 +44,14 @@ pub fn fitted_line(times: &[f64], values: &[f64]) -> (f64, f64) {
     }
     let slope = if spread > 0.0 { shear / spread } else { 0.0 };
     (mean - slope * mean_time, slope)
+}
+
+/// Slope per sample of what a signal that repeats after a period (in samples) has beside it: the median change over
+/// one period, which jumps do not move.
+pub fn strobed_slope(values: &[f64], period: f64) -> f64 {
+    let later = later(values, period);
+    let differences: Vec<f64> = later.iter().zip(values).map(|(a, b)| a - b).collect();
+    robust::median(&differences).unwrap_or(0.0) / period
 }
 
 /// Subtract `offset + slope · i` from sample i.

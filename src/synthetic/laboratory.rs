@@ -104,6 +104,15 @@ impl Laboratory {
         self
     }
 
+    /// The same rig with sweeps past the end of z = 1 in steps of a share of f0.
+    #[must_use]
+    pub fn with_step(mut self, step: f64, rig: &RigSpec) -> Self {
+        let offset = ChaCha8Rng::seed_from_u64(self.rig_seed ^ 0x57E9).random_range(0.0..1.0);
+        self.plan = Plan::past_the_end(&self.truth, step, offset);
+        self.effects = rig.draw(&mut self.truth, &self.plan, self.rig_seed);
+        self
+    }
+
     /// The same rig measured again, with the same plan: its parameters may have changed.
     #[must_use]
     pub fn again(&self, truth: Truth, seed: u64) -> Self {

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::record::Sweep;
+use crate::synthetic::truth::Truth;
 use impact_oscillator::model::boundary::eta_s2;
 use impact_oscillator::model::params::Machine;
 
@@ -68,6 +69,52 @@ impl Plan {
     }
 }
 
+/// Clearance ratios at which the end of z = 1 is looked for in small steps.
+const FINE_GAPS: [f64; 6] = [0.95, 1.4, 2.0, 2.7, 3.5, 4.4];
+/// Records without impacts beside them.
+const FINE_RESONANCE: usize = 18;
+/// η at which z = 1 is begun from rest, and the step by which it is followed.
+const FOLLOWED: (f64, f64) = (0.98, 0.04);
+/// Share of its frequency below s2 from which on the steps are small: more than contacts that last move it.
+const APPROACHED: f64 = 0.03;
+
+impl Plan {
+    /// The resonance curve, and at several gaps upward sweeps past the end of z = 1 in steps of a share of f0; `offset`
+    /// (0 to 1) is where in a step the boundary of the ideal model lies.
+    pub fn past_the_end(truth: &Truth, step: f64, offset: f64) -> Self {
+        let (f0, x_st) = (truth.natural_frequency_hz(), truth.static_deflection_m());
+        let open = OPEN_GAP * 0.5 / truth.damping_ratio() * x_st;
+        let mut steps = Vec::new();
+        push_sweep(
+            &mut steps,
+            &frequencies(f0, (0.7, 1.5), FINE_RESONANCE),
+            open,
+            Sweep::Up,
+        );
+        let machine = truth.machine();
+        for rho in FINE_GAPS {
+            let end = eta_s2(&machine, rho, 1).map(|point| point.eta);
+            let Some(end) = end.filter(|eta| (1.08..2.0).contains(eta)) else {
+                continue;
+            };
+            // whole steps below the boundary, and one and a half beyond
+            let below = (APPROACHED * end / step).ceil() + offset;
+            let first = end - below * step;
+            let (from, stride) = FOLLOWED;
+            let coarse = (0..).map(|i| from + stride * f64::from(i));
+            let coarse = coarse.take_while(|eta| *eta < first - 0.5 * step.min(stride));
+            let fine = (0..).map(|i| first + step * f64::from(i));
+            let fine = fine.take_while(|eta| *eta < end + 1.5 * step);
+            let grid: Vec<f64> = coarse
+                .chain(fine)
+                .map(|eta| round_to(eta * f0, 1e-3))
+                .collect();
+            push_sweep(&mut steps, &grid, round_to(rho * x_st, 1e-5), Sweep::Up);
+        }
+        Self { steps }
+    }
+}
+
 fn chosen_gaps(sweeps: usize) -> Vec<f64> {
     let wanted = (sweeps / 40).clamp(1, GAPS.len());
     // Spread over the list, the middle of the hysteresis region first.
@@ -116,6 +163,33 @@ fn push_sweep(steps: &mut Vec<Step>, grid: &[f64], clearance_m: f64, sweep: Swee
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn small_steps_pass_the_end_of_z_1() {
+        let truth = Truth::symmetric(0.8, 12.0, 0.05, 1e-3);
+        for step in [0.07, 0.03, 0.01, 0.003] {
+            let plan = Plan::past_the_end(&truth, step, 0.4);
+            let mut gaps: Vec<f64> = plan.steps.iter().map(|s| s.clearance_m).collect();
+            gaps.dedup();
+            assert!(gaps.len() > 4);
+            for gap in &gaps[1..] {
+                let end = eta_s2(&truth.machine(), gap / 1e-3, 1).unwrap().eta;
+                let at = plan.steps.iter().filter(|s| s.clearance_m == *gap);
+                let etas: Vec<f64> = at.map(|s| s.frequency_hz / 12.0).collect();
+                let above = etas
+                    .iter()
+                    .position(|eta| *eta > end)
+                    .expect("a record beyond");
+                // frequencies are rounded to 1 mHz
+                let bracket = etas[above] - etas[above - 1];
+                assert!((bracket - step).abs() < 2e-4, "{step} {etas:?}");
+                assert!(
+                    ((end - etas[above - 1]) / step - 0.4).abs() < 0.05,
+                    "{step}"
+                );
+            }
+        }
+    }
 
     #[test]
     fn prop_a_plan_has_the_records_asked_for() {

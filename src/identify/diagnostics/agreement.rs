@@ -5,25 +5,23 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::identify::estimate::{Estimate, Status};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::identification::{Agreement, MethodResult};
-use crate::identify::messages::PairAgreement;
+use crate::identify::messages::{PairAgreement, Remark};
 use crate::identify::method::Method;
 use crate::identify::uncertainty::distribution::normal_tail;
 use crate::identify::uncertainty::quantile::NORMAL_975;
 
 /// Level of the whole test; divided by the number of pairs.
-const LEVEL: f64 = 0.01;
+pub const LEVEL: f64 = 0.01;
 
-/// Compare all methods that determine a common parameter. `boundaries` takes f0, β and `x_st` from the
-/// resonance curve, so these two are not compared on them.
+/// Compare all methods that determine a common parameter. Brackets beside a resonance curve determine R alone, so
+/// what the curve says of f0, β and `x_st` is one witness.
 pub fn agreement(methods: &BTreeMap<Method, MethodResult>) -> Agreement {
     let names: Vec<Method> = methods.keys().copied().collect();
     let mut pairs = Vec::new();
     for coordinate in Coordinate::PHYSICAL {
         for (i, a) in names.iter().enumerate() {
             for b in &names[i + 1..] {
-                if !shares(*a, *b, coordinate) {
-                    pairs.extend(pair(methods, [*a, *b], coordinate));
-                }
+                pairs.extend(pair(methods, [*a, *b], coordinate));
             }
         }
     }
@@ -37,6 +35,24 @@ pub fn agreement(methods: &BTreeMap<Method, MethodResult>) -> Agreement {
 /// Whether a pair of so many differs beyond its uncertainty.
 fn differs(pair: &PairAgreement, pairs: usize) -> bool {
     pair.p_value < LEVEL / pairs.max(1) as f64
+}
+
+/// Which R is which, where the speeds at impacts tell another one than waveforms or boundaries: R of the contact,
+/// and R of the whole bodies.
+pub fn which_restitution(agreement: &Agreement) -> Option<Remark> {
+    let bodies = [Method::Trajectories, Method::Boundaries];
+    let of = |pair: &PairAgreement| {
+        let impact = pair.methods.iter().position(|m| *m == Method::Impacts)?;
+        let other = 1 - impact;
+        let method = pair.methods[other];
+        let differs = pair.parameter == Coordinate::Restitution && pair.p_value < LEVEL;
+        (differs && bodies.contains(&method)).then(|| Remark::WhichRestitution {
+            at_impact: pair.values[impact],
+            of_bodies: pair.values[other],
+            method,
+        })
+    };
+    agreement.pairs.iter().find_map(of)
 }
 
 /// What a disagreement of methods leaves open in the joint estimate of each parameter that they
@@ -84,12 +100,6 @@ fn left_open(found: &[(f64, f64)], (value, error): (f64, f64)) -> f64 {
     let mean = sum(&|(y, e)| random(*e) * y) / all;
     let variance = (all.recip() - error * error).max(0.0) + (mean - value).powi(2);
     variance.sqrt()
-}
-
-fn shares(a: Method, b: Method, coordinate: Coordinate) -> bool {
-    coordinate != Coordinate::Restitution
-        && [a, b].contains(&Method::Boundaries)
-        && [a, b].contains(&Method::Resonance)
 }
 
 /// Value and standard error; where few degrees of freedom widen the interval, the error of a normal
@@ -177,10 +187,28 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_compared_that_is_shared_or_missing() {
-        // the boundaries take f0 from the resonance curve
+    fn which_r_is_which_is_said_where_impacts_and_waveforms_differ() {
+        let remark = |waveforms: f64| {
+            let methods = BTreeMap::from([
+                (Method::Impacts, with_restitution(0.8, 1e-3)),
+                (Method::Trajectories, with_restitution(waveforms, 1e-3)),
+            ]);
+            which_restitution(&agreement(&methods))
+        };
+        assert_eq!(remark(0.802), None);
+        let text = remark(0.79).expect("a remark").to_string();
+        assert!(
+            text.starts_with(
+                "at the impacts R = 0.8000, of the whole bodies (method “Trajectories”) R = 0.7900"
+            ),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn nothing_is_compared_that_is_missing() {
         let shared = BTreeMap::from([
-            (Method::Boundaries, with_frequency(12.0, 1e-4)),
+            (Method::Boundaries, with_restitution(0.8, 0.01)),
             (Method::Resonance, with_frequency(13.0, 1e-4)),
         ]);
         assert_eq!(agreement(&shared), Agreement::default());

@@ -449,7 +449,7 @@ mod tests {
         assert!((values[0].half_width - half).abs() < 1e-12);
         assert_eq!(
             found.to_string(),
-            "The rig has f0 = 12.000 ± 0.024 Hz, but these data do not determine R. The methods \
+            "The rig has f0 = 12.000 ± 0.024 Hz (95 %), but these data do not determine R. The methods \
              agree."
         );
         let note = found.findings.iter().find_map(|f| match f {

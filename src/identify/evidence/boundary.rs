@@ -1,7 +1,10 @@
 //! Brackets of boundaries against the closed-form s2, s1 and ρ'.
 
 use crate::event::RigKind;
+use crate::identify::evidence::jump::Jump;
 use crate::identify::fit::Block;
+use crate::identify::fit::effect::Effect;
+use crate::identify::fit::own::Circumstances;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::motion::{BoundaryKind, Bracket};
 use impact_oscillator::model::boundary::{rho_grazing, s1_of_branch, s2_of_branch};
@@ -61,128 +64,122 @@ impl BoundaryBlock {
     }
 }
 
-/// Where a motion jumps as a sweep nears a boundary: disturbances make it jump early, by an
-/// exponentially distributed distance, never late but for a small error of the setting.
-#[derive(Debug, Clone, Copy)]
-struct Jump {
-    low: f64,
-    high: f64,
-    early: f64,
-    setting: f64,
-    rising: bool,
-    /// Probability that the bracket holds no such boundary at all, over its width.
-    stray: f64,
-}
-
-/// How often a change of z = 1/n is not that of the nearest s1 (other doubled motions lie beside it)
-/// or, for n > 1, not that of the nearest s2 (an impact more may end it first).
-const STRAY: f64 = 0.3;
-/// Frequencies over which such a change may lie, relative.
-const STRAY_RANGE: f64 = 0.6;
-/// How far from s1, relative to the frequency, a record may still show the motion of the other side:
-/// it settles there as slowly as a multiplier near −1 lets it.
-const SLOW_DOUBLING: f64 = 5e-3;
-/// Relative error of a frequency setting.
-const SETTING_ERROR: f64 = 2e-4;
-
-impl Jump {
-    fn of(bracket: &Bracket, early_scale: f64) -> Self {
-        let middle = bracket.middle_hz();
-        let known = (SETTING_ERROR * middle).max(0.02 * bracket.width_hz());
-        let (setting, stray) = match (bracket.kind, bracket.periods_n) {
-            (BoundaryKind::PeriodDoubling, _) => (SLOW_DOUBLING * middle, STRAY),
-            (BoundaryKind::SaddleNode, 2..) => (known, STRAY),
-            _ => (known, 0.0),
-        };
-        Self {
-            low: bracket.frequency_low_hz,
-            high: bracket.frequency_high_hz,
-            early: early_scale * middle,
-            setting,
-            rising: bracket.sweep != crate::record::Sweep::Down,
-            stray,
-        }
-    }
-
-    /// Probability that the jump falls into the bracket when the boundary lies at a frequency, or
-    /// is none of this boundary.
-    fn probability(&self, boundary: f64) -> f64 {
-        let (near, far) = if self.rising {
-            (self.low - boundary, self.high - boundary)
-        } else {
-            (boundary - self.high, boundary - self.low)
-        };
-        let held = self.cumulative(far) - self.cumulative(near);
-        let middle = 0.5 * (self.low + self.high);
-        let anywhere = (self.high - self.low) / (STRAY_RANGE * middle);
-        ((1.0 - self.stray) * held + self.stray * anywhere).max(1e-280)
-    }
-
-    /// Distribution function of (jump − boundary) for a rising sweep: a normal error less an
-    /// exponential one.
-    fn cumulative(&self, x: f64) -> f64 {
-        let (s, e) = (self.setting, self.early);
-        let tail = x / e + 0.5 * (s / e).powi(2);
-        let mixed = if tail > 600.0 {
-            0.0
-        } else {
-            tail.exp() * normal(-x / s - s / e)
-        };
-        normal(x / s) + mixed
-    }
-
-    /// Boundary frequency at which the bracket is most likely, and that probability.
-    fn best(&self) -> (f64, f64) {
-        let count = 60;
-        let span = self.high - self.low + 4.0 * self.setting;
-        (0..=count)
-            .map(|i| self.low - 2.0 * self.setting + span * f64::from(i) / f64::from(count))
-            .map(|f| (f, self.probability(f)))
-            .max_by(|a, b| a.1.total_cmp(&b.1))
-            .unwrap_or((0.5 * (self.low + self.high), 1.0))
-    }
-}
-
-fn normal(x: f64) -> f64 {
-    0.5 * libm::erfc(-x / std::f64::consts::SQRT_2)
-}
-
-/// Probability that a motion jumps within a bracket when its boundary lies at a frequency, for a
-/// scale of early jumps relative to the frequency.
-pub fn bracket_probability(bracket: &Bracket, early_scale: f64, boundary_hz: f64) -> f64 {
-    Jump::of(bracket, early_scale).probability(boundary_hz)
-}
-
 /// Frequency of the boundary of a bracket according to the model, Hz: the crossing nearest to it.
 /// `None` where the boundary does not reach this clearance.
 pub fn predicted_hz(bracket: &Bracket, parameters: &Parameters, rig: RigKind) -> Option<f64> {
-    let machine = match bracket.kind {
-        // Exchanged masses double at the same place: an asymmetry changes it in second order only.
-        BoundaryKind::PeriodDoubling => parameters.without_asymmetry().machine(rig),
-        _ => parameters.machine(rig),
-    };
+    let place = BoundaryPlace::of(bracket, parameters, rig);
+    let natural_hz = parameters.natural_frequency_hz;
+    let excess = |eta: f64| place.excess(eta * natural_hz);
     let middle = parameters.setting(
         bracket.middle_hz(),
         bracket.clearance_m,
         bracket.drive_amplitude,
     );
-    let restitution = parameters.restitution.clamp(0.0, 1.0);
-    let branch = |eta: f64| Branch::new(&machine, eta, bracket.periods_n);
-    let rho = |eta: f64| match bracket.kind {
-        BoundaryKind::Grazing => rho_grazing(&machine, eta),
-        // not a number where the orbits do not double
-        BoundaryKind::PeriodDoubling => {
-            s1_of_branch(&machine, &branch(eta), restitution).map_or(f64::NAN, |at| at.0)
-        }
-        _ => s2_of_branch(&branch(eta), restitution).0 / machine.gap(1.0),
-    };
-    let eta = nearest_crossing(rho, middle.clearance, middle.frequency_ratio)?;
-    Some(eta * parameters.natural_frequency_hz)
+    let eta = nearest_crossing(excess, middle.clearance, middle.frequency_ratio)?;
+    Some(eta * natural_hz)
 }
 
-/// Crossing of ρ(η) with a level nearest to η0: scanned outward, then closed in on.
-fn nearest_crossing(rho: impl Fn(f64) -> f64, level: f64, eta0: f64) -> Option<f64> {
-    let excess = |eta: f64| rho(eta) - level;
+/// A boundary of the model beside a bracket's clearance, with all that acts on its records.
+pub struct BoundaryPlace<'a> {
+    bracket: &'a Bracket,
+    parameters: Parameters,
+    rig: RigKind,
+    /// What the bracket's clearance is taken to be off, m.
+    pub clearance_error_m: f64,
+}
+
+impl<'a> BoundaryPlace<'a> {
+    /// Of a bracket at given parameters.
+    pub fn of(bracket: &'a Bracket, parameters: &Parameters, rig: RigKind) -> Self {
+        let parameters = match bracket.kind {
+            // Exchanged masses double at the same place: an asymmetry changes it in second order only.
+            BoundaryKind::PeriodDoubling => parameters.without_asymmetry(),
+            _ => *parameters,
+        };
+        Self {
+            bracket,
+            parameters,
+            rig,
+            clearance_error_m: 0.0,
+        }
+    }
+
+    /// ρ of the boundary less that of the bracket's clearance at a drive frequency; not a number where there is
+    /// no boundary.
+    pub fn excess(&self, frequency_hz: f64) -> f64 {
+        let at = self.circumstances(frequency_hz);
+        let (own, clearance_m) = self.parameters.own(&at);
+        let amplitude = self.bracket.drive_amplitude;
+        let setting = own.setting(frequency_hz, clearance_m, amplitude);
+        let marginal = self.marginal(&own, setting.frequency_ratio);
+        marginal.map_or(f64::NAN, |m| m.rho - setting.clearance)
+    }
+
+    /// Where and when the boundary is met. A contact that lasts moves it by what it makes of the marginal orbit's
+    /// impact: at a saddle-node the clearance is stationary over the orbits, so that to first order this orbit counts.
+    fn circumstances(&self, frequency_hz: f64) -> Circumstances {
+        let mut at = Circumstances {
+            frequency_hz,
+            clearance_m: self.bracket.clearance_m + self.clearance_error_m,
+            place: self.bracket.place,
+            masses: if self.rig == RigKind::Double {
+                2.0
+            } else {
+                1.0
+            },
+            ..Circumstances::default()
+        };
+        if self.parameters.effect(Effect::ContactDuration) != 0.0 {
+            let (own, _) = self.parameters.own(&at);
+            let eta = frequency_hz / own.natural_frequency_hz;
+            if let Some(m) = self.marginal(&own, eta).filter(|m| m.approach_speed > 0.0) {
+                let length_m = own.static_deflection_m * self.bracket.drive_amplitude;
+                at.approach_m_s = m.approach_speed * length_m * own.natural_rate();
+                at.press_per_s = m.press / m.approach_speed * own.natural_rate();
+            }
+        }
+        at
+    }
+
+    fn marginal(&self, own: &Parameters, eta: f64) -> Option<Marginal> {
+        let machine = own.machine(self.rig);
+        let masses = machine.gap(1.0);
+        if self.bracket.kind == BoundaryKind::Grazing {
+            return Some(Marginal {
+                rho: rho_grazing(&machine, eta),
+                approach_speed: 0.0,
+                press: 0.0,
+            });
+        }
+        let branch = Branch::new(&machine, eta, self.bracket.periods_n);
+        let r = own.restitution;
+        let (rho, w) = match self.bracket.kind {
+            BoundaryKind::PeriodDoubling => s1_of_branch(&machine, &branch, r)?,
+            _ => {
+                let (gap, w) = s2_of_branch(&branch, r);
+                (gap / masses, w)
+            }
+        };
+        let gap = masses * rho;
+        let driven = masses * branch.phase(r, gap, w).cos();
+        Some(Marginal {
+            rho,
+            approach_speed: w,
+            press: driven - 2.0 * own.damping_ratio * w - gap,
+        })
+    }
+}
+
+/// The orbit at a boundary, dimensionless.
+struct Marginal {
+    rho: f64,
+    approach_speed: f64,
+    /// Acceleration toward each other before the impact; of unlike masses as if they were alike.
+    press: f64,
+}
+
+/// Crossing of ρ(η) with a level nearest to η0, by what ρ exceeds it: scanned outward, then closed in on.
+fn nearest_crossing(excess: impl Fn(f64) -> f64, level: f64, eta0: f64) -> Option<f64> {
     let here = excess(eta0);
     let step = 0.01;
     // Between two points of opposite sign; where the curve leaps there instead, it crosses nothing.
@@ -248,11 +245,15 @@ impl Block for BoundaryBlock {
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {
-        Coordinate::PHYSICAL.contains(&coordinate)
-            || matches!(
-                coordinate,
-                Coordinate::DriveAsymmetry | Coordinate::StiffnessAsymmetry
-            )
+        match coordinate {
+            Coordinate::DriveAsymmetry
+            | Coordinate::StiffnessAsymmetry
+            | Coordinate::DampingAsymmetry
+            | Coordinate::MassAsymmetry
+            | Coordinate::ScrewZero => true,
+            Coordinate::Effect(effect) => !effect.is_perturbation(),
+            other => Coordinate::PHYSICAL.contains(&other),
+        }
     }
 }
 
@@ -261,7 +262,10 @@ pub(in crate::identify) mod tests {
     use super::*;
     use crate::identify::bracket_midpoints;
     use crate::record::Sweep;
-    use impact_oscillator::model::boundary::{rho_s1, rho_s2};
+    use impact_oscillator::model::boundary::{eta_s2, rho_s1, rho_s2};
+    use impact_oscillator::model::orbit::stable_orbit;
+    use impact_oscillator::model::params::{Initial, Machine, Setting};
+    use impact_oscillator::model::soft::{SoftContact, simulate_soft};
 
     /// A bracket 2 % wide about the boundary of a kind at η, as the model itself has it; `off_middle`: how far
     /// its middle lies below, in half widths.
@@ -286,6 +290,7 @@ pub(in crate::identify) mod tests {
             frequency_low_hz: frequency_hz * (1.0 - 0.01 * (1.0 + off_middle)),
             frequency_high_hz: frequency_hz * (1.0 + 0.01 * (1.0 - off_middle)),
             sweep: Sweep::Up,
+            place: 0.0,
             from: "1".into(),
             to: "0".into(),
             records: ["a".into(), "b".into()],
@@ -304,6 +309,59 @@ pub(in crate::identify) mod tests {
             let found = predicted_hz(&bracket(kind, eta, &p, 0.0), &p, RigKind::Double);
             let found = found.expect("a boundary") / p.natural_frequency_hz;
             assert!((found - eta).abs() < 1e-9, "{kind:?} {found}");
+        }
+    }
+
+    /// η up to which z = 1 with contacts that last is found in an upward sweep of exact flights and contacts, and the
+    /// contacts' duration in natural radians.
+    fn simulated_end(machine: &Machine, contact: SoftContact, rho: f64, from: f64) -> [f64; 2] {
+        let begin = stable_orbit(machine, Setting::new(from, rho), 1).expect("a setting");
+        let begin = begin.expect("z = 1");
+        let half = 0.5 * begin.period();
+        let mut state = Initial::from(begin.at(half));
+        let (mut eta, mut phase) = (from, begin.phase_at_impact + from * half);
+        let mut lasting = 0.0;
+        loop {
+            let setting = Setting::new(eta, rho).at_phase(phase);
+            let settled = 250.0 * setting.period();
+            let motion =
+                simulate_soft(machine, contact, setting, state, settled).expect("a motion");
+            let late: Vec<_> = motion
+                .contacts
+                .iter()
+                .filter(|c| c.tau > 0.8 * settled)
+                .collect();
+            let Some(last) = late.last().filter(|_| late.len() > 40) else {
+                return [eta - 0.5 * SWEEP_STEP, lasting];
+            };
+            lasting = last.duration;
+            let end = last.tau - 0.5 * setting.period();
+            state = Initial::from(motion.trajectory.at(end));
+            phase += eta * end;
+            eta += SWEEP_STEP;
+        }
+    }
+
+    const SWEEP_STEP: f64 = 5e-4;
+
+    #[test]
+    fn valid_contacts_that_last_move_the_end_of_z_1_as_far_as_simulated_ones() {
+        for (r, rho, stiffness) in [(0.8, 2.0, 5000.0), (0.6, 1.2, 8000.0)] {
+            let machine = Machine::symmetric(0.05, r);
+            let contact = SoftContact::with_restitution(&machine, stiffness, r).expect("a contact");
+            let rigid = eta_s2(&machine, rho, 1).expect("an s2").eta;
+            let [end, lasting] = simulated_end(&machine, contact, rho, 0.98 * rigid);
+            let p = Parameters::symmetric(r, 12.0, 0.05, 1e-3);
+            let length_ms = 1e3 * lasting / p.natural_rate();
+            let p = p.with(Coordinate::Effect(Effect::ContactDuration), length_ms);
+            let held = Bracket {
+                clearance_m: rho * 1e-3,
+                ..bracket(BoundaryKind::SaddleNode, rigid, &p, 0.0)
+            };
+            let found = predicted_hz(&held, &p, RigKind::Double).expect("an end") / 12.0;
+            // the contact moves it by some 0.7 %
+            assert!(rigid - end > 5e-3 * rigid, "{rigid} {end}");
+            assert!((found - end).abs() < 1e-3 * end, "{found} {end} {lasting}");
         }
     }
 

@@ -77,7 +77,14 @@ pub struct ImpactBlock {
     /// Whether two masses hit each other and only one of them is measured: twice its speed stands for
     /// the approach speed, whose ratio is R as far as the masses are alike alone.
     pub one_of_two: bool,
+    /// What springs and drive, not the contact, add to the separation speed in the median of the contacts that
+    /// last, over the approach speed, as a spring and a damper have it.
+    pub push: f64,
 }
+
+/// Root mean square of what other laws of contact make of that push less what a spring and a damper make of it, over
+/// the latter: five laws for R of 0.5 to 0.9 (`fit::contact_laws`).
+pub(crate) const PUSH_OF_LAWS: f64 = 2.0;
 
 /// Share of the error of an impact between free flights that all have in common.
 const COMMON: f64 = 0.4;
@@ -133,6 +140,7 @@ impl ImpactBlock {
         Self {
             free,
             one_of_two: rig == RigKind::Double && with_speeds.any(|i| !sees_both(i)),
+            push: push(observations),
             ..Self::of_pairs(pairs, relative_error)
         }
     }
@@ -145,6 +153,11 @@ impl ImpactBlock {
             .map(|p| p.after_m_s / p.before_m_s)
             .collect();
         crate::signal::robust::median(&ratios)
+    }
+
+    /// What the unknown law of contact leaves open in R.
+    pub fn open_by_law(&self) -> f64 {
+        PUSH_OF_LAWS * self.push
     }
 
     /// What all impacts between free flights have in common of their errors: how their contacts are timed.
@@ -171,6 +184,7 @@ impl ImpactBlock {
             corners,
             free: false,
             one_of_two: false,
+            push: 0.0,
         }
     }
 
@@ -246,6 +260,16 @@ impl ImpactBlock {
         let time = pair.by_time_m_s[0] * pair.late(restitution);
         (noise + time) / self.error(pair, restitution).powi(2)
     }
+}
+
+/// Median of |push| over the approach speed, of the contacts that last.
+fn push(observations: &[Observation]) -> f64 {
+    let impacts = observations.iter().flat_map(|o| &o.impacts);
+    let pushed = impacts.filter_map(|i| {
+        let before = i.approach_speed_before_m_s.filter(|v| *v > 0.0)?;
+        Some((i.external_push_m_s? / before).abs())
+    });
+    crate::signal::robust::median(&pushed.collect::<Vec<f64>>()).unwrap_or(0.0)
 }
 
 impl Block for ImpactBlock {

@@ -10,6 +10,7 @@ pub mod flights;
 mod groups;
 pub mod high_pass;
 pub mod impacts;
+pub mod jump;
 pub mod nearest_orbit;
 pub mod pickup;
 pub mod record_motion;
@@ -126,7 +127,7 @@ const DELAY_BIAS_PER_MS: f64 = 3e-3;
 /// A contact that the flights' extrapolation begins to notice, ms.
 const SHORT_CONTACT_MS: f64 = 0.1;
 
-/// What the extrapolation of speeds to the impacts leaves open in R, with the length of a contact and the
+/// What the extrapolation of speeds to the impacts and the law of contact leave open in R, with the length of a contact and the
 /// delays of the channels that a fit of waveforms found. Where the fit tells nothing of the length, all of what
 /// a good laboratory would accept is left, if the rig may have it (`effects`) and is driven through its impacts.
 pub fn impact_bias(block: &ImpactBlock, waveforms: &Fit, effects: Effects) -> f64 {
@@ -143,6 +144,7 @@ pub fn impact_bias(block: &ImpactBlock, waveforms: &Fit, effects: Effects) -> f6
         .hypot(CONTACT_BIAS * noticed)
         .hypot(CONTACT_BIAS_PER_MS * contact_ms)
         .hypot(DELAY_BIAS_PER_MS * apart_ms)
+        .hypot(block.open_by_law())
 }
 
 /// Asymmetry that a well-made rig may have.

@@ -56,7 +56,8 @@ pub enum Effect {
     /// Length of a contact, ms
     #[strum(to_string = "contact_duration_ms")]
     ContactDuration,
-    /// Relative departure of what a contact's length makes of R from that of a spring and a damper
+    /// Relative departure of what a contact's length makes of R from that of a spring and a damper: as laws of
+    /// contact depart from it
     ContactLaw,
     /// What the masses' acceleration during a contact adds to the distance that they press into each
     /// other: relative, per unit of acceleration × duration / approach speed
@@ -157,7 +158,7 @@ impl Effect {
             Self::DampingDrift => (EffectKind::Drift, 2e-2, false),
             Self::DeflectionDrift => (EffectKind::Drift, 5e-3, false),
             Self::ContactDuration => (EffectKind::ContactDuration, 0.6, false),
-            Self::ContactLaw => (EffectKind::ContactDuration, 0.1, false),
+            Self::ContactLaw => (EffectKind::ContactDuration, 0.45, false),
             Self::ContactReach => (EffectKind::ContactDuration, 0.3, false),
             Self::Drag => (EffectKind::Drag, 1e-2, true),
             Self::SpringAsymmetry => (EffectKind::SpringAsymmetry, 5e-3, true),

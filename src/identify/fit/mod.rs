@@ -2,6 +2,8 @@
 //! minimises them.
 
 pub mod block;
+#[cfg(test)]
+mod contact_laws;
 pub mod coordinate;
 pub mod effect;
 mod evaluation;

@@ -76,9 +76,10 @@ impl Parameters {
         let [viscous, _] = self.equivalent_damping(eta);
         let contact_s = 1e-3 * self.effect(Effect::ContactDuration);
         let contact = short_contact(self.restitution);
-        let beyond = contact.press * at.press_per_s + contact.drag * self.decay_per_s();
-        let law = 1.0 + self.effect(Effect::ContactLaw);
-        let restitution = self.restitution + contact_s * law * beyond;
+        let [press_law, drag_law] = self.contact_law();
+        let beyond = press_law * contact.press * at.press_per_s
+            + drag_law * contact.drag * self.decay_per_s();
+        let restitution = self.restitution + contact_s * beyond;
         let own = Self {
             restitution: restitution.clamp(0.0, 1.0),
             natural_frequency_hz: self.natural_frequency_hz
@@ -122,17 +123,17 @@ impl Parameters {
         let contact_s = 1e-3 * self.effect(Effect::ContactDuration);
         let speed = at.approach_m_s / at.masses.max(1.0);
         let decay = self.decay_per_s();
-        let law = 1.0 + self.effect(Effect::ContactLaw);
+        let [press_law, drag_law] = self.contact_law();
         let pressed = contact_s * at.press_per_s;
         let bent = self.effect(Effect::ContactReach) * pressed;
-        let drag = contact_s * law * contact.drag * decay;
-        let beyond = contact.press * at.press_per_s + contact.drag * decay;
+        let drag = contact_s * drag_law * contact.drag * decay;
+        let beyond = press_law * contact.press * at.press_per_s + drag_law * contact.drag * decay;
         match coordinate {
             Coordinate::Restitution => Some(OwnSlope {
                 physical: [
                     1.0 + contact_s
-                        * law
-                        * (contact.press_slope * at.press_per_s + contact.drag_slope * decay),
+                        * (press_law * contact.press_slope * at.press_per_s
+                            + drag_law * contact.drag_slope * decay),
                     0.0,
                     0.0,
                     0.0,
@@ -170,10 +171,14 @@ impl Parameters {
                 Effect::DeflectionDrift => only(3, at.place),
                 Effect::ClearanceDrift => clearance(self.static_deflection_m * at.place),
                 Effect::ContactDuration => Some(OwnSlope {
-                    physical: [1e-3 * law * beyond, 0.0, 0.0, 0.0],
+                    physical: [1e-3 * beyond, 0.0, 0.0, 0.0],
                     clearance_m: 1e-3 * speed * contact.reach * (1.0 + 2.0 * bent),
                 }),
-                Effect::ContactLaw => only(0, contact_s * beyond),
+                Effect::ContactLaw => only(
+                    0,
+                    contact_s
+                        * (contact.press * at.press_per_s + DRAG_OF_LAW * contact.drag * decay),
+                ),
                 Effect::ContactReach => clearance(contact_s * speed * contact.reach * pressed),
                 _ => None,
             },
@@ -191,6 +196,12 @@ impl Parameters {
             (Coordinate::Deflection, eta * over_eta / lean),
             (Coordinate::Damping, eta * damping_over_eta / viscous),
         ]
+    }
+
+    /// What another law of contact makes of g and h, as factors.
+    fn contact_law(&self) -> [f64; 2] {
+        let law = self.effect(Effect::ContactLaw);
+        [1.0 + law, 1.0 + DRAG_OF_LAW * law]
     }
 
     /// βΩ, 1/s.
@@ -212,6 +223,9 @@ struct ShortContact {
     drag: f64,
     drag_slope: f64,
 }
+
+/// Relative departure of h with another law of contact, over that of g.
+const DRAG_OF_LAW: f64 = 0.45;
 
 /// Least R for which a contact's effect is taken.
 const LEAST_RESTITUTION: f64 = 0.05;
@@ -243,6 +257,8 @@ fn bend(place: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identify::evidence::impacts::PUSH_OF_LAWS;
+    use crate::identify::fit::contact_laws::{Coefficients, Law};
 
     /// R, g and h from an independent program in Python that integrates flights and contact from first touch
     /// to last (Runge–Kutta), t = 0.004 natural radians.
@@ -281,5 +297,65 @@ mod tests {
         assert!((slope(|c| c.reach) - here.reach_slope).abs() < 1e-8);
         assert!((slope(|c| c.press) - here.press_slope).abs() < 1e-8);
         assert!((slope(|c| c.drag) - here.drag_slope).abs() < 1e-8);
+    }
+
+    /// Root mean square of the relative departures of other laws of contact from g and from h, both over the
+    /// reach: a fit tells the length of contacts from that.
+    fn departures(restitution: f64) -> [f64; 2] {
+        let formula = short_contact(restitution);
+        let laws = Law::OTHERS.map(|law| {
+            let c = Coefficients::of(law, restitution);
+            let over =
+                |own: f64, formula_own: f64| (own / c.reach) / (formula_own / formula.reach) - 1.0;
+            [over(c.press, formula.press), over(c.drag, formula.drag)]
+        });
+        // the spring and damper themselves depart by nothing
+        let count = laws.len() as f64 + 1.0;
+        [0, 1].map(|i| (laws.iter().map(|l| l[i].powi(2)).sum::<f64>() / count).sqrt())
+    }
+
+    #[test]
+    fn valid_the_coefficients_are_those_of_a_spring_and_damper_integrated_step_by_step() {
+        for r in [0.5, 0.7, 0.9] {
+            let (c, formula) = (Coefficients::of(Law::KelvinVoigt, r), short_contact(r));
+            assert!(
+                (c.reach / formula.reach - 1.0).abs() < 0.014,
+                "{r}: {}",
+                c.reach
+            );
+            assert!(
+                (c.press / formula.press - 1.0).abs() < 0.01,
+                "{r}: {}",
+                c.press
+            );
+            assert!(
+                (c.drag / formula.drag - 1.0).abs() < 0.01,
+                "{r}: {}",
+                c.drag
+            );
+        }
+    }
+
+    #[test]
+    fn valid_other_laws_of_contact_push_as_much_more_as_impacts_allow_for() {
+        let found = [0.5, 0.6, 0.7, 0.8, 0.9].map(|r| {
+            let own = Coefficients::of(Law::KelvinVoigt, r).push;
+            let others = Law::OTHERS.map(|law| (Coefficients::of(law, r).push / own - 1.0).powi(2));
+            (others.iter().sum::<f64>() / (others.len() as f64 + 1.0)).sqrt()
+        });
+        let mean = found.iter().sum::<f64>() / 5.0;
+        assert!((mean / PUSH_OF_LAWS - 1.0).abs() < 0.1, "{found:?}");
+    }
+
+    #[test]
+    fn valid_other_laws_of_contact_depart_as_much_as_their_prior_has_it() {
+        let found = [0.5, 0.6, 0.7, 0.8, 0.9].map(departures);
+        let mean = |i: usize| found.iter().map(|d| d[i]).sum::<f64>() / 5.0;
+        let [press, drag] = [mean(0), mean(1)];
+        assert!(
+            (press / Effect::ContactLaw.accepted() - 1.0).abs() < 0.1,
+            "{found:?}"
+        );
+        assert!((drag / press / DRAG_OF_LAW - 1.0).abs() < 0.25, "{found:?}");
     }
 }

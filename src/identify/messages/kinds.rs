@@ -106,7 +106,7 @@ mod tests {
         };
         assert_eq!(
             weak.to_string(),
-            "The rig has x_st = 1.000 ± 0.010 mm; R, β only weakly."
+            "The rig has x_st = 1.000 ± 0.010 mm (95 %); R, β only weakly."
         );
         let impact = Item::Impact {
             index: 0,

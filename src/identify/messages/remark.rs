@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{Item, Note};
 use crate::identify::diagnostics::cause::Cause;
 use crate::identify::diagnostics::structure::ImpactGroup;
+use crate::identify::method::Method;
 use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::message::{Message, Value};
 use crate::{message_table, messages};
@@ -121,6 +122,15 @@ pub enum Remark {
     EarlyJumps {
         /// Mean distance from the boundary, relative to its frequency.
         distance: f64,
+    },
+    /// R of the impacts is not R of the whole bodies.
+    WhichRestitution {
+        /// R where the bodies touch, by the speeds at impacts.
+        at_impact: f64,
+        /// R of the whole bodies.
+        of_bodies: f64,
+        /// By which method.
+        method: Method,
     },
     /// R is the same at all speeds.
     RestitutionConstant {
@@ -302,6 +312,14 @@ message_table! { Remark;
          s2, die Schranken bestimmen $R$ also schlecht: den Antrieb von Einstellung zu Einstellung \
          weiterlaufen lassen, in kleineren Schritten",
         share = Value::Percent(*distance, 1);
+    Self::WhichRestitution { at_impact, of_bodies, method } =>
+        "at the impacts $R$ = {impact}, of the whole bodies (method “{method}”) $R$ = {bodies}: these differ where a body \
+         vibrates in itself or a contact is long, so state which one is meant",
+        "an den Stößen ist $R$ = {impact}, für die ganzen Körper (Verfahren „{method}“) $R$ = {bodies}: Das unterscheidet \
+         sich, wo ein Körper in sich schwingt oder ein Kontakt lang ist; angeben, welches gemeint ist",
+        impact = Value::Number(*at_impact, 4),
+        bodies = Value::Number(*of_bodies, 4),
+        method = Value::Message(method);
     Self::RestitutionConstant { slow_m_s, fast_m_s, within } =>
         "$R$ is the same from {slow} to {fast} m/s within {change}",
         "$R$ ist von {slow} bis {fast} m/s gleich, auf {change}",

@@ -123,16 +123,16 @@ messages!(Sentence);
 
 message_table! { Sentence;
     Self::Identified { values } =>
-        "The rig has {values}.",
-        "Der Prüfstand hat {values}.",
+        "The rig has {values} (95 %).",
+        "Der Prüfstand hat {values} (95 %).",
         values = Value::list(values);
     Self::Weak { values, parameters } =>
-        "The rig has {values}; {parameters} only weakly.",
-        "Der Prüfstand hat {values}; {parameters} nur schwach bestimmt.",
+        "The rig has {values} (95 %); {parameters} only weakly.",
+        "Der Prüfstand hat {values} (95 %); {parameters} nur schwach bestimmt.",
         values = Value::list(values), parameters = Value::list(parameters);
     Self::PartlyIdentifiable { values, parameters } =>
-        "The rig has {values}, but these data do not determine {parameters}.",
-        "Der Prüfstand hat {values}, aber {parameters} ist aus diesen Daten nicht zu bestimmen.",
+        "The rig has {values} (95 %), but these data do not determine {parameters}.",
+        "Der Prüfstand hat {values} (95 %), aber {parameters} ist aus diesen Daten nicht zu bestimmen.",
         values = Value::list(values), parameters = Value::list(parameters);
     Self::NotIdentifiable { parameters } =>
         "These data do not determine {parameters}.",

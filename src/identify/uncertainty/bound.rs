@@ -14,6 +14,7 @@ use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::joint;
 use crate::identify::method::{Estimator, Method};
 use crate::identify::uncertainty::posterior::{self, Posterior};
+use crate::identify::uncertainty::surroundings::Surroundings;
 
 /// Least standard errors of the coordinates.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,16 +64,14 @@ pub fn bounds(evidence: &Evidence<'_>, at: &Parameters) -> BTreeMap<Estimator, B
             Some((estimator, bound(&blocks, methods, &evidence.nominal, at)?))
         })
         .collect();
-    let deflection = bounds
-        .get(&Estimator::Method(Resonance))
-        .and_then(|b| b.error(Coordinate::Deflection));
-    let brackets = bounds.get_mut(&Estimator::Method(Boundaries));
-    if let (Some(error), Some(found)) = (deflection, brackets) {
-        found.take_intervals(posterior::of_brackets(
-            &blocks.boundary,
-            (at, error.min(0.3)),
-            None,
-        ));
+    let curve = bounds.get(&Estimator::Method(Resonance));
+    let posterior = curve.and_then(|curve| {
+        let known = (curve.free.as_slice(), &curve.covariance);
+        let surroundings = Surroundings::of(&blocks, &evidence.nominal, (at, known));
+        posterior::of_brackets(&blocks.boundary, &surroundings, None)
+    });
+    if let Some(found) = bounds.get_mut(&Estimator::Method(Boundaries)) {
+        found.take_intervals(posterior);
     }
     bounds
 }

@@ -11,8 +11,10 @@ pub mod distribution;
 pub mod options;
 pub mod posterior;
 pub mod profile;
+pub mod propagation;
 pub mod quantile;
 pub mod scatter;
+pub mod surroundings;
 
 pub use options::{IntervalMethod, UncertaintyOptions};
 pub use profile::ProfileCurve;

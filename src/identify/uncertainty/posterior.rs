@@ -1,9 +1,11 @@
-//! R from brackets alone: the posterior over R of all brackets as interval observations.
+//! R from brackets, on their own: the posterior over R of all brackets as interval observations.
 //!
 //! A bracket says that a boundary lies between two settings and nothing more (14); its likelihood is
 //! flat inside, so neither a least-squares optimum nor its curvature means anything. The
-//! posterior is therefore summed over a grid of R and `x_st` (which the resonance curve determines), with
-//! the scale of early jumps summed out; f0 and β are the resonance curve's.
+//! posterior is therefore summed over a grid of R. At each R the boundaries are taken as linear in all else that acts
+//! on them (`surroundings`: f0, β and `x_st` as the resonance curve has them, the length of contacts, asymmetry, the
+//! force against frequency, drift, errors of clearances), and expectation propagation (`propagation`) gives the
+//! probability that every jump falls into its bracket, with the scales of early jumps summed out.
 //!
 //! Jumps that are all early by much the same look like jumps at the boundaries of a lower R: brackets
 //! alone cannot tell the two apart. Where the waveforms determine an R that the brackets miss, and that
@@ -13,19 +15,20 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use crate::identify::evidence::boundary::{BoundaryBlock, bracket_probability, predicted_hz};
-use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::evidence::boundary::{BoundaryBlock, predicted_hz};
+use crate::identify::evidence::jump::{Jump, Tilt, density, mills_ratio, normal};
+use crate::identify::fit::parameters::Parameters;
+use crate::identify::uncertainty::propagation::{Factors, Propagation};
+use crate::identify::uncertainty::surroundings::{Boundary, Surroundings};
 use crate::motion::{BoundaryKind, Bracket};
 
-/// What brackets say of R and `x_st`.
+/// What brackets say of R.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Posterior {
     /// Posterior mean and standard deviation of R.
     pub restitution: (f64, f64),
     /// 95 % interval of R with equal tails.
     pub interval95: [f64; 2],
-    /// Posterior mean and standard deviation of ln `x_st`.
-    pub ln_deflection: (f64, f64),
     /// Mean distance of the ends of z = 1 from s2, relative to its frequency, where the waveforms show that
     /// they are early.
     pub early: Option<f64>,
@@ -37,27 +40,25 @@ const EARLY_SCALES: [f64; 8] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2];
 const ANY_DISTANCE: [f64; 1] = [1.0];
 /// Deviations by which brackets miss the waveforms' R before their jumps count as early.
 const MISSED: f64 = 3.0;
-/// Grid of ln `x_st` in its standard errors.
-const DEFLECTION_NODES: [f64; 9] = [-3.0, -2.25, -1.5, -0.75, 0.0, 0.75, 1.5, 2.25, 3.0];
 /// Points of the final grid of R.
-const FINE: usize = 61;
+const FINE: usize = 41;
 /// Log-likelihood below the greatest at which the grid of R may end.
-const NEGLIGIBLE: f64 = 9.0;
+const NEGLIGIBLE: f64 = 12.0;
 
-/// Posterior about parameters that the resonance curve determines, with the standard error of
-/// ln `x_st`; `None` where no bracket determines R. `waveforms`: parameters that the waveforms determine.
+/// Posterior of R amid what else acts on the boundaries; `None` where no bracket determines R. `waveforms`:
+/// parameters that the waveforms determine.
 pub fn of_brackets(
     block: &BoundaryBlock,
-    about: (&Parameters, f64),
+    surroundings: &Surroundings,
     waveforms: Option<&Parameters>,
 ) -> Option<Posterior> {
     if !block.determines_restitution() {
         return None;
     }
-    let found = over_grid(block, about, &EARLY_SCALES);
+    let found = over_grid(block, surroundings, &EARLY_SCALES);
     let (mean, deviation) = found.restitution;
     let missed = waveforms.filter(|p| (p.restitution - mean).abs() > MISSED * deviation);
-    let early = missed.and_then(|p| early_jumps(block, about, p));
+    let early = missed.and_then(|p| early_jumps(block, surroundings, p));
     Some(early.unwrap_or(found))
 }
 
@@ -65,10 +66,10 @@ pub fn of_brackets(
 /// explain what the brackets are off the waveforms.
 fn early_jumps(
     block: &BoundaryBlock,
-    about: (&Parameters, f64),
+    surroundings: &Surroundings,
     waveforms: &Parameters,
 ) -> Option<Posterior> {
-    let found = over_grid(block, about, &ANY_DISTANCE);
+    let found = over_grid(block, surroundings, &ANY_DISTANCE);
     let [low, high] = found.interval95;
     let early = mean_distance(block, waveforms);
     (low..=high)
@@ -77,66 +78,28 @@ fn early_jumps(
 }
 
 /// Posterior with jumps of these scales.
-fn over_grid(
-    block: &BoundaryBlock,
-    (about, error): (&Parameters, f64),
-    scales: &[f64],
-) -> Posterior {
-    let centre = about.coordinate(Coordinate::Deflection);
-    let at = |r: f64, node: f64| {
-        let moved = about.with(Coordinate::Deflection, centre + node * error);
-        let parameters = Parameters {
-            restitution: r,
-            ..moved
-        };
-        likelihood(block, &parameters, scales)
-    };
-    let (low, high) = support(&|r| at(r, 0.0));
+fn over_grid(block: &BoundaryBlock, surroundings: &Surroundings, scales: &[f64]) -> Posterior {
+    let at = |r: f64| likelihood(block, surroundings, (r, scales));
+    // The middle scale alone tells where R may be.
+    let middle = &scales[scales.len() / 2..][..1];
+    let (low, high) = support(&|r| likelihood(block, surroundings, (r, middle)));
     let grid: Vec<f64> = (0..FINE)
         .map(|i| low + (high - low) * i as f64 / (FINE - 1) as f64)
         .collect();
-    let cells: Vec<Vec<f64>> = grid
-        .par_iter()
-        .map(|r| {
-            DEFLECTION_NODES
-                .iter()
-                .map(|node| at(*r, *node) - 0.5 * node * node)
-                .collect()
-        })
-        .collect();
-    summed(&grid, &cells, (centre, error))
+    let logs: Vec<f64> = grid.par_iter().map(|r| at(*r)).collect();
+    summed(&grid, &logs)
 }
 
 /// Moments and quantiles of a posterior from its logarithm on the grid.
-fn summed(grid: &[f64], cells: &[Vec<f64>], (centre, error): (f64, f64)) -> Posterior {
-    let most = cells
-        .iter()
-        .flatten()
-        .copied()
-        .fold(f64::NEG_INFINITY, f64::max);
-    let weights: Vec<Vec<f64>> = cells
-        .iter()
-        .map(|row| row.iter().map(|c| (c - most).exp()).collect())
-        .collect();
-    let over_r: Vec<f64> = weights.iter().map(|row| row.iter().sum()).collect();
-    let over_nodes: Vec<f64> = (0..DEFLECTION_NODES.len())
-        .map(|k| weights.iter().map(|row| row[k]).sum())
-        .collect();
+fn summed(grid: &[f64], logs: &[f64]) -> Posterior {
+    let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let weights: Vec<f64> = logs.iter().map(|l| (l - most).exp()).collect();
     let step = (grid[grid.len() - 1] - grid[0]) / (grid.len() - 1) as f64;
-    let (mean, spread) = moments(grid, &over_r);
-    let (node, node_spread) = moments(&DEFLECTION_NODES, &over_nodes);
-    let node_step = DEFLECTION_NODES[1] - DEFLECTION_NODES[0];
+    let (mean, spread) = moments(grid, &weights);
     Posterior {
         // A cell of a grid stands for its whole width.
         restitution: (mean, spread.hypot(step / 12f64.sqrt())),
-        interval95: [
-            quantile(grid, &over_r, 0.025),
-            quantile(grid, &over_r, 0.975),
-        ],
-        ln_deflection: (
-            centre + node * error,
-            node_spread.hypot(node_step / 12f64.sqrt()) * error,
-        ),
+        interval95: [0.025, 0.975].map(|share| quantile(grid, &weights, share)),
         early: None,
     }
 }
@@ -171,7 +134,7 @@ fn quantile(grid: &[f64], weights: &[f64], share: f64) -> f64 {
 /// until it is negligible at both ends.
 fn support(at: &(dyn Fn(f64) -> f64 + Sync)) -> (f64, f64) {
     let (mut low, mut high) = (0.0f64, 1.0f64);
-    for count in [40u32, 20, 20] {
+    for count in [40u32, 16, 12] {
         let step = (high - low) / f64::from(count);
         let values: Vec<(f64, f64)> = (0..=count)
             .into_par_iter()
@@ -186,33 +149,111 @@ fn support(at: &(dyn Fn(f64) -> f64 + Sync)) -> (f64, f64) {
     (low, high.max(low + 1e-6))
 }
 
-/// Log-likelihood of all brackets. Each family of boundaries has its own scale of early jumps, which is
-/// summed out: the end of z = 1, that of longer motions, doublings, grazing.
-fn likelihood(block: &BoundaryBlock, parameters: &Parameters, scales: &[f64]) -> f64 {
-    let mut families: BTreeMap<(&str, bool), Vec<(&Bracket, f64)>> = BTreeMap::new();
-    for bracket in &block.brackets {
-        // A boundary that does not reach the clearance is as one far away.
-        let place = predicted_hz(bracket, parameters, block.rig).unwrap_or(f64::INFINITY);
-        let family = (bracket.kind.name(), bracket.periods_n > 1);
-        families.entry(family).or_default().push((bracket, place));
-    }
-    families
-        .values()
-        .map(|places| summed_over(places, scales))
-        .sum()
+/// Brackets whose early jumps have one scale: the end of z = 1, that of longer motions, doublings, grazing.
+type Family = (&'static str, bool);
+
+/// A bracket and where its boundary lies.
+struct Held<'a> {
+    bracket: &'a Bracket,
+    boundary: &'a Boundary,
 }
 
-/// Log-likelihood of brackets whose boundaries lie at given frequencies, Hz.
-fn summed_over(places: &[(&Bracket, f64)], scales: &[f64]) -> f64 {
-    let of_scale = |scale: &f64| -> f64 {
-        let probabilities = places
+/// Log-likelihood of all brackets at R. Each family of boundaries has its own scale of early jumps, which is
+/// summed out.
+fn likelihood(
+    block: &BoundaryBlock,
+    surroundings: &Surroundings,
+    (restitution, scales): (f64, &[f64]),
+) -> f64 {
+    let places = surroundings.boundaries(block, restitution);
+    let mut log = 0.0;
+    let mut families: BTreeMap<Family, usize> = BTreeMap::new();
+    let mut held: Vec<(Held<'_>, usize)> = Vec::new();
+    for (bracket, place) in block.brackets.iter().zip(&places) {
+        let Some(boundary) = place else {
+            // A boundary that does not reach the clearance is as one far away.
+            log += Jump::of(bracket, 1.0).probability(f64::INFINITY).ln();
+            continue;
+        };
+        let count = families.len();
+        let family = (bracket.kind.name(), bracket.periods_n > 1);
+        let index = *families.entry(family).or_insert(count);
+        held.push((Held { bracket, boundary }, index));
+    }
+    log + summed_over_scales(&held, families.len(), surroundings, scales)
+}
+
+/// Logarithm of the mean over all families' scales, each as likely before: a family's sum is taken at the best scales
+/// of the others.
+fn summed_over_scales(
+    held: &[(Held<'_>, usize)],
+    families: usize,
+    surroundings: &Surroundings,
+    scales: &[f64],
+) -> f64 {
+    let mut directions: Vec<_> = held
+        .iter()
+        .map(|(h, _)| h.boundary.direction.clone())
+        .collect();
+    let length = surroundings.positive();
+    directions.extend(length.clone());
+    let mut from: Option<Propagation> = None;
+    let mut of = |chosen: &[f64]| {
+        let jumps: Vec<Jump> = held
             .iter()
-            .map(|(b, f)| bracket_probability(b, *scale, *f));
-        probabilities.map(f64::ln).sum()
+            .map(|(h, family)| Jump::of(h.bracket, chosen[*family]))
+            .collect();
+        let tilt = |k: usize, mean: f64, variance: f64| match held.get(k) {
+            Some((h, _)) => jumps[k].about(h.boundary.frequency_hz + mean, variance),
+            None => positive(mean, variance),
+        };
+        let factors = Factors {
+            directions: &directions,
+            tilt,
+        };
+        let found = Propagation::of(&factors, from.as_ref());
+        let log = found.log;
+        if log.is_finite() {
+            from = Some(found);
+        }
+        log
     };
-    let logs: Vec<f64> = scales.iter().map(of_scale).collect();
-    let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    most + logs.iter().map(|l| (l - most).exp()).sum::<f64>().ln()
+    let mut chosen = vec![scales[scales.len() / 2]; families];
+    let mut best = of(&chosen);
+    let mut beyond = 0.0;
+    for family in 0..families {
+        let logs: Vec<f64> = scales
+            .iter()
+            .map(|scale| {
+                chosen[family] = *scale;
+                of(&chosen)
+            })
+            .collect();
+        let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let at = logs.iter().position(|l| *l == most).unwrap_or(0);
+        chosen[family] = scales[at];
+        let mean = logs.iter().map(|l| (l - most).exp()).sum::<f64>() / logs.len() as f64;
+        beyond += mean.ln();
+        best = most;
+    }
+    best + beyond
+}
+
+/// Probability that a normal deviate is positive.
+fn positive(mean: f64, variance: f64) -> Tilt {
+    let s = variance.sqrt();
+    let score = mean / s;
+    if score < -5.0 {
+        // by Mills' ratio: the probability itself would be rounded to nothing
+        let hazard = mills_ratio(-score).recip();
+        return Tilt {
+            log: -0.5 * score * score - 0.5 * std::f64::consts::TAU.ln() - hazard.ln(),
+            slope: hazard / s,
+            curvature: -hazard * (hazard + score) / variance,
+        };
+    }
+    let density = density(score) / s;
+    Tilt::of([normal(score), density, -density * score / s])
 }
 
 /// Mean distance of the ends of z = 1 from their s2, relative to its frequency.
@@ -237,6 +278,9 @@ mod tests {
     use super::*;
     use crate::event::RigKind;
     use crate::identify::evidence::boundary::tests::bracket;
+    use crate::identify::fit::Prior;
+    use crate::identify::fit::effect::Effect;
+    use crate::identify::fit::parameters::Coordinate;
 
     #[test]
     fn valid_moments_of_three_weights() {
@@ -257,26 +301,17 @@ mod tests {
 
     #[test]
     fn valid_a_normal_likelihood_gives_back_its_mean_and_deviation() {
-        // R 0.8 ± 0.02 and ln x_st without information: its own prior, a normal one, comes back
-        let grid: Vec<f64> = (0..FINE).map(|i| 0.7 + 0.2 * i as f64 / 60.0).collect();
-        let cells: Vec<Vec<f64>> = grid
-            .iter()
-            .map(|r| {
-                let of_r = -0.5 * ((r - 0.8) / 0.02).powi(2);
-                let nodes = DEFLECTION_NODES.iter();
-                nodes.map(|node| of_r - 0.5 * node * node).collect()
-            })
-            .collect();
-        let found = summed(&grid, &cells, (-7.0, 0.1));
+        let grid: Vec<f64> = (0..FINE).map(|i| 0.7 + 0.2 * i as f64 / 40.0).collect();
+        let of_r = |r: &f64| -0.5 * ((r - 0.8) / 0.02).powi(2);
+        let logs: Vec<f64> = grid.iter().map(of_r).collect();
+        let found = summed(&grid, &logs);
         let (mean, deviation) = found.restitution;
         assert!(
-            (mean - 0.8).abs() < 1e-9 && (deviation - 0.02).abs() < 1e-4,
+            (mean - 0.8).abs() < 1e-9 && (deviation - 0.02).abs() < 2e-4,
             "{found:?}"
         );
         let [low, high] = found.interval95;
         assert!((low - 0.8 + 0.0392).abs() < 5e-4 && (high - 0.8 - 0.0392).abs() < 5e-4);
-        assert!((found.ln_deflection.0 + 7.0).abs() < 1e-9);
-        assert!((found.ln_deflection.1 - 0.1).abs() < 0.004, "{found:?}");
     }
 
     /// Brackets of s2 at five η of a rig with R = 0.7, 2 % wide: the jumps end this share before s2.
@@ -288,15 +323,20 @@ mod tests {
         (BoundaryBlock::new(RigKind::Double, &brackets), p)
     }
 
+    /// A rig of which nothing but R is open.
+    fn ideal(p: &Parameters) -> Surroundings {
+        Surroundings::known(p, &[])
+    }
+
     #[test]
     fn valid_jumps_all_early_hold_r_once_the_waveforms_show_them() {
         let (block, p) = ending(0.08);
-        let alone = of_brackets(&block, (&p, 1e-3), None).unwrap();
+        let alone = of_brackets(&block, &ideal(&p), None).unwrap();
         assert!(
             alone.interval95[1] < 0.7 && alone.early.is_none(),
             "{alone:?}"
         );
-        let beside = of_brackets(&block, (&p, 1e-3), Some(&p)).unwrap();
+        let beside = of_brackets(&block, &ideal(&p), Some(&p)).unwrap();
         let [low, high] = beside.interval95;
         assert!(low < 0.7 && 0.7 < high, "{beside:?}");
         assert!((beside.early.unwrap() - 0.08).abs() < 1e-9);
@@ -305,7 +345,7 @@ mod tests {
     #[test]
     fn valid_jumps_that_are_late_contradict_the_waveforms() {
         let (block, p) = ending(-0.04);
-        let beside = of_brackets(&block, (&p, 1e-3), Some(&p)).unwrap();
+        let beside = of_brackets(&block, &ideal(&p), Some(&p)).unwrap();
         assert!(
             beside.interval95[0] > 0.7 && beside.early.is_none(),
             "{beside:?}"
@@ -315,16 +355,65 @@ mod tests {
     #[test]
     fn valid_jumps_at_the_boundary_say_the_same_beside_the_waveforms() {
         let (block, p) = ending(0.0);
-        let alone = of_brackets(&block, (&p, 1e-3), None).unwrap();
-        let beside = of_brackets(&block, (&p, 1e-3), Some(&p)).unwrap();
+        let alone = of_brackets(&block, &ideal(&p), None).unwrap();
+        let beside = of_brackets(&block, &ideal(&p), Some(&p)).unwrap();
         assert_eq!(alone, beside);
+    }
+
+    /// Five brackets of s2 about where contacts of half a millisecond put it, with R = 0.7.
+    fn lasting() -> (BoundaryBlock, Parameters) {
+        let p = Parameters::symmetric(0.7, 12.6, 0.05, 1e-3);
+        let length = Coordinate::Effect(Effect::ContactDuration);
+        let brackets = [1.1, 1.2, 1.3, 1.4, 1.5].map(|eta| {
+            let mut held = bracket(BoundaryKind::SaddleNode, eta, &p, 0.0);
+            let lasts = p.with(length, 0.5);
+            let at = predicted_hz(&held, &lasts, RigKind::Double).unwrap();
+            let width = 0.003 * at;
+            (held.frequency_low_hz, held.frequency_high_hz) = (at - 0.4 * width, at + 0.6 * width);
+            held
+        });
+        (BoundaryBlock::new(RigKind::Double, &brackets), p)
+    }
+
+    #[test]
+    fn valid_contacts_that_last_are_held_by_their_prior_and_take_r_down_without_it() {
+        let (block, p) = lasting();
+        let instants = of_brackets(&block, &ideal(&p), None).unwrap();
+        assert!(instants.interval95[1] < 0.69, "{instants:?}");
+        let effect = Effect::ContactDuration;
+        let prior = Prior::new(Coordinate::Effect(effect), 0.0, effect.accepted());
+        let surroundings = Surroundings::known(&p, &[prior]);
+        let [low, high] = of_brackets(&block, &surroundings, None).unwrap().interval95;
+        assert!(low < 0.7 && 0.7 < high && high - low < 0.1, "{low} {high}");
+    }
+
+    #[test]
+    fn prop_the_interval_follows_the_width_of_the_brackets() {
+        let p = Parameters::symmetric(0.8, 12.0, 0.06, 1e-3);
+        let half_width = |width: f64| {
+            let brackets = [1.15, 1.25, 1.35, 1.5, 1.6].map(|eta| {
+                let mut held = bracket(BoundaryKind::SaddleNode, eta, &p, 0.0);
+                let at = eta * p.natural_frequency_hz;
+                let below = 0.3 * width * at;
+                (held.frequency_low_hz, held.frequency_high_hz) =
+                    (at - below, at - below + width * at);
+                held
+            });
+            let block = BoundaryBlock::new(RigKind::Double, &brackets);
+            let found = of_brackets(&block, &ideal(&p), None).unwrap();
+            let [low, high] = found.interval95;
+            assert!(low < 0.8 && 0.8 < high, "{width}: {found:?}");
+            0.5 * (high - low)
+        };
+        let widths = [0.07, 0.03, 0.01, 0.003].map(half_width);
+        assert!(widths.windows(2).all(|w| w[1] < 0.6 * w[0]), "{widths:?}");
     }
 
     #[test]
     fn the_support_of_a_narrow_likelihood_is_found_and_kept() {
         let at = |r: f64| -0.5 * ((r - 0.613) / 1e-3).powi(2);
         let (low, high) = support(&at);
-        // 4.24 deviations are negligible (9 below the greatest)
+        // 4.9 deviations are negligible (12 below the greatest)
         assert!(
             low < 0.613 - 4.2e-3 && high > 0.613 + 4.2e-3,
             "{low} {high}"

@@ -14,7 +14,7 @@ use crate::identify::run::identify;
 use crate::identify::uncertainty::bound::bounds;
 use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
 use crate::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
-use crate::identify::{Estimator, Identification};
+use crate::identify::{Estimator, Identification, Method, boundary_plan};
 use crate::motion::{
     Bracket, ClassifySettings, Motion, Observation, brackets, observe, scale_drives,
 };
@@ -105,6 +105,26 @@ fn campaign(draw: &Laboratory, mistake: Option<Mistake>) -> Result<Seen, Pipelin
 
 /// Simulate a campaign, change its records, observe and identify it.
 fn spoilt(draw: &Laboratory, change: impl Fn(&mut [Record])) -> Result<Seen, PipelineError> {
+    seen(draw, change, identify)
+}
+
+/// Simulate and observe a campaign, and identify R from its boundaries alone.
+fn boundaries_alone(draw: &Laboratory) -> Result<Seen, PipelineError> {
+    let identify = |evidence: &Evidence<'_>| Identification {
+        methods: boundary_plan::restitution(evidence)
+            .into_iter()
+            .map(|result| (Method::Boundaries, result))
+            .collect(),
+        ..Identification::default()
+    };
+    seen(draw, |_| (), identify)
+}
+
+fn seen(
+    draw: &Laboratory,
+    change: impl Fn(&mut [Record]),
+    identify: impl Fn(&Evidence<'_>) -> Identification,
+) -> Result<Seen, PipelineError> {
     let raw = records(draw)?;
     let mut records: Vec<Record> = raw
         .iter()
@@ -164,16 +184,33 @@ fn parameters(truth: &Truth) -> Parameters {
     }
 }
 
-/// Run a study of that many campaigns on rigs with these effects, and of `few` for each mistake.
+/// What a study simulates.
+#[derive(Debug, Clone)]
+pub struct CoveragePlan {
+    /// Number of campaigns.
+    pub campaigns: usize,
+    /// Number of further campaigns for each mistake.
+    pub mistakes: usize,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Effects of the rig.
+    pub rig: RigSpec,
+    /// Step of the sweeps past the end of z = 1 as a share of f0; `None`: campaigns of every motion.
+    pub step: Option<f64>,
+}
+
+/// Run a study.
 ///
 /// # Errors
 /// Where a simulation refuses its parameters.
-pub fn study(
-    [campaigns, few]: [usize; 2],
-    seed: u64,
-    rig: &RigSpec,
-    progress: Progress<'_>,
-) -> Result<Coverage, PipelineError> {
+pub fn study(plan: &CoveragePlan, progress: Progress<'_>) -> Result<Coverage, PipelineError> {
+    let CoveragePlan {
+        campaigns,
+        mistakes: few,
+        seed,
+        ref rig,
+        step: of_f0,
+    } = *plan;
     let total = (campaigns + few * (1 + Mistake::ALL.len())) as u64;
     let done = AtomicU64::new(0);
     let step = || {
@@ -182,9 +219,21 @@ pub fn study(
     let main: Vec<(Statement, Trial)> = (0..campaigns as u64)
         .into_par_iter()
         .map(|i| {
-            let draw = draw(seed, i, Reach::Full, rig);
-            let seen = campaign(&draw, None)?;
-            let trial = trial(&seen, &draw);
+            let whole = draw(seed, i, Reach::Full, rig);
+            let (seen, trial) = match of_f0 {
+                Some(share) => {
+                    let draw = whole.with_step(share, rig);
+                    let seen = boundaries_alone(&draw)?;
+                    let (truth, found) = (parameters(&draw.truth), &seen.outcome);
+                    let trial = Trial::new(truth, &found.joint, &found.methods, BTreeMap::new());
+                    (seen, trial)
+                }
+                None => {
+                    let seen = campaign(&whole, None)?;
+                    let trial = trial(&seen, &whole);
+                    (seen, trial)
+                }
+            };
             step();
             Ok((Statement::of(&seen), trial))
         })
@@ -228,7 +277,7 @@ pub fn study(
 mod tests {
     use super::mistake::widen_one_gap;
     use super::*;
-    use crate::identify::{Finding, Method};
+    use crate::identify::Finding;
 
     /// The clearance as stated and as it fits of a gap that alone is named, m.
     fn named_gap(seen: &Seen) -> (f64, f64) {

@@ -5,12 +5,13 @@ use super::model::{Block, Rich, Section};
 use super::settings::settings;
 use super::tables;
 use super::{captions, conventions};
-use crate::identify::Finding;
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::{Finding, Method, MethodResult};
 use crate::report::content::ReportContent;
 use crate::report::figures::comparison;
 use crate::report::figures::plane::Plane;
 use crate::report::locale::Locale;
-use crate::report::parameters::method_inline;
+use crate::report::parameters::{method_inline, parameter, short};
 use crate::report::phrase::Phrase;
 
 /// All sections in their order.
@@ -70,12 +71,28 @@ pub(super) fn paragraph(text: impl AsRef<str>) -> Block {
 fn regions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
     blocks.extend(drawn.figures_block(&[("map", &map_caption(content, drawn.locale))]));
+    blocks.extend(boundaries_alone(content, drawn.locale).map(paragraph));
     blocks.extend(tables::brackets(content, drawn.locale).map(|t| t.block("brackets")));
     section(
         drawn.locale.translate(Phrase::RegionsOfMotion),
         true,
         blocks,
     )
+}
+
+/// R of the boundaries beside that of all methods together.
+fn boundaries_alone(content: &ReportContent, locale: Locale<'_>) -> Option<String> {
+    let id = &content.identification;
+    let look = parameter(Coordinate::Restitution)?;
+    let of = |result: &MethodResult| {
+        let estimate = result.parameters.restitution.as_ref();
+        let known = estimate.filter(|e| e.value.is_some());
+        known.map(|e| short(look, Some(e), locale))
+    };
+    let boundaries = of(id.methods.get(&Method::Boundaries)?)?;
+    let joint = of(&id.joint)?;
+    let values = [("boundaries", boundaries.as_str()), ("joint", &joint)];
+    Some(locale.translate_with(Phrase::CaptionBoundariesAlone, &values))
 }
 
 fn map_caption(content: &ReportContent, locale: Locale<'_>) -> String {

@@ -183,7 +183,7 @@ fn answer(a: &Answer, document: &Document) -> String {
                 rich(&a.symbol)
             ));
             if let Some(half) = &a.plus_minus {
-                text.push_str(&format!("<div>± {half} {}</div>", a.unit));
+                text.push_str(&format!("<div>± {half} {} (95 %)</div>", a.unit));
             }
             if let Some(interval) = &a.interval {
                 text.push_str(&format!(

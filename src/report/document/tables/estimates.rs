@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Column, table};
+use crate::identify::diagnostics::agreement::LEVEL;
 use crate::identify::{Method, MethodResult, ParameterSet};
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
@@ -141,7 +142,8 @@ pub(super) fn p_value(p: f64, locale: Locale<'_>) -> String {
 
 /// Whether the methods agree, pair by pair.
 pub(crate) fn agreement(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
-    let rows = content.identification.agreement.pairs.iter().map(|pair| {
+    let pairs = &content.identification.agreement.pairs;
+    let rows = pairs.iter().map(|pair| {
         let look = parameters::parameter(pair.parameter);
         let symbol = look.map_or(pair.parameter.name(), |p| p.symbol);
         vec![
@@ -159,5 +161,8 @@ pub(crate) fn agreement(content: &ReportContent, locale: Locale<'_>) -> Option<T
         Column::right(Phrase::DifferenceOverError),
         Column::right(Phrase::PValue),
     ];
-    table(Phrase::TableAgreement, columns, rows.collect(), locale)
+    let (level, count) = (locale.fixed(LEVEL, 2), pairs.len().to_string());
+    let values = [("level", level.as_str()), ("count", &count)];
+    let caption = locale.translate_with(Phrase::TableAgreement, &values);
+    table(caption, columns, rows.collect(), locale)
 }

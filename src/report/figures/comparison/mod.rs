@@ -20,7 +20,7 @@ use crate::report::figures::richtext;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
 use crate::signal::robust::range;
-use rows::{Row, root_mean_square, rows, shown, symbol};
+use rows::{Row, rows, shown, symbol};
 
 /// Room left of the first column, for numbers and titles, points.
 const LEFT: f64 = 40.0;
@@ -180,14 +180,15 @@ impl Sheet<'_> {
 
     fn panel(&mut self, row: &Row<'_>, side: Side, top: f64, below: bool) {
         let rect = Rect::new(self.left(side), top, self.column, row.height);
-        let values = row
-            .traces
-            .iter()
-            .flat_map(|(t, _)| shown(t, row.residual))
-            .flat_map(|s| &s.values);
+        let values = row.traces.iter().flat_map(|(t, _)| match row.residual {
+            // The sample of a contact shows neither flight.
+            true => t.clear_residual().unwrap_or_default(),
+            false => shown(t).flat_map(|s| s.values.iter().copied()).collect(),
+        });
         let contact = row.traces.iter().any(|(t, _)| t.role == Role::Contact);
         let least: &[f64] = if contact { &[0.0, 1.0] } else { &[] };
-        let values = values.chain(least).map(|v| v * row.unit.factor);
+        let values = values.chain(least.iter().copied());
+        let values = values.map(|v| v * row.unit.factor);
         let y = Axis::around(values, 0.08, row.title.clone());
         let y = y.with_ticks(if row.height > 35.0 { 3 } else { 2 });
         let panel = Panel::new(rect, self.time.axis(), y).with_title_reach(TITLE_REACH);
@@ -275,8 +276,7 @@ impl Sheet<'_> {
     fn residual_note(&mut self, row: &Row<'_>, top: f64) {
         let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Left).colour(look::QUIET);
         let lines = row.traces.iter().filter_map(|(trace, _)| {
-            let rms = root_mean_square(trace.residual.as_ref()?)?;
-            let whole = root_mean_square(&trace.measured)?;
+            let [rms, whole] = trace.residual_and_whole()?;
             let value = self.locale.significant(rms * row.unit.factor, 2);
             let share = self.locale.significant(100.0 * rms / whole, 2);
             let name = symbol(trace.role);

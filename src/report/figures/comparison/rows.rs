@@ -6,7 +6,6 @@ use crate::report::figures::canvas::Colour;
 use crate::report::figures::look;
 use crate::report::figures::units::{PrintUnit, print_unit};
 use crate::report::phrase::{Phrase, Text};
-use crate::signal::robust::rms;
 
 /// A row of panels: which channels, how tall, how titled.
 pub(super) struct Row<'a> {
@@ -52,8 +51,8 @@ fn row<'a>(
     let least = if roles[0] == Role::Contact { 1.0 } else { 0.0 };
     let peak = traces
         .iter()
-        .flat_map(|(t, _)| shown(t, false))
-        .map(peak)
+        .flat_map(|(t, _)| shown(t))
+        .map(|s| peak(&s.values))
         .fold(least, f64::max);
     let unit = print_unit(dimension, peak);
     let between = if height < 30.0 { "\n" } else { " " };
@@ -84,8 +83,8 @@ fn residual_row(comparison: &Comparison) -> Option<Row<'_>> {
         let dimension = traces.first()?.0.dimension;
         let peak = traces
             .iter()
-            .filter_map(|(t, _)| t.residual.as_ref())
-            .map(peak)
+            .filter_map(|(t, _)| t.clear_residual())
+            .map(|values| peak(&values))
             .fold(0.0, f64::max);
         let unit = print_unit(dimension, peak);
         let title = Text::Followed(Phrase::Residual, format!("\n({})", unit.symbol));
@@ -119,9 +118,8 @@ fn pick<'a>(
         .collect()
 }
 
-fn peak(signal: &Signal) -> f64 {
-    signal
-        .values
+fn peak(values: &[f64]) -> f64 {
+    values
         .iter()
         .filter(|v| v.is_finite())
         .fold(0.0, |m, v| m.max(v.abs()))
@@ -140,17 +138,7 @@ pub(super) fn symbol(role: Role) -> &'static str {
     }
 }
 
-/// The signals that a row draws of a trace.
-pub(super) fn shown(trace: &Trace, residual: bool) -> Vec<&Signal> {
-    let picked = if residual {
-        [trace.residual.as_ref(), None]
-    } else {
-        [Some(&trace.measured), trace.simulated.as_ref()]
-    };
-    picked.into_iter().flatten().collect()
-}
-
-/// Root mean square of a signal; `None` if it is empty.
-pub(super) fn root_mean_square(signal: &Signal) -> Option<f64> {
-    (!signal.values.is_empty()).then(|| rms(&signal.values))
+/// The measured and the simulated signal of a trace.
+pub(super) fn shown(trace: &Trace) -> impl Iterator<Item = &Signal> {
+    std::iter::once(&trace.measured).chain(&trace.simulated)
 }
