@@ -216,7 +216,7 @@ fn traces(
         Some(Trace {
             role,
             dimension: channel.dimension,
-            measured: cut(&channel.values, k.rate_hz, stretch),
+            measured: cut(&channel.values, record.sample_rate_hz, stretch),
             simulated: None,
             residual: None,
         })
