@@ -93,7 +93,7 @@ pub(super) fn traces(record: &Record, k: &Kinematics, cut: &Cut<'_>) -> Vec<Trac
     let others = [Role::Contact, Role::FrameX, Role::FrameY].into_iter();
     let measured_alone = others.filter_map(|role| {
         let channel = record.channel(role)?;
-        let measured = cut.samples(&channel.values, k.rate_hz);
+        let measured = cut.samples(&channel.values, record.sample_rate_hz);
         Some(Trace {
             role,
             dimension: channel.dimension,

@@ -270,6 +270,7 @@ mod tests {
             relative: body,
             relative_from: Some(RelativeSource::One),
             waveform: None,
+            spikes_clipped: false,
         }
     }
 

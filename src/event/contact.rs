@@ -19,6 +19,15 @@ impl Closed {
     pub(super) fn samples(&self) -> usize {
         self.last - self.first + 1
     }
+
+    /// The same among every `stride`-th sample.
+    pub(super) fn every(self, stride: usize) -> Self {
+        Self {
+            first: self.first / stride,
+            last: self.last / stride,
+            ..self
+        }
+    }
 }
 
 /// Intervals in which the contact channel is beyond its threshold.

@@ -73,6 +73,7 @@ mod tests {
         let mut kinematics = Kinematics::of(
             &Record::of(rate_hz, &[(Role::VelocityX, &values)]),
             RigKind::Single,
+            1,
         );
         assert!(Shifts::of(&kinematics, &[], None).at(700.0)[0].is_none());
         kinematics.x.velocity.as_mut().unwrap().high_pass_hz = Some(corner_hz);

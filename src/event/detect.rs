@@ -7,9 +7,10 @@ use crate::event::finite_contact::{self, FiniteContact};
 use crate::event::impact::{DetectionSource, Impact};
 use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
 use crate::event::kinematics::{Kinematics, RigKind, Series};
-use crate::event::refine::{self, Arcs, Candidate, Instant};
-use crate::event::{drift, free_flight, impact_speeds};
+use crate::event::refine::{self, Arcs, Candidate, DEGREE, Instant};
+use crate::event::{drift, free_flight, impact_speeds, integrated};
 use crate::record::{Flag, FlagCode, Record, Role};
+use crate::signal::local_fit::LocalFit;
 use crate::signal::whole;
 use labfiles::units::Dimension;
 
@@ -40,6 +41,20 @@ pub struct DetectSettings {
     pub flight: FlightKind,
 }
 
+impl Detection {
+    /// Time from an impact in which a channel may show its jump, s: that of the jump and one sample.
+    pub(crate) fn guard_s(&self) -> f64 {
+        (self.jump_samples as f64 + 1.0) / self.kinematics.rate_hz
+    }
+
+    /// Samples that a jump takes by its contact, without those that differentiating or integrating adds.
+    pub(crate) fn contact_samples(&self) -> usize {
+        let velocity = self.kinematics.relative.velocity.as_ref();
+        let added = velocity.map_or(0, |v| v.least_gap() - 1);
+        self.jump_samples.saturating_sub(added).max(1)
+    }
+}
+
 impl Default for DetectSettings {
     fn default() -> Self {
         Self {
@@ -61,7 +76,7 @@ pub struct Detection {
     pub kinematics: Kinematics,
     /// The impacts in order of time.
     pub impacts: Vec<Impact>,
-    /// Samples that a jump takes; more than one if the contact lasts longer than a sample step.
+    /// Samples of the kinematics that a jump takes; more than one if the contact lasts longer than a step.
     pub jump_samples: usize,
     /// Contact pulses that show no jump of velocity, although velocity is measured.
     pub unsupported_pulses: usize,
@@ -119,21 +134,28 @@ pub struct Detection {
 /// ```
 pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detection {
     let (drive, mut flags) = drive::measure(record, settings.drive_tolerance);
-    let mut kinematics = Kinematics::of(record, rig);
-    let rate_hz = record.sample_rate_hz;
+    let stride = stride(record, drive.as_ref(), settings.flight);
+    let mut kinematics = Kinematics::of(record, rig, stride);
+    let rate_hz = kinematics.rate_hz;
     let contact = record.channel(Role::Contact);
     if let Some(channel) = contact.filter(|c| c.dimension == Dimension::Time) {
         return listed(kinematics, &channel.values);
     }
     let closed = contact.map_or_else(Vec::new, |channel| {
-        closed_intervals(channel, samples_of(settings.bounce_s, rate_hz))
+        closed_intervals(
+            channel,
+            samples_of(settings.bounce_s, record.sample_rate_hz),
+        )
     });
     if settings.flight == FlightKind::ConstantForce {
         return freely(record, kinematics, rig, &closed);
     }
+    let closed_samples: usize = closed.iter().map(Closed::samples).sum();
+    let closed: Vec<Closed> = closed.iter().map(|c| c.every(stride)).collect();
     let dead_from = samples_of(settings.dead_zone_s, rate_hz).max(4);
-    let width = window_samples(drive.as_ref(), rate_hz, settings.window_periods);
-    let arc_samples = (4 * width / 3).max(6);
+    let per_period = drive.as_ref().map(|d| rate_hz / d.frequency_hz);
+    let width = per_period.map_or(5, |p| window_samples(p, settings.window_periods));
+    let arc_samples = arc_samples(width);
     let found = match &kinematics.relative.velocity {
         Some(velocity) => {
             fuse(velocity, &closed, width, dead_from).confirmed(velocity, arc_samples)
@@ -152,7 +174,6 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
         false => Vec::new(),
     };
     let impacts = refined(&mut kinematics, arcs, drive.as_ref(), rig);
-    let closed_samples: usize = closed.iter().map(Closed::samples).sum();
     Detection {
         drive,
         lags,
@@ -227,15 +248,51 @@ fn no_impact() -> Flag {
     )
 }
 
+/// Samples in a drive period in which impacts are looked for. More of them would show no further impact:
+/// windows, arcs and lengths of contacts are counted in samples and are shares of the period then.
+const SAMPLES_PER_PERIOD: f64 = 200.0;
+
+/// Every how many samples impacts are looked for: a jump stays a jump when samples between are left out, and
+/// its contact may take many samples of a fast converter. Contacts without a motion keep all samples.
+fn stride(record: &Record, drive: Option<&DriveTone>, flight: FlightKind) -> usize {
+    let moves = record.channels.iter().any(|c| c.role.is_motion());
+    let measured_hz = drive.map(|d| d.frequency_hz);
+    let frequency_hz = measured_hz.or(record.setting.stated_frequency_hz);
+    let frequency_hz = frequency_hz.filter(|_| moves && flight == FlightKind::Harmonic);
+    frequency_hz.map_or(1, |f| stride_of(record.sample_rate_hz / f))
+}
+
+fn stride_of(per_period: f64) -> usize {
+    whole::index((per_period / SAMPLES_PER_PERIOD).floor()).max(1)
+}
+
+/// Error of a speed that is extrapolated by half a sample from an arc beside an impact, of a motion as fast as its
+/// drive, over its amplitude: what polynomials miss where a period has few samples.
+pub(crate) fn extrapolation_error(samples_per_period: f64) -> f64 {
+    let per_period = samples_per_period / stride_of(samples_per_period) as f64;
+    let width = window_samples(per_period, DetectSettings::default().window_periods);
+    let count = arc_samples(width);
+    let apart = |of: fn(f64) -> f64| {
+        let value = |at: f64| of(std::f64::consts::TAU * at / per_period);
+        let values: Vec<f64> = (0..count).map(|i| value(i as f64)).collect();
+        let at = count as f64 - 0.5;
+        let fit = LocalFit::new(&values, 0, count, DEGREE);
+        fit.map_or(1.0, |fit| fit.value(at) - value(at))
+    };
+    apart(f64::cos).hypot(apart(f64::sin))
+}
+
 fn samples_of(time_s: f64, rate_hz: f64) -> usize {
     whole::index((time_s * rate_hz).round())
 }
 
-fn window_samples(drive: Option<&DriveTone>, rate_hz: f64, periods: f64) -> usize {
-    match drive {
-        Some(d) => whole::index((periods * rate_hz / d.frequency_hz).round()).clamp(4, 16),
-        None => 5,
-    }
+fn window_samples(per_period: f64, periods: f64) -> usize {
+    whole::index((periods * per_period).round()).clamp(4, 16)
+}
+
+/// Most samples of an arc beside an impact, from those of a window in which jumps are looked for.
+fn arc_samples(width: usize) -> usize {
+    (4 * width / 3).max(6)
 }
 
 /// Refine the times, remove the drift that follows from them, refine again, extrapolate the speeds.
@@ -287,12 +344,20 @@ fn undrifted(
     kinematics.update_relative(rig);
     let times: Vec<f64> = jumps.iter().map(|i| i.time).collect();
     remove_drifts(kinematics, &times, drive);
+    let approach = kinematics.relative.velocity.as_mut();
+    if let Some(velocity) = approach.filter(|v| v.is_integrated()) {
+        integrated::close_flights(velocity, arcs, &instants);
+    }
     let contact = contact.map(|(contact, _)| contact);
     impact_speeds::impacts(kinematics, arcs, &instants, drive, contact)
 }
 
 /// Remove the drift of all velocities by the arcs between times of impacts, in samples.
 fn remove_drifts(kinematics: &mut Kinematics, times: &[f64], drive: Option<&DriveTone>) {
+    if kinematics.spikes_clipped {
+        // What the spikes lack would be taken for a ramp.
+        return;
+    }
     let rate_hz = kinematics.rate_hz;
     let Kinematics { relative, x, y, .. } = kinematics;
     let bodies = [relative, x, y].into_iter();
@@ -587,6 +652,18 @@ mod tests {
         let dead: Vec<f64> = found.candidates.iter().map(|c| c.dead_samples).collect();
         // From the jump's left sample 99 to 120; from 199 to the next jump at 299.
         assert_eq!(dead[..2], [21.0, 100.0]);
+    }
+
+    #[test]
+    fn valid_few_samples_a_period_leave_speeds_uncertain() {
+        // The same least squares in numpy: np.polyfit of degree 3 through np.cos and np.sin.
+        for (per_period, want) in [(24.0, 4.76e-3), (40.0, 6.3e-4), (160.0, 2.80e-4)] {
+            let found = extrapolation_error(per_period);
+            assert!((found / want - 1.0).abs() < 0.02, "{per_period}: {found}");
+        }
+        // More samples than are looked at are the same.
+        let (few, many) = (extrapolation_error(200.0), extrapolation_error(5000.0));
+        assert!((few - many).abs() < 1e-12);
     }
 
     #[test]

@@ -71,12 +71,12 @@ const NEAR_STATED: f64 = 0.02;
 
 /// The tone that a motion has near the frequency that is stated for its drive, of a record without a
 /// drive channel: its frequency is the drive's, its phase is not.
-pub fn of_motion(record: &Record, motion: &[f64]) -> Option<DriveTone> {
+pub fn of_motion(record: &Record, motion: &[f64], rate_hz: f64) -> Option<DriveTone> {
     let stated_hz = record.setting.stated_frequency_hz?;
     if record.channel(Role::Drive).is_some() || motion.iter().any(|v| !v.is_finite()) {
         return None;
     }
-    let tone = tone::fit_from(motion, record.sample_rate_hz, stated_hz)?;
+    let tone = tone::fit_from(motion, rate_hz, stated_hz)?;
     let near = (tone.frequency_hz / stated_hz - 1.0).abs() < NEAR_STATED;
     // what is no tone has no more at one frequency than at others
     let harmonic = tone.residual_rms < tone.amplitude;
@@ -173,16 +173,16 @@ mod tests {
         let (drive, half) = (tone(12.6, 0.4), tone(6.3, 0.1));
         let motion: Vec<f64> = (0..2000).map(|i| drive(i) + 0.3 * half(i)).collect();
         let mut unrecorded = Record::of(2000.0, &[(Role::VelocityX, &motion)]);
-        assert_eq!(of_motion(&unrecorded, &motion), None);
+        assert_eq!(of_motion(&unrecorded, &motion, 2000.0), None);
         unrecorded.setting.stated_frequency_hz = Some(12.5);
-        let found = of_motion(&unrecorded, &motion).expect("a tone");
+        let found = of_motion(&unrecorded, &motion, 2000.0).expect("a tone");
         assert!((found.frequency_hz - 12.6).abs() < 0.02, "{found:?}");
         // neither another tone nor a recorded drive
         unrecorded.setting.stated_frequency_hz = Some(15.0);
-        assert_eq!(of_motion(&unrecorded, &motion), None);
+        assert_eq!(of_motion(&unrecorded, &motion, 2000.0), None);
         let mut recorded = record(tone(12.6, 0.0));
         recorded.setting.stated_frequency_hz = Some(12.6);
-        assert_eq!(of_motion(&recorded, &motion), None);
+        assert_eq!(of_motion(&recorded, &motion, 2000.0), None);
     }
 
     #[test]

@@ -4,9 +4,9 @@ use crate::event::corner::Shifts;
 use crate::event::drive::DriveTone;
 use crate::event::finite_contact::FiniteContact;
 use crate::event::impact::{Impact, MassSpeeds};
-use crate::event::kinematics::{Body, Kinematics};
-use crate::event::lag;
+use crate::event::kinematics::{Body, Kinematics, RelativeSource, Series};
 use crate::event::refine::{Arcs, Instant, Reading, flights, read, speeds};
+use crate::event::{integrated, lag};
 use crate::signal::local_fit::LocalFit;
 
 /// The impacts at the refined times. If impacts are not instantaneous the approach speeds are those
@@ -25,13 +25,18 @@ pub(super) fn impacts(
     };
     let relative = |i: usize| {
         let velocity = kinematics.relative.velocity.as_ref()?;
-        read(velocity, arcs, i, instants[i])
+        let mut reading = read(velocity, arcs, i, instants[i])?;
+        let constants = integrated::error_of_constants(velocity, i, instants)?;
+        reading.error_m_s = reading.error_m_s.hypot(constants);
+        Some(reading)
     };
     let delays = contact.map_or([0.0; 2], |c| c.delays);
     let rate_hz = kinematics.rate_hz;
     let times: Vec<f64> = instants.iter().map(|i| i.time).collect();
     let shifts = Shifts::of(kinematics, &times, drive);
     let lags = lag::lags(kinematics, arcs, instants, contact);
+    let velocity = kinematics.relative.velocity.as_ref();
+    let integrated = velocity.is_some_and(Series::is_integrated);
     (0..candidates.len())
         .map(|i| {
             let time_s = instants[i].time / rate_hz;
@@ -42,6 +47,12 @@ pub(super) fn impacts(
             let lasts = lasting.is_some();
             let approach = lasting.map(|c| c.reading).or_else(|| relative(i));
             let by_time = |reading: &Reading| reading.slopes_m_s.map(|s| s * instants[i].error);
+            let single = |of: Option<MassSpeeds>| match kinematics.relative_from {
+                // The flights of one of two masses end at different places: their constants are not known.
+                _ if !integrated => of,
+                Some(RelativeSource::One) => approach.as_ref().map(|r| r.speeds),
+                _ => None,
+            };
             let duration = contact.map(|c| c.duration / rate_hz);
             Impact {
                 time_s,
@@ -51,8 +62,8 @@ pub(super) fn impacts(
                 approach_speed_after_m_s: approach.as_ref().map(|r| r.speeds.after_m_s),
                 speed_error_m_s: approach.as_ref().map(|r| r.error_m_s),
                 speeds_by_time_m_s: approach.as_ref().map(by_time),
-                x: of(&kinematics.x, i, delays[0]),
-                y: of(&kinematics.y, i, delays[1]),
+                x: single(of(&kinematics.x, i, delays[0])),
+                y: single(of(&kinematics.y, i, delays[1])),
                 corner_shifts: shifts.at(instants[i].time),
                 lags: lags[i],
                 dead_zone_s: candidates[i].dead_samples / rate_hz,

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::event::impact::MassSpeeds;
-use crate::record::{Record, Role};
+use crate::record::{FlagCode, Record, Role};
 use crate::signal::whole;
 use crate::signal::{columns, drift, robust};
 
@@ -21,7 +21,7 @@ pub enum RigKind {
 /// A signal in SI with its noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// The channel that it comes from; the first one for a relative motion.
+    /// The channel that it comes from; of a relative motion an acceleration if there is one, else the first.
     pub role: Role,
     /// Samples, SI.
     pub values: Vec<f64>,
@@ -58,6 +58,30 @@ impl Series {
 }
 
 impl Series {
+    /// Every `stride`-th sample.
+    fn every(mut self, stride: usize) -> Self {
+        if stride > 1 {
+            self.values = self.values.into_iter().step_by(stride).collect();
+        }
+        self
+    }
+
+    /// Fewest samples from the last one before a jump to the first one after it: a difference of displacements
+    /// beside a kink mixes both sides in two samples, the integral of a spike stands halfway in one.
+    pub(super) fn least_gap(&self) -> usize {
+        match self.role {
+            Role::DisplacementX | Role::DisplacementY => 3,
+            Role::AccelerationX | Role::AccelerationY => 2,
+            _ => 1,
+        }
+    }
+
+    /// Whether it is a velocity by integrating an acceleration: what it is off changes by its noise from sample to
+    /// sample, and each flight between impacts has a constant of its own.
+    pub(super) fn is_integrated(&self) -> bool {
+        matches!(self.role, Role::AccelerationX | Role::AccelerationY)
+    }
+
     /// Correct the undoing of the high-pass for samples whose sum, before one of them, was changed
     /// by `area` (in samples).
     pub(super) fn correct_area(&mut self, from: usize, area: f64, rate_hz: f64) {
@@ -94,7 +118,7 @@ pub enum RelativeSource {
 /// Motion of both bodies in one record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Kinematics {
-    /// Samples per second, Hz.
+    /// Samples per second of all signals here, Hz: those of the record, or every so many of them.
     pub rate_hz: f64,
     /// Mass x.
     pub x: Body,
@@ -104,15 +128,19 @@ pub struct Kinematics {
     pub relative: Body,
     /// Channels of the approach velocity; `None` without any velocity.
     pub relative_from: Option<RelativeSource>,
+    /// Whether the approach velocity was integrated from an acceleration whose spikes at impacts are clipped.
+    pub spikes_clipped: bool,
     /// The relative motion as it was measured (velocity, else displacement, else acceleration),
     /// without drift of an integration: it is compared with itself a period later.
     pub waveform: Option<Series>,
 }
 
 impl Kinematics {
-    /// Build the kinematics of a record from the motion channels that it has.
-    pub fn of(record: &Record, rig: RigKind) -> Self {
-        let rate_hz = record.sample_rate_hz;
+    /// Build the kinematics of a record from the motion channels that it has, with every `stride`-th sample:
+    /// accelerations are integrated before others are left out, displacements differentiated after that.
+    pub fn of(record: &Record, rig: RigKind, stride: usize) -> Self {
+        let stride = stride.max(1);
+        let rate_hz = record.sample_rate_hz / stride as f64;
         let of_x = Measured::of(
             record,
             [Role::VelocityX, Role::DisplacementX, Role::AccelerationX],
@@ -130,10 +158,15 @@ impl Kinematics {
             .into_iter()
             .map(|kind| combined(kind(&of_x), kind(&of_y), rig).0);
         let waveform = waveforms.find_map(|waveform| waveform);
-        let (x, y) = (of_x.body(rate_hz), of_y.body(rate_hz));
+        let waveform = waveform.map(|w| w.every(stride));
+        let body = |measured: Measured| measured.body(record.sample_rate_hz, stride);
+        let (x, y) = (body(of_x), body(of_y));
         let (relative, relative_from) = relative_motion(&x, &y, rig);
+        let clipped = record.flags.iter().any(|f| f.code == FlagCode::Clipped);
+        let velocity = relative.velocity.as_ref();
         Self {
             rate_hz,
+            spikes_clipped: clipped && velocity.is_some_and(Series::is_integrated),
             x,
             y,
             relative,
@@ -189,12 +222,23 @@ impl Measured {
         }
     }
 
-    fn body(self, rate_hz: f64) -> Body {
-        let differentiate = || Some(differentiated(self.displacement.as_ref()?, rate_hz));
-        let integrate = || Some(integrated(self.acceleration.as_ref()?, rate_hz));
+    fn body(self, rate_hz: f64, stride: usize) -> Body {
+        let thinned = |series: Option<Series>| series.map(|s| s.every(stride));
+        let displacement = thinned(self.displacement);
+        let differentiate = || {
+            let displacement = displacement.as_ref()?;
+            Some(differentiated(displacement, rate_hz / stride as f64))
+        };
+        let integrate = || {
+            let mut velocity = integrated(self.acceleration.as_ref()?, rate_hz).every(stride);
+            // The steps between are independent of each other.
+            velocity.noise *= (stride as f64).sqrt();
+            Some(velocity)
+        };
+        let velocity = thinned(self.velocity);
         Body {
-            velocity: self.velocity.or_else(differentiate).or_else(integrate),
-            displacement: self.displacement,
+            velocity: velocity.or_else(differentiate).or_else(integrate),
+            displacement,
         }
     }
 }
@@ -231,8 +275,8 @@ fn remove_mean(values: &mut [f64]) {
     drift::remove_line(values, mean, 0.0);
 }
 
-/// Noise deviation, not below the converter's step over √12.
-fn noise_with_converter(values: &[f64]) -> f64 {
+/// Noise deviation of a channel's samples, not below the converter's step over √12.
+pub(crate) fn noise_with_converter(values: &[f64]) -> f64 {
     let (low, high) = columns::extremes(values);
     let scale = high.max(-low);
     let step = columns::least_step(values, 1e-9 * scale);
@@ -298,7 +342,7 @@ fn combined(
             let high_pass_hz = x.high_pass_hz.or(y.high_pass_hz);
             (
                 Some(Series {
-                    role: x.role,
+                    role: if y.is_integrated() { y.role } else { x.role },
                     values,
                     noise,
                     high_pass_hz,
@@ -347,7 +391,7 @@ mod tests {
         let x = sine(200, 0.1);
         let y: Vec<f64> = sine(200, 0.1).iter().map(|v| 2.0 * v).collect();
         let record = Record::of(2000.0, &[(Role::VelocityX, &x), (Role::VelocityY, &y)]);
-        let both = Kinematics::of(&record, RigKind::Double);
+        let both = Kinematics::of(&record, RigKind::Double, 1);
         let velocity = both.relative.velocity.unwrap();
         assert!(
             velocity
@@ -359,9 +403,9 @@ mod tests {
         assert_eq!(both.relative_from, Some(RelativeSource::Both));
         // One mass against a stop moves alone; one measured mass of two counts twice.
         let record = Record::of(2000.0, &[(Role::VelocityX, &x)]);
-        let one = Kinematics::of(&record, RigKind::Single);
+        let one = Kinematics::of(&record, RigKind::Single, 1);
         assert_eq!(one.relative.velocity.unwrap().values, x);
-        let doubled = Kinematics::of(&record, RigKind::Double);
+        let doubled = Kinematics::of(&record, RigKind::Double, 1);
         assert_eq!(doubled.relative.velocity.unwrap().values[7], 2.0 * x[7]);
         assert_eq!(doubled.relative_from, Some(RelativeSource::Doubled));
     }
@@ -371,13 +415,19 @@ mod tests {
         // x = t² at 100 Hz: the central difference of a parabola is exact, 2t.
         let parabola: Vec<f64> = (0..50).map(|i| (f64::from(i) / 100.0).powi(2)).collect();
         let record = Record::of(100.0, &[(Role::DisplacementX, &parabola)]);
-        let velocity = Kinematics::of(&record, RigKind::Single).x.velocity.unwrap();
+        let velocity = Kinematics::of(&record, RigKind::Single, 1)
+            .x
+            .velocity
+            .unwrap();
         assert!((velocity.values[10] - 0.2).abs() < 1e-12);
         // a = 3 from t = 0: v = 3t without its mean, which integration loses.
         let mut constant = vec![3.0; 51];
         constant[50] = 3.0 + 1e-9;
         let record = Record::of(100.0, &[(Role::AccelerationX, &constant)]);
-        let velocity = Kinematics::of(&record, RigKind::Single).x.velocity.unwrap();
+        let velocity = Kinematics::of(&record, RigKind::Single, 1)
+            .x
+            .velocity
+            .unwrap();
         assert!((velocity.values[40] - velocity.values[10] - 0.9).abs() < 1e-9);
         assert_eq!(velocity.high_pass_hz, Some(0.0));
     }

@@ -17,13 +17,16 @@ mod finite_contact;
 mod free_flight;
 mod impact;
 mod impact_speeds;
+mod integrated;
 mod jumps;
 mod kinematics;
 mod lag;
 mod refine;
 
 pub use channel_lags::ChannelLag;
+pub(crate) use detect::extrapolation_error;
 pub use detect::{DetectSettings, Detection, FlightKind, detect};
 pub use drive::{DriveTone, of_motion};
 pub use impact::{CornerShift, DetectionSource, Impact, Lag, MassSpeeds};
+pub(crate) use kinematics::noise_with_converter;
 pub use kinematics::{Kinematics, RigKind, Series};

@@ -2,6 +2,7 @@
 
 use crate::event::arc_times::arc_times;
 use crate::event::impact::{DetectionSource, MassSpeeds};
+use crate::event::integrated;
 use crate::event::jumps::Jump;
 use crate::event::kinematics::{Kinematics, Series};
 use crate::signal::local_fit::{LocalFit, crossing};
@@ -110,7 +111,7 @@ fn fits(values: &[f64], windows: [(usize, usize); 2]) -> Option<[LocalFit; 2]> {
 
 /// Times of all candidates: from the kink of the displacement if it is measured, else from the
 /// condition that the relative displacement is the same at every impact, else the middle of the
-/// sample interval.
+/// sample interval. An integrated acceleration shows the impulse itself, and its centre.
 pub(super) fn instants(kinematics: &Kinematics, arcs: Arcs<'_>) -> Vec<Instant> {
     let middle = |c: &Candidate| Instant {
         time: c.jump.middle(),
@@ -128,6 +129,9 @@ pub(super) fn instants(kinematics: &Kinematics, arcs: Arcs<'_>) -> Vec<Instant> 
                     .unwrap_or(plain[i])
             })
             .collect(),
+        (None, Some(velocity)) if velocity.is_integrated() => {
+            integrated::instants(velocity, arcs, &plain)
+        }
         (None, Some(velocity)) => arc_times(kinematics, velocity, arcs, &plain),
         _ => plain,
     }
@@ -269,6 +273,7 @@ mod tests {
             y: Body::default(),
             relative: body,
             relative_from: Some(RelativeSource::One),
+            spikes_clipped: false,
             waveform: None,
         }
     }

@@ -211,9 +211,7 @@ impl View {
         // At least three drive periods, or as many again, must overlap.
         let reach = whole::count((periods - 3.0).max(0.5 * periods).floor().max(1.0));
         let most = settings.most_periods.min(reach);
-        let mean = crate::signal::robust::mean(&velocity.values);
-        let centred: Vec<f64> = velocity.values.iter().map(|v| v - mean).collect();
-        let level = crate::signal::robust::rms(&centred);
+        let level = closure::size(&velocity.values, (&times, guard));
         Self {
             closures: closures_beside_hum(
                 &velocity.values,
@@ -480,7 +478,7 @@ mod tests {
                 phase_rad: 0.0,
                 residual_ratio: 0.0,
             }),
-            kinematics: Kinematics::of(&record, RigKind::Single),
+            kinematics: Kinematics::of(&record, RigKind::Single, 1),
             impacts,
             jump_samples: 1,
             unsupported_pulses: 0,

@@ -34,9 +34,7 @@ pub(super) fn waveform(
     hum: &[f64],
 ) -> Vec<WaveformClosure> {
     let open = open_samples(values.len(), impacts, guard);
-    let mut centred = values.to_vec();
-    weighted_mean_removed(&mut centred, &open);
-    let scale = (dot(&centred, &centred) / sum(&open)).sqrt();
+    let scale = scale(values, &open);
     let hum = Hum::new(values.len(), hum);
     (1..=most)
         .filter_map(|n| {
@@ -68,6 +66,18 @@ pub(super) fn waveform(
             })
         })
         .collect()
+}
+
+/// Root mean square of a waveform about its mean, samples near impacts left out as for its closure: what its
+/// noise and its closure are relative to. An acceleration's spikes do not count.
+pub(super) fn size(values: &[f64], (impacts, guard): (&[f64], f64)) -> f64 {
+    scale(values, &open_samples(values.len(), impacts, guard))
+}
+
+fn scale(values: &[f64], open: &[f64]) -> f64 {
+    let mut centred = values.to_vec();
+    weighted_mean_removed(&mut centred, open);
+    (dot(&centred, &centred) / sum(open)).sqrt()
 }
 
 /// Values less their mean where the weight is 1, zero where it is 0.
@@ -292,6 +302,19 @@ mod tests {
         assert!((open.phase_rad - 1.4826 * std::f64::consts::PI).abs() < 1e-6);
         assert!((open.speed_ratio.unwrap() - 1.4826 * 0.5 / 0.75).abs() < 1e-6);
         assert_eq!(impacts(&list[..1], 0.1, 1, 1), None);
+    }
+
+    #[test]
+    fn valid_spikes_at_impacts_do_not_count_in_the_size_of_a_waveform() {
+        // A cosine over whole periods with a spike in each: its root mean square is 1/√2.
+        let value = |i: usize| match i % 100 {
+            40 => -50.0,
+            _ => (i as f64 * std::f64::consts::TAU / 100.0).cos(),
+        };
+        let values: Vec<f64> = (0..2000).map(value).collect();
+        let impacts: Vec<f64> = (0..20).map(|k| 100.0 * f64::from(k) + 40.0).collect();
+        let size = size(&values, (&impacts, 2.5));
+        assert!((size - 0.5f64.sqrt()).abs() < 0.01, "{size}");
     }
 
     #[test]

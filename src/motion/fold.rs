@@ -3,9 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::event::{Detection, DriveTone, Series};
+use crate::event::{Detection, DriveTone, RigKind, noise_with_converter};
 use crate::record::{Channel, LowPass, Record, Role};
-use crate::signal::columns::subtract;
+use crate::signal::columns::{self, subtract};
 use crate::signal::interpolation::later;
 use crate::signal::whole;
 
@@ -51,7 +51,7 @@ pub struct Folded {
     pub periods_n: u32,
     /// Mean phase of the impacts, rad in 0 … 2πn; `None` for an impactless motion.
     pub impact_phase_rad: Option<f64>,
-    /// The channels: velocities and displacements of both masses, as measured.
+    /// The channels: displacements, velocities and accelerations of both masses, as measured.
     pub channels: Vec<FoldedChannel>,
 }
 
@@ -67,16 +67,16 @@ impl Folded {
 
 /// Fold a record with at most one impact in n drive periods.
 ///
-/// Bins within two samples of an impact are left out. A constant part of each channel is left
-/// in: an offset is a nuisance of the fit. A high-pass is left in too, and the model is filtered:
-/// undoing it would integrate the noise, and jumps whose instants are known only roughly.
+/// A bin that an impact passes, with the time that channels may take to show it, does not count: its mean
+/// would be one of both sides of the jump. A constant part of each channel is left in: an offset is a
+/// nuisance of the fit. A high-pass is left in too, and the model is filtered: undoing it would integrate
+/// the noise, and jumps whose instants are known only roughly. Each sensor is folded once, as it measures.
 pub(super) fn fold(
-    record: &Record,
+    (record, rig): (&Record, RigKind),
     detection: &Detection,
     drive: &DriveTone,
     periods_n: u32,
 ) -> Folded {
-    let rate_hz = detection.kinematics.rate_hz;
     let span = std::f64::consts::TAU * f64::from(periods_n);
     let first = detection.impacts.first().map(|i| i.time_s);
     // Whole turns that put the first impact into the first drive period.
@@ -88,29 +88,26 @@ pub(super) fn fold(
         let total = std::f64::consts::TAU * drive.frequency_hz * time_s + drive.phase_rad;
         within(total - start, span)
     };
-    let impact_phase_rad = mean_impact_phase(detection, phase, span);
-    let phases: Vec<f64> = (0..sample_count(detection))
-        .map(|i| phase(i as f64 / rate_hz))
-        .collect();
-    let guards_s = guards_s(record, (detection.jump_samples as f64 + 1.0) / rate_hz);
-    let mut blocked = blocked(detection, guards_s);
-    if let Some(impact) = impact_phase_rad {
-        // Also at the record's edges, where no impact can be detected.
-        let [before, after] = guards_s.map(|s| s * std::f64::consts::TAU * drive.frequency_hz);
-        for (phase, blocked) in phases.iter().zip(&mut blocked) {
-            let since = within(phase - impact, span);
-            *blocked |= since < after || span - since < before;
-        }
+    let rate = std::f64::consts::TAU * drive.frequency_hz;
+    let [before, after] = guards_s(record, detection.guard_s()).map(|s| rate * s);
+    let mut bins = Bins::new(span, BINS_PER_PERIOD * periods_n as usize);
+    for impact in &detection.impacts {
+        bins.block(
+            phase(impact.time_s),
+            [before, after + rate * impact.dead_zone_s],
+        );
     }
-    let axis = Axis::new(
-        phases,
-        blocked,
-        (span, BINS_PER_PERIOD * periods_n as usize),
-    );
+    let impact_phase_rad = mean_impact_phase(detection, phase, span);
+    // Also at the record's edges, where no impact can be detected.
+    if let Some(impact) = impact_phase_rad {
+        bins.block(impact, [before, after]);
+    }
+    let times = (0..record.samples()).map(|i| i as f64 / record.sample_rate_hz);
+    let axis = Axis::new(times.map(phase).collect(), bins);
     Folded {
         periods_n,
         impact_phase_rad,
-        channels: channels(record, detection, &axis),
+        channels: channels((record, rig), detection, &axis),
     }
 }
 
@@ -118,17 +115,6 @@ pub(super) fn fold(
 fn within(phase: f64, span: f64) -> f64 {
     let phase = phase - (phase / span).floor() * span;
     if phase < span { phase.max(0.0) } else { 0.0 }
-}
-
-fn sample_count(detection: &Detection) -> usize {
-    let bodies = [&detection.kinematics.x, &detection.kinematics.y];
-    bodies
-        .iter()
-        .flat_map(|b| [&b.velocity, &b.displacement])
-        .flatten()
-        .map(|s| s.values.len())
-        .max()
-        .unwrap_or(0)
 }
 
 /// Times before and after an impact that are left out, s: a guard on either side and, of channels behind a
@@ -145,20 +131,6 @@ fn guards_s(record: &Record, guard_s: f64) -> [f64; 2] {
     })
 }
 
-fn blocked(detection: &Detection, [before_s, after_s]: [f64; 2]) -> Vec<bool> {
-    let rate_hz = detection.kinematics.rate_hz;
-    let mut blocked = vec![false; sample_count(detection)];
-    for impact in &detection.impacts {
-        let first = whole::index(((impact.time_s - before_s) * rate_hz).floor().max(0.0));
-        let last = whole::index(((impact.time_s + after_s + impact.dead_zone_s) * rate_hz).ceil());
-        let end = (last + 1).min(blocked.len());
-        if let Some(range) = blocked.get_mut(first.min(end)..end) {
-            range.fill(true);
-        }
-    }
-    blocked
-}
-
 /// Circular mean of the impacts' phases on 0 … span.
 fn mean_impact_phase(detection: &Detection, phase: impl Fn(f64) -> f64, span: f64) -> Option<f64> {
     let turn = std::f64::consts::TAU / span;
@@ -171,81 +143,82 @@ fn mean_impact_phase(detection: &Detection, phase: impl Fn(f64) -> f64, span: f6
     (!detection.impacts.is_empty()).then(|| sin.atan2(cos).rem_euclid(std::f64::consts::TAU) / turn)
 }
 
+/// Bins of phase on 0 … span, and which of them an impact passes.
+struct Bins {
+    span: f64,
+    blocked: Vec<bool>,
+}
+
+impl Bins {
+    fn new(span: f64, count: usize) -> Self {
+        Self {
+            span,
+            blocked: vec![false; count],
+        }
+    }
+
+    /// The bin of a phase.
+    fn place(&self, phase: f64) -> usize {
+        let count = self.blocked.len();
+        whole::index(phase / self.span * count as f64).min(count - 1)
+    }
+
+    /// Leave out every bin that touches the phases from so much before to so much after one.
+    fn block(&mut self, phase: f64, [before, after]: [f64; 2]) {
+        let count = self.blocked.len();
+        let width = self.span / count as f64;
+        let first = ((phase - before) / width).floor();
+        let passed = whole::index(((phase + after) / width).floor() - first) + 1;
+        let first = self.place(within(first * width + 0.5 * width, self.span));
+        for k in 0..passed.min(count) {
+            self.blocked[(first + k) % count] = true;
+        }
+    }
+}
+
 struct Axis {
     phases: Vec<f64>,
-    blocked: Vec<bool>,
-    span: f64,
-    bins: usize,
-    /// The bin of each sample that is not blocked.
+    bins: Bins,
+    /// The bin of each sample; none where it does not count.
     bin: Vec<Option<u32>>,
 }
 
 impl Axis {
-    fn new(phases: Vec<f64>, blocked: Vec<bool>, (span, bins): (f64, usize)) -> Self {
-        let last = bins as f64 - 1.0;
-        let bin = |(phase, blocked): (&f64, &bool)| {
-            (!blocked).then(|| whole::count((phase / span * bins as f64).min(last)))
-        };
+    fn new(phases: Vec<f64>, bins: Bins) -> Self {
+        let places = phases.iter().map(|phase| bins.place(*phase));
+        let bin = places.map(|k| (!bins.blocked[k]).then(|| whole::count(k as f64)));
         Self {
-            bin: phases.iter().zip(&blocked).map(bin).collect(),
+            bin: bin.collect(),
             phases,
-            blocked,
-            span,
             bins,
         }
     }
 
-    /// Amplitude of a shape in time that is added to a periodic motion: the least-squares fit of the
-    /// shape's change over a period to the differences of values a period apart.
-    fn amplitude(&self, values: &[f64], (shape, added): (&Shape, &[f64])) -> f64 {
+    /// Subtract what is left of a high-pass' settling, a multiple of e^{−rate·i} at sample i, from values whose
+    /// motion is periodic: the least-squares fit of its change over a period to the differences of values a
+    /// period apart.
+    fn remove_decay(&self, values: &mut [f64], rate: f64) {
+        let added = decay(rate, values.len());
+        let amplitude = self.amplitude(values, &added, rate);
+        subtract(values, amplitude, &added);
+    }
+
+    fn amplitude(&self, values: &[f64], added: &[f64], rate: f64) -> f64 {
         let [first, second, ..] = self.phases[..] else {
             return 0.0;
         };
-        let lag = self.span / (second - first).rem_euclid(self.span);
-        let gained_by = shape.gained(lag);
+        let lag = self.bins.span / (second - first).rem_euclid(self.bins.span);
+        let share = (-rate * lag).exp_m1();
         let (mut product, mut square) = (0.0, 0.0);
         for (i, later) in later(values, lag).into_iter().enumerate() {
             let partner = whole::index((i as f64 + lag).round());
-            if !self.blocked[i] && !self.blocked[partner] {
-                let gained = gained_by(added[i]);
+            if self.bin[i].is_some() && self.bin[partner].is_some() {
+                let gained = share * added[i];
                 product += (later - values[i]) * gained;
                 square += gained * gained;
             }
         }
         if square > 0.0 { product / square } else { 0.0 }
-    }
-
-    /// Subtract a shape in time from values whose motion is periodic.
-    fn remove(&self, values: &mut [f64], shape: &Shape) {
-        let added = shape.values(values.len());
-        let amplitude = self.amplitude(values, (shape, &added));
-        subtract(values, amplitude, &added);
-    }
-}
-
-/// A shape in time that is added to a periodic motion.
-enum Shape {
-    /// i at sample i.
-    Ramp,
-    /// e^{−rate·i} at sample i.
-    Decay(f64),
-}
-
-impl Shape {
-    fn values(&self, count: usize) -> Vec<f64> {
-        match self {
-            Self::Ramp => (0..count).map(|i| i as f64).collect(),
-            Self::Decay(rate) => decay(*rate, count),
-        }
-    }
-
-    /// What it gains over a lag from where it has a value.
-    fn gained(&self, lag: f64) -> impl Fn(f64) -> f64 {
-        let (share, constant) = match self {
-            Self::Ramp => (0.0, lag),
-            Self::Decay(rate) => ((-rate * lag).exp_m1(), 0.0),
-        };
-        move |value| share * value + constant
     }
 }
 
@@ -260,54 +233,50 @@ fn decay(rate: f64, count: usize) -> Vec<f64> {
     values
 }
 
-fn channels(record: &Record, detection: &Detection, axis: &Axis) -> Vec<FoldedChannel> {
-    let k = &detection.kinematics;
-    [
-        (Role::VelocityX, &k.x.velocity),
-        (Role::VelocityY, &k.y.velocity),
-        (Role::DisplacementX, &k.x.displacement),
-        (Role::DisplacementY, &k.y.displacement),
-    ]
-    .into_iter()
-    .filter_map(|(role, series)| {
-        let series = series.as_ref()?;
-        let channel = record.channel(role);
-        let filtered = channel.and_then(|c| Some((c, c.high_pass_hz.filter(|f| *f > 0.0)?)));
-        let values = match filtered {
-            Some((channel, corner_hz)) => settled(channel, corner_hz / record.sample_rate_hz, axis),
-            None => level(series, axis),
-        };
-        Some(FoldedChannel {
-            role,
-            noise: series.noise,
-            high_pass_hz: filtered.map(|(_, corner_hz)| corner_hz),
-            low_pass: channel.and_then(|c| c.low_pass),
-            points: points(&values, axis),
+/// Every sensor of a mass's motion, once and as it measures.
+fn channels(
+    (record, rig): (&Record, RigKind),
+    detection: &Detection,
+    axis: &Axis,
+) -> Vec<FoldedChannel> {
+    let moves = |c: &&Channel| c.role.is_motion() && (rig == RigKind::Double || !c.role.is_of_y());
+    let sound = |c: &&Channel| !c.values.is_empty() && columns::all_finite(&c.values);
+    let channels = record.channels.iter().filter(moves).filter(sound);
+    channels
+        .map(|channel| {
+            let high_pass_hz = channel.high_pass_hz.filter(|f| *f > 0.0);
+            let mut settled = None;
+            if let Some(corner_hz) = high_pass_hz {
+                let rate = std::f64::consts::TAU * corner_hz / record.sample_rate_hz;
+                let values = settled.insert(channel.values.clone());
+                axis.remove_decay(values, rate);
+            }
+            FoldedChannel {
+                role: channel.role,
+                noise: noise(channel, detection),
+                high_pass_hz,
+                low_pass: channel.low_pass,
+                points: points(settled.as_ref().unwrap_or(&channel.values), axis),
+            }
         })
-    })
-    .collect()
+        .collect()
 }
 
-/// A channel as it was measured behind its high-pass, without the filter's settling; the corner
-/// in turns a sample.
-fn settled(channel: &Channel, corner: f64, axis: &Axis) -> Vec<f64> {
-    let mut values = channel.values.clone();
-    let rate = std::f64::consts::TAU * corner;
-    axis.remove(&mut values, &Shape::Decay(rate));
-    values
-}
-
-/// A signal without the ramp that integrating it left.
-fn level(series: &Series, axis: &Axis) -> Vec<f64> {
-    let mut values = series.values.clone();
-    if series.high_pass_hz.is_some() {
-        axis.remove(&mut values, &Shape::Ramp);
-    }
-    values
+/// Noise of a channel's samples, as it was found for the detection.
+fn noise(channel: &Channel, detection: &Detection) -> f64 {
+    let k = &detection.kinematics;
+    let body = if channel.role.is_of_y() { &k.y } else { &k.x };
+    let found = match channel.role {
+        Role::VelocityX | Role::VelocityY => body.velocity.as_ref(),
+        Role::DisplacementX | Role::DisplacementY => body.displacement.as_ref(),
+        _ => None,
+    };
+    let found = found.filter(|series| series.role == channel.role);
+    found.map_or_else(|| noise_with_converter(&channel.values), |s| s.noise)
 }
 
 fn points(values: &[f64], axis: &Axis) -> Vec<FoldedPoint> {
-    let mut sums = vec![[0.0; 4]; axis.bins];
+    let mut sums = vec![[0.0; 4]; axis.bins.blocked.len()];
     for ((value, phase), bin) in values.iter().zip(&axis.phases).zip(&axis.bin) {
         if let Some(bin) = bin {
             let sum = &mut sums[*bin as usize];
@@ -329,21 +298,35 @@ fn points(values: &[f64], axis: &Axis) -> Vec<FoldedPoint> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::event::{DetectSettings, Impact, RigKind, detect};
+    use crate::event::{DetectSettings, Impact, detect};
 
     const RATE_HZ: f64 = 2000.0;
     const FREQUENCY_HZ: f64 = 12.6;
 
-    fn theta(i: usize) -> f64 {
-        std::f64::consts::TAU * FREQUENCY_HZ * i as f64 / RATE_HZ + 0.7
+    /// The drive's phase a time after the first sample.
+    fn theta(time_s: f64) -> f64 {
+        std::f64::consts::TAU * FREQUENCY_HZ * time_s + 0.7
     }
 
-    /// A record of a waveform over the drive's phase, its detection with given impacts, its drive.
-    fn record(of: impl Fn(f64) -> f64, impacts: Vec<Impact>) -> (Record, Detection, DriveTone) {
-        let drive: Vec<f64> = (0..2000).map(|i| theta(i).cos()).collect();
-        let velocity: Vec<f64> = (0..2000).map(|i| of(theta(i))).collect();
+    /// When the phase is 1.2 beyond so many turns, s.
+    fn time(turns: u32) -> f64 {
+        let phase = 1.2 + std::f64::consts::TAU * f64::from(turns) - 0.7;
+        phase / (std::f64::consts::TAU * FREQUENCY_HZ)
+    }
+
+    /// A record of one second of a waveform over the drive's phase, its detection with given impacts, its drive.
+    fn record(
+        rate_hz: f64,
+        of: impl Fn(f64) -> f64,
+        impacts: Vec<Impact>,
+    ) -> (Record, Detection, DriveTone) {
+        let thetas: Vec<f64> = (0..whole::index(rate_hz))
+            .map(|i| theta(i as f64 / rate_hz))
+            .collect();
+        let drive: Vec<f64> = thetas.iter().map(|t| t.cos()).collect();
+        let velocity: Vec<f64> = thetas.iter().map(|t| of(*t)).collect();
         let channels: [(Role, &[f64]); 2] = [(Role::Drive, &drive), (Role::VelocityX, &velocity)];
-        let record = Record::of(RATE_HZ, &channels);
+        let record = Record::of(rate_hz, &channels);
         let mut found = detect(&record, RigKind::Single, &DetectSettings::default());
         found.impacts = impacts;
         let drive = found.drive.unwrap();
@@ -351,10 +334,51 @@ mod tests {
     }
 
     #[test]
+    fn valid_no_bin_mixes_both_sides_of_a_jump_at_any_rate() {
+        // From the impact at phase 1.2 on, the velocity climbs from 0 to 1 and falls back at the next one.
+        let turn = std::f64::consts::TAU;
+        let wave = |theta: f64| (theta - 1.2).rem_euclid(turn) / turn;
+        for rate_hz in [300.0, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4] {
+            let impacts: Vec<Impact> = (0..12).map(|k| Impact::at(time(k), 1.0)).collect();
+            let (record, detection, drive) = record(rate_hz, wave, impacts);
+            let guard = turn * FREQUENCY_HZ * detection.guard_s();
+            let folded = fold((&record, RigKind::Single), &detection, &drive, 1);
+            let points = &folded.channels[0].points;
+            for point in points {
+                let apart = point.value - wave(point.phase_rad);
+                assert!(apart.abs() < 1e-6, "{rate_hz}: {point:?}");
+            }
+            // Only bins that the impact and its guard touch are left out.
+            let lost = BINS_PER_PERIOD - points.len();
+            let touched = 2.0 * guard / turn * BINS_PER_PERIOD as f64;
+            assert!(
+                (touched..touched + 2.0).contains(&(lost as f64)),
+                "{rate_hz}: {lost}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_sensor_is_folded_once_and_as_it_measures() {
+        let values: Vec<f64> = (0..2000).map(|i| theta(i as f64 / RATE_HZ).sin()).collect();
+        let roles = [Role::DisplacementX, Role::VelocityY, Role::AccelerationX];
+        for of in [&roles[..1], &roles[1..2], &roles[2..], &roles] {
+            let mut channels: Vec<(Role, &[f64])> = vec![(Role::Drive, &values)];
+            channels.extend(of.iter().map(|role| (*role, values.as_slice())));
+            let record = Record::of(RATE_HZ, &channels);
+            let detection = detect(&record, RigKind::Double, &DetectSettings::default());
+            let drive = detection.drive.unwrap();
+            let folded = fold((&record, RigKind::Double), &detection, &drive, 1);
+            let found: Vec<Role> = folded.channels.iter().map(|c| c.role).collect();
+            assert_eq!(found, of);
+        }
+    }
+
+    #[test]
     fn valid_a_known_waveform_is_found_in_every_bin() {
         let wave = |theta: f64| 0.5 * (theta - 0.3).cos() + 0.1 * (2.0 * theta).sin();
-        let (record, detection, drive) = record(wave, Vec::new());
-        let folded = fold(&record, &detection, &drive, 1);
+        let (record, detection, drive) = record(RATE_HZ, wave, Vec::new());
+        let folded = fold((&record, RigKind::Single), &detection, &drive, 1);
         assert_eq!((folded.periods_n, folded.impact_phase_rad), (1, None));
         let points = &folded.channels[0].points;
         assert_eq!(points.len(), BINS_PER_PERIOD);
@@ -371,13 +395,9 @@ mod tests {
     fn valid_a_subharmonic_is_folded_on_two_periods_with_its_impact_left_out() {
         let wave = |theta: f64| (0.5 * theta).sin();
         // An impact at phase 1.2 of every other period: (2πf t + 0.7) mod 4π = 1.2 + 2π.
-        let time = |k: usize| {
-            let phase = 1.2 + std::f64::consts::TAU * (2 * k + 1) as f64 - 0.7;
-            phase / (std::f64::consts::TAU * FREQUENCY_HZ)
-        };
-        let impacts = (0..6).map(|k| Impact::at(time(k), 1.0)).collect();
-        let (record, detection, drive) = record(wave, impacts);
-        let folded = fold(&record, &detection, &drive, 2);
+        let impacts = (0..6).map(|k| Impact::at(time(2 * k + 1), 1.0)).collect();
+        let (record, detection, drive) = record(RATE_HZ, wave, impacts);
+        let folded = fold((&record, RigKind::Single), &detection, &drive, 2);
         // The first impact is put into the first period, so the fold starts one turn later.
         let impact = folded.impact_phase_rad.unwrap();
         assert!((impact - 1.2).abs() < 1e-6, "{impact}");

@@ -54,7 +54,7 @@ pub struct Observation {
     pub unsupported_pulses: usize,
     /// Impacts that the contact channel missed.
     pub missed_pulses: usize,
-    /// Samples that a jump of velocity takes.
+    /// Samples in which impacts are looked for that a jump of velocity takes by its contact.
     pub jump_samples: usize,
     /// Whether a motion channel has passed a low-pass, so that the speeds at impacts are not those of flights.
     #[serde(default)]
@@ -107,6 +107,25 @@ impl Observation {
     /// Whether it has a flag of a code.
     pub fn has_flag(&self, code: FlagCode) -> bool {
         self.flags.iter().any(|f| f.code == code)
+    }
+
+    /// The channel that the speed of a mass at impacts comes from.
+    pub fn speed_from(&self, of_y: bool) -> Option<Role> {
+        let roles = match of_y {
+            false => [Role::VelocityX, Role::DisplacementX, Role::AccelerationX],
+            true => [Role::VelocityY, Role::DisplacementY, Role::AccelerationY],
+        };
+        let measured = |role: &Role| self.amplitudes.iter().any(|a| a.role == *role);
+        roles.into_iter().find(measured)
+    }
+
+    /// Whether speeds at impacts come from accelerations whose spikes are clipped: an offset of such a channel cannot
+    /// be told from what its spikes lack.
+    pub fn speeds_lack_spikes(&self) -> bool {
+        let from = [self.speed_from(false), self.speed_from(true)];
+        let mut from = from.iter().flatten();
+        self.has_flag(FlagCode::Clipped)
+            && from.any(|r| matches!(r, Role::AccelerationX | Role::AccelerationY))
     }
 
     /// The observation without what takes room: impacts, amplitudes, responses, waveform and decay.
@@ -167,7 +186,7 @@ pub fn observe(
     let motion = detection.kinematics.waveform.as_ref();
     let motion_tone = motion
         .filter(|_| drive.is_none() && detecting.flight == FlightKind::Harmonic)
-        .and_then(|motion| of_motion(record, &motion.values));
+        .and_then(|motion| of_motion(record, &motion.values, detection.kinematics.rate_hz));
     detection.drive = drive.or(motion_tone);
     let classification = classify(&detection, record.duration_s(), classifying);
     let mut flags = record.flags.clone();
@@ -183,7 +202,7 @@ pub fn observe(
         impacts: detection.impacts.clone(),
         unsupported_pulses: detection.unsupported_pulses,
         missed_pulses: detection.missed_pulses,
-        jump_samples: detection.jump_samples,
+        jump_samples: detection.contact_samples(),
         lags: detection.lags.clone(),
         flags,
         classification,
@@ -195,7 +214,7 @@ pub fn observe(
             observation.response = responses(record, &tone);
         }
     } else if let (Some(drive), Some(n)) = (drive, observation.one_impact_in()) {
-        observation.folded = Some(Arc::new(fold(record, &detection, &drive, n)));
+        observation.folded = Some(Arc::new(fold((record, rig), &detection, &drive, n)));
     }
     observation
 }

@@ -66,7 +66,7 @@ mod tests {
         std::fs::write(&path, &text).unwrap();
         check(folder.path()).unwrap();
         for other in [
-            text.replace("\"4\"", "\"1\""),
+            text.replace("\"5\"", "\"1\""),
             "{}".into(),
             "no JSON".into(),
         ] {
@@ -75,7 +75,7 @@ mod tests {
             let PipelineError::Layout { path, expected, .. } = &refused else {
                 panic!("{refused}")
             };
-            assert!(path.ends_with(identify::FILE) && expected == "4");
+            assert!(path.ends_with(identify::FILE) && expected == "5");
             assert!(refused.remedy().contains("--out"));
         }
     }

@@ -1,8 +1,11 @@
 //! What is wrong with the samples of a record: unequal lengths, missing values, dead, clipped
 //! and held channels.
 
+use std::ops::Range;
+
 use super::{Channel, Flag, FlagCode, Record, Role};
-use crate::signal::columns;
+use crate::signal::whole;
+use crate::signal::{columns, robust};
 
 /// Part of a channel's samples at the rail above which the record is left out.
 const CLIPPED_PART: f64 = 0.005;
@@ -123,11 +126,12 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
         return;
     }
     let mut flags = Vec::new();
+    let rate_hz = record.sample_rate_hz;
     for (channel, range) in record.channels.iter().zip(ranges) {
         let span = Span::of(&channel.values);
         let found = not_numbers(channel)
             .or_else(|| dead(channel, &span, driven))
-            .or_else(|| clipped(channel, &span, *range));
+            .or_else(|| clipped(channel, &span, (*range, rate_hz)));
         // What is wrong with a frame's channel leaves no record out.
         flags.extend(found.map(|flag| Flag {
             excludes: flag.excludes && !channel.role.is_frame(),
@@ -259,22 +263,23 @@ fn dead(channel: &Channel, span: &Span, driven: bool) -> Option<Flag> {
 
 /// A channel that runs into the rails of its converter: at its greatest or least value it stays
 /// for three samples or more and got there by a step that no quantised crest makes.
-fn clipped(channel: &Channel, span: &Span, range: Option<f64>) -> Option<Flag> {
+fn clipped(channel: &Channel, span: &Span, (range, rate_hz): (Option<f64>, f64)) -> Option<Flag> {
     if channel.role == Role::Contact {
         return None;
     }
     let Span { low, high, step } = *span;
-    let count = match range {
-        // Where the converter's range is stated, only samples at its end are clipped: a coarse
-        // converter rests on one code at the top of any slow wave.
-        Some(r) => {
-            let end = (r - 1.5 * step).max(r * (1.0 - 1e-9) - 2.0 * step);
-            channel.values.iter().filter(|v| v.abs() >= end).count()
-        }
+    // Where the converter's range is stated, only samples at its end are clipped: a coarse
+    // converter rests on one code at the top of any slow wave.
+    let end = range.map(|r| (r - 1.5 * step).max(r * (1.0 - 1e-9) - 2.0 * step));
+    let spikes = spikes_at_rails(channel, (span, end), rate_hz);
+    let all: usize = match end {
+        Some(end) => channel.values.iter().filter(|v| v.abs() >= end).count(),
         None => at_rails(channel, low, high, step),
     };
+    let counted = spikes.iter().filter(|s| end.is_some() || s.len() >= 3);
+    let count = all - counted.map(Range::len).sum::<usize>().min(all);
     if count == 0 {
-        return None;
+        return clipped_spikes(channel, &spikes, end.is_some());
     }
     let part = count as f64 / channel.values.len() as f64;
     let mut found = Flag::new(
@@ -291,6 +296,65 @@ fn clipped(channel: &Channel, span: &Span, range: Option<f64>) -> Option<Flag> {
     );
     found.excludes = part > CLIPPED_PART && channel.role != Role::Drive;
     Some(found)
+}
+
+/// Time in which an acceleration rises from half a rail to it at an impact, and two samples at least, s.
+const SPIKE_RISES_S: f64 = 3e-4;
+
+/// The runs of samples at a rail in which an acceleration shows an impact: shortly before and after them it is
+/// below half of the rail.
+fn spikes_at_rails(
+    channel: &Channel,
+    (span, end): (&Span, Option<f64>),
+    rate_hz: f64,
+) -> Vec<Range<usize>> {
+    if !matches!(channel.role, Role::AccelerationX | Role::AccelerationY) {
+        return Vec::new();
+    }
+    let values = &channel.values;
+    let at_rail = |v: f64| match end {
+        Some(end) => v.abs() >= end,
+        None => v != 0.0 && (v == span.low || v == span.high),
+    };
+    let reach = whole::index((SPIKE_RISES_S * rate_hz).round()).max(2);
+    let mut spikes = Vec::new();
+    // A wave stays within three times its root mean square; short spikes are beyond it.
+    let least = 3.0 * robust::rms(values);
+    let at_rail = |v: f64| v.abs() > least && at_rail(v);
+    let mut start = 0;
+    while start < values.len() {
+        let run = values[start..].iter().take_while(|v| at_rail(**v));
+        let after = start + run.count();
+        let below = |i: Option<usize>| {
+            let beside = i.and_then(|i| values.get(i));
+            beside.is_none_or(|v| v.abs() < 0.5 * values[start].abs())
+        };
+        if after > start && below(start.checked_sub(reach)) && below(Some(after + reach - 1)) {
+            spikes.push(start..after);
+        }
+        start = after.max(start + 1);
+    }
+    spikes
+}
+
+/// Impacts at which an acceleration is clipped: at the end of the stated range; else at one and the same greatest
+/// value, which three impacts do not have by chance, nor two samples of one.
+fn clipped_spikes(channel: &Channel, spikes: &[Range<usize>], stated: bool) -> Option<Flag> {
+    let alike = spikes.len() >= 3 || spikes.iter().any(|s| s.len() > 1);
+    let first = spikes.first().filter(|_| stated || alike)?;
+    let found = Flag::new(
+        FlagCode::Clipped,
+        Some(&channel.name),
+        format!(
+            "channel '{}' is clipped at {} impacts, at {:.4e}: what its spikes add up to is not the jump of \
+             the velocity",
+            channel.name,
+            spikes.len(),
+            channel.values[first.start]
+        ),
+        "nothing: only the motion between the impacts is used",
+    );
+    Some(found.excluding(false))
 }
 
 /// Number of samples at both rails. A mass that rests at its stop shows a plateau of displacement
@@ -380,6 +444,40 @@ mod tests {
     fn inspected(mut record: Record, ranges: &[Option<f64>]) -> Vec<Flag> {
         inspect(&mut record, ranges, true);
         record.flags
+    }
+
+    /// An accelerometer's flags for a wave of 10 with a spike every 100 samples, clipped at a value.
+    fn of_spikes(rail: f64, ranges: [Option<f64>; 2], width: usize) -> Vec<Flag> {
+        let value = |i: usize| match i % 100 {
+            k if (40..40 + width).contains(&k) => (-600.0 - i as f64).max(rail),
+            _ => 10.0 * sine(i),
+        };
+        let mut record = record(value);
+        record.channels[1].role = Role::AccelerationX;
+        inspected(record, &ranges)
+    }
+
+    #[test]
+    fn clipped_spikes_of_an_accelerometer_are_named_and_leave_its_record_in() {
+        for (ranges, width) in [
+            ([None, None], 1),
+            ([None, None], 4),
+            ([None, Some(500.0)], 1),
+        ] {
+            let flags = of_spikes(-500.0, ranges, width);
+            assert_eq!(flags.len(), 1, "{ranges:?} {width}");
+            assert!(!flags[0].excludes);
+            assert_eq!(
+                flags[0].message,
+                "channel 'velocity_x' is clipped at 10 impacts, at -5.0000e2: what its spikes add up to is \
+                 not the jump of the velocity"
+            );
+        }
+        // Whole spikes differ from each other; a wave that is cut leaves the record out as ever.
+        assert!(of_spikes(-9e9, [None, None], 1).is_empty());
+        let mut cut = record(|i| sine(i).clamp(-0.9, 0.9));
+        cut.channels[1].role = Role::AccelerationX;
+        assert!(inspected(cut, &[None, None])[0].excludes);
     }
 
     #[test]

@@ -31,7 +31,7 @@ fn carts(restitution: f64) -> [Vec<f64>; 2] {
 fn detected(x: &[f64], y: &[f64]) -> FreeFlights {
     let record = Record::of(RATE_HZ, &[(Role::VelocityX, x), (Role::VelocityY, y)]);
     detect(
-        &Kinematics::of(&record, RigKind::Double),
+        &Kinematics::of(&record, RigKind::Double, 1),
         RigKind::Double,
         &[],
     )
@@ -86,7 +86,7 @@ fn a_mass_that_is_pushed_into_the_stop_has_no_speed() {
     let velocity: Vec<f64> = (0..100).map(value).collect();
     let record = Record::of(RATE_HZ, &[(Role::VelocityX, &velocity)]);
     let found = detect(
-        &Kinematics::of(&record, RigKind::Single),
+        &Kinematics::of(&record, RigKind::Single, 1),
         RigKind::Single,
         &[],
     );
@@ -120,7 +120,7 @@ fn valid_a_ball_followed_by_a_camera_gives_its_restitution() {
         .collect();
     let record = Record::of(1000.0, &[(Role::DisplacementX, &values)]);
     let found = detect(
-        &Kinematics::of(&record, RigKind::Single),
+        &Kinematics::of(&record, RigKind::Single, 1),
         RigKind::Single,
         &[],
     );

@@ -10,12 +10,12 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use crate::event::{CornerShift, Impact, RigKind};
+use crate::event::{CornerShift, Impact, RigKind, extrapolation_error};
 use crate::identify::evidence::impacts::corners_in;
 use crate::identify::fit::Block;
 use crate::identify::fit::group::Group;
 use crate::identify::fit::own::Circumstances;
-use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
 use crate::motion::{Motion, Observation};
 use crate::record::Role;
 use impact_oscillator::model::flight::{Drive, State, free_flight};
@@ -31,9 +31,9 @@ pub struct Node {
     pub time_error_s: f64,
     /// Phase of the drive, rad.
     pub drive_phase_rad: f64,
-    /// Speeds of x and y before, m/s.
+    /// Speeds of x and y before, m/s; where only their sum is known, that and zero.
     pub before_m_s: [f64; 2],
-    /// Speeds of x and y after, m/s.
+    /// Speeds of x and y after, m/s, likewise.
     pub after_m_s: [f64; 2],
     /// Standard error of each speed, m/s.
     pub error_m_s: f64,
@@ -42,11 +42,15 @@ pub struct Node {
 }
 
 impl Node {
-    /// Speeds of x and y before and after, m/s, with the corners that the channels have.
-    fn speeds_m_s(&self, parameters: &Parameters) -> [[f64; 2]; 2] {
+    /// Speeds of x and y before and after, m/s, with the corners that the channels have; `together`: their sum.
+    fn speeds_m_s(&self, parameters: &Parameters, together: bool) -> [[f64; 2]; 2] {
         let shifts = self
             .corner_shifts
             .map(|shift| shift.map_or(0.0, |s| parameters.corner_shift_m_s(&s)));
+        let shifts = match together {
+            true => [shifts[0] + shifts[1], 0.0],
+            false => shifts,
+        };
         [self.before_m_s, self.after_m_s].map(|speeds| [0, 1].map(|m| speeds[m] + shifts[m]))
     }
 }
@@ -66,6 +70,8 @@ pub struct FlightRecord {
     pub group: Group,
     /// Drive amplitude relative to the nominal one.
     pub drive_amplitude: f64,
+    /// The channels that the speeds of x and y come from.
+    pub speeds_from: [Option<Role>; 2],
     /// Its impacts, in their order, none missing between them.
     pub nodes: Vec<Node>,
 }
@@ -78,7 +84,7 @@ pub struct FlightBlock {
     /// The records.
     pub records: Vec<FlightRecord>,
     /// On which corners the speeds depend, by their index.
-    corners: [bool; 4],
+    corners: [bool; CHANNELS],
 }
 
 /// Fewest impacts of a record: fewer tell nothing but where they began.
@@ -116,6 +122,42 @@ impl FlightBlock {
     pub fn has_corner(&self, index: usize) -> bool {
         self.corners[index]
     }
+
+    /// Whether speeds come from a channel, by its index.
+    pub fn has_gain(&self, index: usize) -> bool {
+        let mut roles = self.records.iter().flat_map(|r| &r.speeds_from).flatten();
+        roles.any(|role| gain_index(*role) == Some(index))
+    }
+}
+
+impl FlightRecord {
+    /// What is measured of (X, X', Y, Y') at an impact, in m/s: each mass's speed, or their sum where accelerations
+    /// tell no more; gains included.
+    fn measured(&self, parameters: &Parameters, speed_m_s: f64) -> Vec<Vector4<f64>> {
+        let of = |m: usize| {
+            let gain = parameters.gain(self.speeds_from[m]?);
+            let mut row = Vector4::zeros();
+            row[2 * m + 1] = gain * speed_m_s;
+            Some(row)
+        };
+        let rows: Vec<Vector4<f64>> = (0..2).filter_map(of).collect();
+        match self.sum_alone() {
+            true => vec![rows.iter().sum()],
+            false => rows,
+        }
+    }
+
+    /// Whether only the sum of two masses' speeds is known: the flights of each have constants of their own.
+    fn sum_alone(&self) -> bool {
+        self.speeds_from.iter().all(Option::is_some) && self.has_acceleration()
+    }
+
+    /// Whether a speed was integrated from an acceleration, which shows the time of an impact to a sample.
+    fn has_acceleration(&self) -> bool {
+        let accelerations = [Role::AccelerationX, Role::AccelerationY];
+        let mut roles = self.speeds_from.iter().flatten();
+        roles.any(|role| accelerations.contains(role))
+    }
 }
 
 fn has_no_closed_form(motion: &Motion) -> bool {
@@ -133,28 +175,46 @@ fn has_no_closed_form(motion: &Motion) -> bool {
 fn flight_record(rig: RigKind, index: usize, o: &Observation) -> Option<FlightRecord> {
     let drive = o.drive?;
     let sound = o.impacts.iter().all(|i| i.dead_zone_s == 0.0);
-    if !sound || o.unsupported_pulses > 0 || o.impacts.len() < FEWEST_IMPACTS {
+    if !sound
+        || o.speeds_lack_spikes()
+        || o.unsupported_pulses > 0
+        || o.impacts.len() < FEWEST_IMPACTS
+    {
         return None;
     }
-    let nodes: Vec<Node> = o
-        .impacts
-        .iter()
-        .map(|impact| node(rig, impact, o.frequency_hz()?))
-        .collect::<Option<_>>()?;
-    Some(FlightRecord {
+    let mut record = FlightRecord {
         observation: index,
         frequency_hz: drive.frequency_hz,
         clearance_m: o.setting.clearance_m?,
         gap: None,
         group: Group::default(),
         drive_amplitude: o.setting.drive_amplitude,
-        nodes,
-    })
+        speeds_from: [
+            o.speed_from(false),
+            o.speed_from(true).filter(|_| rig == RigKind::Double),
+        ],
+        nodes: Vec::new(),
+    };
+    // The first and the last impact may be known by their times alone.
+    let known = |i: &Impact| i.approach_speed_before_m_s.is_some();
+    let first = o.impacts.iter().position(known)?;
+    let last = o.impacts.iter().rposition(known)?;
+    let impacts = o.impacts[first..=last].iter();
+    let together = rig == RigKind::Single || record.sum_alone();
+    let per_period = o.sample_rate_hz / drive.frequency_hz;
+    let missed = extrapolation_error(per_period).hypot(SPEED_SCATTER);
+    let integrated = record.has_acceleration();
+    record.nodes = impacts
+        .map(|i| node(together, i, (missed, integrated)))
+        .collect::<Option<_>>()?;
+    (record.nodes.len() >= FEWEST_IMPACTS).then_some(record)
 }
 
-fn node(rig: RigKind, impact: &Impact, frequency_hz: f64) -> Option<Node> {
-    let (before_m_s, after_m_s, masses) = match rig {
-        RigKind::Double => {
+/// `together`: the approach speed is all that is known, or that there is; `missed`: relative error of a speed beside
+/// its noise; `integrated`: whether the error of the impact's time counts in it.
+fn node(together: bool, impact: &Impact, (missed, integrated): (f64, bool)) -> Option<Node> {
+    let (before_m_s, after_m_s, masses) = match together {
+        false => {
             let (x, y) = (impact.x?, impact.y?);
             (
                 [x.before_m_s, y.before_m_s],
@@ -162,7 +222,7 @@ fn node(rig: RigKind, impact: &Impact, frequency_hz: f64) -> Option<Node> {
                 2.0f64,
             )
         }
-        RigKind::Single => (
+        true => (
             [impact.approach_speed_before_m_s?, 0.0],
             [impact.approach_speed_after_m_s?, 0.0],
             1.0,
@@ -170,13 +230,15 @@ fn node(rig: RigKind, impact: &Impact, frequency_hz: f64) -> Option<Node> {
     };
     let closing = impact.approach_speed_before_m_s?;
     let noise = impact.speed_error_m_s? / masses.sqrt();
-    (closing > 6.0 * noise && frequency_hz > 0.0).then_some(Node {
+    let by_time = impact.speeds_by_time_m_s.filter(|_| integrated);
+    let late = by_time.map_or(0.0, |[before, after]| before.abs().max(after.abs()));
+    (closing > 6.0 * noise).then_some(Node {
         time_s: impact.time_s,
         time_error_s: impact.time_error_s,
         drive_phase_rad: impact.drive_phase_rad?,
         before_m_s,
         after_m_s,
-        error_m_s: noise.hypot(SPEED_SCATTER * closing),
+        error_m_s: noise.hypot(missed * closing).hypot(late),
         corner_shifts: impact.corner_shifts,
     })
 }
@@ -269,26 +331,23 @@ impl Block for FlightBlock {
         let gap = machine.gap(setting.clearance);
         let rate = parameters.natural_rate();
         let speed = parameters.static_deflection_m * record.drive_amplitude * rate;
-        let gains = [Role::VelocityX, Role::VelocityY].map(|role| parameters.gain(role) * speed);
+        let measured = record.measured(parameters, speed);
         let masses = if machine.y.is_some() { 2 } else { 1 };
         let mut belief = Belief::unknown();
         if masses == 1 {
             belief.covariance[(2, 2)] = 0.0;
             belief.covariance[(3, 3)] = 0.0;
         }
-        let mut out = Vec::with_capacity(record.nodes.len() * (1 + 2 * masses));
+        let mut out = Vec::with_capacity(record.nodes.len() * (1 + 2 * measured.len()));
         for (k, node) in record.nodes.iter().enumerate() {
-            let [before, after] = node.speeds_m_s(parameters);
+            let [before, after] = node.speeds_m_s(parameters, record.sum_alone());
             let closing = (before[0] + before[1]) / speed;
             let time_error = node.time_error_s * rate;
             let apart = Vector4::new(1.0, 0.0, 1.0, 0.0);
             out.push(belief.learn(apart, gap, (closing * time_error).powi(2)));
             let measure = |belief: &mut Belief, speeds: [f64; 2], out: &mut Vec<f64>| {
-                for (m, gain) in gains.iter().enumerate().take(masses) {
-                    let mut h = Vector4::zeros();
-                    h[2 * m + 1] = 1.0;
-                    let deviation = node.error_m_s / gain;
-                    out.push(belief.learn(h, speeds[m] / gain, deviation * deviation));
+                for (row, speed_m_s) in measured.iter().zip(speeds) {
+                    out.push(belief.learn(*row, speed_m_s, node.error_m_s.powi(2)));
                 }
             };
             measure(&mut belief, before, &mut out);
@@ -313,7 +372,8 @@ impl Block for FlightBlock {
                 .records
                 .iter()
                 .any(|r| r.gap.map(Coordinate::Gap) == Some(coordinate)),
-            Coordinate::Gain(2 | 3) | Coordinate::Delay(_) | Coordinate::Effect(_) => false,
+            Coordinate::Gain(index) => self.has_gain(index),
+            Coordinate::Delay(_) | Coordinate::Effect(_) => false,
             _ => true,
         }
     }
@@ -371,6 +431,10 @@ mod tests {
                     gap: None,
                     group: Group::default(),
                     drive_amplitude: 1.0,
+                    speeds_from: [
+                        Some(Role::VelocityX),
+                        Some(Role::VelocityY).filter(|_| rig == RigKind::Double),
+                    ],
                     nodes: nodes.collect(),
                 }
             })
@@ -390,6 +454,41 @@ mod tests {
                 let later = residuals[first..].iter();
                 let worst = later.fold(0.0f64, |m, r| m.max(r.abs()));
                 assert!(worst < 0.01, "{worst}");
+            }
+        }
+    }
+
+    #[test]
+    fn prop_speeds_follow_the_gain_of_the_channel_that_they_come_from() {
+        use Role::{AccelerationX, AccelerationY, DisplacementX, DisplacementY};
+        for (roles, gains) in [
+            ([DisplacementX, DisplacementY], [1.02, 0.97]),
+            ([AccelerationX, AccelerationY], [1.03, 1.03]),
+        ] {
+            let mut block = block(RigKind::Double);
+            let mut parameters = truth();
+            for record in &mut block.records {
+                record.speeds_from = roles.map(Some);
+                let together = record.sum_alone();
+                for node in &mut record.nodes {
+                    for speeds in [&mut node.before_m_s, &mut node.after_m_s] {
+                        *speeds = [speeds[0] * gains[0], speeds[1] * gains[1]];
+                        if together {
+                            *speeds = [speeds[0] + speeds[1], 0.0];
+                        }
+                    }
+                }
+            }
+            for (role, gain) in roles.iter().zip(gains) {
+                let index = gain_index(*role).expect("a gain");
+                assert!(block.touches(Coordinate::Gain(index)));
+                parameters.gains[index] = gain;
+            }
+            assert!(!block.touches(Coordinate::Gain(0)));
+            for item in 0..block.items() {
+                let residuals = block.residuals(item, &parameters).expect("residuals");
+                let worst = residuals[3..].iter().fold(0.0f64, |m, r| m.max(r.abs()));
+                assert!(worst < 1e-3, "{roles:?}: {worst}");
             }
         }
     }

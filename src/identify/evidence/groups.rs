@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::identify::fit::group::Group;
 use crate::motion::Observation;
 use crate::record::Role;
+use crate::signal::robust;
 
 /// Fewest groups by setting that are looked for.
 const FEWEST_GROUPS: usize = 8;
@@ -57,18 +58,33 @@ fn bands(values: &[f64]) -> Vec<usize> {
     bands
 }
 
-/// Half the range of the displacement, m: as measured, else by velocity and frequency.
+/// Half the range of the displacement, m: as measured, else by velocity or acceleration and frequency.
 pub(super) fn amplitude(observation: &Observation) -> f64 {
+    let rate = || Some(std::f64::consts::TAU * observation.frequency_hz()?);
     let of = |role: Role, half_range: f64| match role {
         Role::DisplacementX | Role::DisplacementY => Some(half_range),
-        Role::VelocityX | Role::VelocityY => {
-            Some(half_range / (std::f64::consts::TAU * observation.frequency_hz()?))
+        Role::VelocityX | Role::VelocityY => Some(half_range / rate()?),
+        Role::AccelerationX | Role::AccelerationY => {
+            let half_range = between_spikes(observation, role, half_range)?;
+            Some(half_range / rate()?.powi(2))
         }
         _ => None,
     };
     let all = observation.amplitudes.iter();
     let all = all.filter_map(|a| of(a.role, a.half_range));
     all.filter(|a| a.is_finite()).fold(0.0, f64::max)
+}
+
+/// Half the range of an acceleration, m/s², without its spikes at impacts; `None` where they cannot be told apart.
+fn between_spikes(observation: &Observation, role: Role, half_range: f64) -> Option<f64> {
+    if observation.impacts.is_empty() {
+        return Some(half_range);
+    }
+    let mut channels = observation.folded.as_ref()?.channels.iter();
+    let points = &channels.find(|c| c.role == role)?.points;
+    let values: Vec<f64> = points.iter().map(|p| p.value).collect();
+    let (low, high) = robust::range(values)?;
+    Some(0.5 * (high - low))
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! R from the speeds after over before each impact.
 
-use crate::event::{CornerShift, Impact, Lag, RigKind};
+use crate::event::{CornerShift, Impact, Lag, RigKind, extrapolation_error};
 use crate::identify::fit::Block;
-use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::fit::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
 
 /// One impact's speeds.
@@ -54,9 +54,20 @@ impl SpeedPair {
     }
 }
 
+/// Greatest error of extrapolated speeds beside the noise with which they tell R, relative.
+const EXTRAPOLATED: f64 = 1e-3;
+
+/// Whether a drive period has samples enough for polynomials to follow the flights beside an impact, and the speeds do
+/// not rest on clipped spikes.
+fn tells_speeds(o: &Observation) -> bool {
+    let per_period = o.drive.map(|drive| o.sample_rate_hz / drive.frequency_hz);
+    let follows = |per_period| extrapolation_error(per_period) < EXTRAPOLATED;
+    per_period.is_none_or(follows) && !o.speeds_lack_spikes()
+}
+
 /// On which corners speeds depend, by their index.
-pub fn corners_in<'a>(shifts: impl Iterator<Item = &'a Option<CornerShift>>) -> [bool; 4] {
-    let mut corners = [false; 4];
+pub fn corners_in<'a>(shifts: impl Iterator<Item = &'a Option<CornerShift>>) -> [bool; CHANNELS] {
+    let mut corners = [false; CHANNELS];
     for index in shifts.flatten().filter_map(|s| gain_index(s.role)) {
         corners[index] = true;
     }
@@ -71,7 +82,7 @@ pub struct ImpactBlock {
     /// Relative error of each ratio beside the noise: what the extrapolation leaves open.
     pub relative_error: f64,
     /// On which corners the speeds depend, by their index.
-    corners: [bool; 4],
+    corners: [bool; CHANNELS],
     /// Whether the impacts are between free flights, of records without a drive.
     pub free: bool,
     /// Whether two masses hit each other and only one of them is measured: twice its speed stands for
@@ -99,7 +110,7 @@ impl ImpactBlock {
         let mut pairs: Vec<SpeedPair> = observations
             .iter()
             .enumerate()
-            .filter(|(_, o)| !o.excluded() && !o.low_pass)
+            .filter(|(_, o)| !o.excluded() && !o.low_pass && tells_speeds(o))
             .flat_map(|(i, o)| o.impacts.iter().map(move |impact| (i, impact)))
             .filter(|(_, impact)| impact.dead_zone_s == 0.0)
             .filter(|(i, impact)| {
@@ -350,7 +361,7 @@ mod tests {
         };
         let block = ImpactBlock::of_pairs(vec![pair], 4e-3);
         let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
-        parameters.corners = [1.1, 0.9, 1.0, 1.0];
+        parameters.corners = [1.1, 0.9, 1.0, 1.0, 1.0, 1.0];
         let coordinates = [
             Coordinate::Restitution,
             Coordinate::Corner(0),
@@ -383,7 +394,7 @@ mod tests {
             ],
         };
         let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
-        parameters.delays_s = [5e-4, 2e-4, 1e-4, 3e-4];
+        parameters.delays_s = [5e-4, 2e-4, 1e-4, 3e-4, 0.0, 0.0];
         // the kink is 0.2 ms late: x is read 0.3 − 0.1 ms later, y 0 − 0.1 ms
         let delayed = |pair: SpeedPair, parameters: &Parameters| {
             let mut block = ImpactBlock::of_pairs(vec![pair], 0.0);
@@ -395,7 +406,7 @@ mod tests {
         assert!((found.after_m_s - (0.4 - 2e-4 * 4.0 + 1e-4 * 8.0)).abs() < 1e-12);
         // read once more with the same delays, nothing changes; without delays, all comes back
         assert_eq!(delayed(found, &parameters), found);
-        parameters.delays_s = [1e-4, 1e-4, 0.0, 0.0];
+        parameters.delays_s = [1e-4, 1e-4, 0.0, 0.0, 0.0, 0.0];
         let back = delayed(found, &parameters);
         assert!((back.before_m_s - 0.5).abs() < 1e-12 && (back.after_m_s - 0.4).abs() < 1e-12);
     }

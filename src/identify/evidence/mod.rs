@@ -32,7 +32,7 @@ use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::fit::effect::{Effect, Effects};
 use crate::identify::fit::gap_errors::MOST_GAPS;
 use crate::identify::fit::group::Group;
-use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::fit::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
 use crate::identify::fit::{Block, Fit, FitProgress, Prior, Problem};
 use crate::identify::uncertainty::options::UncertaintyOptions;
 use crate::motion::{Bracket, Observation};
@@ -58,9 +58,9 @@ pub struct Nominal {
     /// Standard uncertainty of each stated clearance, and of the zero that all share, m.
     pub clearance_uncertainty_m: f64,
     /// Delay of the motion channels against the drive's, s, by the index of their gains.
-    pub delays_s: [f64; 4],
+    pub delays_s: [f64; CHANNELS],
     /// Standard uncertainties of those delays, s; `None`: half a sample.
-    pub delay_uncertainties_s: [Option<f64>; 4],
+    pub delay_uncertainties_s: [Option<f64>; CHANNELS],
     /// ln(`m_x`/`m_y`) with its standard uncertainty; `None`: masses that were made alike.
     pub mass_asymmetry: Option<[f64; 2]>,
     /// Effects that the fit allows beyond the model.
@@ -85,7 +85,7 @@ impl Nominal {
     pub fn ideal(&self) -> Self {
         Self {
             clearance_uncertainty_m: 0.0,
-            delay_uncertainties_s: [Some(0.0); 4],
+            delay_uncertainties_s: [Some(0.0); CHANNELS],
             mass_asymmetry: self.mass_asymmetry.map(|[centre, _]| [centre, 0.0]),
             effects: Effects::none(),
             ..*self
@@ -305,12 +305,11 @@ impl Blocks {
     /// shared error of its points where one has.
     fn give_gaps_errors(&mut self, uncertainty_m: f64) {
         let mut counts: Vec<(f64, usize)> = Vec::new();
-        let mut stated: Vec<f64> = self
-            .trajectory
-            .records
-            .iter()
-            .map(|r| r.clearance_m)
-            .collect();
+        let folded = self.trajectory.records.iter().map(|r| r.clearance_m);
+        // A record that is shot from impact to impact shares no error of its points: its clearance has its own.
+        let shot = self.flight.records.iter();
+        let shot = shot.flat_map(|r| [r.clearance_m; 2]);
+        let mut stated: Vec<f64> = folded.chain(shot).collect();
         stated.sort_by(f64::total_cmp);
         for clearance_m in stated {
             match counts.last_mut() {
@@ -349,7 +348,9 @@ impl Blocks {
 
     /// Gains of which any channel is measured.
     fn gains(&self) -> impl Iterator<Item = Coordinate> {
-        (0..4).filter(|i| self.sees(*i)).map(Coordinate::Gain)
+        (0..CHANNELS)
+            .filter(|i| self.sees(*i) || self.flight.has_gain(*i))
+            .map(Coordinate::Gain)
     }
 
     /// Corners of the channels that have passed a high-pass.
@@ -358,7 +359,7 @@ impl Blocks {
             let speeds = self.impact.has_corner(*i) || self.flight.has_corner(*i);
             speeds || self.measures(*i, |corner_hz| corner_hz.is_some())
         };
-        (0..4).filter(filtered).map(Coordinate::Corner)
+        (0..CHANNELS).filter(filtered).map(Coordinate::Corner)
     }
 
     /// Add the nuisance coordinates on which a fit of some blocks depends, with their priors: the
@@ -387,7 +388,7 @@ impl Blocks {
 
     /// Delays of the channels that are measured, ms.
     fn delays(&self, nominal: &Nominal) -> impl Iterator<Item = Prior> {
-        let measured = (0..4).filter(|i| self.sees(*i));
+        let measured = (0..CHANNELS).filter(|i| self.sees(*i));
         measured.map(|i| {
             let uncertainty_s = nominal.delay_uncertainties_s[i].unwrap_or(self.half_sample_s);
             let centre = 1e3 * nominal.delays_s[i];

@@ -47,18 +47,45 @@ struct ChannelMotion {
     role: Role,
     /// Its set of phases.
     set: usize,
-    /// The mass's displacement or velocity.
+    /// The mass's displacement or velocity; its velocity where the acceleration is measured, since a
+    /// filter passes the impulse of an impact as it passes the jump of the velocity.
     motion: MassMotion,
     /// What a settled low-pass passes of the drive's term and of the free vibration's.
     low_pass: Option<[C64; 2]>,
-    filter: Option<Filter>,
+    /// The high-pass that the channel has passed.
+    high_pass: Option<HighPass>,
+    /// The motion behind it.
+    passed: Passed,
     delay: f64,
 }
 
-/// The high-pass that a channel has passed, and what it makes of the motion.
-struct Filter {
-    high_pass: HighPass,
-    passed: Passed,
+impl ChannelMotion {
+    /// Corner of its high-pass; 0 without one.
+    fn corner(&self) -> f64 {
+        self.high_pass.map_or(0.0, |h| h.corner())
+    }
+
+    /// What the channel shows between impacts, without its delay.
+    fn shown(&self, eta: f64) -> Passed {
+        match measured(self.role) {
+            Measured::Acceleration => Passed {
+                motion: velocity(&self.passed.motion, eta),
+                tail: -self.corner() * self.passed.tail,
+            },
+            _ => self.passed,
+        }
+    }
+
+    /// Differential of [`Self::shown`] where the motion behind the filter and the filter change.
+    fn shown_slope(&self, change: &Passed, moved: &HighPassSlope, eta: f64) -> Passed {
+        match measured(self.role) {
+            Measured::Acceleration => Passed {
+                motion: velocity_slope(&self.passed.motion, &change.motion, [eta, moved.eta]),
+                tail: -moved.corner * self.passed.tail - self.corner() * change.tail,
+            },
+            _ => *change,
+        }
+    }
 }
 
 /// A direction in all that a record's values depend on.
@@ -154,24 +181,22 @@ impl<'a> RecordMotion<'a> {
         });
         let motion = match measured(role) {
             Measured::Displacement => *mass,
-            Measured::Velocity => velocity(mass, self.eta),
+            Measured::Velocity | Measured::Acceleration => velocity(mass, self.eta),
         };
         let motion = settled(motion, low_pass);
-        let filter = channel.high_pass_hz.map(|corner_hz| {
+        let high_pass = channel.high_pass_hz.map(|corner_hz| {
             let corner_hz = corner_hz * self.own.corner(role);
             let corner = corner_hz / self.own.natural_frequency_hz;
-            let high_pass = HighPass::new(corner, self.eta, self.period(), motion.exponent);
-            Filter {
-                high_pass,
-                passed: high_pass.pass(&motion),
-            }
+            HighPass::new(corner, self.eta, self.period(), motion.exponent)
         });
+        let unfiltered = Passed { motion, tail: 0.0 };
         Some(ChannelMotion {
             role,
             set,
             motion,
             low_pass,
-            filter,
+            high_pass,
+            passed: high_pass.map_or(unfiltered, |h| h.pass(&motion)),
             delay: self.own.delay_s(role) * self.own.natural_rate(),
         })
     }
@@ -205,16 +230,11 @@ impl<'a> RecordMotion<'a> {
     /// accelerations; all slopes are taken of these.
     pub fn unperturbed(&self) -> Vec<Terms> {
         self.channel_by_channel(|channel, vibration| {
-            let seen = |motion: &MassMotion| delayed(motion, self.eta, channel.delay);
-            match &channel.filter {
-                None => vibration.values(&seen(&channel.motion)),
-                Some(filter) => {
-                    let later = (filter.high_pass.corner() * channel.delay).exp();
-                    Terms {
-                        tail: [filter.passed.tail * later, 0.0],
-                        ..vibration.values(&seen(&filter.passed.motion))
-                    }
-                }
+            let shown = channel.shown(self.eta);
+            let later = (channel.corner() * channel.delay).exp();
+            Terms {
+                tail: [shown.tail * later, 0.0],
+                ..vibration.values(&delayed(&shown.motion, self.eta, channel.delay))
             }
         })
     }
@@ -227,7 +247,7 @@ impl<'a> RecordMotion<'a> {
     /// How fast the channels' terms change.
     pub fn rates(&self) -> Rates {
         let channels = self.channels.iter().map(|channel| {
-            let corner = channel.filter.as_ref().map(|f| f.high_pass.corner());
+            let corner = channel.high_pass.map(|h| h.corner());
             let vibration = &self.vibrations[usize::from(channel.role.is_of_y())];
             (vibration.rate(), corner.map(|c| c / self.eta))
         });
@@ -375,8 +395,11 @@ impl<'a> RecordMotion<'a> {
         let channels = self.channels.iter().zip(values);
         for (slope, (channel, own)) in slopes.iter_mut().zip(channels) {
             let relative = match measured(channel.role) {
-                Measured::Velocity => relative_length(coordinate) + relative_rate(coordinate),
                 Measured::Displacement => relative_length(coordinate),
+                Measured::Velocity => relative_length(coordinate) + relative_rate(coordinate),
+                Measured::Acceleration => {
+                    relative_length(coordinate) + 2.0 * relative_rate(coordinate)
+                }
             };
             if relative != 0.0 {
                 *slope = slope.plus(relative, own);
@@ -408,7 +431,7 @@ impl<'a> RecordMotion<'a> {
         let eta = [self.eta, direction.eta];
         let change = match measured(channel.role) {
             Measured::Displacement => *d_mass,
-            Measured::Velocity => velocity_slope(mass, d_mass, eta),
+            Measured::Velocity | Measured::Acceleration => velocity_slope(mass, d_mass, eta),
         };
         // What changes of the low-pass itself is a share ω/ω_c of that.
         let change = settled(change, channel.low_pass);
@@ -417,34 +440,37 @@ impl<'a> RecordMotion<'a> {
             Some(Coordinate::Delay(_)) => [channel.delay, 1e-3 * self.own.natural_rate()],
             _ => [channel.delay, 0.0],
         };
-        let seen = |motion: &MassMotion, change: &MassMotion| {
-            let here = delayed(motion, self.eta, channel.delay);
-            let change = delayed_slope(motion, change, eta, delay);
-            vibration.slopes(&here, &change, &timing)
-        };
-        let Some(filter) = &channel.filter else {
-            return seen(&channel.motion, &change);
-        };
         let relative = match direction.coordinate {
             Some(Coordinate::Frequency) => -1.0,
             Some(Coordinate::Corner(_)) => 1.0,
             _ => 0.0,
         };
-        let corner = filter.high_pass.corner();
+        let corner = channel.corner();
         let moved = HighPassSlope {
             corner: relative * corner,
             eta: direction.eta,
         };
-        let tail = filter.passed.tail;
-        let passed = filter
-            .high_pass
-            .pass_slope(&channel.motion, tail, &change, &moved);
+        let unfiltered = Passed {
+            motion: change,
+            tail: 0.0,
+        };
+        let passed = channel.high_pass.map_or(unfiltered, |h| {
+            h.pass_slope(&channel.motion, channel.passed.tail, &change, &moved)
+        });
+        let shown = channel.shown(self.eta);
+        let slope = channel.shown_slope(&passed, &moved, self.eta);
+        let here = delayed(&shown.motion, self.eta, channel.delay);
+        let change = delayed_slope(&shown.motion, &slope.motion, eta, delay);
         let later = (corner * delay[0]).exp();
         let stretch = moved.corner * delay[0] + corner * delay[1];
-        let tails = [tail * later, (passed.tail + tail * stretch) * later];
+        let tails = [
+            shown.tail * later,
+            (slope.tail + shown.tail * stretch) * later,
+        ];
+        let tail = channel.high_pass;
         Terms {
-            tail: filter.high_pass.tail_slopes(tails, &moved, &timing),
-            ..seen(&filter.passed.motion, &passed.motion)
+            tail: tail.map_or([0.0; 2], |h| h.tail_slopes(tails, &moved, &timing)),
+            ..vibration.slopes(&here, &change, &timing)
         }
     }
 
@@ -462,8 +488,9 @@ impl<'a> RecordMotion<'a> {
         let p = &self.own;
         let length = p.static_deflection_m * self.record.drive_amplitude * p.gain(role);
         match measured(role) {
-            Measured::Velocity => length * p.natural_rate(),
             Measured::Displacement => length,
+            Measured::Velocity => length * p.natural_rate(),
+            Measured::Acceleration => length * p.natural_rate().powi(2),
         }
     }
 }
@@ -496,11 +523,13 @@ fn of_role(orbit: &OrbitMotion, role: Role) -> &MassMotion {
 enum Measured {
     Displacement,
     Velocity,
+    Acceleration,
 }
 
 fn measured(role: Role) -> Measured {
     match role {
         Role::VelocityX | Role::VelocityY => Measured::Velocity,
+        Role::AccelerationX | Role::AccelerationY => Measured::Acceleration,
         _ => Measured::Displacement,
     }
 }
@@ -532,9 +561,9 @@ pub(super) mod tests {
             stiffness_asymmetry: -0.03,
             damping_asymmetry: 0.05,
             mass_asymmetry: 0.01,
-            gains: [1.01, 0.99, 1.0, 1.02],
-            corners: [1.0, 1.03, 0.97, 1.0],
-            delays_s: [1e-4, 0.0, -2e-4, 3e-4],
+            gains: [1.01, 0.99, 1.0, 1.02, 0.98, 1.03],
+            corners: [1.0, 1.03, 0.97, 1.0, 1.02, 0.96],
+            delays_s: [1e-4, 0.0, -2e-4, 3e-4, 2e-4, -1e-4],
             effects,
             screw_zero_m: 3e-6,
             gap_errors_m: vec![0.0, 4e-6].into(),
@@ -590,15 +619,21 @@ pub(super) mod tests {
             .values()
     }
 
+    /// Channel by channel, as their units differ.
     fn agree(exact: &[f64], above: &[f64], below: &[f64], width: f64) {
-        let size = crate::signal::robust::rms(exact);
-        assert!(size > 0.0);
-        for ((e, a), b) in exact.iter().zip(above).zip(below) {
-            let found = (a - b) / width;
-            // Differences of values of tenths of a m/s are rounded by 1e-16 and more, over the width.
-            let rounded = 3e-10;
-            let apart = (e - found).abs();
-            assert!(apart < 1e-6 * size + rounded, "{e} {found} of {size}");
+        assert!(crate::signal::robust::rms(exact) > 0.0);
+        let points = exact.len() / GAIN_ROLES.len();
+        let channels = exact.chunks(points).zip(above.chunks(points));
+        for ((exact, above), below) in channels.zip(below.chunks(points)) {
+            let size = crate::signal::robust::rms(exact);
+            // Values are rounded by few units of the last place of their terms, over the width.
+            let largest = above.iter().fold(1.0f64, |most, a| most.max(a.abs()));
+            let rounded = 8.0 * f64::EPSILON * largest / width;
+            for ((e, a), b) in exact.iter().zip(above).zip(below) {
+                let found = (a - b) / width;
+                let apart = (e - found).abs();
+                assert!(apart < 1e-6 * size + rounded, "{e} {found} of {size}");
+            }
         }
     }
 
@@ -612,8 +647,8 @@ pub(super) mod tests {
             let mut coordinates = Coordinate::PHYSICAL.to_vec();
             coordinates.extend([Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry]);
             coordinates.extend([Coordinate::DampingAsymmetry, Coordinate::MassAsymmetry]);
-            coordinates.extend([Coordinate::Corner(1), Coordinate::Corner(2)]);
-            coordinates.extend([Coordinate::Delay(0), Coordinate::Delay(3)]);
+            coordinates.extend([1, 2, 4].map(Coordinate::Corner));
+            coordinates.extend([0, 3, 5].map(Coordinate::Delay));
             coordinates.extend([Coordinate::ScrewZero, Coordinate::Gap(1)]);
             let effects = Effects::all().iter().filter(|e| !e.is_perturbation());
             coordinates.extend(effects.map(Coordinate::Effect));

@@ -821,9 +821,9 @@ mod tests {
             drive_asymmetry: 0.03,
             stiffness_asymmetry: -0.02,
             damping_asymmetry: 0.04,
-            delays_s: [1e-4, 0.0, 3e-4, 0.0],
+            delays_s: [1e-4, 0.0, 3e-4, 0.0, 0.0, 2e-4],
             effects,
-            corners: [1.0, 1.1, 1.0, 0.9],
+            corners: [1.0, 1.1, 1.0, 0.9, 1.0, 1.05],
             ..Parameters::symmetric(0.8, 12.6, 0.07, 1e-3)
         };
         let mut coordinates = Coordinate::PHYSICAL[1..].to_vec();
@@ -831,6 +831,8 @@ mod tests {
         coordinates.extend([
             Coordinate::Gain(0),
             Coordinate::Gain(2),
+            Coordinate::Gain(5),
+            Coordinate::Delay(5),
             Coordinate::Corner(1),
             Coordinate::Delay(0),
             Coordinate::DampingAsymmetry,

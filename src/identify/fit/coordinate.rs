@@ -7,6 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::effect::Effect;
 use super::gap_errors::MOST_GAPS;
 
+/// Motion channels that carry a gain, a corner and a delay.
+pub const CHANNELS: usize = 6;
+
 /// Names of the errors of single clearances.
 static GAP_NAMES: LazyLock<[String; MOST_GAPS]> =
     LazyLock::new(|| std::array::from_fn(|i| format!("clearance_error_{}_mm", i + 1)));
@@ -72,7 +75,9 @@ impl Coordinate {
             Self::Delay(0) => "delay_velocity_x_ms",
             Self::Delay(1) => "delay_velocity_y_ms",
             Self::Delay(2) => "delay_displacement_x_ms",
-            Self::Delay(_) => "delay_displacement_y_ms",
+            Self::Delay(3) => "delay_displacement_y_ms",
+            Self::Delay(4) => "delay_acceleration_x_ms",
+            Self::Delay(_) => "delay_acceleration_y_ms",
             Self::Effect(effect) => effect.name(),
             Self::ScrewZero => "screw_zero_mm",
             Self::Gap(i) => GAP_NAMES
@@ -81,11 +86,15 @@ impl Coordinate {
             Self::Gain(0) => "gain_velocity_x",
             Self::Gain(1) => "gain_velocity_y",
             Self::Gain(2) => "gain_displacement_x",
-            Self::Gain(_) => "gain_displacement_y",
+            Self::Gain(3) => "gain_displacement_y",
+            Self::Gain(4) => "gain_acceleration_x",
+            Self::Gain(_) => "gain_acceleration_y",
             Self::Corner(0) => "corner_velocity_x",
             Self::Corner(1) => "corner_velocity_y",
             Self::Corner(2) => "corner_displacement_x",
-            Self::Corner(_) => "corner_displacement_y",
+            Self::Corner(3) => "corner_displacement_y",
+            Self::Corner(4) => "corner_acceleration_x",
+            Self::Corner(_) => "corner_acceleration_y",
         }
     }
 
@@ -98,11 +107,12 @@ impl Coordinate {
             Self::MassAsymmetry,
             Self::ScrewZero,
         ];
-        let channels = (0..4).map(Self::Gain).chain((0..4).map(Self::Corner));
+        let channels = (0..CHANNELS).map(Self::Gain);
+        let channels = channels.chain((0..CHANNELS).map(Self::Corner));
         Self::PHYSICAL
             .into_iter()
             .chain(single)
-            .chain(channels.chain((0..4).map(Self::Delay)))
+            .chain(channels.chain((0..CHANNELS).map(Self::Delay)))
             .chain(Effect::ALL.iter().copied().map(Self::Effect))
             .chain((0..MOST_GAPS).map(Self::Gap))
     }

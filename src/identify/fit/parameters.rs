@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-pub use super::coordinate::Coordinate;
+pub use super::coordinate::{CHANNELS, Coordinate};
 use super::gap_errors::GapErrors;
 use crate::event::{CornerShift, RigKind};
 use crate::identify::fit::effect::Effect;
@@ -32,13 +32,13 @@ pub struct Parameters {
     /// ln(`m_x`/`m_y`).
     #[serde(default)]
     pub mass_asymmetry: f64,
-    /// Gain of the channels over the stated one: velocity x, y, displacement x, y.
-    pub gains: [f64; 4],
+    /// Gain of the channels over the stated one, in the order of [`GAIN_ROLES`].
+    pub gains: [f64; CHANNELS],
     /// Corner of the channels' high-pass over the stated one, in the same order.
-    pub corners: [f64; 4],
+    pub corners: [f64; CHANNELS],
     /// Delay of the channels against the drive's, s, in the same order.
     #[serde(default)]
-    pub delays_s: [f64; 4],
+    pub delays_s: [f64; CHANNELS],
     /// Strengths of the effects beyond the model, by their places.
     #[serde(default)]
     pub effects: [f64; Effect::COUNT],
@@ -67,9 +67,9 @@ impl Parameters {
             stiffness_asymmetry: 0.0,
             damping_asymmetry: 0.0,
             mass_asymmetry: 0.0,
-            gains: [1.0; 4],
-            corners: [1.0; 4],
-            delays_s: [0.0; 4],
+            gains: [1.0; CHANNELS],
+            corners: [1.0; CHANNELS],
+            delays_s: [0.0; CHANNELS],
             effects: [0.0; Effect::COUNT],
             screw_zero_m: 0.0,
             gap_errors_m: GapErrors::default(),
@@ -218,11 +218,13 @@ impl Parameters {
 }
 
 /// The motion channels in the order of the gains, the corners and the delays.
-pub const GAIN_ROLES: [Role; 4] = [
+pub const GAIN_ROLES: [Role; CHANNELS] = [
     Role::VelocityX,
     Role::VelocityY,
     Role::DisplacementX,
     Role::DisplacementY,
+    Role::AccelerationX,
+    Role::AccelerationY,
 ];
 
 /// Position of a motion channel among the gains and among the corners.

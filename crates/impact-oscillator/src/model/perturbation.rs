@@ -198,6 +198,23 @@ impl<const N: usize> PeriodicResponses<N> {
             slopes: self.accelerations.clone(),
         }
     }
+
+    /// The accelerations over one period; their slopes at a node are those of the line through its
+    /// neighbours.
+    pub fn accelerations(&self) -> Sampled<N> {
+        let last = self.accelerations.len().saturating_sub(1);
+        let slope = |k: usize| {
+            let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
+            let time = (after - before).max(1) as f64 * self.grid.step;
+            let ends = [&self.accelerations[before], &self.accelerations[after]];
+            std::array::from_fn(|i| (ends[1][i] - ends[0][i]) / time)
+        };
+        Sampled {
+            grid: self.grid,
+            values: self.accelerations.clone(),
+            slopes: (0..=last).map(slope).collect(),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -222,6 +239,7 @@ mod tests {
         for t in [0.0, 0.37, 2.9, 4.8] {
             let turn = C64::from_polar(1.0, w * t);
             let (x, v) = (responses.displacements(), responses.velocities());
+            let a = responses.accelerations();
             let c = 0.04;
             let kept = C64::new(0.0, w) / C64::new(c, w);
             for (i, size) in [1.0, -2.0].into_iter().enumerate() {
@@ -231,6 +249,7 @@ mod tests {
                 };
                 assert!(near(x.at(t)[i], f * turn, 1.0));
                 assert!(near(v.at(t)[i], f * turn * C64::new(0.0, w), w));
+                assert!(near(a.at(t)[i], -f * turn * w * w, w * w));
                 assert!(near(x.high_passed(c).at(t)[i], f * turn * kept, 1.0));
             }
         }

@@ -130,9 +130,10 @@ impl RecordMotion<'_> {
         let mut seen = match measured(channel.role) {
             Measured::Displacement => responses.displacements(),
             Measured::Velocity => responses.velocities(),
+            Measured::Acceleration => responses.accelerations(),
         };
-        if let Some(filter) = &channel.filter {
-            seen = seen.high_passed(filter.high_pass.corner());
+        if let Some(high_pass) = &channel.high_pass {
+            seen = seen.high_passed(high_pass.corner());
         }
         let unit = self.unit(channel.role);
         for (i, time) in times.iter().enumerate() {

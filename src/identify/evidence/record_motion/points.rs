@@ -37,8 +37,8 @@ impl<'a> MotionPoints<'a> {
         for channel in &motion.channels {
             let (set, role) = (channel.set, channel.role);
             let time = points.vibrations[set][usize::from(role.is_of_y())].as_ref();
-            let tail = channel.filter.as_ref().zip(time).map(|(filter, at)| {
-                let corner = filter.high_pass.corner();
+            let tail = channel.high_pass.zip(time).map(|(high_pass, at)| {
+                let corner = high_pass.corner();
                 at.time().iter().map(|t| (-corner * t).exp()).collect()
             });
             points.channels.push(ChannelPoints { set, role, tail });
