@@ -27,7 +27,8 @@ impl NearestOrbit {
         let machine = own.machine(rig);
         let setting = own.setting(record.frequency_hz, clearance_m, record.drive_amplitude);
         let n = record.folded.periods_n;
-        let branch = Branch::new(&machine, setting.frequency_ratio, n);
+        let extra = record.extra_at_impact(parameters);
+        let branch = Branch::new(&machine, setting.frequency_ratio, n).with_extra(extra);
         let restitution = own.restitution.clamp(0.0, 1.0);
         let speeds = branch.approach_speeds(restitution, machine.gap(setting.clearance))?;
         let scale = own.static_deflection_m * record.drive_amplitude * own.natural_rate();

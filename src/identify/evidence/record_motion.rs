@@ -110,7 +110,7 @@ pub struct Slopes {
 pub enum Column {
     /// Of every channel its terms, SI.
     Terms(Vec<Terms>),
-    /// The change by an effect that acts as an extra acceleration, as it was found.
+    /// What an effect that acts as an extra acceleration adds beside the impact's change, as it was found.
     Effect(Effect),
 }
 
@@ -213,11 +213,11 @@ impl<'a> RecordMotion<'a> {
         values
     }
 
-    /// Add what the effects that act as extra accelerations change: as it was found, whatever the
-    /// parameters are now.
+    /// Add the masses' own responses to the effects that act as extra accelerations: as they were found,
+    /// whatever the parameters are now.
     pub fn perturb(&self, values: &mut [f64]) {
-        for (effect, change) in &self.record.perturbations {
-            add(values, self.common.effect(*effect), change);
+        for own in &self.record.perturbations {
+            add(values, self.common.effect(own.effect), &own.values);
         }
     }
 
@@ -226,8 +226,8 @@ impl<'a> RecordMotion<'a> {
         self.common.effect(effect)
     }
 
-    /// The terms of every channel, SI, gains included, without the effects that act as extra
-    /// accelerations; all slopes are taken of these.
+    /// The terms of every channel, SI, gains included, without the masses' own responses to the effects
+    /// that act as extra accelerations; all slopes are taken of these.
     pub fn unperturbed(&self) -> Vec<Terms> {
         self.channel_by_channel(|channel, vibration| {
             let shown = channel.shown(self.eta);
@@ -262,7 +262,7 @@ impl<'a> RecordMotion<'a> {
     pub fn slopes(&self, values: &[Terms], coordinates: &[Coordinate]) -> Slopes {
         let at = self.record.circumstances(self.rig);
         let mut slopes = Slopes::default();
-        let mut own: [Option<usize>; 5] = [None; 5];
+        let (mut own, mut extra) = ([None; 5], [None; 2]);
         for coordinate in coordinates {
             let sum = match (coordinate, self.common.own_slope(&at, *coordinate)) {
                 // Values are proportional to their gain.
@@ -270,7 +270,15 @@ impl<'a> RecordMotion<'a> {
                     slopes.alone(Column::Terms(self.only(values, *gain)))
                 }
                 (Coordinate::Effect(effect), _) if effect.is_perturbation() => {
-                    slopes.alone(Column::Effect(*effect))
+                    let own = slopes.add(Column::Effect(*effect));
+                    let found = self.record.perturbation(*effect);
+                    let at_impact = found.map_or([0.0; 2], |p| p.at_impact).into_iter();
+                    let impact = at_impact.enumerate().filter(|(_, times)| *times != 0.0);
+                    let impact = impact.map(|(i, times)| {
+                        let column = || Column::Terms(self.over_extra(values, i));
+                        (*extra[i].get_or_insert_with(|| slopes.add(column())), times)
+                    });
+                    impact.chain([(own, 1.0)]).collect()
                 }
                 (_, Some(slope)) => {
                     let [r, f, b, x] = slope.physical;
@@ -320,6 +328,17 @@ impl<'a> RecordMotion<'a> {
         let length_m = self.own.static_deflection_m * self.record.drive_amplitude;
         let change = Change {
             gap: self.machine.gap(1.0) / length_m,
+            ..Change::default()
+        };
+        self.along(values, &self.direction(&change, None))
+    }
+
+    /// Slopes over what extra accelerations add to X + Y at the impact (0), or to X' + Y' just before it (1).
+    fn over_extra(&self, values: &[Terms], i: usize) -> Vec<Terms> {
+        let unit = |k: usize| if k == i { 1.0 } else { 0.0 };
+        let change = Change {
+            displacement: unit(0),
+            velocity: unit(1),
             ..Change::default()
         };
         self.along(values, &self.direction(&change, None))
@@ -540,6 +559,7 @@ pub(super) mod tests {
 
     use super::*;
     use crate::identify::evidence::trajectory::distinct_phases;
+    use crate::identify::evidence::trajectory_record::Perturbation;
     use crate::identify::fit::effect::Effect;
     use crate::identify::fit::effect::Effects;
     use crate::identify::fit::parameters::GAIN_ROLES;
@@ -640,7 +660,14 @@ pub(super) mod tests {
     #[test]
     fn valid_slopes_of_a_record_are_those_of_finite_differences() {
         let (p, step) = (parameters(), 1e-6);
-        for record in [record(1, 15.0), record(2, 31.0)] {
+        for mut record in [record(1, 15.0), record(2, 31.0)] {
+            let points = (0..record.points()).map(|i| 0.01 * (0.3 * i as f64).sin());
+            record.perturbations = vec![Perturbation {
+                effect: Effect::Drag,
+                at_impact: [0.4, -0.7],
+                values: points.collect(),
+            }];
+            let p = p.with(Coordinate::Effect(Effect::Drag), 0.02);
             let motion = RecordMotion::new(RigKind::Double, &record, &p).expect("an orbit");
             let here = motion.unperturbed();
             let points = motion.points();
@@ -652,6 +679,7 @@ pub(super) mod tests {
             coordinates.extend([Coordinate::ScrewZero, Coordinate::Gap(1)]);
             let effects = Effects::all().iter().filter(|e| !e.is_perturbation());
             coordinates.extend(effects.map(Coordinate::Effect));
+            coordinates.push(Coordinate::Effect(Effect::Drag));
             let slopes = motion.slopes(&here, &coordinates);
             for (coordinate, sum) in coordinates.into_iter().zip(&slopes.sums) {
                 let at =
@@ -660,7 +688,10 @@ pub(super) mod tests {
                 for (i, times) in sum {
                     match &slopes.columns[*i] {
                         Column::Terms(column) => add(&mut exact, *times, &points.values(column)),
-                        Column::Effect(_) => panic!("no extra acceleration is asked for"),
+                        Column::Effect(effect) => {
+                            let own = record.perturbation(*effect).expect("known");
+                            add(&mut exact, *times, &own.values);
+                        }
                     }
                 }
                 agree(&exact, &at(step), &at(-step), 2.0 * step);

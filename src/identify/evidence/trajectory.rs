@@ -6,7 +6,7 @@ use crate::event::RigKind;
 use crate::identify::evidence::nearest_orbit::NearestOrbit;
 use crate::identify::evidence::pickup::Pickups;
 use crate::identify::evidence::record_motion::{Column, RecordMotion, Slopes};
-use crate::identify::evidence::trajectory_record::TrajectoryRecord;
+use crate::identify::evidence::trajectory_record::{Perturbation, TrajectoryRecord};
 use crate::identify::evidence::waveform::{Phases, Terms};
 use crate::identify::fit::Block;
 use crate::identify::fit::effect::{Effect, EffectKind, Effects};
@@ -150,8 +150,8 @@ impl TrajectoryBlock {
                 let points = motion.points();
                 let weighted = |column: Column| match column {
                     Column::Terms(terms) => record.weighing.weighted(&points.values(&terms)),
-                    Column::Effect(effect) => match record.change_by(effect) {
-                        Some(change) => record.weighing.weighted(change),
+                    Column::Effect(effect) => match record.perturbation(effect) {
+                        Some(own) => record.weighing.weighted(&own.values),
                         None => vec![0.0; record.points()],
                     },
                 };
@@ -193,9 +193,13 @@ impl TrajectoryBlock {
         let (picked_up, forces): (Vec<Effect>, Vec<Effect>) =
             allowed.partition(|e| e.kind() == EffectKind::Pickup);
         let forces = forces.into_iter();
-        let mut perturbations = motion.perturbations((&terms, &points), forces, self.reach_m);
+        let mut perturbations = motion.perturbations(&points, forces, self.reach_m);
         let picked_up = picked_up.into_iter().filter(|e| self.pickups.has(*e));
-        perturbations.extend(picked_up.map(|e| (e, motion.picked_up(&points, e, &self.pickups))));
+        perturbations.extend(picked_up.map(|effect| Perturbation {
+            effect,
+            at_impact: [0.0; 2],
+            values: motion.picked_up(&points, effect, &self.pickups),
+        }));
         Some(Changes {
             shared,
             perturbations,
@@ -211,7 +215,7 @@ type WeightedSlopes = (Vec<f64>, Vec<Vec<f64>>, Vec<Vec<(usize, f64)>>);
 #[derive(Default)]
 struct Changes {
     shared: Vec<Vec<f64>>,
-    perturbations: Vec<(Effect, Vec<f64>)>,
+    perturbations: Vec<Perturbation>,
     press_per_s: f64,
 }
 
@@ -326,7 +330,7 @@ impl Block for TrajectoryBlock {
             Coordinate::Gap(i) => record.gap == Some(i),
             Coordinate::Gain(i) | Coordinate::Corner(i) | Coordinate::Delay(i) => record.has(i),
             Coordinate::Effect(effect) if effect.is_perturbation() => {
-                record.perturbations.iter().any(|(e, _)| *e == effect)
+                record.perturbation(effect).is_some()
             }
             _ => true,
         }

@@ -9,7 +9,7 @@ use crate::identify::evidence::waveform::{Phases, Rates};
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::group::Group;
 use crate::identify::fit::own::Circumstances;
-use crate::identify::fit::parameters::gain_index;
+use crate::identify::fit::parameters::{Parameters, gain_index};
 use crate::motion::{Folded, FoldedChannel};
 use crate::signal::columns::{dot, subtract};
 use crate::signal::robust;
@@ -49,13 +49,24 @@ pub struct TrajectoryRecord {
     /// Changes of all points' values, SI, by one standard error of phase, of frequency and of a lone
     /// clearance; empty until they are found at good parameters.
     pub shared: Vec<Vec<f64>>,
-    /// Changes of all points' values, SI, by effects that act as extra accelerations, per unit of
-    /// their strengths; empty until they are found at good parameters.
-    pub perturbations: Vec<(Effect, Vec<f64>)>,
+    /// What effects that act as extra accelerations change; empty until it is found at good parameters.
+    pub perturbations: Vec<Perturbation>,
     /// How its residuals are weighted.
     pub weighing: Weighing,
     /// Its weighted residuals in few rows near good parameters; none until these are known.
     pub reduced: Option<ReducedRecord>,
+}
+
+/// What an effect that acts as an extra acceleration changes, per unit of its strength: the masses'
+/// own periodic responses, which are small, and by them the impact, which may move far.
+#[derive(Debug, Clone)]
+pub struct Perturbation {
+    /// The effect.
+    pub effect: Effect,
+    /// What the responses add to X + Y at the impact and to X' + Y' just before it.
+    pub at_impact: [f64; 2],
+    /// What they add to all points' values, SI, beside what the impact's change does.
+    pub values: Vec<f64>,
 }
 
 impl TrajectoryRecord {
@@ -90,13 +101,18 @@ impl TrajectoryRecord {
         points.zip(values).map(|(p, v)| p.value - v).collect()
     }
 
-    /// Change of all points' values by an effect that acts as an extra acceleration, per unit of its
-    /// strength; `None` where it is not known.
-    pub(super) fn change_by(&self, effect: Effect) -> Option<&Vec<f64>> {
-        let mut changes = self.perturbations.iter();
-        changes
-            .find(|(e, _)| *e == effect)
-            .map(|(_, change)| change)
+    /// What an effect that acts as an extra acceleration changes; `None` where it is not known.
+    pub(super) fn perturbation(&self, effect: Effect) -> Option<&Perturbation> {
+        self.perturbations.iter().find(|p| p.effect == effect)
+    }
+
+    /// What all effects together add to X + Y at the impact and to X' + Y' just before it.
+    pub(super) fn extra_at_impact(&self, parameters: &Parameters) -> [f64; 2] {
+        let of = |sum: [f64; 2], p: &Perturbation| {
+            let strength = parameters.effect(p.effect);
+            [0, 1].map(|i| sum[i] + strength * p.at_impact[i])
+        };
+        self.perturbations.iter().fold([0.0; 2], of)
     }
 
     /// What it is reduced to, weighted as it is, about a motion.
@@ -110,7 +126,9 @@ impl TrajectoryRecord {
         let weighted = Weighted {
             phases: phases?,
             measured: weighing.centred(&measured),
-            effects: changes.map(|(e, c)| (*e, weighing.centred(c))).collect(),
+            effects: changes
+                .map(|p| (p.effect, weighing.centred(&p.values)))
+                .collect(),
             whitening: &weighing.shared,
             weigh: &|channel, values| weighing.centred_of(channel, values),
         };

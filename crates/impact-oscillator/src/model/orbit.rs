@@ -133,6 +133,8 @@ pub struct Branch {
     pub eta: f64,
     /// Drive periods in one period of the motion.
     pub n: u32,
+    /// What small extra accelerations add to X + Y at the impact and to X' + Y' just before it.
+    pub extra: [f64; 2],
 }
 
 impl Branch {
@@ -166,7 +168,15 @@ impl Branch {
             returned,
             eta,
             n,
+            extra: [0.0; 2],
         }
+    }
+
+    /// The same with small extra accelerations that add to X + Y at the impact and to X' + Y' just
+    /// before it.
+    #[must_use]
+    pub fn with_extra(self, extra: [f64; 2]) -> Self {
+        Self { extra, ..self }
     }
 
     /// The stable, existing orbit at a clearance, if there is one (at most one of the two roots is).
@@ -212,12 +222,12 @@ impl Branch {
         }
     }
 
-    /// α: gap = Re(F e^{iψ}) + αw at the impact.
+    /// α: gap = Re(F e^{iψ}) + αw at the impact, without extra accelerations.
     pub fn alpha(&self, restitution: f64) -> f64 {
         -(1.0 + restitution) * self.position
     }
 
-    /// Q: −Im(F e^{iψ}) η = Qw.
+    /// Q: −Im(F e^{iψ}) η = Qw, without extra accelerations.
     pub fn q(&self, restitution: f64) -> f64 {
         1.0 + (1.0 + restitution) * self.velocity
     }
@@ -225,8 +235,8 @@ impl Branch {
     /// F e^{iψ} at the impact of an orbit with approach speed w.
     pub(super) fn at_impact(&self, restitution: f64, gap: f64, w: f64) -> C64 {
         C64::new(
-            gap - self.alpha(restitution) * w,
-            -self.q(restitution) * w / self.eta,
+            gap - self.extra[0] - self.alpha(restitution) * w,
+            (self.extra[1] - self.q(restitution) * w) / self.eta,
         )
     }
 
@@ -244,14 +254,16 @@ impl Branch {
     /// Both approach speeds for constant R, smaller first; `None` beyond the saddle-node.
     pub fn approach_speeds(&self, restitution: f64, gap: f64) -> Option<[f64; 2]> {
         let (alpha, q) = (self.alpha(restitution), self.q(restitution) / self.eta);
+        let [gap, rate] = [gap - self.extra[0], self.extra[1] / self.eta];
         let a = alpha * alpha + q * q;
-        let c = gap * gap - self.forced.norm_sqr();
-        let disc = gap * gap * alpha * alpha - a * c;
+        let c = gap * gap - self.forced.norm_sqr() + rate * rate;
+        let (own, added) = (gap * alpha, q * rate);
+        let disc = gap * gap * alpha * alpha + added * (2.0 * own + added) - a * c;
         if disc < 0.0 || a == 0.0 {
             return None;
         }
         // the stable form of the quadratic's roots
-        let s = gap * alpha;
+        let s = own + added;
         let large = s + s.signum() * disc.sqrt();
         let roots = if large == 0.0 {
             [0.0, 0.0]

@@ -255,12 +255,12 @@ mod tests {
         }
     }
 
-    /// Approach speed and drive phase at the impact, after many periods of a simulation in small
-    /// steps (classical Runge–Kutta, the impact by bisection of the step).
+    /// Approach speed and drive phase at the impact, after many periods of a simulation in small steps
+    /// from a time and a state on (classical Runge–Kutta, the impact by bisection of the step).
     fn simulated(
-        beta: f64,
-        r: f64,
+        [beta, r]: [f64; 2],
         [eta, gap]: [f64; 2],
+        (start, mut s): (f64, [f64; 2]),
         extra: &dyn Fn(f64, [f64; 2]) -> f64,
     ) -> [f64; 2] {
         let f = |t: f64, s: [f64; 2]| {
@@ -277,8 +277,8 @@ mod tests {
             [sum(0), sum(1)]
         };
         let h = std::f64::consts::TAU / eta / 400.0;
-        let (mut t, mut s, mut last) = (0.0, [0.0, 0.0], [0.0; 2]);
-        while t < 500.0 {
+        let (mut t, mut last) = (start, [0.0; 2]);
+        while t < start + 500.0 {
             let next = step(t, s, h);
             if next[0] <= gap {
                 (t, s) = (t + h, next);
@@ -331,7 +331,9 @@ mod tests {
             };
             let slope = sensitivity.slope(&change);
             let small = 1e-4;
-            let at = |e: f64| simulated(beta, r, [eta, gap], &|theta, s| e * extra(theta, s));
+            let rest = (0.0, [0.0, 0.0]);
+            let at =
+                |e: f64| simulated([beta, r], [eta, gap], rest, &|theta, s| e * extra(theta, s));
             let (above, below) = (at(small), at(-small));
             let found = [0, 1].map(|i| (above[i] - below[i]) / (2.0 * small));
             assert!(
@@ -341,6 +343,54 @@ mod tests {
             assert!(
                 (found[1] - slope.phase).abs() < 0.01 * (0.1 + found[1].abs()),
                 "{found:?} {slope:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn valid_extra_accelerations_next_to_the_saddle_node_are_those_of_a_simulation() {
+        let (beta, r, eta) = (0.06, 0.7, 1.3);
+        let machine = Machine::single(beta, r);
+        let branch = Branch::new(&machine, eta, 1);
+        let (alpha, q) = (branch.alpha(r), branch.q(r) / eta);
+        let end = branch.forced.norm() * (1.0 + (alpha / q).powi(2)).sqrt();
+        let gap = 0.996 * end;
+        let w = branch.approach_speeds(r, gap).unwrap()[1];
+        let sensitivity = Sensitivity::new(&machine, branch, 1, gap, w);
+        let orbit = sensitivity.motion();
+        let grid = Grid::new(std::f64::consts::TAU / eta, 256);
+        let states = grid.states(&orbit.x, orbit.phase, eta);
+        let p: Vec<[f64; 1]> = states.iter().map(|s| [-s[1] * s[1].abs()]).collect();
+        let [[displacement, velocity]] = PeriodicResponses::new(&machine.x, grid, &p).at_impact();
+        let change = Change {
+            displacement,
+            velocity,
+            ..Change::default()
+        };
+        let first_order = sensitivity.slope(&change).approach_speed;
+        // Drag and its opposite that do what 0.4 of the distance to the end does.
+        let wider = Change {
+            gap: 1.0,
+            ..Change::default()
+        };
+        let strength = 0.4 * (end - gap) * sensitivity.slope(&wider).approach_speed / first_order;
+        let by = |e: f64| {
+            let drag = |_: f64, s: [f64; 2]| -e * s[1] * s[1].abs();
+            let start = (orbit.phase / eta, [gap, -r * w]);
+            let [settled, _] = simulated([beta, r], [eta, gap], start, &drag);
+            let extra = [e * displacement, e * velocity];
+            let exact = branch.with_extra(extra).approach_speeds(r, gap).unwrap()[1];
+            [settled - w, exact - w, e * first_order]
+        };
+        for e in [strength, -strength] {
+            let [found, exact, first_order] = by(e);
+            assert!(
+                (exact - found).abs() < 0.04 * found.abs(),
+                "{found} {exact}"
+            );
+            assert!(
+                (first_order - found).abs() > 0.06 * found.abs(),
+                "{found} {first_order}"
             );
         }
     }

@@ -248,7 +248,7 @@ impl Sensitivity {
         let per_w = C64::new(-b.alpha(r), -b.q(r) / b.eta);
         let held = C64::new(
             change.gap - change.displacement - d_alpha * w,
-            ((b.q(r) * change.eta / b.eta - d_q) * w + change.velocity) / b.eta,
+            ((b.q(r) * w - b.extra[1]) * change.eta / b.eta - d_q * w + change.velocity) / b.eta,
         );
         let product = |a: C64, b: C64| (a.conj() * b).re;
         let d_w = (product(b.forced, forced) - product(u, held)) / product(u, per_w);
@@ -407,21 +407,25 @@ mod tests {
                 let gap = machine.gap(rho);
                 let orbits = orbits(&machine, Setting::new(eta, rho), n).unwrap();
                 let speed = orbits.last().expect("an orbit").approach_speed;
-                let branch = Branch::new(&machine, eta, n);
+                let extra = [0.01, -0.02];
+                let branch = Branch::new(&machine, eta, n).with_extra(extra);
+                let r = machine.restitution().at(1.0);
+                let nearest = |roots: [f64; 2], speed: f64| {
+                    let nearer = |w: &f64| (w - speed).abs();
+                    let nearest = roots.into_iter();
+                    nearest
+                        .min_by(|a, b| nearer(a).total_cmp(&nearer(b)))
+                        .unwrap()
+                };
+                let speed = nearest(branch.approach_speeds(r, gap).unwrap(), speed);
                 let here = Sensitivity::new(&machine, branch, n, gap, speed);
                 let above = moved(&machine, eta, gap, step);
                 let below = moved(&machine, eta, gap, -step);
                 for ((change, ma, ea, ga), (_, mb, eb, gb)) in above.into_iter().zip(below) {
                     let near = |m: &Machine, eta: f64, gap: f64| {
-                        let branch = Branch::new(m, eta, n);
-                        let roots = branch
-                            .approach_speeds(m.restitution().at(1.0), gap)
-                            .unwrap();
-                        let nearer = |w: &f64| (w - speed).abs();
-                        let w = roots
-                            .into_iter()
-                            .min_by(|a, b| nearer(a).total_cmp(&nearer(b)))
-                            .unwrap();
+                        let branch = Branch::new(m, eta, n).with_extra(extra);
+                        let roots = branch.approach_speeds(m.restitution().at(1.0), gap);
+                        let w = nearest(roots.unwrap(), speed);
                         Sensitivity::new(m, branch, n, gap, w).motion()
                     };
                     let (a, b) = (near(&ma, ea, ga), near(&mb, eb, gb));

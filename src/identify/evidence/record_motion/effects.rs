@@ -2,12 +2,11 @@
 
 use super::{ChannelMotion, Measured, MotionPoints, RecordMotion, measured};
 use crate::identify::evidence::pickup::Pickups;
-use crate::identify::evidence::waveform::Terms;
+use crate::identify::evidence::trajectory_record::Perturbation;
 use crate::identify::fit::effect::Effect;
 use impact_oscillator::model::params::Oscillator;
 use impact_oscillator::model::path::C64;
 use impact_oscillator::model::perturbation::{Grid, PeriodicResponses};
-use impact_oscillator::model::sensitivity::Change;
 
 /// Nodes of a drive period on which extra accelerations are taken.
 const NODES: usize = 128;
@@ -28,21 +27,21 @@ struct Course {
 }
 
 impl RecordMotion<'_> {
-    /// Changes of the values at all points by effects that act as a small extra acceleration, per unit of their
-    /// strengths, to first order; `reach_m` is the displacement at which springs change and drag acts by that much.
+    /// What effects that act as a small extra acceleration change, per unit of their strengths: the masses' own
+    /// responses to first order, and what these add at the impact. `reach_m` is the displacement at which springs
+    /// change and drag acts by that much.
     pub fn perturbations(
         &self,
-        at: (&[Terms], &MotionPoints<'_>),
+        points: &MotionPoints<'_>,
         effects: impl Iterator<Item = Effect>,
         reach_m: f64,
-    ) -> Vec<(Effect, Vec<f64>)> {
+    ) -> Vec<Perturbation> {
         let course = self.course();
         let effects: Vec<Effect> = effects.collect();
-        let changes = effects.chunks(TOGETHER).flat_map(|together| {
-            let changes = self.perturbed(at, &course, (together, reach_m));
-            together.iter().copied().zip(changes)
-        });
-        changes.collect()
+        let changes = effects.chunks(TOGETHER);
+        changes
+            .flat_map(|together| self.perturbed(points, &course, (together, reach_m)))
+            .collect()
     }
 
     /// What all points show of what a channel picks up from the drive, per unit of an effect's strength.
@@ -78,13 +77,13 @@ impl RecordMotion<'_> {
         }
     }
 
-    /// Changes of the values by each of at most [`TOGETHER`] effects.
+    /// What each of at most [`TOGETHER`] effects changes.
     fn perturbed(
         &self,
-        (values, points): (&[Terms], &MotionPoints<'_>),
+        points: &MotionPoints<'_>,
         course: &Course,
         (effects, reach_m): (&[Effect], f64),
-    ) -> Vec<Vec<f64>> {
+    ) -> Vec<Perturbation> {
         let responses = course.masses.each_ref().map(|mass| {
             let (oscillator, states) = mass.as_ref()?;
             let mut p = vec![[0.0; TOGETHER]; states.len()];
@@ -99,17 +98,8 @@ impl RecordMotion<'_> {
             .flatten()
             .map(Responses::at_impact)
             .collect();
-        let mut changes: Vec<Vec<f64>> = (0..effects.len())
-            .map(|k| {
-                let sum = |i: usize| at_impact.iter().map(|at| at[k][i]).sum();
-                let change = Change {
-                    displacement: sum(0),
-                    velocity: sum(1),
-                    ..Change::default()
-                };
-                points.values(&self.along(values, &self.direction(&change, None)))
-            })
-            .collect();
+        let count = points.times().map(<[f64]>::len).sum();
+        let mut changes = vec![vec![0.0; count]; effects.len()];
         let mut place = 0;
         for (channel, times) in self.channels.iter().zip(points.times()) {
             if let Some(responses) = &responses[usize::from(channel.role.is_of_y())] {
@@ -117,7 +107,13 @@ impl RecordMotion<'_> {
             }
             place += times.len();
         }
-        changes
+        let found = effects.iter().zip(changes).enumerate();
+        let of = |(k, (effect, values)): (usize, (&Effect, Vec<f64>))| Perturbation {
+            effect: *effect,
+            at_impact: [0, 1].map(|i| at_impact.iter().map(|at| at[k][i]).sum()),
+            values,
+        };
+        found.map(of).collect()
     }
 
     /// Add to changes, from a place on, what the responses of a channel's mass are at its points, SI.
