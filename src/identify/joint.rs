@@ -114,10 +114,8 @@ mod tests {
             blocks.weigh(&truth);
             let weights = Weights::from([(Method::Resonance, 1.0), (Method::Trajectories, 1.0)]);
             let cost = |effects: Effects, start: Parameters| {
-                let nominal = Nominal {
-                    effects,
-                    ..evidence.nominal
-                };
+                let mut nominal = evidence.nominal;
+                nominal.effects = effects;
                 let problem = problem(&blocks, start, &weights, &nominal, None).expect("a problem");
                 let found = fit(&problem, start).expect("a fit").fit;
                 (found.cost, found.parameters)
