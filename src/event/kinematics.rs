@@ -111,7 +111,7 @@ pub enum RelativeSource {
     Both,
     /// x of a single mass against a stop.
     One,
-    /// Twice the one mass that was measured: the rig is assumed symmetric.
+    /// Twice the one of two masses that was measured: enough to find impacts, not for their R.
     Doubled,
 }
 
