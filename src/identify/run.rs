@@ -153,8 +153,8 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
     for result in methods.values_mut().chain([&mut joint]) {
         clock::widen(result, clock_uncertainty);
     }
-    doubt::widen(&mut joint, &doubts);
     let (cause, replaced) = run.one_cause(&fits, (&mut suspicions, &mut joint), &methods);
+    doubt::widen(&mut joint, &doubts);
     missing::say_missing(&mut joint, evidence);
     let verdict = verdict::verdict(&Basis {
         cause,
