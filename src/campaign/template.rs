@@ -226,10 +226,17 @@ fn table(
         }
         (Some(dimension), _) if volts => {
             let symbol = dimension.si_symbol().replace('²', "2");
-            writeln!(
-                text,
-                "# scale = \"0.05 {symbol} per V\"   # FILL IN: what one volt corresponds to"
-            )?;
+            // f0 and β of decays do not depend on it
+            match found.experiment {
+                Experiment::FreeDecay => writeln!(
+                    text,
+                    "scale = \"1 {symbol} per V\"     # CHECK: what one volt corresponds to; f0 and β do not depend on it"
+                )?,
+                _ => writeln!(
+                    text,
+                    "# scale = \"0.05 {symbol} per V\"   # FILL IN: what one volt corresponds to"
+                )?,
+            }
         }
         (None, Role::Contact) => threshold(text, channel, unit)?,
         _ => {}

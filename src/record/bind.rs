@@ -42,6 +42,20 @@ fn find_name(name: &str, dataset: &DatasetInfo) -> Option<usize> {
         .or_else(|| only_one(dataset, |c| c.name.rsplit('/').next() == Some(name)))
         .or_else(|| only_one(dataset, bare))
         .or_else(|| find_headed(name, dataset))
+        .or_else(|| find_numbered(name, dataset))
+}
+
+/// `column_3`, as a column without a heading is called: the third of the file, whatever its name.
+fn find_numbered(name: &str, dataset: &DatasetInfo) -> Option<usize> {
+    let number = name.strip_prefix("column_")?;
+    let stated = |c: &ChannelInfo| c.properties.get("column").is_some_and(|n| n == number);
+    let by_file = dataset.channels.iter().position(stated);
+    let index = || number.parse::<usize>().ok()?.checked_sub(1);
+    let numbered = dataset
+        .channels
+        .iter()
+        .any(|c| c.properties.contains_key("column"));
+    by_file.or_else(|| index().filter(|i| !numbered && *i < dataset.channels.len()))
 }
 
 /// The channel whose column is headed so in the file, whose reader splits off the unit, wherever it stands
@@ -455,6 +469,8 @@ mod tests {
             ..DatasetInfo::default()
         };
         assert_eq!(ChannelKey::Name("velocity".into()).find(&scope), Some(0));
+        let third = ChannelKey::Name("column_2".into());
+        assert_eq!((third.find(&runs), third.find(&scope)), (Some(1), None));
         let dataset = DatasetInfo {
             channels: vec![
                 channel("time", "s"),

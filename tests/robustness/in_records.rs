@@ -9,6 +9,7 @@ pub(super) fn cases() -> Vec<Case> {
     all.extend(channels());
     all.extend(values());
     all.extend(times());
+    all.extend(units_of_time());
     all.extend(bombs());
     all
 }
@@ -422,6 +423,25 @@ fn times() -> Vec<Case> {
             &["the time axis is not uniform", "2 of 3 records can be used"],
         ),
         refused(
+            "no time axis and no sample rate",
+            |lab| {
+                lab.lines("r2.csv", |i, line| {
+                    let (_, rest) = line.split_once(',').expect("cells");
+                    let _ = (i, SAMPLES);
+                    Some(rest.to_owned())
+                });
+            },
+            &[
+                "neither a time axis nor a sample rate",
+                "sample_rate = \"2 kHz\"",
+            ],
+        ),
+    ]
+}
+
+fn units_of_time() -> Vec<Case> {
+    vec![
+        refused(
             "milliseconds without a unit",
             |lab| {
                 lab.replace("r2.csv", "time [s]", "time");
@@ -458,20 +478,6 @@ fn times() -> Vec<Case> {
                 });
             },
             &["samples share stamps of", "2 of 3 records can be used"],
-        ),
-        refused(
-            "no time axis and no sample rate",
-            |lab| {
-                lab.lines("r2.csv", |i, line| {
-                    let (_, rest) = line.split_once(',').expect("cells");
-                    let _ = (i, SAMPLES);
-                    Some(rest.to_owned())
-                });
-            },
-            &[
-                "neither a time axis nor a sample rate",
-                "sample_rate = \"2 kHz\"",
-            ],
         ),
     ]
 }

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use crate::source::ChannelInfo;
 use crate::units::{Dimension, parse_unit, split_unit};
 
 /// Attribute names that give samples per second, lower case.
@@ -117,34 +116,6 @@ pub fn start_s(attributes: &BTreeMap<String, String>) -> Option<f64> {
     match (stamp, offset) {
         (None, None) => None,
         (stamp, offset) => Some(stamp.unwrap_or(0.0) + offset.unwrap_or(0.0)),
-    }
-}
-
-/// The attribute in which our own files keep when channels begin, as `contact=0.3|x=0`.
-pub(crate) const STARTS_KEY: &str = "channel_starts_s";
-
-/// Starts of channels as text under [`STARTS_KEY`]; `None` where all that are known are alike.
-pub(crate) fn starts_text(channels: &[ChannelInfo]) -> Option<String> {
-    let known: Vec<(&str, f64)> = channels
-        .iter()
-        .filter_map(|c| Some((c.name.as_str(), c.start_s?)))
-        .collect();
-    let (_, first) = *known.first()?;
-    let unlike = known.iter().any(|(_, start)| *start != first);
-    let one = |(name, start): &(&str, f64)| format!("{name}={start}");
-    unlike.then(|| known.iter().map(one).collect::<Vec<_>>().join("|"))
-}
-
-/// Give channels the starts that the attributes keep.
-pub(crate) fn apply_starts(channels: &mut [ChannelInfo], attributes: &BTreeMap<String, String>) {
-    let Some(text) = attributes.get(STARTS_KEY) else {
-        return;
-    };
-    for (name, start) in text.split('|').filter_map(|pair| pair.rsplit_once('=')) {
-        let start = start.parse::<f64>().ok().filter(|s| s.is_finite());
-        if let Some(channel) = channels.iter_mut().find(|c| c.name == name) {
-            channel.start_s = start;
-        }
     }
 }
 

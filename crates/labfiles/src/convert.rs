@@ -23,9 +23,9 @@ mod uff;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::attribute;
+use crate::clocks;
 use crate::convert::item::{Item, once};
-use crate::source::{Clock, ReadError, Source, StoredType};
+use crate::source::{ReadError, Source, StoredType};
 
 pub use crate::convert::item::{ConvertError, Options};
 
@@ -91,7 +91,6 @@ pub fn convert(
     };
     let note = if tables { filled_up } else { texts_left_out };
     let mut notes: Vec<String> = items.iter().filter_map(note).collect();
-    notes.extend(items.iter().filter_map(clocks_lost));
     if matches!(target, Target::Uff | Target::UffText) {
         notes.extend(uff::notes(&items, text, options.single_precision));
     }
@@ -120,19 +119,6 @@ fn texts_left_out(item: &Item<'_>) -> Option<String> {
         let names = names.join(", ");
         format!(
             "record '{}': texts are left out ({names}); Parquet and CSV keep them",
-            item.name
-        )
-    })
-}
-
-/// A note if channels have times or rates of their own, which the output does not tell apart.
-fn clocks_lost(item: &Item<'_>) -> Option<String> {
-    let own = item.channels().iter().filter(|c| c.clock != Clock::Shared);
-    let names: Vec<&str> = own.map(|c| c.name.as_str()).collect();
-    (!names.is_empty()).then(|| {
-        let names = names.join(", ");
-        format!(
-            "record '{}': channels with times or rates of their own are written beside the others without them ({names})",
             item.name
         )
     })
@@ -182,15 +168,16 @@ fn items<'a>(sources: &'a [Box<dyn Source>], options: &Options) -> Vec<Item<'a>>
             };
             let name = unique(&plain, &mut taken);
             let mut attributes = info.attributes.clone();
-            let starts = attribute::starts_text(&info.channels);
-            attributes.extend(starts.map(|text| (attribute::STARTS_KEY.to_owned(), text)));
             attributes.extend(options.attributes.clone());
-            items.push(Item {
+            let mut item = Item {
                 name,
                 source: &**source,
                 dataset,
                 attributes,
-            });
+            };
+            let clocks = clocks::attributes(&item.names(), &info.channels);
+            item.attributes.extend(clocks);
+            items.push(item);
         }
     }
     items

@@ -233,7 +233,12 @@ fn keep_columns(dataset: &mut DatasetInfo, columns: &[usize]) {
     }
     let place = |column: usize| columns.iter().position(|c| *c == column);
     dataset.time_axis = dataset.time_axis.and_then(place);
-    let kept = columns.iter().map(|&c| dataset.channels[c].clone());
+    let kept = columns.iter().map(|&column| {
+        let mut channel = dataset.channels[column].clone();
+        let number = (column + 1).to_string();
+        channel.properties.insert("column".to_owned(), number);
+        channel
+    });
     dataset.channels = kept.collect();
 }
 

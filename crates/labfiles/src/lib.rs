@@ -47,6 +47,7 @@
 
 pub mod attribute;
 mod bytes;
+mod clocks;
 pub mod convert;
 mod csv;
 mod excel;

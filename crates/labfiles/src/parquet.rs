@@ -109,7 +109,7 @@ fn channel(columns: &Columns, origin: &Origin) -> ChannelInfo {
         samples: origin.rows.iter().map(|r| r.1).sum(),
         sample_rate_hz: None,
         start_time: None,
-        clock: Clock::Shared,
+        clock: origin.own_axis.map_or(Clock::Shared, Clock::Axis),
         start_s: None,
         properties: BTreeMap::new(),
     }

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use crate::attribute;
+use crate::clocks;
 
 /// How a file stores the numbers of a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -300,7 +300,7 @@ pub(crate) fn opened<R: Reader + 'static>(
     reader: R,
 ) -> Result<Box<dyn Source>, ReadError> {
     for dataset in &mut datasets {
-        attribute::apply_starts(&mut dataset.channels, &dataset.attributes);
+        clocks::apply(&mut dataset.channels, &dataset.attributes);
     }
     Ok(Box::new(Opened {
         format,

@@ -347,7 +347,8 @@ fn time_without_a_unit_is_told_from_seconds_by_name_and_number() {
         assert_eq!(rate(name, &whole), (Some(0), Some(100.0), vec![]), "{name}");
     }
     for name in ["micros", "time_us", "Time (µs)"] {
-        assert_eq!(rate(name, &whole).1, Some(1e5), "{name}");
+        let found = rate(name, &whole).1.unwrap();
+        assert!((found / 1e5 - 1.0).abs() < 1e-9, "{name}: {found}");
     }
     let (axis, hz, notes) = rate("timestamp", &|i| {
         (1_486_512_345_678_u64 + u64::from(10 * i)).to_string()
@@ -465,4 +466,93 @@ fn octave_text_holds_what_matlab_files_hold() {
         .err()
         .unwrap();
     assert!(cut.expected.contains("the numbers of a matrix"), "{cut}");
+}
+
+/// Name, dataset, channel, unit and rate of files after public reports.
+const FIELD_CASES: [(&str, &str, Option<&str>, f64); 11] = [
+    (
+        "01-tektronix-five-columns/F0001CH1.CSV",
+        "CH1",
+        Some("V"),
+        2500.0,
+    ),
+    (
+        "02-rigol-sequence-increment/NewFile1.csv",
+        "CH1",
+        Some("Volt"),
+        2500.0,
+    ),
+    (
+        "04-picoscope-csv-ms-infinity/run.csv",
+        "Channel A",
+        Some("V"),
+        2500.0,
+    ),
+    ("05-picoscope-mat/run.mat", "A", None, 2500.0),
+    (
+        "07-vernier-format-2/lab.txt",
+        "Velocity",
+        Some("m/s"),
+        2500.0,
+    ),
+    ("08-rigol-rounded-time/long.csv", "CH1", Some("V"), 20_000.0),
+    ("10-epoch-milliseconds/recording.csv", "value", None, 100.0),
+    (
+        "12-thousands-separators/german.csv",
+        "Spannung",
+        Some("mV"),
+        1000.0,
+    ),
+    (
+        "14-thousands-dots-integers/counts.csv",
+        "Spannung",
+        Some("mV"),
+        1000.0,
+    ),
+    (
+        "25-simulink-structure-with-time/scope.mat",
+        "scope.signals(1).values",
+        None,
+        1000.0,
+    ),
+    (
+        "50-qtm-riders/gummi/Measurement52.tsv",
+        "a X",
+        Some("mm"),
+        500.0,
+    ),
+];
+
+#[test]
+#[ignore = "needs shared/data: files after public reports"]
+fn shared_data_field_cases_have_names_units_and_rates() {
+    let folder =
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/field_cases");
+    for (file, name, unit, rate_hz) in FIELD_CASES {
+        let source = open(&folder.join(file)).unwrap_or_else(|error| panic!("{error}"));
+        let record = &source.datasets()[0];
+        let channel = record
+            .channel_index(name)
+            .unwrap_or_else(|| panic!("{file}: no {name}"));
+        let info = &record.channels[channel];
+        if unit.is_some() {
+            assert_eq!(info.unit.as_deref(), unit, "{file}");
+        }
+        if let Some(found) = info.sample_rate_hz {
+            assert!((found / rate_hz - 1.0).abs() < 2e-3, "{file}: {found}");
+        }
+        assert!(
+            info.sample_rate_hz.is_some() || record.time_axis.is_some(),
+            "{file}"
+        );
+        let values = real(&*source, 0, channel);
+        assert!(values.iter().all(|v| v.is_finite()), "{file}");
+    }
+    for file in ["test_tables_v7.mat", "test_tables_v73.mat"] {
+        let error = open(&folder.join("26-matlab-tables-objects").join(file))
+            .err()
+            .unwrap();
+        assert!(error.found.contains("table 'table_"), "{error}");
+        assert!(error.remedy.contains("table2struct"), "{error}");
+    }
 }

@@ -80,6 +80,9 @@ pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
             if let Some(channel) = found.channels.first_mut() {
                 channel.role = Some(Role::Contact);
             }
+        } else if let Some(index) = unnamed_decay(&some, &found.channels) {
+            found.experiment = Experiment::FreeDecay;
+            found.channels[index].role = Some(Role::VelocityX);
         }
         return;
     }
@@ -124,6 +127,29 @@ pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
         orient(away, most(&along), &mut found.channels);
         without_acceleration(&mut found.channels);
     }
+}
+
+/// Channels whose names and units say nothing that are tried as the motion of a decay.
+const MOST_TRIED: usize = 4;
+
+/// The first channel that decays freely in most records, where no name or unit says what any channel is.
+fn unnamed_decay(some: &[Place<'_>], channels: &[InferredChannel]) -> Option<usize> {
+    if channels.iter().any(|c| c.role.is_some()) {
+        return None;
+    }
+    let longest = channels.iter().map(|c| c.samples).max()?;
+    let alive = |c: &InferredChannel| c.range.is_some_and(|[low, high]| high > low);
+    let untold = |i: &usize| {
+        let channel = &channels[*i];
+        !channel.is_time && channel.samples == longest && alive(channel)
+    };
+    let mut tried = (0..channels.len()).filter(untold).take(MOST_TRIED);
+    tried.find(|index| {
+        let mut guessed = channels.to_vec();
+        guessed[*index].role = Some(Role::VelocityX);
+        let decaying = some.iter().filter(|place| decays(&read(**place, &guessed)));
+        2 * decaying.count() > some.len()
+    })
 }
 
 /// The column of a list of events that states the impacts.

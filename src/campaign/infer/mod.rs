@@ -442,6 +442,28 @@ mod tests {
     }
 
     #[test]
+    fn a_decay_on_an_oscilloscope_is_ready_to_run() {
+        let folder = tempfile::tempdir().unwrap();
+        let row = |i: i32| {
+            let t = f64::from(i) * 4e-4;
+            let decay = (-0.02 * 75.4 * t).exp() * (75.4 * t).cos();
+            format!("{i},{decay:.3e},\n")
+        };
+        let rows: String = (0..2500).map(row).collect();
+        let heading = "X,CH1,Start,Increment,\nSequence,Volt,0.0e+00,4.0e-04\n";
+        std::fs::write(folder.path().join("scope.csv"), format!("{heading}{rows}")).unwrap();
+        let found = inspect_folder(folder.path(), &labfiles::open);
+        assert_eq!(found.experiment, Experiment::FreeDecay);
+        let text = super::super::template::campaign_toml("scope", &found);
+        assert!(
+            text.contains("[channels.velocity_x]\nchannel = \"CH1\""),
+            "{text}"
+        );
+        assert!(text.contains("\nscale = \"1 m/s per V\""), "{text}");
+        assert!(!text.contains("FILL IN: the files state none"), "{text}");
+    }
+
+    #[test]
     fn runs_side_by_side_are_all_counted() {
         let folder = tempfile::tempdir().unwrap();
         let row = |i: i32| {

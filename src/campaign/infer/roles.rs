@@ -78,11 +78,9 @@ impl Axes {
 
     /// Whether any name refers to the second mass.
     fn has_second(&self, channels: &[InferredChannel]) -> bool {
-        let used = channels
-            .iter()
-            .enumerate()
-            .filter(|(i, _)| !self.others.contains(i));
-        used.into_iter().any(|(i, c)| self.side(i, c) == Some('y'))
+        let all = channels.iter().enumerate();
+        let mut used = all.filter(|(i, _)| !self.others.contains(i));
+        used.any(|(i, c)| self.side(i, c) == Some('y'))
     }
 }
 

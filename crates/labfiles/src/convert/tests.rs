@@ -175,6 +175,11 @@ fn channels_of_one_name_are_all_kept() {
             done.notes
         );
         let back = open(&out).unwrap();
+        assert_eq!(
+            back.datasets()[0].channels[3].clock,
+            Clock::Axis(2),
+            "{name}"
+        );
         for (channel, values) in [
             ("X_Value", [0.0, 1.0]),
             ("x", [1.0, 3.0]),
@@ -378,6 +383,7 @@ fn starts_of_channels_come_back_from_every_target() {
     ]);
     record.datasets[0].channels[0].start_s = Some(0.0);
     record.datasets[0].channels[1].start_s = Some(0.3);
+    record.datasets[0].channels[1].clock = Clock::Rate;
     let sources: [Box<dyn Source>; 1] = [Box::new(record)];
     let dir = tempfile::tempdir().unwrap();
     for name in ["out.h5", "out.parquet", "out.csv", "out.uff"] {
@@ -396,6 +402,7 @@ fn starts_of_channels_come_back_from_every_target() {
             .map(|c| c.start_s)
             .collect();
         assert_eq!(starts, [Some(0.0), Some(0.3)], "{name}");
+        assert_eq!(back.datasets()[0].channels[1].clock, Clock::Rate, "{name}");
     }
 }
 

@@ -92,8 +92,8 @@ pub(crate) fn ambiguous<'a>(
     if rows.rows().flatten().any(proven) {
         return None;
     }
-    let numbers = (0..kinds.len()).filter(|i| kinds[*i] == Kind::Number);
-    numbers.into_iter().find_map(|i| {
+    let mut numbers = (0..kinds.len()).filter(|i| kinds[*i] == Kind::Number);
+    numbers.find_map(|i| {
         let cells = || rows.column(i).filter(|c| !c.is_empty()).take(JUDGED_CELLS);
         let hundreds = |cell: &[u8]| {
             let value = number::parse_cell(cell, decimal).filter(|_| !marked(cell));

@@ -34,6 +34,8 @@ pub(crate) struct Origin {
     pub column: usize,
     /// Its rows.
     pub rows: Vec<Range>,
+    /// Its own times: the place of another channel of its record.
+    pub own_axis: Option<usize>,
 }
 
 /// Find the layout of a table.
@@ -83,6 +85,7 @@ fn wide(columns: &Columns, rows: &[Range], without: Option<usize>) -> Vec<Origin
             unit: None,
             column,
             rows: rows.to_vec(),
+            own_axis: None,
         })
         .collect()
 }
@@ -118,6 +121,7 @@ fn tidy(
                 unit: None,
                 column,
                 rows: rows.clone(),
+                own_axis: None,
             });
             all.push((record.clone(), axis.into_iter().collect()));
             all.len() - 1
@@ -127,9 +131,53 @@ fn tidy(
             unit: units.get(label).cloned(),
             column: value,
             rows,
+            own_axis: None,
         });
     }
+    if let Some(time) = time {
+        for (_, plan) in &mut all {
+            give_own_times(columns, time, plan)?;
+        }
+    }
     Ok(all)
+}
+
+/// Give channels of a tidy table whose times are not those of the first channel their own time axis: they differ
+/// in number, or at the first or last of them.
+fn give_own_times(columns: &Columns, time: usize, plan: &mut Vec<Origin>) -> Result<(), ReadError> {
+    let ends = |rows: &[Range]| -> Result<(u64, Vec<u64>), ReadError> {
+        let count = rows.iter().map(|r| r.1).sum();
+        let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
+            return Ok((0, Vec::new()));
+        };
+        let last = (last.0 + last.1.saturating_sub(1), 1);
+        let read = columns.read(time, &[(first.0, 1), last])?.into_real();
+        Ok((
+            count,
+            read.unwrap_or_default()
+                .into_iter()
+                .map(f64::to_bits)
+                .collect(),
+        ))
+    };
+    let Some(first) = plan.get(1).map(|first| ends(&first.rows)).transpose()? else {
+        return Ok(());
+    };
+    for channel in 2..plan.len() {
+        if ends(&plan[channel].rows)? == first {
+            continue;
+        }
+        let heading = format!("{} of {}", plan[0].heading, plan[channel].heading);
+        plan[channel].own_axis = Some(plan.len());
+        plan.push(Origin {
+            heading,
+            unit: plan[0].unit.clone(),
+            column: time,
+            rows: plan[channel].rows.clone(),
+            own_axis: None,
+        });
+    }
+    Ok(())
 }
 
 /// Rows of each label, in the order of first appearance.

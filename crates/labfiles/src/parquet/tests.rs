@@ -93,3 +93,47 @@ fn prop_mutated_files_are_read_or_refused() {
     // information of the program is loaded.
     survive_within(&own_seeds("parquet"), open, change, [1200, 256 << 20]);
 }
+
+#[test]
+fn channels_of_a_tidy_table_may_have_times_of_their_own() {
+    use crate::convert::{Options, Target, convert};
+    let dir = tempfile::tempdir().unwrap();
+    let table = dir.path().join("tidy.csv");
+    let row = |channel: &str, i: u32, start: f64, step: f64| {
+        format!("{channel},{:.4},{i}\n", start + f64::from(i) * step)
+    };
+    let mut text = String::from("channel,time [s],value\n");
+    for (channel, start, step) in [("x", 0.0, 1e-3), ("y", 0.0, 1e-3), ("slow", 0.3, 2e-3)] {
+        text += &(0..30)
+            .map(|i| row(channel, i, start, step))
+            .collect::<String>();
+    }
+    std::fs::write(&table, text).unwrap();
+    let out = dir.path().join("tidy.parquet");
+    let sources = [crate::open(&table).unwrap()];
+    convert(
+        &sources,
+        Target::of(&out).unwrap(),
+        &out,
+        &Options::default(),
+    )
+    .unwrap();
+    let source = open(&out).unwrap();
+    let channels = &source.datasets()[0].channels;
+    let clocks: Vec<(&str, Clock)> = channels
+        .iter()
+        .map(|c| (c.name.as_str(), c.clock))
+        .collect();
+    assert_eq!(
+        clocks,
+        [
+            ("time", Clock::Shared),
+            ("x", Clock::Shared),
+            ("y", Clock::Shared),
+            ("slow", Clock::Axis(4)),
+            ("time of slow", Clock::Shared),
+        ]
+    );
+    let times = source.read(0, &[4]).unwrap().remove(0).into_real().unwrap();
+    assert_eq!((times[0], times[1]), (0.3, 0.302));
+}
