@@ -32,8 +32,14 @@ pub(super) fn parts(samples: &[f64]) -> Vec<(usize, usize)> {
     let mut blows: Vec<usize> = (2..heights.len())
         .filter(|&i| {
             // the window of the blow and the one after it hold its height
-            let height = heights[i..(i + 2).min(heights.len())].iter().copied().fold(0.0, f64::max);
-            let later = heights[i..(i + 6).min(heights.len())].iter().copied().fold(0.0, f64::max);
+            let height = heights[i..(i + 2).min(heights.len())]
+                .iter()
+                .copied()
+                .fold(0.0, f64::max);
+            let later = heights[i..(i + 6).min(heights.len())]
+                .iter()
+                .copied()
+                .fold(0.0, f64::max);
             let before = heights[i - 2].max(heights[i - 1]);
             height > RISE * before && height > BLOW * greatest && later <= 1.1 * height
         })
@@ -45,7 +51,11 @@ pub(super) fn parts(samples: &[f64]) -> Vec<(usize, usize)> {
     let mut out = Vec::new();
     let mut from = 0;
     for edge in edges {
-        if out.is_empty() && heights[..edge / window].iter().all(|h| *h < BLOW * greatest) {
+        if out.is_empty()
+            && heights[..edge / window]
+                .iter()
+                .all(|h| *h < BLOW * greatest)
+        {
             // nothing but rest before the first blow
             out.push((0, edge));
             continue;

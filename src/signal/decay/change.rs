@@ -20,8 +20,20 @@ const ABOVE_NOISE: f64 = 2.0;
 const TOLD: f64 = 10.0;
 
 /// What the damping follows beside the velocity.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, strum::EnumIter)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    Default,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    strum::EnumIter,
+    strum::IntoStaticStr,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case", prefix = "damping_by_")]
 pub enum DampingLaw {
     /// Dry friction: β = β0 + c/A at the amplitude A.
     Friction,

@@ -191,7 +191,9 @@ impl Series {
                 *rate += step[first + k];
             }
             let next = self.project(shape, rates).filter(|n| {
-                n.squares <= point.squares && n.rates[0] > 0.0 && n.rates[1].abs() < 2.0 * n.rates[0]
+                n.squares <= point.squares
+                    && n.rates[0] > 0.0
+                    && n.rates[1].abs() < 2.0 * n.rates[0]
             });
             match next {
                 Some(next) => {
@@ -244,7 +246,13 @@ impl Point {
     /// Range of the background but for its constant part.
     pub(super) fn drift(&self) -> f64 {
         let beyond = self.linear.len() - 3;
-        2.0 * self.linear.iter().skip(1).take(beyond).map(|c| c.abs()).sum::<f64>()
+        2.0 * self
+            .linear
+            .iter()
+            .skip(1)
+            .take(beyond)
+            .map(|c| c.abs())
+            .sum::<f64>()
     }
 
     /// The rates per sample of a fit to means of a number of samples.

@@ -13,7 +13,6 @@ mod noise;
 mod prepared;
 mod shape;
 
-
 use prepared::Prepared;
 use shape::Shape;
 
@@ -45,6 +44,10 @@ pub struct Decay {
     /// is not viscous.
     #[serde(default)]
     pub structured_ratio: f64,
+    /// Residual of the first quarter of the fitted samples over that of the last: noise stays, what belongs to
+    /// the decay fades with it.
+    #[serde(default)]
+    pub fading: f64,
     /// What lies under the decay and was fitted with it: a drift, a hum.
     #[serde(default)]
     pub beside: Beside,
@@ -69,6 +72,8 @@ pub struct Beside {
     pub mode: Option<[f64; 2]>,
     /// Range of the polynomial under the decay over the decay's first amplitude; zero of an offset alone.
     pub drift_ratio: f64,
+    /// How many times as wide noise at the decay's frequency makes the intervals as that at high frequencies.
+    pub slow_noise: f64,
 }
 
 impl Decay {
@@ -85,7 +90,8 @@ impl Decay {
         (0..self.samples).map(at).collect()
     }
 
-    fn relative_error(&self) -> f64 {
+    /// Standard error of f0 over f0.
+    pub fn relative_error(&self) -> f64 {
         self.natural_frequency_error_hz / self.natural_frequency_hz
     }
 }
@@ -139,11 +145,14 @@ fn of_channel(samples: &[f64], rate_hz: f64) -> Vec<Decay> {
         decay.first += first;
         Some(decay)
     };
-    blows::parts(samples).into_iter().filter_map(of_part).collect()
+    blows::parts(samples)
+        .into_iter()
+        .filter_map(of_part)
+        .collect()
 }
 
 /// Decay that must stand out of the noise, in standard errors of its amplitude.
-const STANDS_OUT: f64 = 8.0;
+const STANDS_OUT: f64 = 12.0;
 /// What a decay leaves, over itself, at most.
 const MOST_LEFT: f64 = 1.0;
 /// Growth, in standard errors of the rate, that no decay has.
@@ -157,9 +166,8 @@ fn of_part(samples: &[f64], rate_hz: f64) -> Option<Decay> {
     let freedom = prepared.freedom(&viscous)?;
     let rms = (viscous.squares / prepared.degrees(&viscous)?).sqrt();
     let covariance = series.covariance(&viscous)?;
-    let [a, b] = viscous.amplitudes();
     let error_of_sigma = covariance[(1, 1)].sqrt();
-    if viscous.rates[1] < -GROWS * error_of_sigma || !prepared.stands_out(&viscous, a.hypot(b), rms) {
+    if viscous.rates[1] < -GROWS * error_of_sigma || !prepared.stands_out(&viscous, rms) {
         return None;
     }
     let factor = prepared.factor as f64;
@@ -189,6 +197,7 @@ fn of_part(samples: &[f64], rate_hz: f64) -> Option<Decay> {
         offset: whole.offset,
         residual_ratio: whole.residual_ratio,
         structured_ratio: whole.structured_ratio,
+        fading: whole.fading,
         beside: prepared.beside(whole.amplitude, rate_hz),
         course: change::course(&prepared, &viscous, rate_hz),
         channel: 0,
@@ -196,3 +205,6 @@ fn of_part(samples: &[f64], rate_hz: f64) -> Option<Decay> {
         samples: whole.samples,
     })
 }
+
+#[cfg(test)]
+mod tests;

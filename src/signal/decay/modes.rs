@@ -46,8 +46,8 @@ pub(super) fn remove(
         for _ in 0..if modes.is_empty() { 0 } else { ROUNDS } {
             again(samples, own, &mut modes);
         }
-        let found = without_decay(&less(samples, &modes), own)
-            .and_then(|rest| strongest(&rest, own));
+        let found =
+            without_decay(&less(samples, &modes), own).and_then(|rest| strongest(&rest, own));
         let Some(found) = found else {
             break;
         };

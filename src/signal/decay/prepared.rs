@@ -41,6 +41,11 @@ const SLOWER: f64 = 0.7;
 /// Share of the variance that a decay there explains.
 const EXPLAINS: f64 = 0.5;
 
+/// Fewest degrees of freedom of a fit.
+const LEAST_FREEDOM: usize = 8;
+/// Amplitude at the first sample over the greatest excursion, at most.
+const MOST_EXTRAPOLATED: f64 = 3.0;
+
 /// A decay ready for its fit.
 pub(super) struct Prepared {
     /// First sample of the part that is fitted, and how many are.
@@ -64,6 +69,7 @@ pub(super) struct AtEverySample {
     pub(super) offset: f64,
     pub(super) residual_ratio: f64,
     pub(super) structured_ratio: f64,
+    pub(super) fading: f64,
     pub(super) samples: usize,
 }
 
@@ -147,11 +153,21 @@ impl Prepared {
         Some((independent - point.parameters() as f64).max(2.0))
     }
 
-    /// Whether a decay stands out of the noise.
-    pub(super) fn stands_out(&self, point: &Point, amplitude: f64, deviation: f64) -> bool {
-        let effective = (self.series.values.len() as f64)
-            .min(1.0 / point.rates[1].abs().max(f64::MIN_POSITIVE));
-        amplitude * (0.5 * effective).sqrt() > STANDS_OUT * deviation
+    /// Whether a decay stands out of the noise, and above what is before and after it.
+    pub(super) fn stands_out(&self, point: &Point, deviation: f64) -> bool {
+        let count = self.series.values.len();
+        let lasts = (count as f64).min(1.0 / point.rates[1].abs().max(f64::MIN_POSITIVE));
+        let [a, b] = point.amplitudes();
+        let sizes = self
+            .series
+            .values
+            .iter()
+            .map(|v| (v - point.offset()).abs());
+        let greatest = sizes.fold(0.0, f64::max);
+        let amplitude = a.hypot(b);
+        count >= point.parameters() + LEAST_FREEDOM
+            && amplitude < MOST_EXTRAPOLATED * greatest
+            && amplitude * (0.5 * lasts).sqrt() > STANDS_OUT * deviation
     }
 
     /// What lies beside a decay of an amplitude.
@@ -165,6 +181,7 @@ impl Prepared {
             hum: strongest(true),
             mode: strongest(false),
             drift_ratio: self.free.drift() / amplitude,
+            slow_noise: self.series.noise.slow(self.free.rates[0]),
         }
     }
 
@@ -181,7 +198,10 @@ impl Prepared {
         let [a, b] = own.amplitudes();
         let amplitude = a.hypot(b);
         let level = own.level(series.values.len());
+        let quarter = residuals.len() / 4;
+        let last = robust::rms(&residuals[residuals.len() - quarter..]);
         Some(AtEverySample {
+            fading: robust::rms(&residuals[..quarter]) / last.max(f64::MIN_POSITIVE),
             amplitude,
             phase_rad: (-b).atan2(a),
             offset: own.offset(),
@@ -307,7 +327,7 @@ fn first_fit(tail: &[f64], rough: [f64; 2]) -> Option<FirstFit> {
     if periods < LEAST_PERIODS {
         return None;
     }
-    let tail = &tail[..tail.len().min(most.max(8 * factor)).min(MOST * factor)];
+    let tail = &tail[..tail.len().min(most.max(16 * factor)).min(MOST * factor)];
     let series = Series::plain(means(tail, factor));
     let rates = [rough[0] * factor as f64, rough[1] * factor as f64, 0.0, 0.0];
     let point = free(&series, rates)?;
@@ -409,7 +429,9 @@ pub(super) fn laws(series: &Series, bent: &Point) -> Vec<Point> {
     let [omega, sigma, ..] = bent.rates;
     let fitted = |shape: Shape| {
         let starts = [0.5, 0.05].map(|s| [omega, (1.0 - s) * sigma, 0.0, s * sigma]);
-        let fits = starts.into_iter().filter_map(|rates| series.descend(shape, rates));
+        let fits = starts
+            .into_iter()
+            .filter_map(|rates| series.descend(shape, rates));
         fits.min_by(|a, b| a.squares.total_cmp(&b.squares))
     };
     let laws = [Shape::Friction, Shape::Drag].into_iter();

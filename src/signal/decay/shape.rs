@@ -120,7 +120,10 @@ mod tests {
                         shape.envelope(&rates, t).value
                     };
                     let apart = (moved(1e-7) - moved(-1e-7)) / 2e-7 - slope;
-                    assert!(apart.abs() < 1e-5 * slope.abs().max(1.0), "{shape:?} {index}");
+                    assert!(
+                        apart.abs() < 1e-5 * slope.abs().max(1.0),
+                        "{shape:?} {index}"
+                    );
                 }
             }
         }
