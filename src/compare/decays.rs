@@ -34,8 +34,8 @@ pub struct FreeDecay {
 
 /// Most decays that are shown.
 const MOST: usize = 12;
-/// How much is shown before the fit begins, s.
-const SHOWN_BEFORE_S: f64 = 0.03;
+/// How much is shown before the fit begins, periods.
+const SHOWN_BEFORE: f64 = 0.5;
 /// Most points of a decay: more than a figure can show.
 const MOST_POINTS: usize = 3000;
 
@@ -44,12 +44,16 @@ const MOST_POINTS: usize = 3000;
 fn shown(observations: &[Observation]) -> Vec<usize> {
     let mut groups: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (i, o) in observations.iter().enumerate() {
-        if o.decay.is_some() && !o.excluded() {
+        if !o.decays.is_empty() && !o.excluded() {
             let name = o.setting.specimen.as_deref().unwrap_or("");
             groups.entry(name).or_default().push(i);
         }
     }
-    let ratio = |i: &usize| observations[*i].decay.map_or(0.0, |d| d.residual_ratio);
+    let ratio = |i: &usize| {
+        observations[*i]
+            .best_decay()
+            .map_or(0.0, |d| d.residual_ratio)
+    };
     for members in groups.values_mut() {
         members.sort_by(|a, b| ratio(b).total_cmp(&ratio(a)));
     }
@@ -70,24 +74,22 @@ pub(super) fn free_decays(input: &Input<'_>) -> Vec<FreeDecay> {
     decays.collect()
 }
 
-/// A record's free decay beside its fit; `None` of one that has none.
+/// The free decay of a record that determines f0 best, beside its fit; `None` of a record that has none.
 pub(super) fn free_decay(
     o: &Observation,
     record: &Record,
     reason: Option<&Reason>,
 ) -> Option<FreeDecay> {
-    let decay = o.decay?;
+    let decay = o.best_decay()?;
     let fitted = decay.values(record.sample_rate_hz);
     let long_enough = |c: &&Channel| c.values.len() >= decay.first + decay.samples;
     let channels = record.channels.iter();
     let channel = channels
         .filter(|c| c.role.is_motion())
         .filter(long_enough)
-        .min_by(|a, b| {
-            unexplained(a, &decay, &fitted).total_cmp(&unexplained(b, &decay, &fitted))
-        })?;
+        .min_by(|a, b| unexplained(a, decay, &fitted).total_cmp(&unexplained(b, decay, &fitted)))?;
     // the blow itself would dwarf what was fitted
-    let before = whole::index(SHOWN_BEFORE_S * record.sample_rate_hz);
+    let before = whole::index(SHOWN_BEFORE * record.sample_rate_hz / decay.natural_frequency_hz);
     let first = decay.first.saturating_sub(before);
     Some(FreeDecay {
         record: o.record.clone(),

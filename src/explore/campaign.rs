@@ -281,7 +281,7 @@ impl Campaign {
                     "impacts": row.impacts,
                     "used_by": row.used_by.iter().map(ToString::to_string).collect::<Vec<_>>(),
                     "out": row.excluded.clone().or(row.left_out.as_ref().map(ToString::to_string)),
-                    "decay": o.decay.is_some(),
+                    "decay": !o.decays.is_empty(),
                 })
             })
             .collect();

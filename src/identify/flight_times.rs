@@ -2,11 +2,15 @@
 //! R times as long as the one before.
 //!
 //! The times of a record are a geometric row, `t_k = t_0 + T_0 (1 + R + … + R^(k−1))`; R, `t_0` and `T_0` are
-//! fitted to them by least squares with the error of each time as the noise.
+//! fitted to them by least squares with the error of each time as the noise. That error is the scatter of
+//! differences of the flights' logarithms into which neither R nor a steady change of it enters, so that what R
+//! does along the bounces is not taken for noise.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-use crate::identify::diagnostics::structure::{self, GroupedRatio, ImpactGroup, ImpactGroups};
+use crate::identify::diagnostics::structure::{
+    self, GroupedRatio, Grouping, ImpactGroup, ImpactGroups,
+};
 use crate::identify::diagnostics::verdict::judge_structure;
 use crate::identify::estimate;
 use crate::identify::fit::parameters::Coordinate;
@@ -22,8 +26,14 @@ const PLAUSIBLE: [f64; 2] = [0.6, 1.6];
 const GREATEST: f64 = 1.05;
 /// Standard error of a time that neither its source nor the scatter states, s.
 const USUAL_ERROR_S: f64 = 2e-3;
-/// Degrees of freedom from which the scatter states the error of the times.
+/// Differences from which the scatter states the error of the times.
 const ENOUGH: usize = 3;
+/// Normal deviate from which a trend of R, or the R of one record, is no chance.
+const NO_CHANCE: f64 = 3.3;
+/// Change of R over the bounces of a record, or of one record from the others, that matters.
+const MATTERS: f64 = 0.005;
+/// Records from which one is told from the others.
+const SEVERAL: usize = 4;
 
 /// Consecutive impacts of a record, none missing between them.
 #[derive(Debug, Clone)]
@@ -40,8 +50,6 @@ struct Fitted {
     restitution: f64,
     /// Standard error of R for a standard error of 1 s of each time.
     error_per_s: f64,
-    squares: f64,
-    freedom: usize,
 }
 
 /// Whether R of a record rests on the times of its impacts: it has neither drive nor speeds.
@@ -64,7 +72,7 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         return None;
     }
     let error_s = time_error_s(&fits, &records);
-    let groups: Vec<ImpactGroup> = fits
+    let all: Vec<ImpactGroup> = fits
         .iter()
         .map(|(row, fit)| ImpactGroup {
             group: observations[row.record].record.clone(),
@@ -74,13 +82,18 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
             standard_error: fit.error_per_s * error_s,
         })
         .collect();
+    let odd = odd_record(&all);
+    let used = |i: &usize| Some(*i) != odd;
+    let indices: Vec<usize> = (0..fits.len()).filter(used).collect();
+    let groups: Vec<ImpactGroup> = indices.iter().map(|i| all[*i].clone()).collect();
+    let rows: Vec<(&Row, Fitted)> = indices.iter().map(|i| fits[*i]).collect();
     let (value, error) = weighted(&groups);
-    let ratios: Vec<GroupedRatio> = fits
+    let ratios: Vec<GroupedRatio> = rows
         .iter()
         .flat_map(|(row, _)| ratios(row, error_s))
         .collect();
     let mut result = MethodResult {
-        observations: fits.iter().map(|(row, _)| row.times_s.len()).sum(),
+        observations: rows.iter().map(|(row, _)| row.times_s.len()).sum(),
         records: records.len(),
         fits: Some(true),
         ..MethodResult::default()
@@ -88,7 +101,7 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     let restitution = estimate::estimate(Coordinate::Restitution, value, error);
     result.parameters.restitution = Some(restitution);
     result.impact_groups = Some(ImpactGroups {
-        by_record: groups,
+        by_record: all.clone(),
         ..structure::groups(&ratios, observations)
     });
     result.remarks.push(Remark::TimesScatter { error_s });
@@ -97,11 +110,114 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
             .remarks
             .push(Remark::FlightsLeftOut { count: left_out });
     }
-    if let Some(grouping) = structure::structure(&ratios) {
+    if let Some(odd) = odd {
+        result.remarks.push(Remark::OddRecord {
+            record: all[odd].group.clone(),
+            restitution: all[odd].restitution,
+            others: value,
+        });
+    }
+    let scatter = ratios.len() > 1 && !rows.is_empty();
+    let grouping = match trend(&rows, error_s) {
+        true => Some(Grouping::Bounce),
+        false => between_records(&groups).or_else(|| structure::structure(&ratios)),
+    };
+    if let Some(grouping) = grouping.filter(|_| scatter) {
         judge_structure(&mut result, grouping);
     }
     Some(result)
 }
+
+/// Whether R changes along the bounces, by its logarithm as a line over their number in all records.
+fn trend(rows: &[(&Row, Fitted)], error_s: f64) -> bool {
+    let (mut weight, mut sum, mut longest) = (0.0, 0.0, 0);
+    for (row, _) in rows {
+        let Some((slope, error_per_s)) = slope(&row.times_s) else {
+            continue;
+        };
+        let own = (error_per_s * error_s).powi(-2);
+        weight += own;
+        sum += own * slope;
+        longest = longest.max(row.times_s.len());
+    }
+    if !(weight > 0.0) {
+        return false;
+    }
+    let slope = sum / weight;
+    let change = (slope * (longest as f64 - 3.0)).abs();
+    slope.abs() * weight.sqrt() > NO_CHANCE && change > MATTERS
+}
+
+/// Change of R from bounce to bounce along a row, with its standard error for a standard error of 1 s of each
+/// time: weighted least squares of the ratios over their number, the errors of neighbours being correlated.
+fn slope(times_s: &[f64]) -> Option<(f64, f64)> {
+    let flights: Vec<f64> = times_s.windows(2).map(|w| w[1] - w[0]).collect();
+    let count = flights.len().checked_sub(1).filter(|n| *n > 2)?;
+    let ratio = |k: usize| flights[k + 1] / flights[k];
+    // the ratio's slopes over the three times that it has
+    let slopes = |k: usize| {
+        let (r, t) = (ratio(k), flights[k]);
+        [r / t, -(1.0 + r) / t, 1.0 / t]
+    };
+    let covariance = DMatrix::from_fn(count, count, |i, k| {
+        let (a, b) = (slopes(i), slopes(k));
+        let shared = |n: usize| (n + i).checked_sub(k).and_then(|m| b.get(m)).copied();
+        // time number i + n of the row is number i + n − k of ratio k
+        (0..3).map(|n| a[n] * shared(n).unwrap_or(0.0)).sum::<f64>()
+    });
+    let whitened = covariance.cholesky()?;
+    let design = DMatrix::from_fn(count, 2, |i, k| if k == 0 { 1.0 } else { i as f64 });
+    let values = DVector::from_fn(count, |i, _| ratio(i));
+    let weighted = whitened.solve(&design);
+    let inverse = (design.transpose() * &weighted).try_inverse()?;
+    let found = &inverse * (weighted.transpose() * values);
+    Some((found[1], inverse[(1, 1)].max(0.0).sqrt()))
+}
+
+/// Whether R differs between records by more than the errors of their times.
+fn between_records(groups: &[ImpactGroup]) -> Option<Grouping> {
+    let ratio = |g: &ImpactGroup| GroupedRatio {
+        record: 0,
+        bounce: 0,
+        speed_m_s: None,
+        ratio: g.restitution,
+        error: g.standard_error,
+    };
+    let each: Vec<GroupedRatio> = groups.iter().map(ratio).collect();
+    structure::differ(&each).then_some(Grouping::Record)
+}
+
+/// The one record whose R is far from that of all others, which agree.
+fn odd_record(groups: &[ImpactGroup]) -> Option<usize> {
+    if groups.len() < SEVERAL {
+        return None;
+    }
+    let values: Vec<f64> = groups.iter().map(|g| g.restitution).collect();
+    let centre = robust::median(&values)?;
+    let (odd, group) = groups.iter().enumerate().max_by(|a, b| {
+        let off = |g: &ImpactGroup| (g.restitution - centre).abs();
+        off(a.1).total_cmp(&off(b.1))
+    })?;
+    let others: Vec<ImpactGroup> = groups
+        .iter()
+        .filter(|g| g.group != group.group)
+        .cloned()
+        .collect();
+    let (mean, _) = weighted(&others);
+    let off: Vec<f64> = others.iter().map(|g| g.restitution - mean).collect();
+    let spread = robust::rms(&off) * (off.len() as f64 / (off.len() - 1).max(1) as f64).sqrt();
+    let apart = (group.restitution - mean).abs();
+    let chance = group
+        .standard_error
+        .hypot(spread * (1.0 + 1.0 / off.len() as f64).sqrt());
+    (apart > FAR * chance && apart > STRANGE).then_some(odd)
+}
+
+/// Deviations of chance from which the record furthest off is none of the others: its tail is heavy where few
+/// records tell the spread.
+const FAR: f64 = 6.0;
+/// Difference of R from the other records' that is looked at.
+const STRANGE: f64 = 0.02;
 
 /// The rows of all records, and how many flights belong to none.
 fn rows(records: &[(usize, &Observation)]) -> (Vec<Row>, usize) {
@@ -149,22 +265,19 @@ fn rows(records: &[(usize, &Observation)]) -> (Vec<Row>, usize) {
 
 /// Gauss–Newton for `t_0`, `T_0` and R from the ratio of the first two flights.
 fn fitted(times_s: &[f64]) -> Option<Fitted> {
-    let freedom = times_s.len().checked_sub(3)?;
+    times_s.len().checked_sub(3)?;
     let (first, second) = (times_s[1] - times_s[0], times_s[2] - times_s[1]);
     let mut at = Vector3::new(times_s[0], first, second / first);
     let mut normal = Matrix3::zeros();
-    let mut squares = 0.0;
     for _ in 0..40 {
         normal = Matrix3::zeros();
         let mut right = Vector3::zeros();
-        squares = 0.0;
         let (mut sum, mut slope, mut power, mut power_slope) = (0.0, 0.0, 1.0, 0.0);
         for time in times_s {
             let row = Vector3::new(1.0, sum, at[1] * slope);
             let residual = time - at[0] - at[1] * sum;
             normal += row * row.transpose();
             right += row * residual;
-            squares += residual * residual;
             sum += power;
             slope += power_slope;
             power_slope = power_slope * at[2] + power;
@@ -180,24 +293,49 @@ fn fitted(times_s: &[f64]) -> Option<Fitted> {
     (at[2].is_finite() && at[2] > 0.0 && variance > 0.0).then(|| Fitted {
         restitution: at[2],
         error_per_s: variance.sqrt(),
-        squares,
-        freedom,
     })
 }
 
-/// Standard error of the times, s: as they scatter about the rows, at least as their source states.
+/// Standard error of the times, s: by what no R and no steady change of it explains, at least as their source
+/// states.
 fn time_error_s(fits: &[(&Row, Fitted)], records: &[(usize, &Observation)]) -> f64 {
     let errors: Vec<f64> = records
         .iter()
         .flat_map(|(_, o)| o.impacts.iter().map(|i| i.time_error_s))
         .collect();
     let stated = robust::median(&errors).unwrap_or(0.0);
-    let freedom: usize = fits.iter().map(|(_, f)| f.freedom).sum();
-    if freedom < ENOUGH {
+    let third: Vec<f64> = fits
+        .iter()
+        .flat_map(|(row, _)| differences(&row.times_s, &[-1.0, 3.0, -3.0, 1.0]))
+        .collect();
+    let differences = match third.len() < ENOUGH {
+        true => fits
+            .iter()
+            .flat_map(|(row, _)| differences(&row.times_s, &[1.0, -2.0, 1.0]))
+            .collect(),
+        false => third,
+    };
+    if differences.len() < ENOUGH {
         return stated.max(USUAL_ERROR_S);
     }
-    let squares: f64 = fits.iter().map(|(_, f)| f.squares).sum();
-    stated.max((squares / freedom as f64).sqrt())
+    stated.max(robust::rms(&differences))
+}
+
+/// Differences of the logarithms of a row's flights, each over its standard error for one of 1 s of each time.
+fn differences(times_s: &[f64], factors: &[f64]) -> Vec<f64> {
+    let flights: Vec<f64> = times_s.windows(2).map(|w| w[1] - w[0]).collect();
+    let of = |flights: &[f64]| {
+        let value: f64 = flights.iter().zip(factors).map(|(t, f)| f * t.ln()).sum();
+        // each time ends one flight and begins the next
+        let weights: Vec<f64> = flights.iter().zip(factors).map(|(t, f)| f / t).collect();
+        let inner = weights
+            .windows(2)
+            .map(|w| (w[0] - w[1]).powi(2))
+            .sum::<f64>();
+        let ends = weights[0].powi(2) + weights[weights.len() - 1].powi(2);
+        value / (inner + ends).sqrt()
+    };
+    flights.windows(factors.len()).map(of).collect()
 }
 
 /// Weighted mean of the records with the greater of inner and outer standard error.
@@ -316,6 +454,72 @@ mod tests {
             .interval95
             .expect("an interval");
         assert!(low <= 0.5 && high >= 0.72);
+    }
+
+    /// A row whose R begins at one value and changes by another from bounce to bounce, with scatter of its times.
+    fn changing(first: f64, change: f64, count: usize, scatter_s: f64, seed: usize) -> Vec<f64> {
+        let mut times = vec![1.0];
+        let (mut flight, mut restitution) = (0.6, first);
+        for _ in 0..count {
+            times.push(times[times.len() - 1] + flight);
+            flight *= restitution;
+            restitution += change;
+        }
+        let scatter = |i: usize| scatter_s * ((i + 7 * seed) as f64 * 2.399_963).sin() * 1.4;
+        times
+            .iter()
+            .enumerate()
+            .map(|(i, t)| t + scatter(i))
+            .collect()
+    }
+
+    #[test]
+    fn valid_a_trend_over_the_bounces_is_found_though_it_enlarges_the_scatter_about_one_r() {
+        // R from 0.923 to 0.943 over 20 bounces
+        let rising = changing(0.923, 0.001, 20, 1e-4, 1);
+        let found = pooled(&[timed("a", &rising)]).expect("a result");
+        let by_bounce = |r: &Remark| matches!(r, Remark::RestitutionByBounce { .. });
+        assert!(found.remarks.iter().any(by_bounce), "{:?}", found.remarks);
+        assert_eq!(found.fits, Some(false));
+        let r = found.parameters.restitution.expect("R");
+        assert_eq!(r.status, crate::identify::Status::Weak);
+        let [low, high] = r.interval95.expect("an interval");
+        assert!(low < 0.925 && high > 0.941, "{low} {high}");
+        // the scatter is that of the times, not of the trend
+        let scatter = found.remarks.iter().find_map(|r| match r {
+            Remark::TimesScatter { error_s } => Some(*error_s),
+            _ => None,
+        });
+        assert!(
+            (0.5e-4..2e-4).contains(&scatter.expect("a scatter")),
+            "{scatter:?}"
+        );
+        let steady = changing(0.933, 0.0, 20, 1e-4, 1);
+        assert_eq!(
+            pooled(&[timed("a", &steady)]).expect("a result").fits,
+            Some(true)
+        );
+    }
+
+    #[test]
+    fn one_throw_that_is_not_like_the_others_is_named_and_left_out() {
+        let throw =
+            |r: f64, seed: usize| timed(&format!("throw {seed}"), &changing(r, 0.0, 8, 2e-4, seed));
+        let mut all: Vec<Observation> =
+            (0..5).map(|k| throw(0.878 + 0.001 * k as f64, k)).collect();
+        all.push(throw(0.822, 5));
+        let found = pooled(&all).expect("a result");
+        let named = found
+            .remarks
+            .iter()
+            .find(|r| matches!(r, Remark::OddRecord { .. }));
+        let text = named.expect("a remark").to_string();
+        assert!(
+            text.starts_with("throw 5 has R = 0.822 where all others agree on 0.88"),
+            "{text}"
+        );
+        let (r, _) = restitution(&all);
+        assert!((r - 0.88).abs() < 2e-3, "{r}");
     }
 
     #[test]

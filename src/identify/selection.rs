@@ -448,7 +448,7 @@ impl<'a> Selection<'a> {
                 records.iter().map(|r| r.observation).collect()
             }
             Method::FlightTimes => those(&|o| !o.excluded() && flight_times::is_timed(o)),
-            Method::FreeDecay => those(&|o| !o.excluded() && o.decay.is_some()),
+            Method::FreeDecay => those(&|o| !o.excluded() && !o.decays.is_empty()),
             Method::PublishedSpeeds => Vec::new(),
         }
     }

@@ -72,8 +72,9 @@ pub struct Observation {
     /// The folded waveform; only of periodic records with one impact in n drive periods.
     #[serde(default, with = "shared")]
     pub folded: Option<Arc<Folded>>,
-    /// The free decay; only of records without drive and impacts.
-    pub decay: Option<Decay>,
+    /// The free decays, one after each blow or release; only of records without drive and impacts.
+    #[serde(default)]
+    pub decays: Vec<Decay>,
     /// Problems found.
     pub flags: Vec<Flag>,
 }
@@ -128,7 +129,7 @@ impl Observation {
             && from.any(|r| matches!(r, Role::AccelerationX | Role::AccelerationY))
     }
 
-    /// The observation without what takes room: impacts, amplitudes, responses, waveform and decay.
+    /// The observation without what takes room: impacts, amplitudes, responses, waveform and decays.
     #[must_use]
     pub fn outline(&self) -> Self {
         Self {
@@ -142,9 +143,15 @@ impl Observation {
             amplitudes: Vec::new(),
             response: Vec::new(),
             folded: None,
-            decay: None,
+            decays: Vec::new(),
             ..*self
         }
+    }
+
+    /// The free decay that determines f0 best.
+    pub fn best_decay(&self) -> Option<&Decay> {
+        let by = |a: &&Decay, b: &&Decay| a.relative_error().total_cmp(&b.relative_error());
+        self.decays.iter().min_by(by)
     }
 
     /// Whether the masses never touched: no impact was detected and nothing indicates one. Motion
@@ -219,15 +226,15 @@ pub fn observe(
     observation
 }
 
-/// Observe a free decay: no drive, no impacts, one fit.
+/// Observe free decays: no drive, no impacts, a fit after each blow or release.
 fn observe_decay(record: &Record) -> Observation {
     let mut observation = undriven(record);
-    observation.decay = free_decay(record);
-    if observation.decay.is_none() {
+    observation.decays = free_decays(record);
+    if observation.decays.is_empty() {
         observation.flags.push(Flag::new(
             FlagCode::NoFreeDecay,
             None,
-            "no free decay of three periods or more was found",
+            "no free decay of one and a half periods or more was found",
             "check that the record is a free decay and that its motion channel is named",
         ));
     }
@@ -254,7 +261,7 @@ fn undriven(record: &Record) -> Observation {
         amplitudes: amplitudes(record),
         response: Vec::new(),
         folded: None,
-        decay: None,
+        decays: Vec::new(),
         flags: record.flags.clone(),
     }
 }
@@ -296,8 +303,8 @@ pub fn scale_drives(observations: &mut [Observation]) {
 /// Relative change of the measured drive amplitude from which it counts.
 const DRIVE_CHANGES: f64 = 5e-3;
 
-/// Free decay of the motion channels of mass x, else of mass y, each with its noise.
-fn free_decay(record: &Record) -> Option<Decay> {
+/// Free decays of the motion channels of mass x, else of mass y.
+fn free_decays(record: &Record) -> Vec<Decay> {
     let of_mass = |y: bool| {
         let channels: Vec<&[f64]> = Role::ALL
             .iter()
@@ -308,7 +315,8 @@ fn free_decay(record: &Record) -> Option<Decay> {
             .collect();
         decay::fit_channels(&channels, record.sample_rate_hz)
     };
-    of_mass(false).or_else(|| of_mass(true))
+    let of_x = of_mass(false);
+    if of_x.is_empty() { of_mass(true) } else { of_x }
 }
 
 fn contact_flag(record: &Record, impacts: &[Impact], unsupported: usize) -> Option<Flag> {
@@ -377,7 +385,7 @@ impl Observation {
             amplitudes: Vec::new(),
             response: Vec::new(),
             folded: None,
-            decay: None,
+            decays: Vec::new(),
             flags: Vec::new(),
         }
     }

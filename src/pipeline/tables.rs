@@ -144,19 +144,19 @@ const RECORDS: &[(&str, Get<Observation>)] = &[
     ),
     (
         "decay_natural_frequency_hz",
-        Get::Number(|o| Some(o.decay?.natural_frequency_hz)),
+        Get::Number(|o| Some(o.best_decay()?.natural_frequency_hz)),
     ),
     (
         "decay_natural_frequency_error_hz",
-        Get::Number(|o| Some(o.decay?.natural_frequency_error_hz)),
+        Get::Number(|o| Some(o.best_decay()?.natural_frequency_error_hz)),
     ),
     (
         "decay_damping_ratio",
-        Get::Number(|o| Some(o.decay?.damping_ratio)),
+        Get::Number(|o| Some(o.best_decay()?.damping_ratio)),
     ),
     (
         "decay_damping_ratio_error",
-        Get::Number(|o| Some(o.decay?.damping_ratio_error)),
+        Get::Number(|o| Some(o.best_decay()?.damping_ratio_error)),
     ),
     ("flags", Get::Text(flags)),
     ("excluded", Get::Flag(|o| Some(o.excluded()))),

@@ -226,10 +226,12 @@ fn decays(record: &Record) -> bool {
     if channels.is_empty() || record.sample_rate_hz <= 0.0 {
         return false;
     }
-    decay::fit_channels(&channels, record.sample_rate_hz).is_some_and(|d| {
-        let periods = d.samples as f64 / record.sample_rate_hz * d.natural_frequency_hz;
-        d.residual_ratio < DECAY_LEAVES && periods > DECAY_PERIODS && d.damping_ratio < 0.5
-    })
+    decay::fit_channels(&channels, record.sample_rate_hz)
+        .first()
+        .is_some_and(|d| {
+            let periods = d.samples as f64 / record.sample_rate_hz * d.natural_frequency_hz;
+            d.residual_ratio < DECAY_LEAVES && periods > DECAY_PERIODS && d.damping_ratio < 0.5
+        })
 }
 
 /// Correlation from which two sensors see one body, whichever way they point.

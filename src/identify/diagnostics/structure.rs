@@ -8,7 +8,7 @@ use crate::motion::Observation;
 
 /// Normal deviate from which scatter beyond the stated errors, or what a grouping explains of it, is no
 /// chance.
-const SIGNIFICANT: f64 = 3.3;
+const SIGNIFICANT: f64 = 3.0;
 /// Range of R from which a structure matters.
 const MATTERS: f64 = 0.02;
 /// Most groups that are kept.
@@ -167,6 +167,14 @@ pub fn structure(ratios: &[GroupedRatio]) -> Option<Grouping> {
         .filter_map(|grouping| Some((explains(ratios, grouping, constant)?, grouping)))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, grouping)| grouping)
+}
+
+/// Whether values differ by more than their errors, and by an amount that matters.
+pub fn differ(ratios: &[GroupedRatio]) -> bool {
+    let (_, _, chi2) = mean(ratios);
+    let values = ratios.iter().map(|r| r.ratio);
+    let range = crate::signal::robust::range(values).map_or(0.0, |(low, high)| high - low);
+    ratios.len() > 1 && deviate(chi2, ratios.len() - 1) > SIGNIFICANT && range > MATTERS
 }
 
 /// Normal deviate of what a grouping explains of χ²; `None` if it is chance or too little to matter.

@@ -310,7 +310,8 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
                 method: *method,
                 remark: remark.clone(),
             };
-            let telling = result.remarks.iter().filter(|r| !is_plain(r));
+            let telling = result.remarks.iter();
+            let telling = telling.filter(|r| !is_plain(r) && !is_to_be_mended(r));
             findings.extend(telling.map(misfit));
         }
     }
@@ -331,7 +332,15 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
 
 /// Whether a remark is on what the laboratory can mend although the model fits.
 fn is_to_be_mended(remark: &Remark) -> bool {
-    matches!(remark, Remark::EarlyJumps { .. })
+    matches!(
+        remark,
+        Remark::EarlyJumps { .. }
+            | Remark::OddRecord { .. }
+            | Remark::DecaysHum { .. }
+            | Remark::DecaysMode { .. }
+            | Remark::DecaysBackground { .. }
+            | Remark::DecaysSlowNoise { .. }
+    )
 }
 
 /// Whether a remark only describes the data, so that it is no reason for a misfit.

@@ -8,6 +8,7 @@ use crate::identify::method::Method;
 use crate::message::boxed;
 use crate::motion::Undetermined;
 use crate::record::FlagCode;
+use crate::signal::decay::DampingLaw;
 
 /// One message of each kind of an identification.
 pub fn kinds() -> Vec<Box<dyn Message>> {
@@ -31,6 +32,7 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         .chain(boxed(Sentence::iter()))
         .chain(boxed([PairAgreement::default()].into_iter()))
         .chain(boxed(Item::iter()))
+        .chain(boxed(DampingLaw::iter()))
         .collect()
 }
 

@@ -2,6 +2,7 @@
 //! left out, findings, and the sentences of the verdict; each a variant with its numbers in SI.
 
 mod beyond;
+mod damping;
 mod direction;
 mod finding;
 mod kinds;
@@ -11,6 +12,7 @@ mod reason;
 mod remark;
 mod sentence;
 
+pub use damping::DampingPoint;
 pub use finding::{Finding, PublishedSetting};
 pub use kinds::kinds;
 pub use note::Note;

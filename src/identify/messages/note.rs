@@ -57,6 +57,13 @@ pub enum Note {
     },
     /// The frequency changes over the decay.
     Drifts,
+    /// The damping ratio changes over the decay.
+    DampingChanges,
+    /// Nothing damps the motion that stands out of the noise.
+    Undamped {
+        /// Damping ratio that is not exceeded, at 97.5 %.
+        most: f64,
+    },
     /// Each specimen has parameters of its own.
     SeveralSpecimens,
     /// No damping ratio gives the published motions.
@@ -149,6 +156,15 @@ message_table! { Note;
     Self::Drifts =>
         "the frequency changes over the decay, so that it is no single $f_0$: see the remark",
         "die Frequenz ändert sich beim Ausschwingen und ist nicht ein $f_0$: siehe die Anmerkung";
+    Self::DampingChanges =>
+        "the damping ratio changes over the decay, so that it is no single $β$: the interval holds \
+         its values; see the remark",
+        "der Dämpfungsgrad ändert sich beim Ausschwingen und ist nicht ein $β$: Das Intervall \
+         enthält seine Werte; siehe die Anmerkung";
+    Self::Undamped { most } =>
+        "the amplitude does not fall by more than its noise: an upper limit, $β$ < {most}",
+        "die Amplitude fällt nicht stärker als ihr Rauschen: eine obere Grenze, $β$ < {most}",
+        most = Value::Number(*most, digits(*most));
     Self::SeveralSpecimens =>
         "the campaign has several specimens; each has its own parameters",
         "die Messreihe hat mehrere Prüflinge; jeder hat seine eigenen Parameter";
@@ -171,6 +187,12 @@ message_table! { Note;
     Self::NotSeparable =>
         "the data do not separate the parameters",
         "die Daten trennen die Parameter nicht";
+}
+
+/// Decimals that show two digits of a small number.
+fn digits(value: f64) -> usize {
+    let shows = |n: &usize| format!("{value:.n$}").trim_start_matches(['0', '.']).len() > 1;
+    (2..10).find(shows).unwrap_or(9)
 }
 
 /// A standard error of a parameter: relative or, of R, absolute.

@@ -2,12 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Item, Note};
+use super::{DampingPoint, Item, Note};
 use crate::identify::diagnostics::cause::Cause;
 use crate::identify::diagnostics::structure::ImpactGroup;
 use crate::identify::method::Method;
 use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::message::{Message, Value};
+use crate::signal::decay::DampingLaw;
 use crate::{message_table, messages};
 
 /// R at one approach speed.
@@ -193,6 +194,15 @@ pub enum Remark {
         /// Standard error of a time, s.
         error_s: f64,
     },
+    /// One record has another R than all others, which agree; it is left out.
+    OddRecord {
+        /// Its name.
+        record: String,
+        /// Its R.
+        restitution: f64,
+        /// R of the others.
+        others: f64,
+    },
     /// Flights that follow none of R times their length were left out.
     FlightsLeftOut {
         /// How many.
@@ -230,6 +240,47 @@ pub enum Remark {
         last_hz: f64,
         /// The change over half the 95 % interval of the whole decay's frequency.
         intervals: f64,
+    },
+    /// The damping ratio changes over the decays.
+    DecaysDamping {
+        /// Number of decays along which it does.
+        count: usize,
+        /// Parts of the decay along which it changes most.
+        points: Vec<DampingPoint>,
+        /// What explains it.
+        law: DampingLaw,
+    },
+    /// A steady tone beside the decays, fitted with them.
+    DecaysHum {
+        /// Number of decays with one.
+        count: usize,
+        /// Frequency of the strongest, Hz.
+        frequency_hz: f64,
+        /// Its amplitude over that of the decay.
+        ratio: f64,
+    },
+    /// Another mode beside the decays, fitted with them.
+    DecaysMode {
+        /// Number of decays with one.
+        count: usize,
+        /// Frequency of the strongest, Hz.
+        frequency_hz: f64,
+        /// Its amplitude over that of the decay.
+        ratio: f64,
+    },
+    /// A drift under the decays, fitted with them.
+    DecaysBackground {
+        /// Number of decays with one.
+        count: usize,
+        /// Its greatest range over the decay's amplitude.
+        ratio: f64,
+    },
+    /// Slow noise under the decays makes their intervals wide.
+    DecaysSlowNoise {
+        /// Number of decays with such noise.
+        count: usize,
+        /// How many times as wide as by the scatter of neighbouring samples, at most.
+        times: f64,
     },
     /// The free decays are not of one oscillator.
     DecaysDiffer {
@@ -384,6 +435,14 @@ message_table! { Remark;
         "the times of the impacts scatter by {error} ms",
         "die Zeiten der Stöße streuen um {error} ms",
         error = Value::Number(1e3 * error_s, 2);
+    Self::OddRecord { record, restitution, others } =>
+        "{record} has $R$ = {own} where all others agree on {others}: left out; see whether it fell \
+         on the same spot and whether a bounce is missing",
+        "{record} hat $R$ = {own}, wo alle anderen {others} ergeben: ausgelassen; prüfen, ob der \
+         Fall auf dieselbe Stelle ging und ob ein Stoß fehlt",
+        record = Value::Name(record),
+        own = Value::Number(*restitution, 3),
+        others = Value::Number(*others, 3);
     Self::FlightsLeftOut { count } =>
         "flights that do not follow from the one before, as where an impact was missed, left out: \
          {count}",
@@ -415,6 +474,45 @@ message_table! { Remark;
         first = Value::Number(*first_hz, 4),
         last = Value::Number(*last_hz, 4),
         intervals = Value::Number(*intervals, 0);
+    Self::DecaysDamping { count, points, law } =>
+        "the damping ratio changes along {count} of the decays, most of all from part to part of \
+         one, each at its share of the amplitude: {points}; {law}",
+        "der Dämpfungsgrad ändert sich in {count} der Ausschwingversuche, am meisten in einem von \
+         Abschnitt zu Abschnitt, je bei seinem Anteil der Amplitude: {points}; {law}",
+        count = Value::Count(*count),
+        points = Value::list(points),
+        law = Value::Message(law);
+    Self::DecaysHum { count, frequency_hz, ratio } =>
+        "a steady tone beside {count} of the decays, the strongest of {frequency} Hz and {share} of \
+         a decay's amplitude, is fitted with them: look for hum of the mains or a fan",
+        "ein gleichbleibender Ton neben {count} der Ausschwingversuche, der stärkste mit {frequency} \
+         Hz und {share} der Amplitude, ist mit angepasst: nach Netzbrummen oder einem Lüfter suchen",
+        count = Value::Count(*count),
+        frequency = Value::Number(*frequency_hz, 1),
+        share = Value::Percent(*ratio, 1);
+    Self::DecaysMode { count, frequency_hz, ratio } =>
+        "another mode beside {count} of the decays, the strongest of {frequency} Hz and {share} of a \
+         decay's amplitude, is fitted with them",
+        "eine weitere Eigenschwingung neben {count} der Ausschwingversuche, die stärkste mit \
+         {frequency} Hz und {share} der Amplitude, ist mit angepasst",
+        count = Value::Count(*count),
+        frequency = Value::Number(*frequency_hz, 1),
+        share = Value::Percent(*ratio, 0);
+    Self::DecaysBackground { count, ratio } =>
+        "a drift under {count} of the decays, by up to {share} of the amplitude, is fitted with \
+         them: let the sensor warm up, or look for what creeps",
+        "eine Drift unter {count} der Ausschwingversuche, um bis zu {share} der Amplitude, ist mit \
+         angepasst: den Aufnehmer warm werden lassen, oder suchen, was kriecht",
+        count = Value::Count(*count),
+        share = Value::Percent(*ratio, 0);
+    Self::DecaysSlowNoise { count, times } =>
+        "slow noise under {count} of the decays, as of a drift or a hum, makes the intervals up to \
+         {times} times as wide as the scatter of neighbouring samples would",
+        "langsames Rauschen unter {count} der Ausschwingversuche, wie von einer Drift oder einem \
+         Brummen, macht die Intervalle bis zu {times}-mal so weit, wie die Streuung benachbarter \
+         Werte es täte",
+        count = Value::Count(*count),
+        times = Value::Number(*times, 0);
     Self::DecaysDiffer { spread } =>
         "the decays' natural frequencies differ by up to {share}: they are not of one oscillator",
         "die Eigenfrequenzen der Ausschwingversuche unterscheiden sich um bis zu {share}: Sie sind \

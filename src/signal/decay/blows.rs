@@ -1,0 +1,105 @@
+//! Where decays begin: after each blow of a record, or after its release.
+
+use crate::signal::{robust, spectrum, whole};
+
+/// Share of the greatest excursion from which the motion has begun.
+const BEGUN: f64 = 0.7;
+/// Part of a period that an oscillation stays above that share at most; longer is held.
+const HELD: f64 = 0.35;
+/// Part of a period that the motion may have lasted before.
+const BEFORE: f64 = 0.75;
+/// Share of the greatest excursion that a blow reaches, of those that are fitted.
+const BLOW: f64 = 0.15;
+/// Rise of the excursions, within a period, that is a blow.
+const RISE: f64 = 2.0;
+/// Share of the excursion that ends what is looked at for the first estimate of the frequency.
+const DECAYED: f64 = 0.1;
+
+/// Samples between which the parts of a record decay freely, each after a blow of its own.
+pub(super) fn parts(samples: &[f64]) -> Vec<(usize, usize)> {
+    let Some(centre) = robust::median(samples) else {
+        return Vec::new();
+    };
+    let Some(period) = spectrum::peak_frequency(samples).map(|f| 1.0 / f) else {
+        return vec![(0, samples.len())];
+    };
+    let window = whole::index((0.5 * period).ceil()).max(2);
+    let heights: Vec<f64> = samples
+        .chunks(window)
+        .map(|c| c.iter().map(|v| (v - centre).abs()).fold(0.0, f64::max))
+        .collect();
+    let greatest = heights.iter().copied().fold(0.0, f64::max);
+    let mut blows: Vec<usize> = (2..heights.len())
+        .filter(|&i| {
+            // the window of the blow and the one after it hold its height
+            let height = heights[i..(i + 2).min(heights.len())]
+                .iter()
+                .copied()
+                .fold(0.0, f64::max);
+            let later = heights[i..(i + 6).min(heights.len())]
+                .iter()
+                .copied()
+                .fold(0.0, f64::max);
+            let before = heights[i - 2].max(heights[i - 1]);
+            height > RISE * before && height > BLOW * greatest && later <= 1.1 * height
+        })
+        .collect();
+    blows.dedup_by(|b, a| *b <= *a + 2);
+    let begins = blows.iter().map(|b| b * window);
+    let mut edges: Vec<usize> = begins.map(|b| b.saturating_sub(1)).collect();
+    edges.push(samples.len());
+    let mut out = Vec::new();
+    let mut from = 0;
+    for edge in edges {
+        if out.is_empty()
+            && heights[..edge / window]
+                .iter()
+                .all(|h| *h < BLOW * greatest)
+        {
+            // nothing but rest before the first blow
+            out.push((0, edge));
+            continue;
+        }
+        out.push((from, edge));
+        from = edge;
+    }
+    out
+}
+
+/// Where a motion begins: the first sample of a great excursion, and the first after which it is no longer
+/// as great.
+pub(super) fn begin(samples: &[f64]) -> Option<(usize, usize)> {
+    let centre = robust::median(samples)?;
+    let size = |v: &f64| (v - centre).abs();
+    let greatest = samples.iter().map(size).fold(0.0, f64::max);
+    if !(greatest > 0.0) {
+        return None;
+    }
+    let above = |i: usize| size(&samples[i]) >= BEGUN * greatest;
+    let first = (0..samples.len()).find(|i| above(*i))?;
+    let held = (first..samples.len()).find(|i| !above(*i))?;
+    Some((first, held))
+}
+
+/// The first sample that may be of the decay, of a period in samples: the motion may have begun before its
+/// first great excursion, unless the mass was held there before it was released.
+pub(super) fn earliest((first, held): (usize, usize), period: f64) -> usize {
+    match (held - first) as f64 > HELD * period {
+        true => held,
+        false => first.saturating_sub(whole::index(BEFORE * period)),
+    }
+}
+
+/// The part of a decay in which it is well above what is left of it.
+pub(super) fn lasting(samples: &[f64]) -> &[f64] {
+    let Some(centre) = robust::median(samples) else {
+        return samples;
+    };
+    let size = |v: &f64| (v - centre).abs();
+    let greatest = samples.iter().map(size).fold(0.0, f64::max);
+    let noise = robust::noise_deviation(samples);
+    let least = (DECAYED * greatest).max(5.0 * noise);
+    let last = samples.iter().rposition(|v| size(v) > least);
+    let end = last.map_or(samples.len(), |l| (l + 1) * 3 / 2).max(24);
+    &samples[..end.min(samples.len())]
+}

@@ -1,0 +1,142 @@
+//! What oscillates at other frequencies than a decay: hum, other modes.
+
+use super::least_squares::Series;
+use super::prepared::{factor, free, means, peak, rough};
+use super::shape::Rates;
+use crate::signal::columns;
+
+/// Most oscillations of other frequencies that are taken from a record.
+const MOST: usize = 4;
+/// Decay over the record, as a logarithm, of what is as steady as a hum.
+pub(super) const STEADY: f64 = 0.5;
+/// Share of what the decay leaves that another oscillation explains.
+const STANDS_OUT: f64 = 0.5;
+/// Periods that another oscillation lasts.
+const LEAST_TURNS: f64 = 3.0;
+/// Rounds in which all oscillations are fitted again beside each other.
+const ROUNDS: usize = 3;
+
+/// A tone or a decay of another frequency.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Mode {
+    /// Frequency per sample.
+    pub(super) frequency: f64,
+    pub(super) amplitude: f64,
+    pub(super) steady: bool,
+}
+
+/// A mode with its rates and its values at every sample.
+struct Fitted {
+    rates: [f64; 2],
+    values: Vec<f64>,
+    mode: Mode,
+}
+
+/// Take what oscillates at other frequencies than the decay of given rates from samples, beginning with a
+/// known mode.
+pub(super) fn remove(
+    samples: &mut [f64],
+    [omega, sigma, ..]: Rates,
+    known: Option<[f64; 2]>,
+) -> Vec<Mode> {
+    let own = [omega, sigma];
+    let mut modes: Vec<Fitted> = Vec::new();
+    modes.extend(known.and_then(|rates| fitted(samples, rates)));
+    for _ in 0..MOST {
+        for _ in 0..if modes.is_empty() { 0 } else { ROUNDS } {
+            again(samples, own, &mut modes);
+        }
+        let found =
+            without_decay(&less(samples, &modes), own).and_then(|rest| strongest(&rest, own));
+        let Some(found) = found else {
+            break;
+        };
+        modes.push(found);
+    }
+    let rest = less(samples, &modes);
+    samples.copy_from_slice(&rest);
+    modes.into_iter().map(|m| m.mode).collect()
+}
+
+/// Take the oscillation of about given rates from samples.
+pub(super) fn subtract(samples: &mut [f64], rates: [f64; 2]) {
+    if let Some(found) = fitted(samples, rates) {
+        columns::subtract(samples, 1.0, &found.values);
+    }
+}
+
+/// Samples less modes.
+fn less(samples: &[f64], modes: &[Fitted]) -> Vec<f64> {
+    let mut rest = samples.to_vec();
+    for mode in modes {
+        columns::subtract(&mut rest, 1.0, &mode.values);
+    }
+    rest
+}
+
+/// Fit each mode to what the decay and the other modes leave.
+fn again(samples: &[f64], own: [f64; 2], modes: &mut [Fitted]) {
+    for k in 0..modes.len() {
+        let Some(mut rest) = without_decay(&less(samples, modes), own) else {
+            return;
+        };
+        for (value, back) in rest.iter_mut().zip(&modes[k].values) {
+            *value += back;
+        }
+        if let Some(found) = fitted(&rest, modes[k].rates) {
+            modes[k] = found;
+        }
+    }
+}
+
+/// What the decay of about given rates leaves of samples.
+fn without_decay(samples: &[f64], own: [f64; 2]) -> Option<Vec<f64>> {
+    let factor = factor(own[0]);
+    let rates = [own[0], own[1], 0.0, 0.0].map(|r| r * factor as f64);
+    let decay = free(&Series::plain(means(samples, factor)), rates)?;
+    let whole = Series::plain(samples.to_vec());
+    let point = whole.project(decay.shape, decay.per_sample(factor))?;
+    Some(whole.residuals(&point))
+}
+
+/// The strongest oscillation of samples, if it is another than the decay of given rates and stands out.
+fn strongest(rest: &[f64], own: [f64; 2]) -> Option<Fitted> {
+    let rates = rough(rest, peak(rest)?)?.rates;
+    let count = rest.len() as f64;
+    if (rates[0] - own[0]).abs() <= width(own, count).max(width(rates, count)) {
+        return None;
+    }
+    let found = fitted(rest, rates)?;
+    let sigma = found.rates[1];
+    let lasts = count.min(1.0 / sigma.abs().max(f64::MIN_POSITIVE));
+    let explained = columns::dot(&found.values, &found.values);
+    let stands_out = explained > STANDS_OUT * columns::dot(rest, rest);
+    let turns = lasts * found.rates[0] / std::f64::consts::TAU;
+    (stands_out && sigma * count > -STEADY && turns > LEAST_TURNS).then_some(found)
+}
+
+/// The oscillation of about given rates in samples.
+fn fitted(samples: &[f64], [omega, sigma]: [f64; 2]) -> Option<Fitted> {
+    let factor = factor(omega);
+    let rates = [omega, sigma, 0.0, 0.0].map(|r| r * factor as f64);
+    let point = free(&Series::plain(means(samples, factor)), rates)?;
+    let whole = Series::plain(samples.to_vec());
+    let point = whole.project(point.shape, point.per_sample(factor))?;
+    let [a, b] = point.amplitudes();
+    let [omega, sigma, ..] = point.rates;
+    Some(Fitted {
+        rates: [omega, sigma],
+        values: point.values(samples.len()),
+        mode: Mode {
+            frequency: omega / std::f64::consts::TAU,
+            amplitude: a.hypot(b),
+            steady: sigma * (samples.len() as f64) < STEADY,
+        },
+    })
+}
+
+/// Difference of frequency within which a decay over a number of samples is not told from others, rad per
+/// sample: three lines of the spectrum, three half widths of its resonance.
+fn width(rates: [f64; 2], count: f64) -> f64 {
+    (3.0 * std::f64::consts::TAU / count).max(3.0 * rates[1])
+}

@@ -1,0 +1,459 @@
+//! A decay made ready for its fit: where it begins and ends, what lies under it, the noise about it.
+
+use super::blows;
+use super::least_squares::{Point, Series};
+use super::modes::{self, Mode, STEADY};
+use super::noise::Noise;
+use super::shape::{Rates, Shape};
+use super::{LEAST_PERIODS, STANDS_OUT};
+use crate::signal::columns::dot;
+use crate::signal::{robust, spectrum, whole};
+
+/// Means that a period is fitted by, at least, where it has as many samples.
+const PER_PERIOD: f64 = 40.0;
+/// Most means that are fitted.
+const MOST: usize = 20_000;
+/// Time constants of the decay after which it is lost.
+const LOST: f64 = 7.0;
+/// Part of a period by which the fit begins later where the samples are not those of the decay.
+const LATER: f64 = 0.125;
+/// Periods within which the fit begins.
+const BEGINS: f64 = 3.0;
+/// Root mean square of the first quarter of a period, in those of the others, that is no noise.
+const NO_NOISE: f64 = 3.0;
+/// What a fit leaves over the decay, below which it may be one.
+const EXPLAINED: f64 = 0.8;
+/// How much more than the least may be left where a fit begins.
+const AS_LITTLE: f64 = 1.5;
+/// Periods and time constants from which a changing rate is told from a steady one.
+const TELLS: f64 = 1.8;
+/// Relative change of the frequency along a decay that is none of one.
+const OFF: f64 = 0.1;
+
+/// Time constants of the first motion after which another that lasts is looked for; its fit begins after one.
+const OVER: f64 = 3.0;
+/// Damping ratio of two motions, one of which outlasts the other, at most.
+const LIGHT: f64 = 0.15;
+/// Frequency of the first motion over that of the one that lasts, from which it is another mode.
+const ANOTHER_MODE: f64 = 1.5;
+/// Rate of the motion that lasts over that of the first one, at most.
+const SLOWER: f64 = 0.7;
+/// Share of the variance that a decay there explains.
+const EXPLAINS: f64 = 0.5;
+
+/// Fewest degrees of freedom of a fit.
+const LEAST_FREEDOM: usize = 8;
+/// Amplitude at the first sample over the greatest excursion, at most.
+const MOST_EXTRAPOLATED: f64 = 3.0;
+
+/// A decay ready for its fit.
+pub(super) struct Prepared {
+    /// First sample of the part that is fitted, and how many are.
+    pub(super) first: usize,
+    samples: Vec<f64>,
+    /// Samples of each mean.
+    pub(super) factor: usize,
+    /// The means, less steady tones.
+    pub(super) series: Series,
+    /// The fit that leaves the rate of decay free to change, where the decay is long enough to tell: of
+    /// those the one that the noise is best beside.
+    pub(super) free: Point,
+    /// What was taken from the samples: frequency per sample, amplitude, and whether it is steady.
+    beside: Vec<Mode>,
+}
+
+/// The fit at every sample.
+pub(super) struct AtEverySample {
+    pub(super) amplitude: f64,
+    pub(super) phase_rad: f64,
+    pub(super) offset: f64,
+    pub(super) residual_ratio: f64,
+    pub(super) structured_ratio: f64,
+    pub(super) fading: f64,
+    pub(super) samples: usize,
+}
+
+impl Prepared {
+    /// The decay of a part of a record with one blow or release. Where its first motion and all of it have
+    /// unlike frequencies, as after a hammer's blow that excites a higher mode too, the one that lasts, if it
+    /// decays at all.
+    pub(super) fn of(samples: &[f64]) -> Option<Self> {
+        let begun = blows::begin(samples)?;
+        let tail = &samples[begun.1..];
+        let first_motion = |part: &[f64]| rough(part, peak(part)?);
+        let begins = first_motion(blows::lasting(tail)).or_else(|| first_motion(tail))?;
+        let lost = whole::index((OVER / begins.rates[1].max(1e-9)).min(1e9));
+        let lasts = tail.get(lost..).and_then(|after| {
+            let found = rough(after, peak(after)?)?;
+            let slower = found.rates[1] < SLOWER * begins.rates[1];
+            let decays = found.rates[1] * after.len() as f64 > STEADY;
+            let slower = slower && found.rates[1] < LIGHT * found.rates[0];
+            (slower && decays && found.explains > EXPLAINS).then_some(found)
+        });
+        let Some(lasts) = lasts else {
+            return Self::about(samples, begun, begins.rates, None);
+        };
+        if begins.rates[0] < ANOTHER_MODE * lasts.rates[0] {
+            return Self::about(samples, begun, lasts.rates, None);
+        }
+        if begins.rates[1] > LIGHT * begins.rates[0] {
+            return Self::about(samples, begun, begins.rates, None);
+        }
+        let start = begun.1 + lost / 3;
+        Self::about(samples, (start, start), lasts.rates, Some(begins.rates))
+    }
+
+    /// The decay of about given rates in a part of a record whose motion has begun, beside the one of a known
+    /// mode.
+    fn about(
+        samples: &[f64],
+        begun: (usize, usize),
+        rates: [f64; 2],
+        known: Option<[f64; 2]>,
+    ) -> Option<Self> {
+        let mut cleared = samples.to_vec();
+        if let Some(known) = known {
+            modes::subtract(&mut cleared[begun.1..], known);
+        }
+        let start = match begun.0 < begun.1 {
+            true => blows::earliest(begun, std::f64::consts::TAU / rates[0]),
+            false => begun.1,
+        };
+        let (first, found) = begin(&cleared, start, rates)?;
+        let factor = found.factor;
+        let mut own = samples[first..].to_vec();
+        let beside = modes::remove(&mut own, found.point.per_sample(factor), known);
+        let point = match beside.is_empty() {
+            true => found.point,
+            false => first_fit(&own, rates)?.point,
+        };
+        own.truncate(end(&own, factor, &point));
+        let mut series = Series::plain(means(&own, factor));
+        let free = settle(&mut series, &point)?;
+        Some(Self {
+            first,
+            samples: own,
+            factor,
+            series,
+            free,
+            beside,
+        })
+    }
+
+    /// Degrees of freedom that a fit leaves.
+    pub(super) fn degrees(&self, point: &Point) -> Option<f64> {
+        let left = self.series.values.len().checked_sub(point.parameters())?;
+        (left > 0).then_some(left as f64)
+    }
+
+    /// Independent values of the noise about the decay's frequency that a fit leaves.
+    pub(super) fn freedom(&self, point: &Point) -> Option<f64> {
+        let density = self.series.noise.density(point.rates[0]).max(1.0);
+        let independent = self.series.values.len() as f64 / density;
+        Some((independent - point.parameters() as f64).max(2.0))
+    }
+
+    /// Whether a decay stands out of the noise, and above what is before and after it.
+    pub(super) fn stands_out(&self, point: &Point, deviation: f64) -> bool {
+        let count = self.series.values.len();
+        let lasts = (count as f64).min(1.0 / point.rates[1].abs().max(f64::MIN_POSITIVE));
+        let [a, b] = point.amplitudes();
+        let sizes = self
+            .series
+            .values
+            .iter()
+            .map(|v| (v - point.offset()).abs());
+        let greatest = sizes.fold(0.0, f64::max);
+        let amplitude = a.hypot(b);
+        count >= point.parameters() + LEAST_FREEDOM
+            && amplitude < MOST_EXTRAPOLATED * greatest
+            && amplitude * (0.5 * lasts).sqrt() > STANDS_OUT * deviation
+    }
+
+    /// What lies beside a decay of an amplitude.
+    pub(super) fn beside(&self, amplitude: f64, rate_hz: f64) -> super::Beside {
+        let strongest = |steady: bool| {
+            let of_kind = self.beside.iter().filter(|m| m.steady == steady);
+            let found = of_kind.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+            found.map(|m| [m.frequency * rate_hz, m.amplitude / amplitude])
+        };
+        super::Beside {
+            hum: strongest(true),
+            mode: strongest(false),
+            drift_ratio: self.free.drift() / amplitude,
+            slow_noise: self.series.noise.slow(self.free.rates[0]),
+        }
+    }
+
+    /// The linear part of a fit at every sample.
+    pub(super) fn at_every_sample(&self, point: &Point) -> Option<AtEverySample> {
+        let rates = point.per_sample(self.factor);
+        let series = Series {
+            values: self.samples.clone(),
+            degree: self.series.degree,
+            noise: Noise::default(),
+        };
+        let own = series.project(point.shape, rates)?;
+        let residuals = series.residuals(&own);
+        let [a, b] = own.amplitudes();
+        let amplitude = a.hypot(b);
+        let level = own.level(series.values.len());
+        let quarter = residuals.len() / 4;
+        let last = robust::rms(&residuals[residuals.len() - quarter..]);
+        Some(AtEverySample {
+            fading: robust::rms(&residuals[..quarter]) / last.max(f64::MIN_POSITIVE),
+            amplitude,
+            phase_rad: (-b).atan2(a),
+            offset: own.offset(),
+            residual_ratio: robust::rms(&residuals) / level,
+            structured_ratio: structured(&residuals) / level,
+            samples: series.values.len(),
+        })
+    }
+}
+
+/// Means over a number of samples each.
+pub(super) fn means(samples: &[f64], factor: usize) -> Vec<f64> {
+    samples.chunks_exact(factor).map(robust::mean).collect()
+}
+
+/// Samples of a mean for a frequency, rad per sample, so that no more than are fitted follow.
+pub(super) fn factor(omega: f64) -> usize {
+    let period = std::f64::consts::TAU / omega;
+    whole::index((period / PER_PERIOD).floor()).max(1)
+}
+
+/// The strongest frequency, rad per sample.
+pub(super) fn peak(samples: &[f64]) -> Option<f64> {
+    Some(spectrum::peak_frequency(samples)? * std::f64::consts::TAU)
+}
+
+/// `ω_d` and σ per sample by a search about a peak of the spectrum.
+pub(super) fn rough(samples: &[f64], peak: f64) -> Option<Rough> {
+    let periods = samples.len() as f64 * peak / std::f64::consts::TAU;
+    let factor = whole::index((std::f64::consts::TAU / peak / 16.0).floor()).max(1);
+    let series = Series::plain(means(samples, factor));
+    let wide: &[f64] = if periods > 8.0 {
+        &[1.0]
+    } else {
+        &[0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0]
+    };
+    let scaled = |omega: f64, beta: f64| -> Rates {
+        let per_mean = omega * factor as f64;
+        [per_mean, beta * per_mean, 0.0, 0.0]
+    };
+    let starts = wide.iter().flat_map(|w| {
+        let betas = [0.0, 0.003, 0.02, 0.06, 0.13, 0.25, 0.4, 0.55];
+        betas.map(|b| scaled(w * peak, b))
+    });
+    let mut points: Vec<Point> = starts
+        .filter_map(|rates| series.project(Shape::Viscous, rates))
+        .collect();
+    points.sort_by(|a, b| a.squares.total_cmp(&b.squares));
+    let found = points
+        .iter()
+        .take(3)
+        .filter_map(|p| series.descend(Shape::Viscous, p.rates))
+        .min_by(|a, b| a.squares.total_cmp(&b.squares))?;
+    let centre = robust::mean(&series.values);
+    let all: f64 = series.values.iter().map(|v| (v - centre).powi(2)).sum();
+    Some(Rough {
+        rates: [found.rates[0], found.rates[1]].map(|r| r / factor as f64),
+        explains: 1.0 - found.squares / all.max(f64::MIN_POSITIVE),
+    })
+}
+
+/// A first estimate of a decay.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rough {
+    /// `ω_d` and σ per sample.
+    pub(super) rates: [f64; 2],
+    /// Share of the samples' variance that it explains.
+    explains: f64,
+}
+
+/// A fit whose rates are free to change, of a decay that is long enough to tell; else the viscous one.
+pub(super) fn free(series: &Series, start: Rates) -> Option<Point> {
+    let viscous = series.descend(Shape::Viscous, start)?;
+    let [omega, sigma, ..] = viscous.rates;
+    let length = (series.values.len() as f64).min(2.0 / sigma.abs().max(f64::MIN_POSITIVE));
+    if length * omega / std::f64::consts::TAU <= TELLS {
+        return Some(viscous);
+    }
+    let bent = series.descend(Shape::Bent, viscous.rates).filter(|bent| {
+        let change = 0.5 * bent.rates[2] * length;
+        (bent.rates[0] / omega - 1.0).abs() < OFF && (change / omega).abs() < OFF
+    });
+    Some(bent.unwrap_or(viscous))
+}
+
+/// First sample and the first fit: later than the start by parts of a period while the first quarter of a
+/// period does not follow the rest. If it never does, the first from which as little is left as from any.
+fn begin(samples: &[f64], start: usize, rough: [f64; 2]) -> Option<(usize, FirstFit)> {
+    let period = std::f64::consts::TAU / rough[0];
+    let mut found: Vec<(usize, FirstFit)> = Vec::new();
+    let mut skipped = 0.0;
+    while skipped <= BEGINS {
+        let first = start + whole::index((skipped * period).round());
+        let Some(fit) = samples.get(first..).and_then(|tail| first_fit(tail, rough)) else {
+            break;
+        };
+        if fit.follows {
+            return Some((first, fit));
+        }
+        found.push((first, fit));
+        skipped += LATER * (1.0f64 + skipped).floor();
+    }
+    let left = found.iter().map(|f| f.1.left);
+    let least = left.fold(f64::INFINITY, f64::min);
+    found.into_iter().find(|f| f.1.left <= AS_LITTLE * least)
+}
+
+/// A fit from a sample on.
+struct FirstFit {
+    /// Samples of each mean.
+    factor: usize,
+    point: Point,
+    /// Whether its first quarter of a period follows the rest.
+    follows: bool,
+    /// What it leaves over the signal.
+    left: f64,
+}
+
+fn first_fit(tail: &[f64], rough: [f64; 2]) -> Option<FirstFit> {
+    let factor = factor(rough[0]);
+    let most = whole::index((LOST / rough[1].abs().max(f64::MIN_POSITIVE)).min(1e9));
+    let periods = tail.len() as f64 * rough[0] / std::f64::consts::TAU;
+    if periods < LEAST_PERIODS {
+        return None;
+    }
+    let tail = &tail[..tail.len().min(most.max(16 * factor)).min(MOST * factor)];
+    let series = Series::plain(means(tail, factor));
+    let rates = [rough[0] * factor as f64, rough[1] * factor as f64, 0.0, 0.0];
+    let point = free(&series, rates)?;
+    let residuals = series.residuals(&point);
+    let quarter = std::f64::consts::TAU / point.rates[0] / 4.0;
+    let quarter = whole::index(quarter.round()).max(2);
+    let blocks: Vec<f64> = residuals.chunks(quarter).map(robust::rms).collect();
+    let usual = robust::median(&blocks[1..])?;
+    let left = robust::rms(&residuals) / point.level(series.values.len());
+    Some(FirstFit {
+        factor,
+        follows: left < EXPLAINED && (blocks[0] <= NO_NOISE * usual || left < 1e-9),
+        left,
+        point,
+    })
+}
+
+/// Number of samples until the decay is lost, or is no more than a step of the digits.
+fn end(samples: &[f64], factor: usize, point: &Point) -> usize {
+    let [a, b] = point.amplitudes();
+    let amplitude = a.hypot(b);
+    let step = digit(samples);
+    let sigma = point.rates[1].max(f64::MIN_POSITIVE);
+    let lost = (LOST / sigma).min(1e9);
+    let counted = match step > 0.0 && amplitude > 4.0 * step {
+        true => ((amplitude / (1.5 * step)).ln() / sigma).min(1e9),
+        false => f64::INFINITY,
+    };
+    let periods = 4.0 * std::f64::consts::TAU / point.rates[0];
+    let least = periods.min(lost).max(16.0);
+    let means = whole::index(lost.min(counted).max(least)).min(MOST);
+    samples.len().min(means * factor)
+}
+
+/// The least step between unlike values.
+fn digit(samples: &[f64]) -> f64 {
+    let mut sorted = samples.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let least = 1e-12 * sorted.last().map_or(0.0, |l| l - sorted[0]);
+    let steps = sorted.windows(2).map(|w| w[1] - w[0]);
+    let least = steps.filter(|s| *s > least).fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
+}
+
+/// Rounds in which the noise and the fit follow from each other.
+const ROUNDS: usize = 2;
+/// Highest degree of a background.
+const HIGHEST_DEGREE: usize = 3;
+
+/// Find the background and the noise of a series, and the fit that leaves the rates free to change.
+fn settle(series: &mut Series, start: &Point) -> Option<Point> {
+    let shape = start.shape;
+    let periods = series.values.len() as f64 * start.rates[0] / std::f64::consts::TAU;
+    let highest = if periods > 4.0 { HIGHEST_DEGREE } else { 0 };
+    let mut best: Option<(f64, Series, Point)> = None;
+    for degree in 0..=highest {
+        let mut own = Series {
+            degree,
+            noise: Noise::default(),
+            ..series.clone()
+        };
+        let Some(point) = fitted(&mut own, shape, start) else {
+            continue;
+        };
+        let criterion = own.criterion(&point);
+        if best.as_ref().is_none_or(|b| criterion < b.0 - 4.0) {
+            best = Some((criterion, own, point));
+        } else if degree > 1 {
+            break;
+        }
+    }
+    let (criterion, own, point) = best?;
+    *series = own;
+    if shape != Shape::Bent {
+        return Some(point);
+    }
+    Some(better(series, criterion, point))
+}
+
+/// A law of damping that the noise is better beside than the bent decay, if there is one.
+fn better(series: &mut Series, criterion: f64, bent: Point) -> Point {
+    let mut best = (criterion, series.clone(), bent.clone());
+    for point in laws(series, &bent) {
+        let mut own = series.clone();
+        let Some(point) = fitted(&mut own, point.shape, &point) else {
+            continue;
+        };
+        let criterion = own.criterion(&point);
+        if point.rates[3] > 0.0 && criterion < best.0 {
+            best = (criterion, own, point);
+        }
+    }
+    *series = best.1;
+    best.2
+}
+
+/// Fits of the laws of damping beside the viscous one.
+pub(super) fn laws(series: &Series, bent: &Point) -> Vec<Point> {
+    let [omega, sigma, ..] = bent.rates;
+    let fitted = |shape: Shape| {
+        let starts = [0.5, 0.05].map(|s| [omega, (1.0 - s) * sigma, 0.0, s * sigma]);
+        let fits = starts
+            .into_iter()
+            .filter_map(|rates| series.descend(shape, rates));
+        fits.min_by(|a, b| a.squares.total_cmp(&b.squares))
+    };
+    let laws = [Shape::Friction, Shape::Drag].into_iter();
+    laws.filter_map(fitted).collect()
+}
+
+fn fitted(series: &mut Series, shape: Shape, start: &Point) -> Option<Point> {
+    let mut point = series.descend(shape, start.rates)?;
+    for _ in 0..ROUNDS {
+        let residuals = series.residuals(&point);
+        let columns = series.columns(&point);
+        series.noise = Noise::fitted(&residuals, &columns);
+        point = series.descend(shape, point.rates)?;
+    }
+    Some(point)
+}
+
+/// Root mean square of the part of residuals that neighbours share. White noise has a mean squared
+/// difference of neighbours of twice its variance (von Neumann's ratio); what is above that is structure.
+pub(super) fn structured(residuals: &[f64]) -> f64 {
+    let count = residuals.len().max(2) as f64;
+    let all = dot(residuals, residuals) / count;
+    let steps: f64 = residuals.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
+    (all - 0.5 * steps / (count - 1.0)).max(0.0).sqrt()
+}
