@@ -274,6 +274,9 @@ impl Finding {
             }
             Self::WrongClearance { .. }
             | Self::WrongGain { .. }
+            | Self::GainsApart { .. }
+            | Self::LateChannel { .. }
+            | Self::UndeclaredLowPass { .. }
             | Self::WrongCorner { .. }
             | Self::SidesUnlike { .. }
             | Self::SwappedChannels { .. } => Some(Cause::Statement),
