@@ -308,6 +308,7 @@ impl Remark {
     pub fn cause(&self) -> Option<Cause> {
         match self {
             Self::RestitutionChanges { .. }
+            | Self::SpeedsGained { .. }
             | Self::LongContact { .. }
             | Self::RestitutionByBounce { .. } => Some(Cause::Contact),
             Self::RecordsDiffer { .. } => Some(Cause::Change),
