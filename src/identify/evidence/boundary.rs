@@ -359,8 +359,8 @@ pub(in crate::identify) mod tests {
                 ..bracket(BoundaryKind::SaddleNode, rigid, &p, 0.0)
             };
             let found = predicted_hz(&held, &p, RigKind::Double).expect("an end") / 12.0;
-            // the contact moves it by some 0.7 %
-            assert!(rigid - end > 5e-3 * rigid, "{rigid} {end}");
+            // the contact moves it by 0.4 to 0.6 %
+            assert!(rigid - end > 4e-3 * rigid, "{rigid} {end}");
             assert!((found - end).abs() < 1e-3 * end, "{found} {end} {lasting}");
         }
     }
