@@ -111,6 +111,8 @@ pub struct Equations {
     stiffness: [f64; 2],
     /// F of each mass.
     force: [f64; 2],
+    /// Share of a change of the approach speed that each mass takes by what acts between them.
+    pub mobility: [f64; 2],
     /// h/A²
     cubic: f64,
     /// q/A
@@ -156,6 +158,7 @@ impl Equations {
             damping: masses.map(|m| damping * m.decay_rate()),
             stiffness: masses.map(|m| stiffening * m.stiffness_per_mass()),
             force: masses.map(|m| lean * m.drive_per_mass()),
+            mobility: machine.mobility().into(),
             cubic: over_amplitude(effects.hardening, 2),
             quadratic: over_amplitude(effects.spring_asymmetry, 1),
             drag: over_amplitude(effects.drag, 2),
@@ -174,6 +177,7 @@ impl Equations {
             damping: [0.0; 2],
             stiffness: [stiffness; 2],
             force: [0.0; 2],
+            mobility: [0.5; 2],
             cubic,
             quadratic: 0.0,
             drag: 0.0,

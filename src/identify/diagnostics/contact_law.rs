@@ -111,15 +111,15 @@ struct Point {
     error: f64,
 }
 
-/// The impacts of a block about one R.
-fn points(block: &ImpactBlock, restitution: f64) -> Vec<Point> {
-    let point = |p: &SpeedPair| {
-        let deviation = p.after_m_s - restitution * p.before_m_s;
-        Point {
-            speed: p.before_m_s + block.shared(p, restitution) * deviation,
-            deviation,
-            error: block.error(p, restitution),
-        }
+/// The impacts of a block about one R, with the speed by both speeds where R over it is a law.
+fn points(block: &ImpactBlock, restitution: f64, law: &dyn Fn(f64) -> f64) -> Vec<Point> {
+    let speed = |p: &SpeedPair, own: f64| {
+        p.before_m_s + block.shared(p, own) * (p.after_m_s - own * p.before_m_s)
+    };
+    let point = |p: &SpeedPair| Point {
+        speed: speed(p, law(speed(p, restitution))),
+        deviation: p.after_m_s - restitution * p.before_m_s,
+        error: block.error(p, restitution),
     };
     block.pairs.iter().map(point).collect()
 }
@@ -128,7 +128,7 @@ fn points(block: &ImpactBlock, restitution: f64) -> Vec<Point> {
 fn one_restitution(block: &ImpactBlock) -> Option<f64> {
     let typical = block.typical_ratio()?;
     // a − R b = (R' − R) v̂ at another R': the mean deviation over the speed corrects the typical one.
-    let points = points(block, typical);
+    let points = points(block, typical, &|_| typical);
     let sum = |of: fn(&Point) -> f64| points.iter().map(|p| of(p) / p.error.powi(2)).sum::<f64>();
     let squares = sum(|p| p.speed * p.speed);
     (squares > 0.0).then(|| typical + sum(|p| p.speed * p.deviation) / squares)
@@ -141,39 +141,81 @@ struct Fitted {
     chi2: f64,
 }
 
+impl Fitted {
+    /// R at a speed.
+    fn at(&self, speed: f64, knots: &[f64]) -> f64 {
+        let base = self.law.base(speed, knots);
+        base.iter()
+            .zip(&self.coefficients)
+            .map(|(b, c)| b * c)
+            .sum()
+    }
+}
+
 /// Choose the law of a block's impacts; `None` with fewer than ten.
 pub fn contact_law(block: &ImpactBlock) -> Option<ContactLaw> {
     if block.pairs.len() < FEWEST {
         return None;
     }
     let restitution = one_restitution(block)?;
-    let points = points(block, restitution);
-    let mut speeds: Vec<f64> = points.iter().map(|p| p.speed).collect();
+    let about_one = points(block, restitution, &|_| restitution);
+    let mut speeds: Vec<f64> = about_one.iter().map(|p| p.speed).collect();
     speeds.sort_by(f64::total_cmp);
     let knots: Vec<f64> = [0.0, 1.0, 2.0, 3.0]
         .map(|k: f64| speeds[whole::index(((speeds.len() - 1) as f64 * k / 3.0).round())])
         .to_vec();
-    let fits: Vec<Fitted> = Law::ALL
+    let mut fits: Vec<Fitted> = Law::ALL
         .into_iter()
-        .map(|law| fit((&points, restitution), law, &knots))
+        .map(|law| fit((&about_one, restitution), law, &knots))
         .collect::<Option<_>>()?;
-    // Scatter beyond the stated errors is that which the richest law leaves.
-    let freedom = points.len().saturating_sub(knots.len()).max(1) as f64;
-    let scale = (fits[2].chi2 / freedom).max(1.0);
-    let penalty = (points.len() as f64).ln();
-    let criterion = [0, 1, 2]
-        .map(|i: usize| fits[i].chi2 / scale + penalty * fits[i].coefficients.len() as f64);
-    let least = criterion.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut compared = Compared::of(&fits, about_one.len());
+    if compared.criterion[0] > VERY_STRONG {
+        // Where R is not one number, the speed by both speeds is that of the law.
+        for fitted in &mut fits[1..] {
+            for _ in 0..ROUNDS {
+                let points = points(block, restitution, &|v| fitted.at(v, &knots));
+                *fitted = fit((&points, restitution), fitted.law, &knots)?;
+            }
+        }
+        compared = Compared::of(&fits, about_one.len());
+    }
     let chosen = fits
         .iter()
-        .zip(criterion)
-        .find(|(_, c)| *c == least)
-        .map(|(f, _)| f)?;
+        .zip(compared.criterion)
+        .find(|(_, c)| *c == 0.0)?
+        .0;
     Some(ContactLaw {
         law: chosen.law,
-        criterion: criterion.map(|c| c - least),
-        curve: curve(chosen, &knots, scale),
+        criterion: compared.criterion,
+        curve: curve(chosen, &knots, compared.scale),
     })
+}
+
+/// Rounds in which a law and the speeds by it are found.
+const ROUNDS: usize = 3;
+
+/// How well laws fit.
+struct Compared {
+    /// Bayes' criterion of each, less the least of them.
+    criterion: [f64; 3],
+    /// Factor on the variances.
+    scale: f64,
+}
+
+impl Compared {
+    fn of(fits: &[Fitted], points: usize) -> Self {
+        // Scatter beyond the stated errors is that which the richest law leaves.
+        let freedom = points.saturating_sub(fits[2].coefficients.len()).max(1) as f64;
+        let scale = (fits[2].chi2 / freedom).max(1.0);
+        let penalty = (points as f64).ln();
+        let criterion = [0, 1, 2]
+            .map(|i: usize| fits[i].chi2 / scale + penalty * fits[i].coefficients.len() as f64);
+        let least = criterion.iter().copied().fold(f64::INFINITY, f64::min);
+        Self {
+            criterion: criterion.map(|c| c - least),
+            scale,
+        }
+    }
 }
 
 /// Weighted least squares of the deviations from one R on the law less that, times the speed.
@@ -243,17 +285,18 @@ mod tests {
     use super::*;
 
     fn block(law: impl Fn(f64) -> f64) -> ImpactBlock {
-        // A fixed, even scatter of unit variance.
-        let scatter = |i: usize| (i as f64 * 2.399_963).sin() * 2f64.sqrt();
+        // Fixed, even scatters of the speeds before and after.
+        let error_m_s = 2e-3 / 1f64.hypot(0.8);
+        let scatter = |turns: f64| turns.sin() * 2f64.sqrt() * error_m_s;
         let pairs = (0..200)
             .map(|i| {
                 let v = 0.05 + 0.01 * i as f64;
                 SpeedPair {
                     observation: i,
                     time_s: 0.0,
-                    before_m_s: v,
-                    after_m_s: law(v) * v + 2e-3 * scatter(i),
-                    error_m_s: 2e-3 / 1f64.hypot(0.8),
+                    before_m_s: v + scatter(1.0 + 1.732_051 * i as f64),
+                    after_m_s: law(v) * v + scatter(2.399_963 * i as f64),
+                    error_m_s,
                     by_time_m_s: [0.0; 2],
                     corner_shifts: [None, None],
                     lags: [None, None],
@@ -320,7 +363,7 @@ mod tests {
             let block = noisy(0.08, seed);
             let r = one_restitution(&block).unwrap();
             assert!((r - 0.835).abs() < 3e-3, "{r}");
-            let fitted = fit((&points(&block, r), r), Law::Linear, &[]).unwrap();
+            let fitted = fit((&points(&block, r, &|_| r), r), Law::Linear, &[]).unwrap();
             let error = fitted.covariance[(1, 1)].sqrt();
             slopes.push(fitted.coefficients[1] / error);
         }

@@ -66,7 +66,8 @@ impl Integrator {
     pub(super) fn pull(&self, mass: usize, drive: f64, s: &Phase4) -> f64 {
         let forces = self.forces(drive, s);
         if self.touch == Touch::Joined {
-            0.5 * (forces[mass] - forces[1 - mass])
+            let share = self.equations.mobility;
+            share[1 - mass] * forces[mass] - share[mass] * forces[1 - mass]
         } else {
             forces[mass]
         }

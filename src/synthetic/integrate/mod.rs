@@ -165,7 +165,8 @@ impl Integrator {
         match (self.touch, &self.equations.law) {
             (Touch::Pressed, ContactLaw::Compliant(c)) => {
                 let press = c.press(self.equations.overlap(s), s[1] + s[3]);
-                free.map(|f| f - press)
+                // The contact is that of two unit masses: on unlike ones with the same reduced mass.
+                std::array::from_fn(|i| free[i] - 2.0 * self.equations.mobility[i] * press)
             }
             _ => free,
         }
@@ -183,7 +184,8 @@ impl Integrator {
             }
         });
         if self.touch == Touch::Joined {
-            let together = 0.5 * (a[0] - a[1]);
+            let [of_x, of_y] = self.equations.mobility;
+            let together = of_y * a[0] - of_x * a[1];
             a = [together, -together];
         }
         [s[1], a[0], s[3], a[1]]
@@ -271,9 +273,10 @@ impl Integrator {
         let forces = self.forces(drive, &self.state);
         let sticks = restitution * approach < STICKS_BELOW && forces[0] + forces[1] > 0.0;
         let ratio = if sticks { 0.0 } else { restitution };
-        let change = 0.5 * (1.0 + ratio) * approach;
-        self.state[1] -= change;
-        self.state[3] -= change;
+        let [of_x, of_y] = self.equations.mobility;
+        let change = (1.0 + ratio) * approach;
+        self.state[1] -= of_x * change;
+        self.state[3] -= of_y * change;
         for mass in [0, 1] {
             self.slides[mass] = self.state[2 * mass + 1].signum();
         }
