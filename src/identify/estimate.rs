@@ -199,11 +199,22 @@ pub fn parameter_set(found: &MethodFit, tells: &[Coordinate]) -> ParameterSet {
         let note = leaning(fit, coordinate);
         Some(estimate_within(coordinate, value, spread, note))
     };
+    let natural_frequency_hz = of(Coordinate::Frequency);
+    let open = |f0: &Estimate| f0.status == Status::NotIdentifiable;
+    let static_deflection_m = match natural_frequency_hz.as_ref().is_some_and(open) {
+        // amplitudes tell both only together
+        true => of(Coordinate::Deflection).map(|_| {
+            not_identifiable(Note::NotDetermined {
+                parameter: Coordinate::Deflection,
+            })
+        }),
+        false => of(Coordinate::Deflection),
+    };
     ParameterSet {
         restitution: of(Coordinate::Restitution),
-        natural_frequency_hz: of(Coordinate::Frequency),
+        natural_frequency_hz,
         damping_ratio: of(Coordinate::Damping),
-        static_deflection_m: of(Coordinate::Deflection),
+        static_deflection_m,
     }
 }
 

@@ -29,6 +29,9 @@ const ROUNDS: usize = 2;
 /// Relative change of the error allowed beside the noise below which another round changes nothing.
 const SETTLED: f64 = 0.1;
 
+/// Halvings of the gains' uncertainty, by roots of two, from which a record's own error is looked for.
+const OWN_STEPS: i32 = 16;
+
 /// Relative changes of f0, β and `x_st` from which two fits are not of one minimum.
 const FAR: [(Coordinate, f64); 3] = [
     (Coordinate::Frequency, 0.03),
@@ -100,17 +103,36 @@ impl<'a> Selection<'a> {
         methods::resonance_from(&self.blocks, &self.evidence.nominal, parameters)
     }
 
-    /// Weigh the impactless records at good parameters, keep those that fit like the bulk, and name the others.
+    /// Weigh the impactless records at good parameters, keep those that fit like the bulk, and name the
+    /// others. A record that deviates by less than the gains are uncertain is no other one: it is allowed as
+    /// much more error as it shows. At resonance responses are so great, and so well measured, that
+    /// any effect beyond the model exceeds their noise.
     fn keep_like_responses(&mut self, parameters: &Parameters) {
+        for point in &mut self.blocks.resonance.points {
+            point.own_relative_error = 0.0;
+        }
         self.blocks.weigh_resonance(parameters);
-        let scores: Vec<f64> = mean_squares(&self.blocks.resonance, parameters)
-            .into_iter()
-            .map(|s| s.unwrap_or(0.0))
-            .collect();
+        let scores = self.response_scores(parameters);
         let bulk = Bulk::of(&scores);
+        let most = self.evidence.nominal.gain_uncertainty;
+        let mut left = scores.clone();
+        for step in 0..=OWN_STEPS {
+            if left.iter().all(|score| *score <= bulk.limit) {
+                break;
+            }
+            let own = most * 2f64.powf(0.5 * f64::from(step - OWN_STEPS));
+            let block = &mut self.blocks.resonance;
+            for (point, score) in block.points.iter_mut().zip(&left) {
+                if *score > bulk.limit {
+                    point.own_relative_error = own;
+                }
+            }
+            block.allow(block.relative_error());
+            left = self.response_scores(parameters);
+        }
         let points = std::mem::take(&mut self.blocks.resonance.points);
-        for (point, score) in points.into_iter().zip(scores) {
-            if score <= bulk.limit {
+        for (point, (score, left)) in points.into_iter().zip(scores.into_iter().zip(left)) {
+            if left <= bulk.limit {
                 self.blocks.resonance.points.push(point);
             } else {
                 let times_worse = bulk.times_worse(score);
@@ -119,6 +141,12 @@ impl<'a> Selection<'a> {
                 self.unlike.push(point);
             }
         }
+    }
+
+    /// Mean squares of the impactless records.
+    fn response_scores(&self, parameters: &Parameters) -> Vec<f64> {
+        let scores = mean_squares(&self.blocks.resonance, parameters);
+        scores.into_iter().map(|s| s.unwrap_or(0.0)).collect()
     }
 
     /// The resonance curve's fit, again from where the waveforms are, if it is far from there or left

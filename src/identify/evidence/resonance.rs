@@ -38,6 +38,8 @@ pub struct ResonancePoint {
     pub group: Group,
     /// Responses of the channels.
     pub responses: Vec<Response>,
+    /// Relative error that this record alone is allowed.
+    pub own_relative_error: f64,
     /// Standard error of each response, SI, with what is allowed beside the noise.
     errors: Vec<f64>,
     /// Slopes of the responses over the logarithm of the drive's frequency; empty until they are found
@@ -148,6 +150,7 @@ impl ResonanceBlock {
                         .filter(|r| rig == RigKind::Double || !r.role.is_of_y())
                         .copied()
                         .collect(),
+                    own_relative_error: 0.0,
                     errors: Vec::new(),
                     over_frequency: Vec::new(),
                     shared: Whitening::none(),
@@ -177,13 +180,21 @@ impl ResonanceBlock {
         }
     }
 
+    /// Relative error that every response is allowed beside the noise.
+    pub fn relative_error(&self) -> f64 {
+        self.relative_error
+    }
+
     /// Allow every response a relative error beside the noise.
     pub fn allow(&mut self, relative_error: f64) {
         self.relative_error = relative_error;
         let mut points = std::mem::take(&mut self.points);
         for point in &mut points {
             let responses = point.responses.iter();
-            point.errors = responses.map(|r| self.error(r)).collect();
+            let allowed = relative_error.max(point.own_relative_error);
+            point.errors = responses
+                .map(|r| r.error.hypot(allowed * r.amplitude()))
+                .collect();
             point.shared = self.whitening(point);
         }
         self.points = points;
@@ -593,12 +604,6 @@ impl ResonanceBlock {
         }
     }
 
-    fn error(&self, response: &Response) -> f64 {
-        response
-            .error
-            .hypot(self.relative_error * response.amplitude())
-    }
-
     /// The errors that all responses of a point share, by what was measured: weights that follow the
     /// parameters would reward a model that moves more.
     fn whitening(&self, point: &ResonancePoint) -> Whitening {
@@ -719,6 +724,7 @@ mod tests {
                 place: 0.0,
                 group: Group::default(),
                 responses: responses.collect(),
+                own_relative_error: 0.0,
                 errors: Vec::new(),
                 over_frequency: Vec::new(),
                 shared: Whitening::none(),
@@ -800,6 +806,7 @@ mod tests {
                         high_pass_hz: role.is_of_y().then_some(0.5),
                     })
                     .to_vec(),
+                own_relative_error: 0.0,
                 errors: Vec::new(),
                 over_frequency: Vec::new(),
                 shared: Whitening::none(),
@@ -874,6 +881,7 @@ mod tests {
                 place: 0.0,
                 group: Group::default(),
                 responses: [Role::VelocityX, Role::VelocityY].map(response).to_vec(),
+                own_relative_error: 0.0,
                 errors: Vec::new(),
                 over_frequency: Vec::new(),
                 shared: Whitening::none(),

@@ -88,6 +88,8 @@ impl Precision {
 
 /// Standard deviations of a prior from which a fit that ended there is tried again.
 const FAR: f64 = 3.0;
+/// Share of its deviation to which such a prior is narrowed then.
+const NARROW: f64 = 0.1;
 /// Least orthogonal share of a column of slopes: differences do not resolve less.
 const LEAST_SHARE: f64 = 1e-8;
 
@@ -113,33 +115,44 @@ impl Problem<'_> {
         })
     }
 
-    /// Fit from a start and, where that ends far from what is known beforehand, once more with all of that
-    /// where it is expected; the better of both. In a narrow valley, as that of a gain, a mass and a force
+    /// Fit from a start and, where that ends far from what is known beforehand, once more from where a fit
+    /// ends that is drawn there; the better of both. In a narrow valley, as that of a gain, a mass and a force
     /// that act alike, a fit may come to a halt on its way.
     ///
     /// # Errors
     /// Those of [`Problem::fit`].
     pub fn fit_from_both_ends(&self, start: Parameters) -> Result<Fit, FitError> {
         let first = self.fit(start)?;
-        let again = self.as_expected(&first.parameters);
-        let second = again.and_then(|start| self.fit(start).ok());
+        let drawn = self.drawn(&first.parameters);
+        let second = drawn.and_then(|problem| {
+            let near = problem.fit(first.parameters).ok()?;
+            self.fit(near.parameters).ok()
+        });
         Ok(match second {
             Some(second) if second.cost < first.cost => second,
             _ => first,
         })
     }
 
-    /// Parameters with all nuisances where they are expected; `None` where none is far from there, or the fit
-    /// only starts another.
-    fn as_expected(&self, at: &Parameters) -> Option<Parameters> {
-        if self.precision == Precision::Start {
+    /// The same with narrow priors of the nuisances that are far from where they are expected; `None` where
+    /// none is far, or the fit only starts another.
+    fn drawn(&self, at: &Parameters) -> Option<Self> {
+        let nuisance = |p: &Prior| !Coordinate::PHYSICAL.contains(&p.coordinate);
+        let far = |p: &Prior, limit: f64| nuisance(p) && prior_residual(p, at).abs() > limit;
+        if self.precision == Precision::Start || !self.priors.iter().any(|p| far(p, FAR)) {
             return None;
         }
-        let nuisance = |p: &&Prior| !Coordinate::PHYSICAL.contains(&p.coordinate);
-        let nuisances = || self.priors.iter().filter(nuisance);
-        let far = nuisances().any(|p| prior_residual(p, at).abs() > FAR);
-        let centred = |at: Parameters, p: &Prior| at.with(p.coordinate, p.centre);
-        far.then(|| nuisances().fold(*at, centred))
+        let narrowed = |p: &Prior| match far(p, 0.5 * FAR) {
+            true => Prior::new(p.coordinate, p.centre, NARROW * p.deviation),
+            false => *p,
+        };
+        Some(Self {
+            blocks: self.blocks.clone(),
+            priors: self.priors.iter().map(narrowed).collect(),
+            free: self.free.clone(),
+            progress: self.progress.clone(),
+            ..Self::default()
+        })
     }
 
     /// Sum of squared weighted residuals at given parameters; `None` if an item has no model.
