@@ -5,7 +5,7 @@
 //! lost, and by R of the records' impacts. The two parts about that moment are then fitted each by itself,
 //! with allowances of their own, and compared.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{DMatrix, DVector};
 
@@ -75,33 +75,30 @@ pub fn change(
         by_rows(&ranks, problem, present, (&selection.blocks, at, factor)),
         by_lost_records(&ranks, selection),
     ];
-    let mut tried: Vec<usize> = Vec::new();
-    for rank in suspects.into_iter().flatten() {
-        if tried.contains(&rank) {
-            continue;
-        }
-        tried.push(rank);
+    let moments: BTreeSet<usize> = suspects.into_iter().flatten().collect();
+    let found = moments.into_iter().filter_map(|rank| {
         let both = [false, true].map(|later| {
             let within = |i: usize| (ranks[i] >= rank) == later;
             part_alone(evidence, &within)
         });
         let [Some(before), Some(after)] = both else {
-            continue;
+            return None;
         };
         let parts: BTreeMap<Coordinate, [(f64, Spread); 2]> = before
             .into_iter()
             .filter_map(|(c, a)| Some((c, [a, *after.get(&c)?])))
             .collect();
-        if parts.iter().any(|(c, both)| differs(*c, both)) {
-            let record = evidence.observations[of_rank(rank)?].record.clone();
-            return Some(Change {
+        let record = evidence.observations[of_rank(rank)?].record.clone();
+        parts
+            .iter()
+            .any(|(c, both)| differs(*c, both))
+            .then_some(Change {
                 rank,
                 record,
                 parts,
-            });
-        }
-    }
-    None
+            })
+    });
+    found.max_by(|a, b| a.chi2().total_cmp(&b.chi2()))
 }
 
 /// Whether a parameter of two parts differs beyond chance and beyond what drifts.
@@ -259,6 +256,14 @@ fn furthest(records: &mut [(usize, f64)], deviation: f64) -> Option<usize> {
 }
 
 impl Change {
+    /// How far the parts are apart: where a part has records of the other rig, they differ less.
+    fn chi2(&self) -> f64 {
+        let of = |[(a, of_a), (b, of_b)]: &[(f64, Spread); 2]| {
+            (b - a).powi(2) / (of_a.half95().powi(2) + of_b.half95().powi(2))
+        };
+        self.parts.values().map(of).sum()
+    }
+
     /// What changed.
     pub fn finding(&self, of: usize) -> Finding {
         let changed = self.parts.iter().filter(|(c, both)| differs(**c, both));
