@@ -360,7 +360,9 @@ mod tests {
 
     #[test]
     fn a_sensor_is_folded_once_and_as_it_measures() {
-        let values: Vec<f64> = (0..2000).map(|i| theta(i as f64 / RATE_HZ).sin()).collect();
+        let values: Vec<f64> = (0..2000)
+            .map(|i| theta(f64::from(i) / RATE_HZ).sin())
+            .collect();
         let roles = [Role::DisplacementX, Role::VelocityY, Role::AccelerationX];
         for of in [&roles[..1], &roles[1..2], &roles[2..], &roles] {
             let mut channels: Vec<(Role, &[f64])> = vec![(Role::Drive, &values)];

@@ -20,7 +20,7 @@ use impact_oscillator::model::params::{Machine, Oscillator};
 use impact_oscillator::model::sensitivity::{Change, forced_slope};
 
 /// One impactless record.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct ResonancePoint {
     /// Index of the record among the observations.
     pub observation: usize,
@@ -724,10 +724,7 @@ mod tests {
                 place: 0.0,
                 group: Group::default(),
                 responses: responses.collect(),
-                own_relative_error: 0.0,
-                errors: Vec::new(),
-                over_frequency: Vec::new(),
-                shared: Whitening::none(),
+                ..ResonancePoint::default()
             }
         };
         let mut block = ResonanceBlock {
@@ -806,10 +803,7 @@ mod tests {
                         high_pass_hz: role.is_of_y().then_some(0.5),
                     })
                     .to_vec(),
-                own_relative_error: 0.0,
-                errors: Vec::new(),
-                over_frequency: Vec::new(),
-                shared: Whitening::none(),
+                ..ResonancePoint::default()
             }],
             relative_error: 1e-3,
             reach_m: 3e-3,
@@ -881,10 +875,7 @@ mod tests {
                 place: 0.0,
                 group: Group::default(),
                 responses: [Role::VelocityX, Role::VelocityY].map(response).to_vec(),
-                own_relative_error: 0.0,
-                errors: Vec::new(),
-                over_frequency: Vec::new(),
-                shared: Whitening::none(),
+                ..ResonancePoint::default()
             }],
             relative_error: 0.0,
             pickups: Pickups::default(),

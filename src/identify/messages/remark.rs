@@ -308,7 +308,6 @@ impl Remark {
     pub fn cause(&self) -> Option<Cause> {
         match self {
             Self::RestitutionChanges { .. }
-            | Self::SpeedsGained { .. }
             | Self::LongContact { .. }
             | Self::RestitutionByBounce { .. } => Some(Cause::Contact),
             Self::RecordsDiffer { .. } => Some(Cause::Change),
