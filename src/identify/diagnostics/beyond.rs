@@ -1,12 +1,15 @@
 //! What a rig has beyond the model: the effects whose estimates are significant.
 
-use crate::identify::fit::effect::Effect;
+use crate::identify::fit::effect::{Effect, EffectKind};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::messages::Finding;
 use crate::identify::method_fit::MethodFit;
 
 /// Standard errors from which an effect is named: by chance one in two thousand reaches them.
 const NAMED: f64 = 3.5;
+/// Accepted strengths from which pickup is named: less is in every laboratory, and the data tell a fifth of
+/// one.
+const NAMED_PICKUP: f64 = 2.0;
 /// χ² of two degrees of freedom that is as rare.
 const NAMED_PAIR: f64 = 15.3;
 
@@ -22,7 +25,9 @@ pub fn beyond(found: &MethodFit) -> Vec<Finding> {
             single => {
                 let (strength, standard_error) = estimated(found, single)?;
                 let z_score = strength / standard_error;
-                (z_score.abs() > NAMED).then_some(Finding::BeyondModel {
+                let matters = effect.kind() != EffectKind::Pickup
+                    || strength.abs() > NAMED_PICKUP * effect.accepted();
+                (z_score.abs() > NAMED && matters).then_some(Finding::BeyondModel {
                     effect,
                     strength,
                     standard_error,

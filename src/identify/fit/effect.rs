@@ -164,7 +164,7 @@ impl Effect {
             Self::SpringAsymmetry => (EffectKind::SpringAsymmetry, 5e-3, true),
             Self::HystereticDamping => (EffectKind::HystereticDamping, 0.1, false),
             Self::ClearanceDrift => (EffectKind::Drift, 1e-2, false),
-            Self::PickupX | Self::PickupY => (EffectKind::Pickup, 2e-3, true),
+            Self::PickupX | Self::PickupY => (EffectKind::Pickup, 1e-3, true),
         }
     }
 
