@@ -311,7 +311,6 @@ impl Remark {
             | Self::LongContact { .. }
             | Self::RestitutionByBounce { .. } => Some(Cause::Contact),
             Self::RecordsDiffer { .. } => Some(Cause::Change),
-            Self::SpeedsGained { .. } => Some(Cause::Channel),
             Self::NotOneDegreeOfFreedom { .. }
             | Self::WaveformsUnexplained { .. }
             | Self::StatesDeviate { .. }
