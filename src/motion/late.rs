@@ -25,10 +25,10 @@ const UNNOTICED: f64 = 1.5;
 const FEWEST_IMPACTS: usize = 8;
 /// Greatest median difference of the records' lags from their median, in the steps in which they are found.
 const ALIKE: f64 = 0.75;
-/// Steps from which a jump takes time: an instant takes one, a differentiated displacement shows two, and
-/// where it falls between samples may add one.
-const TAKES_TIME: f64 = 3.0;
-const DIFFERENTIATED: f64 = 2.0;
+/// Steps beyond which a jump takes time: an instant takes one, or two where readings are averaged or shifted
+/// by less than a sample; a differentiated displacement shows one more.
+const TAKES_TIME: f64 = 2.5;
+const DIFFERENTIATED: f64 = 1.0;
 /// Time that a jump takes behind a low-pass, in steps of more than a twentieth of it, over the period of its
 /// corner: 0.59 (second order) and 0.71 in simulated campaigns at 2 kHz with a corner of 200 Hz.
 const RISE: f64 = 0.65;
