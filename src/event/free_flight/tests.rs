@@ -133,3 +133,62 @@ fn valid_a_ball_followed_by_a_camera_gives_its_restitution() {
         assert!(error < 0.01, "{error}");
     }
 }
+
+#[test]
+fn prop_no_separation_speed_is_outside_what_was_measured_whatever_rings_or_lasts() {
+    use rand::{Rng, SeedableRng};
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(741);
+    let (mut impacts, rate_hz) = (0, 500.0);
+    for _ in 0..80 {
+        let restitution: f64 = rng.random_range(0.05..0.95);
+        let approach: f64 = rng.random_range(0.2..1.5);
+        let contact_s: f64 = rng.random_range(0.004..0.06);
+        let friction: f64 = rng.random_range(0.0..0.05);
+        let ringing: f64 = rng.random_range(0.0..0.25) * approach;
+        let ring_hz: f64 = rng.random_range(12.0..80.0);
+        let noise: f64 = rng.random_range(1e-3..5e-3);
+        let value = |i: usize| {
+            let t = i as f64 / rate_hz - 0.6;
+            let after = (t - contact_s).max(0.0);
+            let free = match t {
+                t if t < 0.0 => approach - friction * (t + 0.6),
+                t if t < contact_s => {
+                    let share = 0.5 - 0.5 * (std::f64::consts::PI * t / contact_s).cos();
+                    approach * (1.0 - (1.0 + restitution) * share)
+                }
+                _ => -restitution * approach + friction * after,
+            };
+            let rings =
+                ringing * (-after / 0.08).exp() * (std::f64::consts::TAU * ring_hz * after).sin();
+            free + if after > 0.0 { rings } else { 0.0 }
+        };
+        let x: Vec<f64> = (0..800)
+            .map(|i| value(i) + noise * rng.random_range(-1.7..1.7))
+            .collect();
+        // each mass has half of it, beside a motion of both
+        let of_mass = |both: f64| x.iter().map(|v| 0.5 * v + both).collect::<Vec<f64>>();
+        let (own, other) = (of_mass(0.1), of_mass(-0.1));
+        let record = Record::of(
+            rate_hz,
+            &[(Role::VelocityX, &own), (Role::VelocityY, &other)],
+        );
+        let kinematics = Kinematics::of(&record, RigKind::Double);
+        for impact in detect(&kinematics, RigKind::Double, &[]).impacts {
+            let separation = -impact.approach_speed_after_m_s.unwrap();
+            let before = impact.approach_speed_before_m_s.unwrap();
+            // over means of 6 ms after the impact, up to what friction changes on the way
+            let from = crate::signal::whole::index(impact.time_s * rate_hz);
+            let means = x[from..]
+                .windows(3)
+                .map(|w| -crate::signal::robust::mean(w));
+            let fastest = means.fold(0.0f64, f64::max);
+            assert!(
+                separation <= fastest + 0.01 * approach,
+                "{separation} of {fastest}"
+            );
+            assert!(separation <= 1.3 * before);
+            impacts += 1;
+        }
+    }
+    assert!(impacts > 40, "{impacts}");
+}
