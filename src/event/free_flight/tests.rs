@@ -172,7 +172,7 @@ fn prop_no_separation_speed_is_outside_what_was_measured_whatever_rings_or_lasts
             rate_hz,
             &[(Role::VelocityX, &own), (Role::VelocityY, &other)],
         );
-        let kinematics = Kinematics::of(&record, RigKind::Double);
+        let kinematics = Kinematics::of(&record, RigKind::Double, 1);
         for impact in detect(&kinematics, RigKind::Double, &[]).impacts {
             let separation = -impact.approach_speed_after_m_s.unwrap();
             let before = impact.approach_speed_before_m_s.unwrap();
