@@ -646,9 +646,10 @@ pub(super) mod tests {
         let channels = exact.chunks(points).zip(above.chunks(points));
         for ((exact, above), below) in channels.zip(below.chunks(points)) {
             let size = crate::signal::robust::rms(exact);
-            // Values are rounded by few units of the last place of their terms, over the width.
-            let largest = above.iter().fold(1.0f64, |most, a| most.max(a.abs()));
-            let rounded = 8.0 * f64::EPSILON * largest / width;
+            // Values are rounded by units of the last place of their terms, over the width: of tenths of a m/s,
+            // and of accelerations of tens of m/s².
+            let largest = above.iter().fold(0.0f64, |most, a| most.max(a.abs()));
+            let rounded = (64.0 * f64::EPSILON * largest / width).max(3e-10);
             for ((e, a), b) in exact.iter().zip(above).zip(below) {
                 let found = (a - b) / width;
                 let apart = (e - found).abs();
