@@ -5,7 +5,7 @@ use super::calibrate::{BoundRole, RecordSetup};
 use super::{Flag, FlagCode, Record};
 use super::{condition, time_axis};
 use labfiles::timing::AxisUnit;
-use labfiles::{Clock, DatasetInfo, Samples};
+use labfiles::{Clock, DatasetInfo, Samples, StoredType};
 
 /// The clocks of a record's channels, from metadata alone.
 #[derive(Debug, Default)]
@@ -152,6 +152,8 @@ fn seconds(
         setup.sample_rate_hz,
     ) {
         (true, Some(rate_hz)) => rate_hz.recip(),
+        // points in time are read as s since the first
+        _ if info.stored == StoredType::Time => 1.0,
         _ => {
             let unit = AxisUnit::of(info.unit.as_deref(), &info.name, &times);
             match unit_s(&unit, &info.name, setup.time_unit_s, flags) {

@@ -275,7 +275,10 @@ fn dataset(header: Header, layout: &Layout, rows: u64, axis: Option<&TimeAxis>) 
         .or_else(|| crate::attribute::start_time(&header.attributes));
     let channel = |(i, (name, unit)): (usize, (String, Option<String>))| ChannelInfo {
         name,
-        unit: unit.or_else(|| axis.filter(|a| a.column == i).and_then(|a| a.unit.clone())),
+        unit: axis
+            .filter(|a| a.column == i)
+            .and_then(|a| a.unit.clone())
+            .or(unit),
         stored: match layout.kinds[i] {
             Kind::Number => StoredType::Float(64),
             Kind::Time => StoredType::Time,

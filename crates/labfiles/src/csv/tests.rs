@@ -75,6 +75,12 @@ fn points_in_time_become_seconds() {
     assert_eq!(real(&*s, 0), [0.0, 0.5, 1.0]);
     let s = source(b"Time\tx\n23:59:59\t1\n00:00:00\t2\n00:00:01\t3\n");
     assert_eq!(real(&*s, 0), [0.0, 1.0, 2.0]);
+    let s = source(b"Time [hh:mm:ss]\tx [mm]\n23:59:59\t1\n00:00:00\t2\n00:00:01\t3\n");
+    let info = &s.datasets()[0];
+    assert_eq!(
+        (info.channels[0].unit.as_deref(), info.sample_rate_hz()),
+        (Some("s"), Some(1.0))
+    );
 }
 
 #[test]

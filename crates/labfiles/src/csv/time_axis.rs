@@ -43,7 +43,8 @@ pub(crate) fn find(
         axis.unit = Some("s".to_owned());
     }
     let name = &header.names[axis.column];
-    let unit = header.units[axis.column].as_ref().or(axis.unit.as_ref());
+    // points in time are given in s, whatever stands below their heading
+    let unit = axis.unit.as_ref().or(header.units[axis.column].as_ref());
     let unit = AxisUnit::of(unit.map(String::as_str), name, &head);
     axis.rate_hz = unit
         .seconds()
