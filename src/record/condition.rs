@@ -153,8 +153,11 @@ const FEWEST_FROZEN: usize = 2;
 /// motion that went on unseen.
 const UNSEEN_PART: f64 = 0.7;
 
+/// Steps of the converter a sample from which a motion does not rest by rounding, nor by noise of a few steps.
+const STEPS_A_SAMPLE: f64 = 10.0;
+
 /// Displacements that stand still in the midst of a motion and then jump by as much as it would have gone on:
-/// a camera that repeats a picture. A coarse converter rests as long, but its steps are no greater after it.
+/// a camera that repeats a picture. What moves by many steps of the converter a sample cannot rest by its rounding.
 fn frozen(record: &Record) -> Option<Flag> {
     let moving = |c: &&Channel| matches!(c.role, Role::DisplacementX | Role::DisplacementY);
     record.channels.iter().filter(moving).find_map(|channel| {
@@ -175,6 +178,8 @@ fn frozen(record: &Record) -> Option<Flag> {
 /// Where samples stand still although the motion goes on: the first sample and the number of steps.
 fn frozen_stretches(values: &[f64]) -> Vec<(usize, usize)> {
     let step = |i: usize| values[i + 1] - values[i];
+    let (low, high) = columns::extremes(values);
+    let moving = STEPS_A_SAMPLE * columns::least_step(values, 1e-12 * (high - low));
     let mut found = Vec::new();
     let mut i = 1;
     while i + 1 < values.len() {
@@ -185,7 +190,8 @@ fn frozen_stretches(values: &[f64]) -> Vec<(usize, usize)> {
         if length >= FEWEST_FROZEN && after + 2 < values.len() {
             let (before, jump, next) = (step(i - 1), step(after), step(after + 1));
             let unseen = UNSEEN_PART * (length + 1) as f64 * before.abs().min(next.abs());
-            if before * next > 0.0 && before * jump > 0.0 && jump.abs() >= unseen {
+            let fast = before.abs().min(next.abs()) >= moving;
+            if fast && before * next > 0.0 && before * jump > 0.0 && jump.abs() >= unseen {
                 found.push((i, length));
             }
         }
