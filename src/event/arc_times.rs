@@ -14,10 +14,10 @@
 
 use nalgebra::{Matrix4, Vector4};
 
+use crate::event::arcs::{Arcs, Instant, speeds};
 use crate::event::drift::integral;
 use crate::event::impact::MassSpeeds;
 use crate::event::kinematics::{Body, Kinematics, RelativeSource, Series};
-use crate::event::refine::{Arcs, Instant, speeds};
 
 /// Relative error of an arc's area by trapezoids: it scales with the speeds.
 const TRAPEZOIDS: f64 = 1e-3;
@@ -212,10 +212,10 @@ fn smoothed(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::event::arcs::Candidate;
     use crate::event::impact::DetectionSource;
     use crate::event::jumps::Jump;
     use crate::event::kinematics::Body;
-    use crate::event::refine::Candidate;
     use crate::record::Role;
 
     const RATE_HZ: f64 = 2000.0;

@@ -1,7 +1,7 @@
 //! Samples of the velocities that were taken while a contact lasted.
 
+use crate::event::arcs::{Arcs, DEGREE, Instant, flights};
 use crate::event::kinematics::{Body, Series};
-use crate::event::refine::{Arcs, DEGREE, Instant, flights};
 use crate::record::Role;
 
 /// Least height of a jump, in noise deviations, from which its samples are used.

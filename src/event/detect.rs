@@ -1,5 +1,6 @@
 //! From a record to its impacts: contact pulses and velocity jumps fused, times refined.
 
+use crate::event::arcs::{self, Arcs, Candidate, DEGREE, Instant};
 use crate::event::channel_lags::{ChannelLag, channel_lags};
 use crate::event::contact::{Closed, closed_intervals};
 use crate::event::drive::{self, DriveTone};
@@ -7,7 +8,7 @@ use crate::event::finite_contact::{self, FiniteContact};
 use crate::event::impact::{DetectionSource, Impact};
 use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
 use crate::event::kinematics::{Kinematics, RigKind, Series};
-use crate::event::refine::{self, Arcs, Candidate, DEGREE, Instant};
+use crate::event::refine;
 use crate::event::{drift, free_flight, impact_speeds, integrated};
 use crate::record::{Flag, FlagCode, Record, Role};
 use crate::signal::local_fit::LocalFit;
@@ -446,7 +447,7 @@ impl Fused {
             samples,
         };
         let shows = |i: usize| {
-            let Some([before, after]) = refine::flights(velocity, arcs, i) else {
+            let Some([before, after]) = arcs::flights(velocity, arcs, i) else {
                 return true;
             };
             let middle = all[i].jump.middle();

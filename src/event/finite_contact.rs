@@ -10,11 +10,12 @@
 //! displacements cross there. So the kink of the displacement places the contact, and T gives its
 //! start and end. Each body's velocity channel may lag by a delay of its own.
 
+use crate::event::arcs::{Arcs, Candidate, Instant, flights};
 use crate::event::contact_profile::{ContactProfile, TabulatedProfile};
 use crate::event::contact_samples::{Passage, Samples, beside, measured_velocity, samples};
 use crate::event::jumps::Jump;
 use crate::event::kinematics::{Body, Kinematics};
-use crate::event::refine::{self, Arcs, Candidate, Instant, flights, instants};
+use crate::event::refine::{self, instants};
 use crate::signal::robust;
 use crate::signal::whole;
 

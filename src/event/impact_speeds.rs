@@ -1,11 +1,11 @@
 //! The impacts at their refined times, with the speeds extrapolated to them.
 
+use crate::event::arcs::{Arcs, Instant, Reading, flights, read, speeds};
 use crate::event::corner::Shifts;
 use crate::event::drive::DriveTone;
 use crate::event::finite_contact::FiniteContact;
 use crate::event::impact::{Impact, MassSpeeds};
 use crate::event::kinematics::{Body, Kinematics, RelativeSource, Series};
-use crate::event::refine::{Arcs, Instant, Reading, flights, read, speeds};
 use crate::event::{integrated, lag};
 use crate::signal::local_fit::LocalFit;
 

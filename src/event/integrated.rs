@@ -1,8 +1,8 @@
 //! Velocities by integrating an acceleration: impacts are spikes, and each flight between two of them has a constant
 //! of integration of its own.
 
+use crate::event::arcs::{Arcs, Instant, flights};
 use crate::event::kinematics::Series;
-use crate::event::refine::{Arcs, Instant, flights};
 use crate::signal::local_fit::LocalFit;
 
 /// Times of impacts: an integrated acceleration shows the impulse itself, and its centre; `plain` where it does not.

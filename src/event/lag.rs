@@ -5,11 +5,11 @@
 //! is removed so that the mean velocity from kink to kink is zero; shifted by L that mean is off by L times the
 //! jumps of velocity over the time between impacts.
 
+use crate::event::arcs::{Arcs, Candidate, Instant, flights};
 use crate::event::contact_samples::measured_velocity;
 use crate::event::finite_contact::FiniteContact;
 use crate::event::impact::Lag;
 use crate::event::kinematics::{Body, Kinematics, RelativeSource};
-use crate::event::refine::{Arcs, Candidate, Instant, flights};
 use crate::record::Role;
 use crate::signal::local_fit::LocalFit;
 

@@ -5,6 +5,7 @@
 //! bounded by the number of samples before it is used.
 
 mod arc_times;
+mod arcs;
 mod channel_lags;
 mod contact;
 mod contact_profile;

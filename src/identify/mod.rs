@@ -11,6 +11,7 @@ pub mod decay;
 pub mod diagnostics;
 pub mod estimate;
 pub mod evidence;
+mod first_values;
 pub mod fit;
 #[cfg(test)]
 mod fixture;

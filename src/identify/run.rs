@@ -22,8 +22,8 @@ use crate::identify::diagnostics::undeclared_high_pass;
 use crate::identify::diagnostics::verdict::{self, Basis};
 use crate::identify::diagnostics::wrong_gains;
 use crate::identify::estimate::ParameterSet;
-use crate::identify::evidence::impacts::ImpactBlock;
 use crate::identify::evidence::{Blocks, Evidence, Nominal, impact_bias};
+use crate::identify::first_values::{start, with_restitution};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Fit, Precision, Problem};
 use crate::identify::identification::{Allowed, Identification, JointFit, MethodResult};
@@ -35,11 +35,9 @@ use crate::identify::residuals::MethodResiduals;
 use crate::identify::selection::Selection;
 use crate::identify::uncertainty::budget::{self, Further, Source};
 use crate::identify::uncertainty::posterior::{self, Posterior};
-use crate::identify::uncertainty::scatter::Spread;
 use crate::identify::uncertainty::surroundings::Surroundings;
 use crate::identify::uncertainty::{self, Uncertainty};
 use crate::identify::{decay, estimate, flight_times, residuals, results};
-use crate::motion::Observation;
 
 /// Identify from observations and brackets, as records of one specimen.
 ///
@@ -215,43 +213,6 @@ fn further(apart: Vec<(Coordinate, f64)>, doubts: &[Doubt], clock: f64) -> [Furt
     ]
 }
 
-/// What waveforms, resonance curve and impacts of some records alone tell of each parameter, the first of
-/// them that tells it: the coordinate and how far it may be off; `None` where nothing does.
-pub(super) fn part_alone(
-    evidence: &Evidence<'_>,
-    within: &dyn Fn(usize) -> bool,
-) -> Option<BTreeMap<Coordinate, (f64, Spread)>> {
-    let indexed = evidence.observations.iter().enumerate();
-    let observations: Vec<Observation> = indexed
-        .filter(|(i, _)| within(*i))
-        .map(|(_, o)| o.clone())
-        .collect();
-    let evidence = Evidence {
-        observations: &observations,
-        brackets: &[],
-        ..*evidence
-    };
-    let mut selection = Selection::new(&evidence);
-    let resonance = selection.resonance();
-    let begin = start(&evidence, &resonance);
-    let impacts = methods::impacts(&selection.blocks, &evidence.nominal, begin);
-    let begin = with_restitution(begin, &impacts, &selection.blocks.impact);
-    let trajectories = selection.trajectories(begin);
-    let mut told = BTreeMap::new();
-    for found in [&trajectories, &resonance, &impacts]
-        .into_iter()
-        .filter_map(succeeded)
-    {
-        for (_, parameter) in found.fit.estimated() {
-            let value = found.fit.parameters.coordinate(parameter);
-            if let Some(spread) = found.spread(parameter) {
-                told.entry(parameter).or_insert((value, spread));
-            }
-        }
-    }
-    (!told.is_empty()).then_some(told)
-}
-
 /// Whether no record has a drive, so that R rests on the impacts alone.
 fn observations_are_undriven(evidence: &Evidence<'_>) -> bool {
     evidence.observations.iter().all(|o| o.drive.is_none())
@@ -316,54 +277,8 @@ const ON_TIME: f64 = 0.05;
 /// Rounds of leaving out influential records.
 const MOST_ROUNDS: usize = 8;
 
-/// R as the impacts tell it, if only by the ratios of one mass's speeds.
-fn with_restitution(
-    start: Parameters,
-    impacts: &Option<FitResult>,
-    block: &ImpactBlock,
-) -> Parameters {
-    let told = succeeded(impacts).map(|found| found.fit.parameters.restitution);
-    let told = told.or(block.typical_ratio().filter(|_| block.one_of_two));
-    match told {
-        Some(restitution) => Parameters {
-            restitution: restitution.clamp(0.0, 1.0),
-            ..start
-        },
-        None => start,
-    }
-}
-
 /// Influential records that may always be left out.
 const MOST_INFLUENTIAL: usize = 2;
-
-/// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
-fn start(evidence: &Evidence<'_>, resonance: &Option<FitResult>) -> Parameters {
-    if let Some(found) = succeeded(resonance) {
-        return found.fit.parameters;
-    }
-    let nominal = &evidence.nominal;
-    let frequencies: Vec<f64> = evidence
-        .observations
-        .iter()
-        .filter_map(Observation::frequency_hz)
-        .collect();
-    let clearances: Vec<f64> = evidence
-        .observations
-        .iter()
-        .filter_map(|o| o.setting.clearance_m)
-        .collect();
-    let median = |v: &[f64], default: f64| crate::signal::robust::median(v).unwrap_or(default);
-    nominal.applied(Parameters::symmetric(
-        nominal.restitution.unwrap_or(0.8),
-        nominal
-            .natural_frequency_hz
-            .unwrap_or_else(|| median(&frequencies, 10.0) / 1.2),
-        nominal.damping_ratio.unwrap_or(0.05),
-        nominal
-            .static_deflection_m
-            .unwrap_or_else(|| median(&clearances, 1e-3).abs() / 2.0),
-    ))
-}
 
 /// A fit of some methods that is close enough to tell which of two arrangements fits.
 fn rough_fit(

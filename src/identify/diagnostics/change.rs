@@ -11,6 +11,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::identify::estimate::{Estimate, Status, estimate_within};
 use crate::identify::evidence::{Blocks, Evidence};
+use crate::identify::first_values::part_alone;
 use crate::identify::fit::Problem;
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::normal::{Normal, inverse};
@@ -19,7 +20,6 @@ use crate::identify::fit::placed_rows::PlacedRows;
 use crate::identify::identification::MethodResult;
 use crate::identify::messages::{Finding, Note, StatedValue};
 use crate::identify::method::Method;
-use crate::identify::run::part_alone;
 use crate::identify::selection::Selection;
 use crate::identify::uncertainty::distribution::student_tail;
 use crate::identify::uncertainty::scatter::Spread;

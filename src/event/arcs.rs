@@ -1,0 +1,151 @@
+//! Arcs of flight between impacts, and the speeds beside an impact extrapolated from them.
+
+use crate::event::impact::{DetectionSource, MassSpeeds};
+use crate::event::jumps::Jump;
+use crate::event::kinematics::Series;
+use crate::signal::local_fit::LocalFit;
+use crate::signal::whole;
+
+/// Degree of the polynomials by which velocity and displacement are extrapolated from the arcs beside
+/// an impact to it.
+pub(super) const DEGREE: usize = 3;
+
+/// Part of an arc that may be left out while the contact is closed: a sixth.
+const PICKED_UP: usize = 6;
+
+/// An impact's time in samples with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Instant {
+    /// Time, samples from the first.
+    pub time: f64,
+    /// Standard error, samples.
+    pub error: f64,
+}
+
+impl Instant {
+    /// So many samples later.
+    pub(super) fn later(self, samples: f64) -> Self {
+        Self {
+            time: self.time + samples,
+            ..self
+        }
+    }
+}
+
+/// A jump that may be an impact.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Candidate {
+    /// The jump of velocity.
+    pub jump: Jump,
+    /// Channels that show it.
+    pub source: DetectionSource,
+    /// Samples the contact stayed closed beyond an ordinary pulse.
+    pub dead_samples: f64,
+    /// First sample at which the contact of an ordinary pulse is open again; 0 without one. Until then the
+    /// velocities may show what their cables pick up from it.
+    pub open_from: usize,
+}
+
+impl Candidate {
+    /// Standard error of its middle as the time of the impact, samples.
+    pub(super) fn middle_error(&self) -> f64 {
+        self.jump.gap as f64 / 12f64.sqrt()
+    }
+}
+
+/// The candidates of a record, and the most samples of an arc that is fitted beside one of them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Arcs<'a> {
+    pub candidates: &'a [Candidate],
+    pub samples: usize,
+}
+
+impl<'a> Arcs<'a> {
+    /// The same beside other candidates.
+    pub(super) fn of(self, candidates: &'a [Candidate]) -> Self {
+        Self { candidates, ..self }
+    }
+}
+
+/// Windows before and after one candidate: ranges that contain no other impact.
+pub(super) fn windows(velocity: &Series, arcs: Arcs<'_>, index: usize) -> [(usize, usize); 2] {
+    let (candidates, width) = (arcs.candidates, arcs.samples);
+    let samples = velocity.values.len();
+    let jump = candidates[index].jump;
+    let low = match index.checked_sub(1).map(|i| &candidates[i]) {
+        Some(c) => c.jump.left + c.jump.gap + whole::index(c.dead_samples.ceil()),
+        None => 0,
+    };
+    let high = candidates
+        .get(index + 1)
+        .map_or(samples, |c| c.jump.left + 1);
+    let begin = jump.left + jump.gap;
+    // Where leaving them out would take much of the arc, samples of the closed contact are kept.
+    let open_from = candidates[index].open_from;
+    let few = open_from <= begin + width / PICKED_UP && open_from + width / 2 <= high;
+    let begin = if few { begin.max(open_from) } else { begin };
+    let dead = whole::index(candidates[index].dead_samples);
+    // Within a dead zone the bodies move together: "after" is limited to its samples.
+    let end = if dead > 3 {
+        begin + dead
+    } else {
+        begin + width
+    };
+    [
+        (
+            low.max((jump.left + 1).saturating_sub(width))
+                .min(jump.left),
+            jump.left + 1,
+        ),
+        (begin, end.min(high).min(begin + width).max(begin + 1)),
+    ]
+}
+
+/// Polynomials through values in two windows.
+pub(super) fn fits(values: &[f64], windows: [(usize, usize); 2]) -> Option<[LocalFit; 2]> {
+    let [before, after] = windows.map(|(first, end)| LocalFit::new(values, first, end, DEGREE));
+    Some([before?, after?])
+}
+
+/// Flights of one signal before and after a candidate, fitted to samples that touch no impact.
+pub(super) fn flights(velocity: &Series, arcs: Arcs<'_>, index: usize) -> Option<[LocalFit; 2]> {
+    fits(&velocity.values, windows(velocity, arcs, index))
+}
+
+/// Speeds of one signal before and after a candidate, as they were read at a time.
+pub(super) struct Reading {
+    pub speeds: MassSpeeds,
+    /// Standard error of either by noise, m/s.
+    pub error_m_s: f64,
+    /// What either changes by per sample that the time is later, m/s.
+    pub slopes_m_s: [f64; 2],
+}
+
+/// Speeds of one signal before and after a candidate at a time.
+pub(super) fn read(
+    velocity: &Series,
+    arcs: Arcs<'_>,
+    index: usize,
+    instant: Instant,
+) -> Option<Reading> {
+    let [before, after] = flights(velocity, arcs, index)?;
+    let time = instant.time;
+    Some(Reading {
+        speeds: MassSpeeds {
+            before_m_s: before.value(time),
+            after_m_s: after.value(time),
+        },
+        error_m_s: velocity.noise * before.error_factor(time).max(after.error_factor(time)),
+        slopes_m_s: [before.slope(time), after.slope(time)],
+    })
+}
+
+/// The same without their errors.
+pub(super) fn speeds(
+    velocity: &Series,
+    arcs: Arcs<'_>,
+    index: usize,
+    instant: Instant,
+) -> Option<MassSpeeds> {
+    Some(read(velocity, arcs, index, instant)?.speeds)
+}

@@ -1,0 +1,94 @@
+//! Where fits start, and what a part of a campaign tells by itself.
+
+use std::collections::BTreeMap;
+
+use crate::identify::evidence::Evidence;
+use crate::identify::evidence::impacts::ImpactBlock;
+use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::methods::{self, FitResult, succeeded};
+use crate::identify::selection::Selection;
+use crate::identify::uncertainty::scatter::Spread;
+use crate::motion::Observation;
+
+/// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
+pub(super) fn start(evidence: &Evidence<'_>, resonance: &Option<FitResult>) -> Parameters {
+    if let Some(found) = succeeded(resonance) {
+        return found.fit.parameters;
+    }
+    let nominal = &evidence.nominal;
+    let frequencies: Vec<f64> = evidence
+        .observations
+        .iter()
+        .filter_map(Observation::frequency_hz)
+        .collect();
+    let clearances: Vec<f64> = evidence
+        .observations
+        .iter()
+        .filter_map(|o| o.setting.clearance_m)
+        .collect();
+    let median = |v: &[f64], default: f64| crate::signal::robust::median(v).unwrap_or(default);
+    nominal.applied(Parameters::symmetric(
+        nominal.restitution.unwrap_or(0.8),
+        nominal
+            .natural_frequency_hz
+            .unwrap_or_else(|| median(&frequencies, 10.0) / 1.2),
+        nominal.damping_ratio.unwrap_or(0.05),
+        nominal
+            .static_deflection_m
+            .unwrap_or_else(|| median(&clearances, 1e-3).abs() / 2.0),
+    ))
+}
+
+/// R as the impacts tell it, if only by the ratios of one mass's speeds.
+pub(super) fn with_restitution(
+    start: Parameters,
+    impacts: &Option<FitResult>,
+    block: &ImpactBlock,
+) -> Parameters {
+    let told = succeeded(impacts).map(|found| found.fit.parameters.restitution);
+    let told = told.or(block.typical_ratio().filter(|_| block.one_of_two));
+    match told {
+        Some(restitution) => Parameters {
+            restitution: restitution.clamp(0.0, 1.0),
+            ..start
+        },
+        None => start,
+    }
+}
+
+/// What waveforms, resonance curve and impacts of some records alone tell of each parameter, the first of
+/// them that tells it: the coordinate and how far it may be off; `None` where nothing does.
+pub(super) fn part_alone(
+    evidence: &Evidence<'_>,
+    within: &dyn Fn(usize) -> bool,
+) -> Option<BTreeMap<Coordinate, (f64, Spread)>> {
+    let indexed = evidence.observations.iter().enumerate();
+    let observations: Vec<Observation> = indexed
+        .filter(|(i, _)| within(*i))
+        .map(|(_, o)| o.clone())
+        .collect();
+    let evidence = Evidence {
+        observations: &observations,
+        brackets: &[],
+        ..*evidence
+    };
+    let mut selection = Selection::new(&evidence);
+    let resonance = selection.resonance();
+    let begin = start(&evidence, &resonance);
+    let impacts = methods::impacts(&selection.blocks, &evidence.nominal, begin);
+    let begin = with_restitution(begin, &impacts, &selection.blocks.impact);
+    let trajectories = selection.trajectories(begin);
+    let mut told = BTreeMap::new();
+    for found in [&trajectories, &resonance, &impacts]
+        .into_iter()
+        .filter_map(succeeded)
+    {
+        for (_, parameter) in found.fit.estimated() {
+            let value = found.fit.parameters.coordinate(parameter);
+            if let Some(spread) = found.spread(parameter) {
+                told.entry(parameter).or_insert((value, spread));
+            }
+        }
+    }
+    (!told.is_empty()).then_some(told)
+}
