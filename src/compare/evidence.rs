@@ -179,11 +179,11 @@ fn fitted(input: &Input<'_>, role: Role, points: &[ResonancePoint]) -> Vec<[f64;
     frequencies.into_iter().map(at).collect()
 }
 
-/// Speeds before and after impact; each specimen by itself if there are several. None where the speed of
-/// one of two masses alone is known.
+/// Speeds before and after impact; each specimen by itself if there are several. None where the speeds
+/// do not tell R.
 pub(super) fn impacts(input: &Input<'_>) -> Vec<ImpactScatter> {
     let block = impacts_of_bulk(input.rig, input.observations);
-    if block.one_of_two {
+    if block.first_value_only.is_some() {
         return Vec::new();
     }
     let specimens = &input.identification.specimens;

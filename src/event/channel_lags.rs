@@ -65,10 +65,14 @@ pub(super) fn channel_lags(
             Some((velocity.role, search.gap as f64 * step_s, times))
         })
         .collect();
-    // the contact closes between an open sample and the first closed one
     let time = |samples: f64| samples / kinematics.rate_hz;
-    let pulses: Vec<f64> = closed.iter().map(|c| time(c.first as f64 - 0.5)).collect();
-    let lasting: Vec<f64> = closed.iter().map(|c| time(c.samples() as f64)).collect();
+    let lasting: Vec<f64> = closed.iter().map(|c| c.samples() as f64).collect();
+    let closed_samples = robust::median(&lasting);
+    // the contact closes between an open sample and the first closed one; where the masses press for longer,
+    // the velocities change in the midst of it
+    let usual = closed_samples.unwrap_or(1.0);
+    let middle = |c: &Closed| c.first as f64 - 0.5 + 0.5 * (usual.min(c.samples() as f64) - 1.0);
+    let pulses: Vec<f64> = closed.iter().map(|c| time(middle(c))).collect();
     let behind_contact = !pulses.is_empty();
     let reference = match jumps.first() {
         _ if behind_contact => pulses,
@@ -83,7 +87,7 @@ pub(super) fn channel_lags(
             lag_s,
             impacts,
             rise_s: *rise_s,
-            closed_s: robust::median(&lasting),
+            closed_s: closed_samples.map(time),
             step_s,
         })
     });

@@ -39,14 +39,16 @@ pub(super) fn start(evidence: &Evidence<'_>, resonance: &Option<FitResult>) -> P
     ))
 }
 
-/// R as the impacts tell it, if only by the ratios of one mass's speeds.
+/// R as the impacts tell it, if only by ratios that give a first value.
 pub(super) fn with_restitution(
     start: Parameters,
     impacts: &Option<FitResult>,
     block: &ImpactBlock,
 ) -> Parameters {
     let told = succeeded(impacts).map(|found| found.fit.parameters.restitution);
-    let told = told.or(block.typical_ratio().filter(|_| block.one_of_two));
+    let told = told.or(block
+        .typical_ratio()
+        .filter(|_| block.first_value_only.is_some()));
     match told {
         Some(restitution) => Parameters {
             restitution: restitution.clamp(0.0, 1.0),

@@ -1,6 +1,7 @@
 //! The methods, each alone: boundaries, trajectories, impacts, resonance.
 
 use crate::identify::estimate;
+use crate::identify::evidence::impacts::FirstValueOnly;
 use crate::identify::evidence::resonance::ResonanceBlock;
 use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
@@ -143,13 +144,15 @@ pub(super) fn deflection_guess(block: &ResonanceBlock, unit: &Parameters) -> f64
 
 /// R alone from the speeds at impacts, with the corners of the velocities' high-pass as nuisances. The
 /// speeds of one of two masses do not tell it: an unlike drive of the other one moves their ratio by
-/// (1 + R)/2 times its share, which waveforms take into account.
+/// (1 + R)/2 times its share, which waveforms take into account. Nor do differentiated displacements.
 pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.impact.pairs.len() < blocks.impact.fewest() {
         return None;
     }
-    if blocks.impact.one_of_two {
-        return Some(Err(FitError::OneOfTwo));
+    match blocks.impact.first_value_only {
+        Some(FirstValueOnly::OneOfTwo) => return Some(Err(FitError::OneOfTwo)),
+        Some(FirstValueOnly::Differentiated) => return Some(Err(FitError::Differentiated)),
+        None => {}
     }
     let list: Vec<(&dyn Block, f64)> = vec![(&blocks.impact, 1.0)];
     let (mut free, mut priors) = (vec![Coordinate::Restitution], Vec::new());

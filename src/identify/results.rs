@@ -6,8 +6,8 @@ use crate::identify::diagnostics::contact_law::ContactLaw;
 use crate::identify::diagnostics::{contact_law, momentum, structure, verdict};
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::evidence::{Blocks, Evidence, impact_bias};
+use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Fit, FitError};
 use crate::identify::methods::{self, FitResult};
 use crate::identify::uncertainty::posterior::Posterior;
 use crate::identify::uncertainty::quantile::NORMAL_975;
@@ -37,7 +37,7 @@ pub fn impacts(
     evidence: &Evidence<'_>,
     together: Option<&Fit>,
 ) -> MethodResult {
-    if matches!(fitted, Err(FitError::OneOfTwo)) {
+    if blocks.impact.first_value_only.is_some() {
         return methods::result(fitted, &[Coordinate::Restitution], 0, 0);
     }
     let fit = together.or(fitted.as_ref().ok().map(|a| &a.fit));

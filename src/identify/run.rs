@@ -24,6 +24,7 @@ use crate::identify::diagnostics::wrong_gains;
 use crate::identify::estimate::ParameterSet;
 use crate::identify::evidence::{Blocks, Evidence, Nominal, impact_bias};
 use crate::identify::first_values::{start, with_restitution};
+use crate::identify::fit::effect::EffectKind;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Fit, Precision, Problem};
 use crate::identify::identification::{Allowed, Identification, JointFit, MethodResult};
@@ -594,6 +595,8 @@ impl IdentificationRun<'_> {
         let nominal = &self.evidence.nominal;
         let open = Nominal {
             corner_uncertainty: undeclared_high_pass::WIDE,
+            // in phase with the drive at resonance, as what a high-pass shifts is
+            effects: nominal.effects.without(EffectKind::Pickup),
             ..*nominal
         };
         let curve = Weights::from([(Method::Resonance, 1.0)]);

@@ -83,6 +83,8 @@ flag_codes! {
     TimeBackward = "time_backward", "time backward", "Zeit läuft zurück",
     /// The time axis is not uniform.
     TimeNotUniform = "time_not_uniform", "time not uniform", "Zeit nicht gleichmäßig",
+    /// The time axis states another unit than campaign.toml does.
+    TimeUnitWrong = "time_unit_wrong", "wrong unit of time", "falsche Einheit der Zeit",
     /// The unit of the time axis is not known.
     TimeUnitMissing = "time_unit_missing", "unit of time missing", "Einheit der Zeit fehlt",
     /// The unit of the time axis was assumed.

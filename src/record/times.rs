@@ -61,6 +61,10 @@ impl Clocks {
             .map(|(_, b)| axis_of(setup, dataset, b.index, shared));
         let each: Vec<Option<usize>> = each.collect();
         let mut axes: Vec<usize> = each.iter().copied().flatten().collect();
+        if bound.is_empty() {
+            // what is wrong with the times is told even where no channel can be used
+            axes.extend(shared);
+        }
         axes.sort_unstable();
         axes.dedup();
         let mixed = axes.len() > 1 || (!axes.is_empty() && each.contains(&None));
@@ -187,7 +191,12 @@ fn unit_s(
                 "the time axis '{name}' has a unit of {own} s, campaign.toml states time_unit as {stated} s"
             );
             let remedy = "remove time_unit from [records], or correct it";
-            flags.push(Flag::new(FlagCode::WrongUnit, Some(name), found, remedy));
+            flags.push(Flag::new(
+                FlagCode::TimeUnitWrong,
+                Some(name),
+                found,
+                remedy,
+            ));
             Some(own)
         }
         (AxisUnit::Stated(_), own, _) => own,

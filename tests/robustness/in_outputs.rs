@@ -236,7 +236,7 @@ fn folders() -> Vec<Case> {
             },
             &["compare", "old", "campaign.toml", "--out", "out"],
             &[
-                "old/identification.json has layout 1; this program reads and writes layout 4",
+                "old/identification.json has layout 1; this program reads and writes layout 5",
                 "run the campaign with this version of impactid into another folder",
             ],
         ),

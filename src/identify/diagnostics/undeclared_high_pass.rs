@@ -23,6 +23,10 @@ const CLEARLY: f64 = 1.5;
 pub fn undeclared(blocks: &Blocks, fit: &dyn Fn(&Blocks) -> Option<Fit>) -> Vec<Finding> {
     let mut now = blocks.with_trajectory(blocks.trajectory.with_records(Vec::new()));
     now.resonance = blocks.resonance.few(FEW);
+    // what a high-pass makes of a record is no error of its own
+    for point in &mut now.resonance.points {
+        point.own_relative_error = 0.0;
+    }
     now.resonance.allow(LEAST_ALLOWANCE);
     let frequencies = now.resonance.points.iter().map(|p| p.frequency_hz);
     let start_hz = frequencies.fold(f64::INFINITY, f64::min) / BELOW;

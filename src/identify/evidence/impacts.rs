@@ -4,6 +4,7 @@ use crate::event::{CornerShift, Impact, Lag, RigKind, extrapolation_error};
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
+use crate::record::Role;
 
 /// One impact's speeds.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,6 +66,28 @@ fn tells_speeds(o: &Observation) -> bool {
     per_period.is_none_or(follows) && !o.speeds_lack_spikes()
 }
 
+/// Why speeds at impacts give a fit its first R and no more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FirstValueOnly {
+    /// Two masses hit each other and only one of them is measured: twice its speed stands for the approach speed,
+    /// whose ratio is R as far as the masses are alike alone.
+    OneOfTwo,
+    /// Displacements were differentiated beside the kinks that impacts make in them.
+    Differentiated,
+}
+
+/// Whether the speeds of driven motions come from displacements.
+fn differentiated(observations: &[Observation]) -> bool {
+    let mut driven = observations
+        .iter()
+        .filter(|o| !o.excluded() && o.drive.is_some());
+    driven.any(|o| {
+        let from = [false, true].map(|of_y| o.speed_from(of_y));
+        let mut from = from.iter().flatten();
+        from.any(|role| matches!(role, Role::DisplacementX | Role::DisplacementY))
+    })
+}
+
 /// On which corners speeds depend, by their index.
 pub fn corners_in<'a>(shifts: impl Iterator<Item = &'a Option<CornerShift>>) -> [bool; CHANNELS] {
     let mut corners = [false; CHANNELS];
@@ -85,9 +108,8 @@ pub struct ImpactBlock {
     corners: [bool; CHANNELS],
     /// Whether the impacts are between free flights, of records without a drive.
     pub free: bool,
-    /// Whether two masses hit each other and only one of them is measured: twice its speed stands for
-    /// the approach speed, whose ratio is R as far as the masses are alike alone.
-    pub one_of_two: bool,
+    /// Why the speeds give a fit its first R and no more.
+    pub first_value_only: Option<FirstValueOnly>,
     /// What springs and drive, not the contact, add to the separation speed in the median of the contacts that
     /// last, over the approach speed, as a spring and a damper have it.
     pub push: f64,
@@ -150,7 +172,10 @@ impl ImpactBlock {
             .filter(|i| i.x.is_some() || i.y.is_some());
         Self {
             free,
-            one_of_two: rig == RigKind::Double && with_speeds.any(|i| !sees_both(i)),
+            first_value_only: match rig == RigKind::Double && with_speeds.any(|i| !sees_both(i)) {
+                true => Some(FirstValueOnly::OneOfTwo),
+                false => differentiated(observations).then_some(FirstValueOnly::Differentiated),
+            },
             push: push(observations),
             ..Self::of_pairs(pairs, relative_error)
         }
@@ -194,7 +219,7 @@ impl ImpactBlock {
             relative_error,
             corners,
             free: false,
-            one_of_two: false,
+            first_value_only: None,
             push: 0.0,
         }
     }

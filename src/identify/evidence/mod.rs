@@ -182,8 +182,8 @@ fn impacts(
     scatter: f64,
 ) -> (ImpactBlock, Vec<SpeedPair>) {
     let mut block = ImpactBlock::new(rig, observations, scatter);
-    // The ratios of one of two masses differ from record to record.
-    let outliers = match block.one_of_two {
+    // Such ratios differ from record to record.
+    let outliers = match block.first_value_only.is_some() {
         true => Vec::new(),
         false => block.extract_outliers(OUTLYING_IMPACT),
     };
@@ -245,7 +245,7 @@ impl Blocks {
     /// Read the speeds at impacts with the delays of the channels that waveforms tell; whether any depends on
     /// them.
     pub fn delay_impacts(&mut self, waveforms: &Parameters) -> bool {
-        if self.impact.one_of_two || !self.impact.has_lags() {
+        if self.impact.first_value_only.is_some() || !self.impact.has_lags() {
             return false;
         }
         let outliers = std::mem::take(&mut self.impact_outliers);

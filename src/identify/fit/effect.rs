@@ -220,6 +220,13 @@ impl Effects {
         }
     }
 
+    /// The same but for one kind.
+    #[must_use]
+    pub fn without(mut self, kind: EffectKind) -> Self {
+        self.allowed[kind as usize] = false;
+        self
+    }
+
     /// The effects allowed, in their order.
     pub fn iter(self) -> impl Iterator<Item = Effect> {
         let allowed = move |e: &Effect| self.allowed[e.kind() as usize];

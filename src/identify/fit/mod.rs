@@ -121,6 +121,9 @@ pub enum FitError {
     /// Two masses hit each other and one of them is measured: approach speeds are not known.
     #[error("only one of the two masses is measured")]
     OneOfTwo,
+    /// The speeds at impacts come from displacements.
+    #[error("speeds at impacts come from displacements")]
+    Differentiated,
     /// The solver ended without a point.
     #[error("the solver failed")]
     Solver,

@@ -77,6 +77,8 @@ pub enum Note {
     NothingToFit,
     /// Only one of two masses is measured: the speeds of both make R.
     OneOfTwo,
+    /// The speeds at impacts come from differentiated displacements.
+    Differentiated,
     /// The solver failed.
     SolverFailed,
     /// The data do not separate the parameters.
@@ -92,6 +94,7 @@ impl From<&FitError> for Note {
             },
             FitError::Empty => Self::NothingToFit,
             FitError::OneOfTwo => Self::OneOfTwo,
+            FitError::Differentiated => Self::Differentiated,
             FitError::Solver => Self::SolverFailed,
             FitError::Singular => Self::NotSeparable,
         }
@@ -183,6 +186,9 @@ message_table! { Note;
          other mass need not move alike",
         "nur eine der beiden Massen ist gemessen: $R$ ist das Verhältnis der Geschwindigkeiten \
          beider, und die andere Masse muss sich nicht gleich bewegen";
+    Self::Differentiated =>
+        "the speeds at impacts come from differentiated displacements, whose kinks at the impacts they smooth",
+        "die Geschwindigkeiten an Stößen stammen aus differenzierten Wegen, deren Knicke an den Stößen sie glätten";
     Self::SolverFailed => "the solver failed", "der Löser versagte";
     Self::NotSeparable =>
         "the data do not separate the parameters",
