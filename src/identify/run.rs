@@ -600,7 +600,15 @@ impl IdentificationRun<'_> {
             ..*nominal
         };
         let curve = Weights::from([(Method::Resonance, 1.0)]);
-        let fit = |blocks: &Blocks| rough_fit(blocks, start, &curve, &open);
+        // without what delays, gains and asymmetries took of it
+        let [r, f0, beta, x_st] = [
+            start.restitution,
+            start.natural_frequency_hz,
+            start.damping_ratio,
+            start.static_deflection_m,
+        ];
+        let begin = nominal.applied(Parameters::symmetric(r, f0, beta, x_st));
+        let fit = |blocks: &Blocks| rough_fit(blocks, begin, &curve, &open);
         let mut found = undeclared_high_pass::undeclared(&self.selection.blocks, &fit);
         found.extend(suspicion::corners(&joint.fit, joint.factor, nominal));
         let problem = self.problem(&self.selection.blocks, fits.start, &fits.weights);

@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use crate::identify::diagnostics::influence;
+use crate::identify::evidence::Nominal;
 use crate::identify::evidence::resonance::ResonancePoint;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::weighing::Bulk;
@@ -187,7 +188,7 @@ impl<'a> Selection<'a> {
         let all = self.blocks.trajectory.records.clone();
         self.keep_those_with_orbits(&start);
         let first =
-            match methods::trajectories(&self.blocks, &nominal.ideal(), start, Precision::Start)? {
+            match self.trajectories_with_orbits(&nominal.ideal(), start, Precision::Start)? {
                 Ok(first) => first.fit.parameters,
                 failed => return Some(failed),
             };
@@ -195,11 +196,10 @@ impl<'a> Selection<'a> {
         self.keep_those_with_orbits(&first);
         self.blocks.weigh_trajectories(&first);
         self.blocks.trajectory.reduce(&first);
-        let mut found =
-            match methods::trajectories(&self.blocks, &nominal, first, Precision::Start)? {
-                Ok(found) => found,
-                failed => return Some(failed),
-            };
+        let mut found = match self.trajectories_with_orbits(&nominal, first, Precision::Start)? {
+            Ok(found) => found,
+            failed => return Some(failed),
+        };
         self.blocks.trajectory.records = all;
         self.blocks.trajectory.find_changes(&found.fit.parameters);
         for _ in 0..ROUNDS {
@@ -222,21 +222,48 @@ impl<'a> Selection<'a> {
         Some(Ok(found))
     }
 
+    /// Fit the folded records that have an orbit where the fit begins.
+    fn trajectories_with_orbits(
+        &mut self,
+        nominal: &Nominal,
+        start: Parameters,
+        precision: Precision,
+    ) -> Option<FitResult> {
+        loop {
+            let found = methods::trajectories(&self.blocks, nominal, start, precision)?;
+            match &found {
+                Err(FitError::NoModel(missing)) if !missing.is_empty() => {
+                    let without: Vec<usize> = missing.iter().map(|(_, item)| *item).collect();
+                    let mut item = 0..;
+                    let records = &mut self.blocks.trajectory.records;
+                    records.retain(|_| item.next().is_some_and(|i| !without.contains(&i)));
+                }
+                _ => return Some(found),
+            }
+        }
+    }
+
     /// Fit the folded records. Where one is pulled onto its saddle-node, where its slopes are infinite and
-    /// the fit is singular, the worst of those near theirs is named, left out, and all others are fitted.
+    /// the fit is singular, the worst of those near theirs is named, left out, and all others are fitted; so
+    /// are those that have no orbit where the fit begins.
     fn trajectories_without_ends(&mut self, start: Parameters) -> Option<FitResult> {
         loop {
             let nominal = &self.evidence.nominal;
             let found = methods::trajectories(&self.blocks, nominal, start, Precision::Result)?;
-            let pulled = match &found {
-                Err(FitError::Singular) => self.worst_near_its_end(&start),
-                _ => None,
-            };
-            let Some((item, times_worse)) = pulled else {
-                return Some(found);
+            let (item, reason) = match &found {
+                Err(FitError::Singular) => match self.worst_near_its_end(&start) {
+                    Some((item, times_worse)) => {
+                        (item, Reason::WaveformUnlikeOthers { times_worse })
+                    }
+                    None => return Some(found),
+                },
+                Err(FitError::NoModel(missing)) => match missing.last() {
+                    Some((_, item)) => (*item, Reason::NoSuchMotion),
+                    None => return Some(found),
+                },
+                _ => return Some(found),
             };
             let record = self.blocks.trajectory.records.remove(item);
-            let reason = Reason::WaveformUnlikeOthers { times_worse };
             self.note(record.observation, reason);
             self.lost.push(record);
         }

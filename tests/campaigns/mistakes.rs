@@ -108,8 +108,9 @@ fn valid_a_high_pass_that_is_not_stated_is_named() {
         lines.map(|line| format!("{line}\n")).collect()
     };
     let found = Simulated::of("exact").found_with("campaign.toml", without);
-    let [low, high] = interval_of_r(&found);
-    assert!(low < 0.75 && 0.75 < high, "{low} {high}");
+    // fits of all methods are bent by it: nothing is called known
+    assert_eq!(found["joint"]["restitution"]["note"]["kind"], "bent");
+    assert_ne!(found["verdict"]["kind"], "identified");
     let suspicions = found["suspicions"].as_array().expect("a list").iter();
     let named: Vec<&Value> = suspicions
         .filter(|s| s["kind"] == "undeclared_high_pass")

@@ -110,7 +110,7 @@ impl Cause {
             } else if estimate.value.is_some() {
                 estimate.status = Status::Weak;
                 let note = estimate.note.take();
-                let kept = note.filter(|n| *n == Note::NotOneNumber);
+                let kept = note.filter(|n| *n == Note::NotOneNumber && self == Self::Contact);
                 estimate.note = kept.or(Some(Note::Bent));
             }
         }
