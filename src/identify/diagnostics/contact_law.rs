@@ -300,6 +300,8 @@ mod tests {
                     by_time_m_s: [0.0; 2],
                     corner_shifts: [None, None],
                     lags: [None, None],
+                    sample_place: None,
+                    in_record: 1.0,
                 }
             })
             .collect();
@@ -336,6 +338,8 @@ mod tests {
                     by_time_m_s: BY_TIME_M_S,
                     corner_shifts: [None, None],
                     lags: [None, None],
+                    sample_place: None,
+                    in_record: 1.0,
                 }
             })
             .collect();

@@ -1,6 +1,7 @@
 //! R from the speeds after over before each impact.
 
 use crate::event::{CornerShift, Impact, Lag, RigKind, extrapolation_error};
+use crate::identify::evidence::within_record;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
@@ -25,6 +26,11 @@ pub struct SpeedPair {
     pub corner_shifts: [Option<CornerShift>; 2],
     /// What delays of the channels would change of them.
     pub lags: [Option<Lag>; 2],
+    /// Where between two samples the impact falls, counted from the first one of its record, in sampling
+    /// intervals; `None` where the motion does not tell.
+    pub sample_place: Option<f64>,
+    /// Factor on the standard error, as errors are shared within the record.
+    pub in_record: f64,
 }
 
 impl SpeedPair {
@@ -156,6 +162,8 @@ impl ImpactBlock {
                     by_time_m_s: impact.speeds_by_time_m_s.unwrap_or_default(),
                     corner_shifts: impact.corner_shifts,
                     lags: impact.lags,
+                    sample_place: within_record::sample_place(&observations[i], impact.time_s),
+                    in_record: 1.0,
                 })
             })
             .filter(|p| p.after_m_s > -4.0 * p.error_m_s)
@@ -255,6 +263,7 @@ impl ImpactBlock {
         self.pairs.extend(others);
         for pair in &mut self.pairs {
             pair.delay(parameters);
+            pair.in_record = 1.0;
         }
         self.pairs.sort_by(|a, b| {
             let by_time = a.time_s.total_cmp(&b.time_s);
@@ -283,6 +292,11 @@ impl ImpactBlock {
 
     /// Standard error of after − R·before.
     pub fn error(&self, pair: &SpeedPair, restitution: f64) -> f64 {
+        pair.in_record * self.own_error(pair, restitution)
+    }
+
+    /// The same of an impact alone, whatever it shares with others of its record.
+    fn own_error(&self, pair: &SpeedPair, restitution: f64) -> f64 {
         let noise = pair.error_m_s * 1f64.hypot(restitution);
         noise
             .hypot(pair.late(restitution))
@@ -294,7 +308,7 @@ impl ImpactBlock {
     pub fn shared(&self, pair: &SpeedPair, restitution: f64) -> f64 {
         let noise = restitution * pair.error_m_s.powi(2);
         let time = pair.by_time_m_s[0] * pair.late(restitution);
-        (noise + time) / self.error(pair, restitution).powi(2)
+        (noise + time) / self.own_error(pair, restitution).powi(2)
     }
 }
 
@@ -383,6 +397,8 @@ mod tests {
             by_time_m_s: [4e-3, 1e-3],
             corner_shifts: [shift(Role::VelocityX, 3e-3), shift(Role::VelocityY, -2e-3)],
             lags: [None, None],
+            sample_place: None,
+            in_record: 1.0,
         };
         let block = ImpactBlock::of_pairs(vec![pair], 4e-3);
         let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
@@ -417,6 +433,8 @@ mod tests {
                 lag(Role::VelocityX, Role::DisplacementX, [10.0, 4.0]),
                 lag(Role::VelocityY, Role::DisplacementY, [20.0, 8.0]),
             ],
+            sample_place: None,
+            in_record: 1.0,
         };
         let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
         parameters.delays_s = [5e-4, 2e-4, 1e-4, 3e-4, 0.0, 0.0];

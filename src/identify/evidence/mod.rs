@@ -21,6 +21,7 @@ pub mod trajectory;
 pub mod trajectory_record;
 pub mod waveform;
 pub mod weighing;
+mod within_record;
 
 use crate::event::{FlightKind, RigKind};
 use crate::identify::evidence::boundary::BoundaryBlock;
@@ -187,6 +188,7 @@ fn impacts(
         true => Vec::new(),
         false => block.extract_outliers(OUTLYING_IMPACT),
     };
+    within_record::share(&mut block);
     (block, outliers)
 }
 
@@ -251,6 +253,7 @@ impl Blocks {
         let outliers = std::mem::take(&mut self.impact_outliers);
         self.impact.delay(outliers, waveforms);
         self.impact_outliers = self.impact.extract_outliers(OUTLYING_IMPACT);
+        within_record::share(&mut self.impact);
         true
     }
 
