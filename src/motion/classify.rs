@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::event::{Detection, Impact};
 use crate::motion::aperiodic::Irregularity;
 use crate::motion::closure::{self, Count, ImpactClosure, WaveformClosure};
+use crate::motion::harmonics;
 use crate::motion::kind::Motion;
 use crate::motion::settling;
 use crate::motion::undetermined::Undetermined;
@@ -398,6 +399,11 @@ impl Case<'_> {
     ) -> Classification {
         if periods_n > 1 && evidence.shorter_closure > evidence.waveform_closure.map(|c| 2.0 * c) {
             return undetermined(Undetermined::RepeatsWithoutImpact { periods_n }, evidence);
+        }
+        let velocity = self.detection.kinematics.relative.velocity.as_ref();
+        let period = self.period_s * self.detection.kinematics.rate_hz;
+        if velocity.is_some_and(|v| harmonics::are_of_impacts(&v.values, v.noise, period)) {
+            return undetermined(Undetermined::HarmonicsWithoutImpact, evidence);
         }
         let confidence = quality * count.agreement.powi(2);
         Classification {

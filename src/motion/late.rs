@@ -40,8 +40,9 @@ struct Told {
     role: Role,
     lag_s: f64,
     low_pass: Option<LowPass>,
-    /// Step in which it was found, s.
-    step_s: f64,
+    /// By how much the time of a jump is uncertain, s: the step in which it was found, and behind a stated
+    /// low-pass half of what a jump takes.
+    uncertain_s: f64,
 }
 
 /// The channels that are later than the earliest of all, of which the contact is one, by more than the
@@ -66,7 +67,7 @@ pub fn late_channels(observations: &[Observation]) -> Vec<LateChannel> {
     let earliest_s = told.iter().map(|t| t.lag_s).fold(of_contact, f64::min);
     let late = told.into_iter().filter_map(|t| {
         let late_s = t.lag_s - earliest_s;
-        let noticed = late_s > UNNOTICED * t.step_s;
+        let noticed = late_s > UNNOTICED * t.uncertain_s;
         (noticed || t.low_pass.is_some()).then(|| LateChannel {
             role: t.role,
             delay_s: match t.low_pass {
@@ -105,7 +106,11 @@ fn told(role: Role, lags: &[(&Observation, &ChannelLag)]) -> Option<Told> {
             corner_hz: RISE / rise_s,
             order: ORDER,
         }),
-        step_s,
+        uncertain_s: if known {
+            step_s.max(0.5 * rise_s)
+        } else {
+            step_s
+        },
     })
 }
 

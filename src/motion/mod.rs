@@ -6,6 +6,7 @@ mod bracket;
 mod classify;
 mod closure;
 mod fold;
+mod harmonics;
 mod kind;
 mod late;
 mod observation;

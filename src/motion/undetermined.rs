@@ -50,6 +50,8 @@ pub enum Undetermined {
         /// Drive periods of the motion.
         periods_n: u32,
     },
+    /// No impact, but the waveform of one: several harmonics of the drive.
+    HarmonicsWithoutImpact,
     /// No impact, and no period.
     SettlingWithoutImpact,
     /// What the motion misses closing by dies away: the record begins before it has settled.
@@ -110,6 +112,11 @@ message_table! { Undetermined;
         "kein Stoß wurde gefunden, doch wiederholt sich die Bewegung erst nach {periods} \
          Erregerperioden: Stöße, die zu langsam sind, oder noch nicht eingeschwungen",
         periods = count(*periods_n);
+    Self::HarmonicsWithoutImpact =>
+        "no impact was found, yet the waveform has the harmonics of a motion with impacts: they are \
+         too slow to see in these channels",
+        "kein Stoß wurde gefunden, doch hat der Verlauf die Oberschwingungen einer Bewegung mit Stößen: \
+         sie sind in diesen Kanälen zu langsam, um sichtbar zu sein";
     Self::SettlingWithoutImpact =>
         "no impact was found, yet the motion does not repeat: still settling",
         "kein Stoß wurde gefunden, doch wiederholt sich die Bewegung nicht: noch nicht \

@@ -300,6 +300,7 @@ mod tests {
                     by_time_m_s: [0.0; 2],
                     corner_shifts: [None, None],
                     lags: [None, None],
+                    picked_up_m_s: [0.0; 2],
                     sample_place: None,
                     in_record: 1.0,
                 }
@@ -338,6 +339,7 @@ mod tests {
                     by_time_m_s: BY_TIME_M_S,
                     corner_shifts: [None, None],
                     lags: [None, None],
+                    picked_up_m_s: [0.0; 2],
                     sample_place: None,
                     in_record: 1.0,
                 }

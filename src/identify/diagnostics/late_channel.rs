@@ -1,11 +1,12 @@
 //! Channels whose delay is far off the stated one: found by the impacts before the fit, or by the fit.
 
-use crate::identify::diagnostics::doubt::Suspicion;
+use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
 use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::fit::parameters::{Coordinate, GAIN_ROLES};
-use crate::identify::messages::Finding;
+use crate::identify::messages::{Finding, Note};
 use crate::identify::method_fit::MethodFit;
 use crate::motion::Observation;
+use crate::record::LowPass;
 
 /// Standard deviations of what is stated from which a delay is named.
 const SURE: f64 = 4.0;
@@ -13,7 +14,7 @@ const SURE: f64 = 4.0;
 const INFORMED: f64 = 0.1;
 
 /// The channels that are later or earlier than stated; what they showed was moved where impacts told it, and
-/// the fit allows for the rest, so that nothing is left in doubt.
+/// the fit allows for the rest. Of a low-pass that is not stated, the order stays in doubt.
 pub fn late_channels(
     observations: &[Observation],
     found: Option<&MethodFit>,
@@ -23,11 +24,14 @@ pub fn late_channels(
     let of = |(i, channel): (usize, &_)| {
         let moved = moved.iter().find(|l| l.role == *channel);
         if let Some(filter) = moved.and_then(|l| l.low_pass) {
-            let found = Finding::UndeclaredLowPass {
+            let finding = Finding::UndeclaredLowPass {
                 channel: *channel,
                 corner_hz: filter.corner_hz,
             };
-            return Some(found.into());
+            return Some(Suspicion {
+                finding,
+                doubts: found.map_or_else(Vec::new, |f| by_order(f, filter)),
+            });
         }
         let moved_ms = moved.map_or(0.0, |l| 1e3 * l.delay_s);
         let stated_s = nominal.delay_uncertainties_s[i].unwrap_or(blocks.half_sample_s());
@@ -42,6 +46,20 @@ pub fn late_channels(
         (moved.is_some() || sure.abs() > SURE).then(|| finding.into())
     };
     GAIN_ROLES.iter().enumerate().filter_map(of).collect()
+}
+
+/// What is open as jumps tell a filter's corner, not its order: behind one pole an amplitude at the frequency f is
+/// smaller by (f/f_c)²/2, behind more of them not at all. f0 follows from phases, and the delay is fitted.
+fn by_order(found: &MethodFit, filter: LowPass) -> Vec<Doubt> {
+    let p = &found.fit.parameters;
+    let share = 0.5 * (p.natural_frequency_hz / filter.corner_hz).powi(2);
+    let of = |(parameter, by)| Doubt::material(found, parameter, by, Note::InstrumentOff);
+    let open = [
+        (Coordinate::Restitution, share * p.restitution),
+        (Coordinate::Damping, share),
+        (Coordinate::Deflection, share),
+    ];
+    open.into_iter().filter_map(of).collect()
 }
 
 /// How far a fit has a delay off the centre of its prior, ms, and the statistic of that: a delay that is as

@@ -1,8 +1,10 @@
 //! R from the speeds after over before each impact.
 
 use crate::event::{CornerShift, Impact, Lag, RigKind, extrapolation_error};
+use crate::identify::evidence::pickup::Pickups;
 use crate::identify::evidence::within_record;
 use crate::identify::fit::Block;
+use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
 use crate::record::Role;
@@ -26,6 +28,8 @@ pub struct SpeedPair {
     pub corner_shifts: [Option<CornerShift>; 2],
     /// What delays of the channels would change of them.
     pub lags: [Option<Lag>; 2],
+    /// What the velocities pick up of the drive there per unit of strength of [`PICKUPS`], m/s.
+    pub picked_up_m_s: [f64; 2],
     /// Where between two samples the impact falls, counted from the first one of its record, in sampling
     /// intervals; `None` where the motion does not tell.
     pub sample_place: Option<f64>,
@@ -57,8 +61,27 @@ impl SpeedPair {
     /// Change of the closing speed, m/s, by corners other than the stated ones.
     fn shift(&self, parameters: &Parameters) -> f64 {
         let shifts = self.corner_shifts.iter().flatten();
-        shifts.map(|s| parameters.corner_shift_m_s(s)).sum()
+        let by_corners: f64 = shifts.map(|s| parameters.corner_shift_m_s(s)).sum();
+        let picked_up = PICKUPS.iter().zip(self.picked_up_m_s);
+        let picked_up = picked_up.map(|(effect, unit)| parameters.effect(*effect) * unit);
+        by_corners - picked_up.sum::<f64>()
     }
+}
+
+/// What the channels of x and of y pick up.
+pub const PICKUPS: [Effect; 2] = [Effect::PickupX, Effect::PickupY];
+
+/// What the velocities of an observation pick up of the drive at a time, per unit of strength of [`PICKUPS`], m/s.
+fn picked_up_m_s(pickups: &Pickups, o: &Observation, time_s: f64) -> [f64; 2] {
+    let Some(drive) = o.drive else {
+        return [0.0; 2];
+    };
+    let drive_now = o.setting.drive_amplitude * drive.phase_at(time_s).cos();
+    let of = |(effect, of_y)| match o.speed_from(of_y) {
+        Some(role @ (Role::VelocityX | Role::VelocityY)) => pickups.unit(effect, role) * drive_now,
+        _ => 0.0,
+    };
+    [(PICKUPS[0], false), (PICKUPS[1], true)].map(of)
 }
 
 /// Greatest error of extrapolated speeds beside the noise with which they tell R, relative.
@@ -135,6 +158,7 @@ impl ImpactBlock {
     /// Collect impacts without dead zone, faster than six standard errors (twelve where a contact
     /// lasts several samples, as slow ones are then swayed by where its middle is put).
     pub fn new(rig: RigKind, observations: &[Observation], relative_error: f64) -> Self {
+        let pickups = Pickups::of(observations);
         let mut pairs: Vec<SpeedPair> = observations
             .iter()
             .enumerate()
@@ -162,6 +186,7 @@ impl ImpactBlock {
                     by_time_m_s: impact.speeds_by_time_m_s.unwrap_or_default(),
                     corner_shifts: impact.corner_shifts,
                     lags: impact.lags,
+                    picked_up_m_s: picked_up_m_s(&pickups, &observations[i], impact.time_s),
                     sample_place: within_record::sample_place(&observations[i], impact.time_s),
                     in_record: 1.0,
                 })
@@ -233,6 +258,13 @@ impl ImpactBlock {
     }
 
     /// Whether the speeds depend on a corner, by its index.
+    fn picks_up(&self, effect: Effect) -> bool {
+        let place = PICKUPS.iter().position(|p| *p == effect);
+        let picked_up = |i| self.pairs.iter().any(|p| p.picked_up_m_s[i] != 0.0);
+        place.is_some_and(picked_up)
+    }
+
+    /// Whether some speeds depend on a channel's corner.
     pub fn has_corner(&self, index: usize) -> bool {
         self.corners[index]
     }
@@ -286,6 +318,7 @@ impl ImpactBlock {
             pair.before_m_s += shift;
             pair.after_m_s -= shift;
             pair.corner_shifts = [None, None];
+            pair.picked_up_m_s = [0.0; 2];
         }
         block
     }
@@ -355,6 +388,10 @@ impl Block for ImpactBlock {
                 let own = shifts.filter(|s| gain_index(s.role) == Some(*index));
                 -(1.0 + r) * own.map(|s| s.speed_m_s).sum::<f64>() / error
             }
+            Coordinate::Effect(effect) => {
+                let place = PICKUPS.iter().position(|p| p == effect);
+                (1.0 + r) * place.map_or(0.0, |i| pair.picked_up_m_s[i]) / error
+            }
             _ => 0.0,
         };
         let columns = coordinates.iter().map(|c| vec![slope(c)]).collect();
@@ -364,6 +401,7 @@ impl Block for ImpactBlock {
     fn touches(&self, coordinate: Coordinate) -> bool {
         match coordinate {
             Coordinate::Corner(index) => self.has_corner(index),
+            Coordinate::Effect(effect) => self.picks_up(effect),
             _ => coordinate == Coordinate::Restitution,
         }
     }
@@ -397,16 +435,20 @@ mod tests {
             by_time_m_s: [4e-3, 1e-3],
             corner_shifts: [shift(Role::VelocityX, 3e-3), shift(Role::VelocityY, -2e-3)],
             lags: [None, None],
+            picked_up_m_s: [0.3, -0.1],
             sample_place: None,
             in_record: 1.0,
         };
         let block = ImpactBlock::of_pairs(vec![pair], 4e-3);
         let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
         parameters.corners = [1.1, 0.9, 1.0, 1.0, 1.0, 1.0];
+        let parameters = parameters.with(Coordinate::Effect(Effect::PickupX), 2e-3);
         let coordinates = [
             Coordinate::Restitution,
             Coordinate::Corner(0),
             Coordinate::Corner(1),
+            Coordinate::Effect(Effect::PickupX),
+            Coordinate::Effect(Effect::PickupY),
         ];
         let (here, columns) = block.slopes(0, &parameters, &coordinates).expect("slopes");
         for (coordinate, exact) in coordinates.iter().zip(columns) {
@@ -433,6 +475,7 @@ mod tests {
                 lag(Role::VelocityX, Role::DisplacementX, [10.0, 4.0]),
                 lag(Role::VelocityY, Role::DisplacementY, [20.0, 8.0]),
             ],
+            picked_up_m_s: [0.0; 2],
             sample_place: None,
             in_record: 1.0,
         };

@@ -17,7 +17,7 @@ use crate::identify::evidence::waveform::{
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::motion::FoldedChannel;
-use crate::record::Role;
+use crate::record::{LowPass, Role};
 use impact_oscillator::model::params::Machine;
 use impact_oscillator::model::path::C64;
 use impact_oscillator::model::sensitivity::{Change, MassMotion, OrbitMotion, Sensitivity};
@@ -50,12 +50,12 @@ struct ChannelMotion {
     /// The mass's displacement or velocity; its velocity where the acceleration is measured, since a
     /// filter passes the impulse of an impact as it passes the jump of the velocity.
     motion: MassMotion,
-    /// What a settled low-pass passes of the drive's term and of the free vibration's.
-    low_pass: Option<[C64; 2]>,
     /// The high-pass that the channel has passed.
     high_pass: Option<HighPass>,
     /// The motion behind it.
     passed: Passed,
+    /// The low-pass that the channel has passed besides.
+    low_pass: Option<SettledLowPass>,
     delay: f64,
 }
 
@@ -67,23 +67,67 @@ impl ChannelMotion {
 
     /// What the channel shows between impacts, without its delay.
     fn shown(&self, eta: f64) -> Passed {
-        match measured(self.role) {
+        let shown = match measured(self.role) {
             Measured::Acceleration => Passed {
                 motion: velocity(&self.passed.motion, eta),
                 tail: -self.corner() * self.passed.tail,
             },
             _ => self.passed,
-        }
+        };
+        self.smoothed(shown)
+    }
+
+    /// What a motion, or its change, is behind the low-pass.
+    fn smoothed(&self, passed: Passed) -> Passed {
+        self.low_pass.map_or(passed, |filter| filter.pass(&passed))
     }
 
     /// Differential of [`Self::shown`] where the motion behind the filter and the filter change.
     fn shown_slope(&self, change: &Passed, moved: &HighPassSlope, eta: f64) -> Passed {
-        match measured(self.role) {
+        let slope = match measured(self.role) {
             Measured::Acceleration => Passed {
                 motion: velocity_slope(&self.passed.motion, &change.motion, [eta, moved.eta]),
                 tail: -moved.corner * self.passed.tail - self.corner() * change.tail,
             },
             _ => *change,
+        };
+        // What changes of the low-pass itself is a share ω/ω_c of that.
+        self.smoothed(slope)
+    }
+}
+
+/// What a low-pass that has settled passes of the terms of a motion. It follows the high-pass: that one keeps
+/// what a jump leaves of it for many periods, and the jump is whole only before the low-pass.
+#[derive(Clone, Copy)]
+struct SettledLowPass {
+    /// Of the drive's term and of the free vibration's.
+    passed: [C64; 2],
+    /// Of what the high-pass has kept.
+    tail: f64,
+    /// How much later it shows slow motion, dimensionless.
+    delay: f64,
+}
+
+impl SettledLowPass {
+    /// Of a filter, for terms with the poles of drive and free vibration, behind a high-pass with a corner.
+    fn new(filter: LowPass, poles: [C64; 2], corner: f64, natural_rate: f64) -> Self {
+        let transfer = |pole: C64| filter.transfer(pole * natural_rate);
+        Self {
+            passed: poles.map(transfer),
+            tail: transfer(C64::new(-corner, 0.0)).re,
+            delay: filter.delay_s() * natural_rate,
+        }
+    }
+
+    fn pass(&self, before: &Passed) -> Passed {
+        let [drive, free] = self.passed;
+        Passed {
+            motion: MassMotion {
+                force: before.motion.force * drive,
+                mode: before.motion.mode * free,
+                ..before.motion
+            },
+            tail: before.tail * self.tail,
         }
     }
 }
@@ -174,22 +218,21 @@ impl<'a> RecordMotion<'a> {
         let set = phases.iter().position(|p| p.fit(&channel.points))?;
         let role = channel.role;
         let mass = of_role(&self.orbit, role);
-        let low_pass = channel.low_pass.map(|filter| {
-            let rate = self.own.natural_rate();
-            let drive = C64::new(0.0, self.eta);
-            [drive, mass.exponent].map(|pole| filter.transfer(pole * rate))
-        });
         let motion = match measured(role) {
             Measured::Displacement => *mass,
             Measured::Velocity | Measured::Acceleration => velocity(mass, self.eta),
         };
-        let motion = settled(motion, low_pass);
         let high_pass = channel.high_pass_hz.map(|corner_hz| {
             let corner_hz = corner_hz * self.own.corner(role);
             let corner = corner_hz / self.own.natural_frequency_hz;
             HighPass::new(corner, self.eta, self.period(), motion.exponent)
         });
         let unfiltered = Passed { motion, tail: 0.0 };
+        let low_pass = channel.low_pass.map(|filter| {
+            let poles = [C64::new(0.0, self.eta), mass.exponent];
+            let corner = high_pass.map_or(0.0, |h| h.corner());
+            SettledLowPass::new(filter, poles, corner, self.own.natural_rate())
+        });
         Some(ChannelMotion {
             role,
             set,
@@ -452,8 +495,6 @@ impl<'a> RecordMotion<'a> {
             Measured::Displacement => *d_mass,
             Measured::Velocity | Measured::Acceleration => velocity_slope(mass, d_mass, eta),
         };
-        // What changes of the low-pass itself is a share ω/ω_c of that.
-        let change = settled(change, channel.low_pass);
         let delay = match direction.coordinate {
             Some(Coordinate::Frequency) => [channel.delay, channel.delay],
             Some(Coordinate::Delay(_)) => [channel.delay, 1e-3 * self.own.natural_rate()],
@@ -511,18 +552,6 @@ impl<'a> RecordMotion<'a> {
             Measured::Velocity => length * p.natural_rate(),
             Measured::Acceleration => length * p.natural_rate().powi(2),
         }
-    }
-}
-
-/// A motion, or its change, behind a low-pass that has settled.
-fn settled(motion: MassMotion, low_pass: Option<[C64; 2]>) -> MassMotion {
-    match low_pass {
-        Some([drive, free]) => MassMotion {
-            force: motion.force * drive,
-            mode: motion.mode * free,
-            ..motion
-        },
-        None => motion,
     }
 }
 

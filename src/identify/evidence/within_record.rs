@@ -202,6 +202,7 @@ mod tests {
                     by_time_m_s: [0.0; 2],
                     corner_shifts: [None, None],
                     lags: [None, None],
+                    picked_up_m_s: [0.0; 2],
                     sample_place: Some(place),
                     in_record: 1.0,
                 });

@@ -132,8 +132,9 @@ impl RecordMotion<'_> {
             seen = seen.high_passed(high_pass.corner());
         }
         let unit = self.unit(channel.role);
+        let delay = channel.delay + channel.low_pass.map_or(0.0, |filter| filter.delay);
         for (i, time) in times.iter().enumerate() {
-            let own = seen.at((time - channel.delay).rem_euclid(self.period()));
+            let own = seen.at((time - delay).rem_euclid(self.period()));
             let all = changes.iter_mut().zip(own);
             all.for_each(|(change, own)| change[place + i] += unit * own);
         }
