@@ -295,7 +295,11 @@ impl Blocks {
             point.place = places[point.observation];
             point.group = groups[point.observation];
         }
+        let records = self.trajectory.records.iter();
+        let speeds: Vec<f64> = records.map(|r| r.closing_speed_m_s).collect();
+        let typical_m_s = robust::median(&speeds).unwrap_or(0.0);
         for record in &mut self.trajectory.records {
+            record.typical_approach_m_s = typical_m_s;
             record.place = places[record.observation];
             record.group = groups[record.observation];
         }

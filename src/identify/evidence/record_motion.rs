@@ -603,6 +603,7 @@ pub(super) mod tests {
         effects[Effect::ContactDuration.place()] = 0.3;
         effects[Effect::ContactLaw.place()] = 0.1;
         effects[Effect::ContactReach.place()] = 0.05;
+        effects[Effect::ContactSpeed.place()] = 0.1;
         effects[Effect::HystereticDamping.place()] = 0.1;
         effects[Effect::ClearanceDrift.place()] = 0.02;
         Parameters {
@@ -653,6 +654,7 @@ pub(super) mod tests {
             phases: distinct_phases(&folded).into(),
             folded: folded.into(),
             closing_speed_m_s: 1.0,
+            typical_approach_m_s: 0.7,
             frequency_error: 1e-5,
             phase_error_rad: 1e-3,
             gap: Some(1),

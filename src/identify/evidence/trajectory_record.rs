@@ -31,6 +31,8 @@ pub struct TrajectoryRecord {
     pub phases: Arc<[Phases]>,
     /// Median closing speed before impacts as measured, m/s.
     pub closing_speed_m_s: f64,
+    /// That of the campaign's periodic records, m/s.
+    pub typical_approach_m_s: f64,
     /// Standard error of the drive's frequency, relative.
     pub frequency_error: f64,
     /// Standard error of the drive's phase, rad.
@@ -78,6 +80,7 @@ impl TrajectoryRecord {
             gap: self.gap,
             place: self.place,
             approach_m_s: self.closing_speed_m_s,
+            typical_approach_m_s: self.typical_approach_m_s,
             press_per_s: self.press_per_s,
             masses: if rig == RigKind::Double { 2.0 } else { 1.0 },
         }

@@ -62,6 +62,9 @@ pub enum Effect {
     /// What the masses' acceleration during a contact adds to the distance that they press into each
     /// other: relative, per unit of acceleration × duration / approach speed
     ContactReach,
+    /// How a contact's length falls with the approach speed: the exponent, 0 of a linear spring, 1/5 of round bodies
+    /// (Hertz), over the campaign's typical speed
+    ContactSpeed,
     /// Drag that grows with the square of the velocity, relative to F0 at the velocity 2πf0 times the
     /// greatest displacement measured
     Drag,
@@ -160,6 +163,7 @@ impl Effect {
             Self::ContactDuration => (EffectKind::ContactDuration, 0.6, false),
             Self::ContactLaw => (EffectKind::ContactDuration, 0.45, false),
             Self::ContactReach => (EffectKind::ContactDuration, 0.3, false),
+            Self::ContactSpeed => (EffectKind::ContactDuration, 0.2, false),
             Self::Drag => (EffectKind::Drag, 1e-2, true),
             Self::SpringAsymmetry => (EffectKind::SpringAsymmetry, 5e-3, true),
             Self::HystereticDamping => (EffectKind::HystereticDamping, 0.1, false),

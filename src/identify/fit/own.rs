@@ -18,6 +18,8 @@ pub struct Circumstances {
     pub place: f64,
     /// Approach speed at the impacts, m/s; zero without impacts.
     pub approach_m_s: f64,
+    /// The campaign's typical approach speed, m/s; zero where it is not known.
+    pub typical_approach_m_s: f64,
     /// Acceleration of the masses toward each other at the impacts over the approach speed, 1/s.
     pub press_per_s: f64,
     /// Displacements that close the gap together: 2, or 1 against a stop.
@@ -74,7 +76,7 @@ impl Parameters {
         let eta = self.eta(at);
         let [lean, _] = self.lean(eta);
         let [viscous, _] = self.equivalent_damping(eta);
-        let contact_s = 1e-3 * self.effect(Effect::ContactDuration);
+        let contact_s = 1e-3 * self.effect(Effect::ContactDuration) * self.contact_speed(at)[0];
         let contact = short_contact(self.restitution);
         let [press_law, drag_law] = self.contact_law();
         let beyond = press_law * contact.press * at.press_per_s
@@ -120,7 +122,9 @@ impl Parameters {
         let [lean, over_eta] = self.lean(eta);
         let [viscous, damping_over_eta] = self.equivalent_damping(eta);
         let contact = short_contact(self.restitution);
-        let contact_s = 1e-3 * self.effect(Effect::ContactDuration);
+        let [slower, slower_slope] = self.contact_speed(at);
+        let duration_s = 1e-3 * self.effect(Effect::ContactDuration);
+        let contact_s = duration_s * slower;
         let speed = at.approach_m_s / at.masses.max(1.0);
         let decay = self.decay_per_s();
         let [press_law, drag_law] = self.contact_law();
@@ -171,8 +175,16 @@ impl Parameters {
                 Effect::DeflectionDrift => only(3, at.place),
                 Effect::ClearanceDrift => clearance(self.static_deflection_m * at.place),
                 Effect::ContactDuration => Some(OwnSlope {
-                    physical: [1e-3 * beyond, 0.0, 0.0, 0.0],
-                    clearance_m: 1e-3 * speed * contact.reach * (1.0 + 2.0 * bent),
+                    physical: [1e-3 * slower * beyond, 0.0, 0.0, 0.0],
+                    clearance_m: 1e-3 * slower * speed * contact.reach * (1.0 + 2.0 * bent),
+                }),
+                Effect::ContactSpeed => Some(OwnSlope {
+                    physical: [duration_s * slower_slope * beyond, 0.0, 0.0, 0.0],
+                    clearance_m: duration_s
+                        * slower_slope
+                        * speed
+                        * contact.reach
+                        * (1.0 + 2.0 * bent),
                 }),
                 Effect::ContactLaw => only(
                     0,
@@ -202,6 +214,16 @@ impl Parameters {
     fn contact_law(&self) -> [f64; 2] {
         let law = self.effect(Effect::ContactLaw);
         [1.0 + law, 1.0 + DRAG_OF_LAW * law]
+    }
+
+    /// Length of a contact over that at the typical speed, (v/v_typical)^−κ, and the slope over κ.
+    fn contact_speed(&self, at: &Circumstances) -> [f64; 2] {
+        if !(at.approach_m_s > 0.0 && at.typical_approach_m_s > 0.0) {
+            return [1.0, 0.0];
+        }
+        let log = (at.approach_m_s / at.typical_approach_m_s).ln();
+        let slower = (-self.effect(Effect::ContactSpeed) * log).exp();
+        [slower, -log * slower]
     }
 
     /// βΩ, 1/s.

@@ -108,6 +108,15 @@ pub(super) fn beyond(effect: Effect, rises: bool) -> [&'static str; 2] {
              far they press into each other: use harder bumpers",
             "im Kontakt erhöht die Beschleunigung der Massen um {strength} ± {error} % ihres \
              Anteils, wie weit sie ineinander eindringen: härtere Puffer verwenden";
+        (Effect::ContactSpeed, false) =>
+            "contacts grow longer with the speed, with an exponent of {strength} ± {error} %: look at the bumpers",
+            "Kontakte werden mit der Geschwindigkeit länger, mit einem Exponenten von {strength} ± {error} %: Puffer \
+             prüfen";
+        (Effect::ContactSpeed, true) =>
+            "contacts grow shorter with the speed, with an exponent of {strength} ± {error} %, as those of \
+             round bumpers do",
+            "Kontakte werden mit der Geschwindigkeit kürzer, mit einem Exponenten von {strength} ± {error} %, wie \
+             die runder Puffer";
         (Effect::ContactDuration, _) =>
             "a contact acts like one of {strength} ± {error} ms: use harder bumpers",
             "ein Kontakt wirkt wie einer von {strength} ± {error} ms: härtere Puffer verwenden";

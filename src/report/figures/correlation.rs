@@ -229,6 +229,7 @@ fn effect_phrase(effect: Effect) -> Phrase {
         Effect::ContactDuration => Phrase::ContactDuration,
         Effect::ContactLaw => Phrase::ContactLaw,
         Effect::ContactReach => Phrase::ContactReach,
+        Effect::ContactSpeed => Phrase::ContactSpeed,
         Effect::Drag => Phrase::Drag,
         Effect::SpringAsymmetry => Phrase::SpringAsymmetry,
         Effect::HystereticDamping => Phrase::HystereticDamping,
