@@ -511,7 +511,7 @@ const FIELD_CASES: [(&str, &str, Option<&str>, f64); 11] = [
     ),
     (
         "25-simulink-structure-with-time/scope.mat",
-        "scope.signals(1).values",
+        "ScopeData.signals(1).values",
         None,
         1000.0,
     ),
@@ -537,6 +537,9 @@ fn shared_data_field_cases_have_names_units_and_rates() {
         let info = &record.channels[channel];
         if unit.is_some() {
             assert_eq!(info.unit.as_deref(), unit, "{file}");
+        }
+        if file.ends_with("scope.mat") {
+            assert_eq!(info.properties["label"], "velocity", "{file}");
         }
         if let Some(found) = info.sample_rate_hz {
             assert!((found / rate_hz - 1.0).abs() < 2e-3, "{file}: {found}");
