@@ -128,6 +128,12 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         results::widen_common(&mut joint, &run.selection.blocks.impact);
     }
     verdict::carry_over(&mut joint, &methods);
+    let over_speed = verdict::open_by_speed(&methods);
+    for result in methods.values_mut().chain([&mut joint]) {
+        if let (Some(by), Some(estimate)) = (over_speed, &mut result.parameters.restitution) {
+            *estimate = estimate::wider(Coordinate::Restitution, estimate, by);
+        }
+    }
     let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
     let of_joint = succeeded(&fits.joint).map(|f| &f.fit.parameters);
     let ideal = beyond.is_empty() && of_joint.is_none_or(|p| run.is_on_time(p));
@@ -169,7 +175,10 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         joint,
         agreement,
         uncertainty: run
-            .uncertainty(&fits, &further(apart, &doubts, clock_uncertainty))
+            .uncertainty(
+                &fits,
+                &further(apart, over_speed, &doubts, clock_uncertainty),
+            )
             .without(&replaced),
         suspicions,
         left_out: run.left_out(),
@@ -204,10 +213,17 @@ fn without_clearances(evidence: &Evidence<'_>, contradicted: Finding) -> Identif
 }
 
 /// What is open in the joint estimates beside the fit.
-fn further(apart: Vec<(Coordinate, f64)>, doubts: &[Doubt], clock: f64) -> [Further; 3] {
+fn further(
+    apart: Vec<(Coordinate, f64)>,
+    over_speed: Option<f64>,
+    doubts: &[Doubt],
+    clock: f64,
+) -> [Further; 4] {
+    let over_speed = over_speed.map(|by| (Coordinate::Restitution, by));
     let doubtful = doubts.iter().map(|d| (d.parameter, d.by)).collect();
     let of_clock = (clock > 0.0).then_some((Coordinate::Frequency, clock));
     [
+        Further::new(Source::RestitutionOverSpeed, Vec::from_iter(over_speed)),
         Further::new(Source::BetweenMethods, apart),
         Further::new(Source::Clock, Vec::from_iter(of_clock)),
         Further::new(Source::InstrumentOff, doubtful),

@@ -70,6 +70,7 @@ ContactsOfFiniteDuration => "contacts of finite duration", "Kontakte endlicher D
 CoverageFactor => "coverage factor for 95 %", "Erweiterungsfaktor für 95 %";
 DegreesOfFreedom => "degrees of freedom", "Freiheitsgrade";
 ClockOfSampler => "clock of the sampler", "Abtasttakt";
+ChangeOverSpeed => "change of $R$ with the speed", "Änderung von $R$ mit der Geschwindigkeit";
 InstrumentThatIsOff => "instrument that is off", "falsch zeigendes Messgerät";
 DisagreementOfMethods => "disagreement of the methods", "Unterschied der Verfahren";
 DriftOverTheCampaign => "drift over the campaign", "Drift über die Messreihe";

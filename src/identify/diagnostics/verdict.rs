@@ -180,6 +180,18 @@ pub fn carry_over(joint: &mut MethodResult, methods: &BTreeMap<Method, MethodRes
     not_one_number(estimate, &impacts.interval95.unwrap_or_default());
 }
 
+/// What a small change of R with the speed leaves open in one R: the standard deviation of values spread evenly
+/// over its range. Where a motion's impacts have one speed, waveforms tell R there.
+pub fn open_by_speed(methods: &BTreeMap<Method, MethodResult>) -> Option<f64> {
+    let remarks = &methods.get(&Method::Impacts)?.remarks;
+    remarks.iter().find_map(|remark| match remark {
+        Remark::RestitutionChangesLittle { slower, faster } => {
+            Some((slower.restitution - faster.restitution).abs() / 12f64.sqrt())
+        }
+        _ => None,
+    })
+}
+
 /// Judge by the contact law.
 fn judge_law(result: &mut MethodResult, block: &ImpactBlock, evidence: &Evidence<'_>) {
     let Some(law) = &result.contact_law else {
@@ -193,6 +205,15 @@ fn judge_law(result: &mut MethodResult, block: &ImpactBlock, evidence: &Evidence
     let change = (a.restitution - b.restitution).abs();
     let changes = law.is_not_constant() && change > RESTITUTION_CHANGE;
     result.fits = Some(!changes);
+    let [slower, faster] = [a, b].map(|p| SpeedPoint {
+        speed_m_s: p.speed_m_s,
+        restitution: p.restitution,
+    });
+    if law.is_not_constant() && !changes {
+        let little = Remark::RestitutionChangesLittle { slower, faster };
+        result.remarks.push(little);
+        return;
+    }
     if !changes {
         result.remarks.push(Remark::RestitutionConstant {
             slow_m_s: slow.speed_m_s,
@@ -201,10 +222,6 @@ fn judge_law(result: &mut MethodResult, block: &ImpactBlock, evidence: &Evidence
         });
         return;
     }
-    let [slower, faster] = [a, b].map(|p| SpeedPoint {
-        speed_m_s: p.speed_m_s,
-        restitution: p.restitution,
-    });
     let samples = contact_samples(block, evidence);
     result.remarks.push(match samples > 1.5 {
         true => Remark::LongContact {

@@ -142,6 +142,13 @@ pub enum Remark {
         /// Change of R between them that the data allow.
         within: f64,
     },
+    /// R depends on the speed, by so little that one constant with that range as its error serves.
+    RestitutionChangesLittle {
+        /// R at the slower end of its range.
+        slower: SpeedPoint,
+        /// R at the faster end.
+        faster: SpeedPoint,
+    },
     /// R depends on the speed.
     RestitutionChanges {
         /// R at the slower end of its range.
@@ -377,6 +384,15 @@ message_table! { Remark;
         slow = Value::Number(*slow_m_s, 3),
         fast = Value::Number(*fast_m_s, 3),
         change = Value::Number(*within, 3);
+    Self::RestitutionChangesLittle { slower, faster } =>
+        "$R$ goes from {first} at {slow} m/s to {last} at {fast} m/s: a small change with the speed, which \
+         widens the interval",
+        "$R$ geht von {first} bei {slow} m/s auf {last} bei {fast} m/s: eine kleine Änderung mit der \
+         Geschwindigkeit, die das Intervall verbreitert",
+        first = Value::Number(slower.restitution, 4),
+        slow = Value::Number(slower.speed_m_s, 3),
+        last = Value::Number(faster.restitution, 4),
+        fast = Value::Number(faster.speed_m_s, 3);
     Self::RestitutionChanges { slower, faster } =>
         "$R$ goes from {first} at {slow} m/s to {last} at {fast} m/s: $R$ depends on the speed, \
          one constant does not describe it",

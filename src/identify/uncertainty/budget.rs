@@ -38,6 +38,8 @@ pub enum Source {
     },
     /// What the first order of the effects beyond the model does not hold.
     FirstOrder,
+    /// A small change of R with the speed.
+    RestitutionOverSpeed,
     /// Disagreement between methods beyond their uncertainties.
     BetweenMethods,
     /// What is stated of the sampler's clock.
@@ -301,6 +303,7 @@ impl Budget {
                 Source::Noise { method } => ("noise", method.name().to_owned()),
                 Source::BetweenGroups { groups } => ("between_groups", groups.to_string()),
                 Source::FirstOrder => ("first_order", String::new()),
+                Source::RestitutionOverSpeed => ("restitution_over_speed", String::new()),
                 Source::BetweenMethods => ("between_methods", String::new()),
                 Source::Clock => ("clock", String::new()),
                 Source::InstrumentOff => ("instrument_off", String::new()),

@@ -163,6 +163,7 @@ fn real_rig() -> ReportContent {
         (Source::BetweenGroups { groups: 9 }, 1e-3),
         (stated(Coordinate::Gap(0), Some(1e-3)), 1e-3),
         (Source::FirstOrder, 1e-3),
+        (Source::RestitutionOverSpeed, 1e-3),
         (Source::BetweenMethods, 1e-3),
         (Source::Clock, 1e-3),
         (Source::InstrumentOff, 1e-3),

@@ -96,6 +96,7 @@ fn source(source: Source, locale: Locale<'_>) -> String {
         }
         Source::Stated { coordinate, .. } => name(coordinate, locale),
         Source::FirstOrder => locale.translate(Phrase::BeyondFirstOrder),
+        Source::RestitutionOverSpeed => locale.translate(Phrase::ChangeOverSpeed),
         Source::BetweenMethods => locale.translate(Phrase::DisagreementOfMethods),
         Source::Clock => locale.translate(Phrase::ClockOfSampler),
         Source::InstrumentOff => locale.translate(Phrase::InstrumentThatIsOff),
