@@ -134,24 +134,19 @@ impl Tree {
 
     /// What a file holds of which nothing is read, and what to save instead; `None` where something is read.
     pub(crate) fn nothing_read(&self) -> Option<(String, String)> {
-        let (_, first) = self.refused.first().filter(|_| self.leaves.is_empty())?;
-        let named = self
-            .refused
-            .iter()
-            .take(NAMED)
-            .map(|(name, kind)| format!("{kind} '{name}'"));
-        let mut found = named.collect::<Vec<_>>().join(", ");
-        if let Some(more) = self.refused.len().checked_sub(NAMED).filter(|n| *n > 0) {
-            found = format!("{found} and {more} more");
+        if self.refused.is_empty() || !self.leaves.is_empty() {
+            return None;
         }
-        let mut kinds: Vec<&str> = vec![first];
+        let mut kinds: Vec<&str> = Vec::new();
         for (_, kind) in &self.refused {
             if !kinds.contains(&kind.as_str()) {
                 kinds.push(kind);
             }
         }
-        let remedies = kinds.iter().take(3).map(|kind| remedy(kind).to_owned());
-        let mut remedies: Vec<String> = remedies.collect();
+        kinds.sort_by_key(|kind| remedy(kind) == OF_OBJECTS);
+        let named: Vec<String> = kinds.iter().map(|kind| self.named(kind)).collect();
+        let found = named.join(", ");
+        let mut remedies: Vec<&str> = kinds.iter().map(|kind| remedy(kind)).collect();
         remedies.dedup();
         Some((
             format!("{found} and nothing else"),
@@ -161,10 +156,29 @@ impl Tree {
             ),
         ))
     }
+
+    /// The variables of a kind that is not read, the first by name and the others counted.
+    fn named(&self, kind: &str) -> String {
+        let of_kind = self.refused.iter().filter(|(_, own)| own == kind);
+        let names: Vec<&str> = of_kind.map(|(name, _)| name.as_str()).collect();
+        let shown: Vec<String> = names
+            .iter()
+            .take(NAMED)
+            .map(|name| format!("'{name}'"))
+            .collect();
+        let more = match names.len().saturating_sub(NAMED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        format!("{kind} {}{more}", shown.join(" "))
+    }
 }
 
-/// Variables that a message names.
-const NAMED: usize = 6;
+/// Variables of a kind that a message names.
+const NAMED: usize = 3;
+
+/// What to save instead of objects that nothing more is known of.
+const OF_OBJECTS: &str = "of an object x the fields that are numbers";
 
 /// What to save instead of a variable of a kind.
 fn remedy(kind: &str) -> &'static str {
@@ -175,6 +189,6 @@ fn remedy(kind: &str) -> &'static str {
         "datetime" | "duration" => "of times t seconds(t - t(1))",
         "string" => "of a string s char(s)",
         "timeseries" => "of a timeseries s s.Time and s.Data",
-        _ => "of an object x the fields that are numbers",
+        _ => OF_OBJECTS,
     }
 }
