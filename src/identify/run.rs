@@ -128,12 +128,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         results::widen_common(&mut joint, &run.selection.blocks.impact);
     }
     verdict::carry_over(&mut joint, &methods);
-    let over_speed = verdict::open_by_speed(&methods);
-    for result in methods.values_mut().chain([&mut joint]) {
-        if let (Some(by), Some(estimate)) = (over_speed, &mut result.parameters.restitution) {
-            *estimate = estimate::wider(Coordinate::Restitution, estimate, by);
-        }
-    }
+    let over_speed = widen_over_speed(&mut methods, &mut joint);
     let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
     let of_joint = succeeded(&fits.joint).map(|f| &f.fit.parameters);
     let ideal = beyond.is_empty() && of_joint.is_none_or(|p| run.is_on_time(p));
@@ -149,11 +144,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         impacts.remarks.extend(which_restitution(&agreement));
     }
     let apart = between_methods(&methods, &agreement, &joint);
-    for (parameter, by) in &apart {
-        if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
-            *estimate = estimate::widened(*parameter, estimate, *by);
-        }
-    }
+    widen_apart(&mut joint, &apart);
     let clock_uncertainty = evidence.nominal.clock_uncertainty;
     for result in methods.values_mut().chain([&mut joint]) {
         clock::widen(result, clock_uncertainty);
@@ -228,6 +219,29 @@ fn further(
         Further::new(Source::Clock, Vec::from_iter(of_clock)),
         Further::new(Source::InstrumentOff, doubtful),
     ]
+}
+
+/// Widen R of all methods and of the joint result by a small change with the speed; gives its standard uncertainty.
+fn widen_over_speed(
+    methods: &mut BTreeMap<Method, MethodResult>,
+    joint: &mut MethodResult,
+) -> Option<f64> {
+    let by = verdict::open_by_speed(methods)?;
+    for result in methods.values_mut().chain([joint]) {
+        if let Some(estimate) = &mut result.parameters.restitution {
+            *estimate = estimate::wider(Coordinate::Restitution, estimate, by);
+        }
+    }
+    Some(by)
+}
+
+/// Widen the joint estimates by what a disagreement of methods leaves open.
+fn widen_apart(joint: &mut MethodResult, apart: &[(Coordinate, f64)]) {
+    for (parameter, by) in apart {
+        if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
+            *estimate = estimate::widened(*parameter, estimate, *by);
+        }
+    }
 }
 
 /// Whether no record has a drive, so that R rests on the impacts alone.

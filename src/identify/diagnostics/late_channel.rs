@@ -49,7 +49,7 @@ pub fn late_channels(
 }
 
 /// What is open as jumps tell a filter's corner, not its order: behind one pole an amplitude at the frequency f is
-/// smaller by (f/f_c)²/2, behind more of them not at all. f0 follows from phases, and the delay is fitted.
+/// smaller by half of (f/fc)², behind more of them not at all. f0 follows from phases, and the delay is fitted.
 fn by_order(found: &MethodFit, filter: LowPass) -> Vec<Doubt> {
     let p = &found.fit.parameters;
     let share = 0.5 * (p.natural_frequency_hz / filter.corner_hz).powi(2);

@@ -36,6 +36,21 @@ pub struct OwnSlope {
     pub clearance_m: f64,
 }
 
+/// Of one of R, ln f0, ln β and ln `x_st` alone.
+fn only(i: usize, slope: f64) -> Option<OwnSlope> {
+    let mut found = OwnSlope::default();
+    found.physical[i] = slope;
+    Some(found)
+}
+
+/// Of the clearance alone.
+fn clearance(clearance_m: f64) -> Option<OwnSlope> {
+    Some(OwnSlope {
+        clearance_m,
+        ..OwnSlope::default()
+    })
+}
+
 impl Parameters {
     /// Force over its value at η = 1, and its derivative over η.
     fn lean(&self, eta: f64) -> [f64; 2] {
@@ -107,17 +122,6 @@ impl Parameters {
     /// do not.
     pub fn own_slope(&self, at: &Circumstances, coordinate: Coordinate) -> Option<OwnSlope> {
         let none = OwnSlope::default();
-        let only = |i: usize, slope: f64| {
-            let mut physical = [0.0; 4];
-            physical[i] = slope;
-            Some(OwnSlope { physical, ..none })
-        };
-        let clearance = |clearance_m: f64| {
-            Some(OwnSlope {
-                clearance_m,
-                ..none
-            })
-        };
         let eta = self.eta(at);
         let [lean, over_eta] = self.lean(eta);
         let [viscous, damping_over_eta] = self.equivalent_damping(eta);
@@ -132,6 +136,13 @@ impl Parameters {
         let bent = self.effect(Effect::ContactReach) * pressed;
         let drag = contact_s * drag_law * contact.drag * decay;
         let beyond = press_law * contact.press * at.press_per_s + drag_law * contact.drag * decay;
+        // of a contact that lasts longer by so many seconds
+        let length = |longer_s: f64| {
+            Some(OwnSlope {
+                physical: [longer_s * beyond, 0.0, 0.0, 0.0],
+                clearance_m: longer_s * speed * contact.reach * (1.0 + 2.0 * bent),
+            })
+        };
         match coordinate {
             Coordinate::Restitution => Some(OwnSlope {
                 physical: [
@@ -174,18 +185,8 @@ impl Parameters {
                 Effect::HystereticDamping => only(2, (1.0 / eta - 1.0) / viscous),
                 Effect::DeflectionDrift => only(3, at.place),
                 Effect::ClearanceDrift => clearance(self.static_deflection_m * at.place),
-                Effect::ContactDuration => Some(OwnSlope {
-                    physical: [1e-3 * slower * beyond, 0.0, 0.0, 0.0],
-                    clearance_m: 1e-3 * slower * speed * contact.reach * (1.0 + 2.0 * bent),
-                }),
-                Effect::ContactSpeed => Some(OwnSlope {
-                    physical: [duration_s * slower_slope * beyond, 0.0, 0.0, 0.0],
-                    clearance_m: duration_s
-                        * slower_slope
-                        * speed
-                        * contact.reach
-                        * (1.0 + 2.0 * bent),
-                }),
+                Effect::ContactDuration => length(1e-3 * slower),
+                Effect::ContactSpeed => length(duration_s * slower_slope),
                 Effect::ContactLaw => only(
                     0,
                     contact_s
@@ -216,7 +217,7 @@ impl Parameters {
         [1.0 + law, 1.0 + DRAG_OF_LAW * law]
     }
 
-    /// Length of a contact over that at the typical speed, (v/v_typical)^−κ, and the slope over κ.
+    /// Length of a contact over that at the typical speed, v over it to the power −κ, and the slope over κ.
     fn contact_speed(&self, at: &Circumstances) -> [f64; 2] {
         if !(at.approach_m_s > 0.0 && at.typical_approach_m_s > 0.0) {
             return [1.0, 0.0];
