@@ -24,13 +24,14 @@ use crate::identify::diagnostics::wrong_gains;
 use crate::identify::estimate::ParameterSet;
 use crate::identify::evidence::{Blocks, Evidence, Nominal, impact_bias};
 use crate::identify::first_values::{start, with_restitution};
-use crate::identify::fit::effect::EffectKind;
+use crate::identify::fit::effect::{Effect, EffectKind};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Fit, Precision, Problem};
 use crate::identify::identification::{Allowed, Identification, JointFit, MethodResult};
 use crate::identify::joint::{self, Weights};
 use crate::identify::messages::{Finding, Item, LeftOut, Reason, Remark};
 use crate::identify::method::Method;
+use crate::identify::method_fit::MethodFit;
 use crate::identify::methods::{self, FitResult, succeeded};
 use crate::identify::residuals::MethodResiduals;
 use crate::identify::selection::Selection;
@@ -120,6 +121,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         }
         fits = run.fits(start, fits.alone.resonance, fits.alone.impacts);
     }
+    fits = run.with_contacts_over_speed(start, fits);
     fits = run.without_influential(fits);
     let (mut suspicions, doubts) = doubt::parted(run.suspicions(&fits, odd_gaps));
     let mut methods = run.results(&fits);
@@ -325,6 +327,16 @@ fn rough_fit(
     problem.fit(start).ok()
 }
 
+/// Standard errors from which contacts last.
+const LASTS: f64 = 4.0;
+
+/// Whether a fit tells a time that contacts last.
+fn contacts_last(found: &MethodFit) -> bool {
+    let duration = Coordinate::Effect(Effect::ContactDuration);
+    let spread = found.spread(duration);
+    spread.is_some_and(|s| found.fit.parameters.coordinate(duration) > LASTS * s.error)
+}
+
 struct IdentificationRun<'a> {
     evidence: &'a Evidence<'a>,
     selection: Selection<'a>,
@@ -337,6 +349,16 @@ impl IdentificationRun<'_> {
     fn is_on_time(&self, parameters: &Parameters) -> bool {
         let latest = ON_TIME * self.selection.blocks.half_sample_s();
         parameters.delays_s.iter().all(|d| d.abs() < latest)
+    }
+
+    /// The fits with contacts that may grow shorter with the speed, where contacts last a time that the data tell: the
+    /// speed goes with the gap, and gaps that are off are found before.
+    fn with_contacts_over_speed(&mut self, start: Parameters, fits: Fits) -> Fits {
+        if !succeeded(&fits.joint).is_some_and(contacts_last) {
+            return fits;
+        }
+        self.selection.blocks.trajectory.contact_speed = true;
+        self.fits(start, fits.alone.resonance, fits.alone.impacts)
     }
 
     /// Trajectories, boundaries and all together, beside the resonance curve and the impacts.

@@ -34,6 +34,8 @@ pub struct TrajectoryBlock {
     pub reach_m: f64,
     /// What channels may pick up from the drive.
     pub pickups: Pickups,
+    /// Whether contacts may grow shorter with the speed.
+    pub contact_speed: bool,
 }
 
 impl TrajectoryBlock {
@@ -57,6 +59,7 @@ impl TrajectoryBlock {
             effects: Effects::none(),
             reach_m: 1.0,
             pickups: Pickups::default(),
+            contact_speed: false,
         };
         block.allow(relative_error);
         block
@@ -329,6 +332,7 @@ impl Block for TrajectoryBlock {
         match coordinate {
             Coordinate::Gap(i) => record.gap == Some(i),
             Coordinate::Gain(i) | Coordinate::Corner(i) | Coordinate::Delay(i) => record.has(i),
+            Coordinate::Effect(Effect::ContactSpeed) => self.contact_speed,
             Coordinate::Effect(effect) if effect.is_perturbation() => {
                 record.perturbation(effect).is_some()
             }
