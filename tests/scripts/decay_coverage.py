@@ -1,0 +1,147 @@
+"""How often the 95 % intervals of f0 and β of free decays hold the truth.
+
+Decays are drawn at random: frequency, damping ratio, phase, offset, rate, and how many periods the record holds; beside
+each lies noise of one kind. Each record is a specimen of its own, so that `impactid` states f0 and β of each with an
+interval; one that is left open, or not found, counts for nothing.
+
+    python3 decay_coverage.py --binary target/release/impactid --work FOLDER [--seed 1] [--records 200] [--kinds white,slow]
+
+Prints for each kind of noise and each range of periods how many decays were found, the shares that the intervals of f0
+and β hold, and their median half widths.
+"""
+
+import argparse
+import json
+import pathlib
+import subprocess
+
+import numpy
+
+KINDS = ["white", "coloured", "slow", "quantised", "hum", "friction"]
+PERIODS = {"1.5-2": (1.5, 2.0), "2-5": (2.0, 5.0), "5-20": (5.0, 20.0), "20-200": (20.0, 200.0)}
+
+
+def autoregressive(rng, count, correlation):
+    """Stationary noise of the first order, of unit variance."""
+    shocks = rng.standard_normal(count) * numpy.sqrt(1 - correlation**2)
+    out = numpy.empty(count)
+    out[0] = rng.standard_normal()
+    for i in range(1, count):
+        out[i] = correlation * out[i - 1] + shocks[i]
+    return out
+
+
+def rubbed(natural, damping, friction, amplitude, times):
+    """A viscous oscillator with dry friction: x'' + 2βωx' + ω²x + ω²μ sign(x') = 0, half swing by half swing."""
+    sigma, omega = damping * natural, natural * numpy.sqrt(1 - damping**2)
+    out = numpy.zeros(len(times))
+    begin, place, side = 0.0, amplitude, 1.0
+    while begin < times[-1]:
+        # from a turning point on, about the equilibrium shifted by the friction
+        about = side * friction
+        if abs(place) <= friction:
+            out[times >= begin] = place
+            break
+        half = numpy.pi / omega
+        own = (times >= begin) & (times < begin + half)
+        t = times[own] - begin
+        out[own] = about + (place - about) * numpy.exp(-sigma * t) * (
+            numpy.cos(omega * t) + sigma / omega * numpy.sin(omega * t)
+        )
+        place = about - (place - about) * numpy.exp(-sigma * half)
+        begin, side = begin + half, -side
+    return out
+
+
+def decay(rng, kind, periods):
+    """Samples of one decay, m, with its truth."""
+    f0 = float(10 ** rng.uniform(-0.5, 2.3))
+    damping = float(10 ** rng.uniform(-2.7, numpy.log10(0.5))) if periods[1] <= 5 else float(10 ** rng.uniform(-3.3, -1.2))
+    natural = 2 * numpy.pi * f0
+    omega = natural * numpy.sqrt(1 - damping**2)
+    turns = rng.uniform(*periods)
+    per_period = rng.uniform(25, 120)
+    if turns > 60:
+        per_period = rng.uniform(12, 30)
+    rate = per_period * omega / (2 * numpy.pi)
+    times = numpy.arange(int(turns * per_period)) / rate
+    amplitude, phase = 10 ** rng.uniform(-4, -2), rng.uniform(0, 2 * numpy.pi)
+    noise = amplitude * 10 ** rng.uniform(-3.5, -1.5)
+    if kind == "friction":
+        friction = amplitude * 10 ** rng.uniform(-4.5, -3.0)
+        values = rubbed(natural, damping, friction, amplitude, times)
+        values += noise * 0.1 * rng.standard_normal(len(times))
+    else:
+        values = amplitude * numpy.exp(-damping * natural * times) * numpy.cos(omega * times + phase)
+    count = len(times)
+    if kind == "white":
+        values += noise * rng.standard_normal(count)
+    elif kind == "coloured":
+        values += noise * autoregressive(rng, count, rng.uniform(0.3, 0.9))
+    elif kind == "slow":
+        # correlated over a good part of a period and up to several
+        correlation = numpy.exp(-1.0 / (per_period * 10 ** rng.uniform(-1, 0.7)))
+        values += noise * autoregressive(rng, count, correlation)
+    elif kind == "hum":
+        hum = rng.choice([3.2, 5.0, 7.7]) * f0
+        values += noise * rng.standard_normal(count)
+        values += 10 * noise * numpy.cos(2 * numpy.pi * hum * times + rng.uniform(0, 6.28))
+    values += amplitude * rng.uniform(-0.5, 0.5)
+    if kind == "quantised":
+        step = amplitude * 10 ** rng.uniform(-3, -1.3)
+        values = step * numpy.round((values + 0.2 * step * rng.standard_normal(count)) / step)
+    return times, values, {"f0": f0, "beta": damping, "turns": turns}
+
+
+def written(folder, seed, kind, name, records):
+    folder.mkdir(parents=True, exist_ok=True)
+    truth = {}
+    table = "file,specimen\n" + "".join(f"r{k:03}.csv,r{k:03}\n" for k in range(records))
+    (folder / "runs.csv").write_text(table)
+    for number in range(records):
+        rng = numpy.random.default_rng([seed, KINDS.index(kind), list(PERIODS).index(name), number])
+        times, values, truth[f"r{number:03}"] = decay(rng, kind, PERIODS[name])
+        rows = numpy.column_stack([times, values])
+        numpy.savetxt(folder / f"r{number:03}.csv", rows, fmt="%.12g", delimiter=",", header="t (s),x (m)", comments="")
+    (folder / "campaign.toml").write_text(
+        '[campaign]\nmachine = "single"\n[records]\nrun_table = "runs.csv"\nexcitation = "free_decay"\n'
+        '[channels.displacement_x]\nchannel = "x"\n'
+    )
+    return truth
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--binary", required=True)
+    parser.add_argument("--work", required=True, type=pathlib.Path)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--records", type=int, default=200)
+    parser.add_argument("--kinds", default=",".join(KINDS))
+    parser.add_argument("--periods", default=",".join(PERIODS))
+    options = parser.parse_args()
+    print("noise periods found f0 beta half_f0 half_beta")
+    for kind in options.kinds.split(","):
+        for name in options.periods.split(","):
+            folder = options.work / f"{kind}-{name}-{options.seed}"
+            truth = written(folder, options.seed, kind, name, options.records)
+            out = folder / "out"
+            command = [options.binary, "run", "campaign.toml", "--out", "out", "--format", "csv"]
+            subprocess.run(command, cwd=folder, capture_output=True, check=False)
+            found = json.loads((out / "identification.json").read_text())["specimens"]
+            rows = []
+            for record, true in truth.items():
+                joint = found.get(record, {}).get("joint", {})
+                estimates = [joint.get(n, {}).get("interval95") for n in ("natural_frequency_hz", "damping_ratio")]
+                if None in estimates:
+                    continue
+                (low, high), (least, most) = estimates
+                middles = (0.5 * (low + high) / true["f0"] - 1, 0.5 * (least + most) - true["beta"])
+                rows.append((middles[0], 0.5 * (high - low) / true["f0"], middles[1], 0.5 * (most - least)))
+            a = numpy.array(rows)
+            held = [100 * numpy.mean(numpy.abs(a[:, k]) <= a[:, k + 1]) for k in (0, 2)]
+            half = [numpy.median(a[:, 1]), numpy.median(a[:, 3])]
+            print(f"{kind} {name} {len(a)}/{options.records} {held[0]:.1f} {held[1]:.1f} {half[0]:.2g} {half[1]:.2g}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
