@@ -121,8 +121,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         }
         fits = run.fits(start, fits.alone.resonance, fits.alone.impacts);
     }
-    fits = run.with_contacts_over_speed(start, fits);
-    fits = run.without_influential(fits);
+    fits = run.refined(start, fits);
     let (mut suspicions, doubts) = doubt::parted(run.suspicions(&fits, odd_gaps));
     let mut methods = run.results(&fits);
     let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
@@ -349,6 +348,12 @@ impl IdentificationRun<'_> {
     fn is_on_time(&self, parameters: &Parameters) -> bool {
         let latest = ON_TIME * self.selection.blocks.half_sample_s();
         parameters.delays_s.iter().all(|d| d.abs() < latest)
+    }
+
+    /// The fits once gaps are settled: with contacts over the speed, without influential records.
+    fn refined(&mut self, start: Parameters, fits: Fits) -> Fits {
+        let fits = self.with_contacts_over_speed(start, fits);
+        self.without_influential(fits)
     }
 
     /// The fits with contacts that may grow shorter with the speed, where contacts last a time that the data tell: the
