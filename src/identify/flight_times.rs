@@ -8,11 +8,11 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-use crate::identify::diagnostics::structure::{
-    self, GroupedRatio, Grouping, ImpactGroup, ImpactGroups,
-};
 use crate::identify::diagnostics::verdict::judge_structure;
 use crate::identify::estimate;
+use crate::identify::evidence::structure::{
+    self, GroupedRatio, Grouping, ImpactGroup, ImpactGroups,
+};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::identification::MethodResult;
 use crate::identify::messages::Remark;

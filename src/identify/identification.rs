@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::identify::diagnostics::contact_law::ContactLaw;
-use crate::identify::diagnostics::structure::ImpactGroups;
 use crate::identify::estimate::{Estimate, ParameterSet};
+use crate::identify::evidence::structure::ImpactGroups;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::fit::{Fit, FitReport, Prior};
 use crate::identify::messages::{Finding, LeftOut, PairAgreement, Remark, Sentence};

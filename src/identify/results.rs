@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::identify::diagnostics::contact_law::ContactLaw;
-use crate::identify::diagnostics::{contact_law, momentum, structure, verdict};
+use crate::identify::diagnostics::{contact_law, momentum, verdict};
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
-use crate::identify::evidence::{Blocks, Evidence, impact_bias};
+use crate::identify::evidence::{Blocks, Evidence, impact_bias, structure};
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::methods::{self, FitResult};

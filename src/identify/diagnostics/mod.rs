@@ -16,7 +16,6 @@ pub mod momentum;
 pub mod settling;
 pub mod stated_clearances;
 pub mod stated_frequencies;
-pub mod structure;
 pub mod suspicion;
 pub mod swapped_channels;
 pub mod undeclared_high_pass;

@@ -4,11 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::identify::diagnostics::cause::Cause;
 use crate::identify::diagnostics::contact_law::CurvePoint;
-use crate::identify::diagnostics::structure::Grouping;
 use crate::identify::estimate::{Estimate, Status, not_identifiable};
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::impacts::ImpactBlock;
 use crate::identify::evidence::resonance::{self, ResonanceBlock};
+use crate::identify::evidence::structure::Grouping;
 use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters};

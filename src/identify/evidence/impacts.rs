@@ -2,7 +2,6 @@
 
 use crate::event::{CornerShift, Impact, Lag, RigKind, extrapolation_error};
 use crate::identify::evidence::pickup::Pickups;
-use crate::identify::evidence::within_record;
 use crate::identify::fit::Block;
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
@@ -66,6 +65,19 @@ impl SpeedPair {
         let picked_up = picked_up.map(|(effect, unit)| parameters.effect(*effect) * unit);
         by_corners - picked_up.sum::<f64>()
     }
+}
+
+/// Share of a period by which the impacts of a periodic motion come off it.
+const ON_PERIOD: f64 = 0.1;
+
+/// Where between two samples an impact falls, counted from the first one of its record, in sampling intervals, if
+/// whole periods of the drive lie between them.
+fn sample_place(o: &Observation, time_s: f64) -> Option<f64> {
+    let frequency_hz = o.drive?.frequency_hz;
+    let periods = (time_s - o.impacts.first()?.time_s) * frequency_hz;
+    let whole = periods.round();
+    let on_period = (periods - whole).abs() < ON_PERIOD;
+    on_period.then(|| (whole * o.sample_rate_hz / frequency_hz).rem_euclid(1.0))
 }
 
 /// What the channels of x and of y pick up.
@@ -187,7 +199,7 @@ impl ImpactBlock {
                     corner_shifts: impact.corner_shifts,
                     lags: impact.lags,
                     picked_up_m_s: picked_up_m_s(&pickups, &observations[i], impact.time_s),
-                    sample_place: within_record::sample_place(&observations[i], impact.time_s),
+                    sample_place: sample_place(&observations[i], impact.time_s),
                     in_record: 1.0,
                 })
             })

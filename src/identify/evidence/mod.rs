@@ -17,6 +17,7 @@ pub mod record_motion;
 pub mod reduced_record;
 pub mod resonance;
 pub mod shared_error;
+pub mod structure;
 pub mod trajectory;
 pub mod trajectory_record;
 pub mod waveform;
@@ -24,7 +25,6 @@ pub mod weighing;
 mod within_record;
 
 use crate::event::{FlightKind, RigKind};
-use crate::identify::diagnostics::structure;
 use crate::identify::evidence::boundary::BoundaryBlock;
 use crate::identify::evidence::flights::FlightBlock;
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};

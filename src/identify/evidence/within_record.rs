@@ -19,25 +19,12 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::fit::normal::inverse;
-use crate::motion::Observation;
 use crate::signal::robust;
 
 /// Terms of the law over the speed that records may follow.
 const TERMS: usize = 3;
 /// Fewest records beyond those terms from which what they share is found.
 const FEWEST: usize = 4;
-/// Share of a period by which the impacts of a periodic motion come off it.
-const ON_PERIOD: f64 = 0.1;
-
-/// Where between two samples an impact falls, counted from the first one of its record, in sampling intervals, if
-/// whole periods of the drive lie between them.
-pub(super) fn sample_place(o: &Observation, time_s: f64) -> Option<f64> {
-    let frequency_hz = o.drive?.frequency_hz;
-    let periods = (time_s - o.impacts.first()?.time_s) * frequency_hz;
-    let whole = periods.round();
-    let on_period = (periods - whole).abs() < ON_PERIOD;
-    on_period.then(|| (whole * o.sample_rate_hz / frequency_hz).rem_euclid(1.0))
-}
 
 /// The deviations of a record's impacts from one R over their errors.
 #[derive(Default)]

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{DampingPoint, Item, Note};
 use crate::identify::diagnostics::cause::Cause;
-use crate::identify::diagnostics::structure::ImpactGroup;
+use crate::identify::evidence::structure::ImpactGroup;
 use crate::identify::method::Method;
 use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::message::{Message, Value};
