@@ -215,15 +215,6 @@ pub enum Remark {
         /// How many.
         count: usize,
     },
-    /// Impacts are missing among times: a flight is two.
-    ImpactsMissed {
-        /// How many.
-        count: usize,
-        /// The record of the first one.
-        record: String,
-        /// When it was, s.
-        time_s: f64,
-    },
     /// Impacts whose speeds are far from those of the others were left out.
     OutlyingImpacts {
         /// How many.
@@ -472,14 +463,6 @@ message_table! { Remark;
          {count}",
         "Flüge, die nicht aus dem vorigen folgen, etwa wo ein Stoß fehlt, ausgelassen: {count}",
         count = Value::Count(*count);
-    Self::ImpactsMissed { count, record, time_s } =>
-        "impacts missing among the times: {count}, the first in {record} at about {time} s; the \
-         flights over them are left out: see why they were not heard",
-        "unter den Zeiten fehlende Stöße: {count}, der erste in {record} bei etwa {time} s; die Flüge \
-         darüber sind ausgelassen: prüfen, warum sie nicht gehört wurden",
-        count = Value::Count(*count),
-        record = Value::Name(record),
-        time = Value::Number(*time_s, 3);
     Self::OutlyingImpacts { count, first } =>
         "impacts with speeds far from those of the others, left out: {count} ({which})",
         "Stöße mit Geschwindigkeiten weit von denen der übrigen, ausgelassen: {count} ({which})",
