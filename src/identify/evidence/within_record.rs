@@ -77,9 +77,10 @@ pub(super) fn share(block: &mut ImpactBlock) {
     let Some([independent, by_place]) = variances(&records) else {
         return;
     };
+    let factor = |r: &Deviations| (independent + by_place * r.alike()).max(1.0).sqrt();
+    let factors: BTreeMap<usize, f64> = records.iter().map(|(i, r)| (*i, factor(r))).collect();
     for pair in &mut block.pairs {
-        let alike = records[&pair.observation].alike();
-        pair.in_record = (independent + by_place * alike).max(1.0).sqrt();
+        pair.in_record = factors[&pair.observation];
     }
 }
 
