@@ -9,12 +9,12 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use impact_oscillator::model::params::ModelError;
-use impactid::event::DetectSettings;
-use impactid::event::RigKind;
+use impact_records::event::DetectSettings;
+use impact_records::event::RigKind;
+use impact_records::motion::{ClassifySettings, Observation, brackets, observe, scale_drives};
 use impactid::identify::evidence::{Evidence, Nominal};
 use impactid::identify::run::identify;
 use impactid::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
-use impactid::motion::{ClassifySettings, Observation, brackets, observe, scale_drives};
 use impactid::synthetic::run::calibrated;
 use impactid::synthetic::{Differences, Effects, Faults, Laboratory, Plan, Truth, records};
 

@@ -5,8 +5,8 @@ use toml::Spanned;
 use super::context::{ResolveContext, remedy};
 use super::diagnostic::Code;
 use super::written::{Channel, Channels, Flight, Machine, Placed, Quantity, value};
-use crate::record::calibrate::{ChannelKey, ChannelSetup};
-use crate::record::{ContactContent, LowPass, Role};
+use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
+use impact_records::record::{ContactContent, LowPass, Role};
 use labfiles::units::{self, Dimension, Scale, Unit};
 
 impl Channels {

@@ -10,10 +10,10 @@ use sha2::{Digest, Sha256};
 use super::diagnostic::{Code, Diagnostic, Place, Severity};
 use super::discovery::Opener;
 use super::resolved::{RecordEntry, ResolvedCampaign};
-use crate::event::DetectionSource;
-use crate::motion::observe;
-use crate::record::calibrate;
-use crate::record::{Flag, FlagCode, Record, Role};
+use impact_records::event::DetectionSource;
+use impact_records::motion::observe;
+use impact_records::record::calibrate;
+use impact_records::record::{Flag, FlagCode, Record, Role};
 use labfiles::Source;
 
 /// What reading all records found.

@@ -7,7 +7,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use super::names::natural_key;
-use crate::record::{Flag, FlagCode};
+use impact_records::record::{Flag, FlagCode};
 
 /// What a problem prevents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

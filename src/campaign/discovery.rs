@@ -12,8 +12,8 @@ use super::names::natural_key;
 use super::run_table::{self, Row};
 use super::sources::Sources;
 use super::written::OneOrMany;
-use crate::record::calibrate::{self, ChannelKey, ChannelSetup};
-use crate::record::{Flag, FlagCode};
+use impact_records::record::calibrate::{self, ChannelKey, ChannelSetup};
+use impact_records::record::{Flag, FlagCode};
 use labfiles::{DatasetInfo, ReadError, Source, StoredType};
 
 /// How a file is opened; [`labfiles::open`] but for tests.
@@ -210,7 +210,7 @@ fn listed(
         .iter()
         .filter_map(|c| calibrate::bind(c, set).err())
         .collect();
-    flags.extend(crate::record::time_axis::find(shared.time, set).err());
+    flags.extend(impact_records::record::time_axis::find(shared.time, set).err());
     Discovered {
         id: String::new(),
         file: path.to_path_buf(),

@@ -7,7 +7,7 @@ use super::names::{self, Known};
 use super::resolved::RecordEntry;
 use super::settings::{Wanted, defaults, note_settings, setting};
 use super::written::{Attributes, Records};
-use crate::record::Setting;
+use impact_records::record::Setting;
 
 /// List all records in the order of acquisition: the rows of the run table, else the files'
 /// names with numbers in order.

@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 use super::sources::Sources;
 use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
 use crate::difference::Common;
-use crate::event::DetectSettings;
 use crate::identify::fit::effect::EffectKind;
 use crate::identify::uncertainty::IntervalMethod;
-use crate::motion::{ClassifySettings, LateChannel};
-use crate::record::Setting;
-use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup};
+use impact_records::event::DetectSettings;
+use impact_records::motion::{ClassifySettings, LateChannel};
+use impact_records::record::Setting;
+use impact_records::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup};
 
 /// A campaign ready to be analysed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -202,7 +202,7 @@ impl ResolvedCampaign {
         campaign
     }
 
-    /// What [`crate::record::calibrate::calibrate`] needs for one of its records.
+    /// What [`impact_records::record::calibrate::calibrate`] needs for one of its records.
     pub fn setup_of<'a>(&'a self, entry: &'a RecordEntry) -> RecordSetup<'a> {
         RecordSetup {
             id: &entry.id,

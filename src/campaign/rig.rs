@@ -10,7 +10,7 @@ use super::resolved::{NominalValues, RecordEntry};
 use super::written::{self, Placed};
 use crate::difference::Common;
 use crate::identify::fit::effect::EffectKind;
-use crate::record::calibrate::ChannelSetup;
+use impact_records::record::calibrate::ChannelSetup;
 use labfiles::units::Dimension;
 
 /// Nominal values and uncertainties, defaults included.

@@ -10,7 +10,7 @@ use super::context::Wrong;
 use super::diagnostic::{Code, FaultCollector, first_of};
 use super::read::nearest;
 use super::written::Excitation;
-use crate::record::Sweep;
+use impact_records::record::Sweep;
 use labfiles::units::{self, Dimension};
 
 /// The columns that a run table may have.

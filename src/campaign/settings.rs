@@ -5,7 +5,7 @@ use super::diagnostic::{Code, Diagnostic, Place, Severity};
 use super::discovery::Discovered;
 use super::resolved::RecordEntry;
 use super::written::{Attributes, Placed, Records, value};
-use crate::record::{Setting, Sweep};
+use impact_records::record::{Setting, Sweep};
 use labfiles::units::{self, Dimension};
 
 /// The setting of records that state none.

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::infer::{Experiment, FolderContents, InferredChannel};
-use crate::message::counted;
-use crate::record::{ContactContent, Role};
+use impact_records::message::counted;
+use impact_records::record::{ContactContent, Role};
 use labfiles::units::{self, Dimension};
 
 /// The text of campaign.toml for what was found in a folder named so.

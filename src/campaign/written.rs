@@ -10,12 +10,12 @@ use std::fmt;
 use serde::{Deserialize, Deserializer, Serialize, de};
 use toml::Spanned;
 
-pub use crate::event::{FlightKind as Flight, RigKind as Machine};
 pub use crate::identify::uncertainty::IntervalMethod;
-use crate::record::ContactContent;
-use crate::record::calibrate::ChannelKey;
-pub use crate::record::{Excitation, Sweep};
 pub use crate::report::{Format, Paper};
+pub use impact_records::event::{FlightKind as Flight, RigKind as Machine};
+use impact_records::record::ContactContent;
+use impact_records::record::calibrate::ChannelKey;
+pub use impact_records::record::{Excitation, Sweep};
 
 /// A value with its place in the file.
 pub type Placed<T> = Option<Spanned<T>>;

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::read_log::ReadLog;
 use super::{Exit, Failure, Verbosity, interrupt};
-use crate::message::counted;
+use impact_records::message::counted;
 use labfiles::ReadError;
 use labfiles::convert::{self, ConvertError, Options, Target};
 

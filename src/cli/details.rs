@@ -2,7 +2,7 @@
 
 use super::Verbosity;
 use crate::identify::{Estimator, Identification};
-use crate::motion::Observation;
+use impact_records::motion::Observation;
 
 /// Print how each fit ended, with `-v`.
 pub(super) fn print_fits(identification: &Identification, verbosity: Verbosity) {

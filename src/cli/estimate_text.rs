@@ -1,7 +1,7 @@
 //! Estimates in a line of the terminal.
 
 use crate::identify::{Estimate, Status};
-use crate::signal::whole;
+use impact_records::signal::whole;
 
 /// A value with half of its 95 % interval.
 pub(super) fn with_error(estimate: &Estimate) -> String {

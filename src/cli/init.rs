@@ -7,7 +7,7 @@ use clap::Args;
 use super::{Exit, Failure, Verbosity};
 use crate::campaign::infer::{self, FolderContents};
 use crate::campaign::template;
-use crate::message::counted;
+use impact_records::message::counted;
 use labfiles::open;
 use labfiles::output;
 

@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::sparkline::sparkline;
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity};
-use crate::message::counted;
+use impact_records::message::counted;
 use labfiles::open;
 use labfiles::summary::{Summary, summarise};
 use labfiles::{DatasetInfo, ReadError, Samples, Source};

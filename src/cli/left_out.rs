@@ -5,8 +5,8 @@ use std::path::Path;
 use super::Verbosity;
 use crate::campaign::check::LISTED;
 use crate::campaign::diagnostic::{Diagnostic, Diagnostics, Group};
-use crate::motion::Observation;
-use crate::record::FlagCode;
+use impact_records::motion::Observation;
+use impact_records::record::FlagCode;
 
 /// Print one line for each kind of fault that leaves records out; with `-v` each record too.
 pub(super) fn print_left_out(observations: &[Observation], verbosity: Verbosity) {
@@ -45,7 +45,7 @@ fn line(group: &Group<'_>, records: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Flag;
+    use impact_records::record::Flag;
 
     #[test]
     fn a_line_counts_the_records_of_one_fault_and_names_the_first() {

@@ -7,11 +7,11 @@ use super::estimate_text::with_error;
 use crate::identify::Identification;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::plan::Proposal;
-use crate::message::counted;
-use crate::motion::{Bracket, Motion, Observation};
 use crate::pipeline::watch::{Live, NewsKind, Outline, Watcher};
 use crate::report::budget_source;
-use crate::signal::{robust, whole};
+use impact_records::message::counted;
+use impact_records::motion::{Bracket, Motion, Observation};
+use impact_records::signal::{robust, whole};
 
 /// Most files that are named in one line.
 const MOST_NAMES: usize = 4;
@@ -237,8 +237,8 @@ fn counts(outline: &Outline, last: Option<&Live>, waiting: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::brackets;
-    use crate::record::Sweep;
+    use impact_records::motion::brackets;
+    use impact_records::record::Sweep;
 
     fn observed(sequence: usize, frequency_hz: f64, motion: Motion) -> Observation {
         let mut o = Observation::of("r", frequency_hz, motion);

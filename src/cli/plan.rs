@@ -7,8 +7,8 @@ use clap::Args;
 use super::stdout::print_json;
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
 use crate::identify::boundary_plan::BoundaryPlan;
-use crate::motion::Motion;
 use crate::pipeline::plan;
+use impact_records::motion::Motion;
 
 /// Arguments of `impactid plan`.
 #[derive(Debug, Args)]

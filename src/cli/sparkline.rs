@@ -1,7 +1,7 @@
 //! A small curve of a signal in characters.
 
-use crate::signal::robust::range;
-use crate::signal::whole;
+use impact_records::signal::robust::range;
+use impact_records::signal::whole;
 
 /// Bits of the eight dots of a braille character, by column and row from the top.
 const DOTS: [[u32; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use super::input::Input;
 use super::traces::Signal;
 use crate::identify::Reason;
-use crate::motion::Observation;
-use crate::record::{Channel, Record};
-use crate::signal::decay::Decay;
-use crate::signal::whole;
+use impact_records::motion::Observation;
+use impact_records::record::{Channel, Record};
+use impact_records::signal::decay::Decay;
+use impact_records::signal::whole;
 use labfiles::units::Dimension;
 
 /// A free decay with its fit.

@@ -8,11 +8,11 @@ use crate::identify::evidence::resonance::predicted;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::residuals::MethodResiduals;
 use crate::identify::{Method, MethodResult, SpecimenResult};
-use crate::motion::Observation;
-use crate::motion::Response;
-use crate::record::Role;
-use crate::signal::thinning::thinned;
 use impact_oscillator::atlas::map::even;
+use impact_records::motion::Observation;
+use impact_records::motion::Response;
+use impact_records::record::Role;
+use impact_records::signal::thinning::thinned;
 use labfiles::units::Dimension;
 
 /// One point of a resonance curve; errors are standard errors.

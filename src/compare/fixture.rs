@@ -5,14 +5,14 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::{Compared, Input, compare};
-use crate::event::DetectSettings;
-use crate::event::RigKind;
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::{Identification, identify_campaign};
-use crate::motion::{ClassifySettings, brackets, observe, scale_drives};
-use crate::record::{Channel, Excitation, Record, Role, Setting};
 use crate::synthetic::run::calibrated;
 use crate::synthetic::{Differences, Effects, Faults, Laboratory, Plan, Truth, records};
+use impact_records::event::DetectSettings;
+use impact_records::event::RigKind;
+use impact_records::motion::{ClassifySettings, brackets, observe, scale_drives};
+use impact_records::record::{Channel, Excitation, Record, Role, Setting};
 use labfiles::units::Dimension;
 
 /// A campaign identified and compared.

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::event::RigKind;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::{Identification, Item, Reason};
-use crate::motion::{Bracket, Observation};
-use crate::record::Record;
+use impact_records::event::RigKind;
+use impact_records::motion::{Bracket, Observation};
+use impact_records::record::Record;
 
 /// A campaign as observed and identified.
 pub struct Input<'a> {

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::message::Message;
-use crate::motion::{Motion, Observation, Undetermined};
-use crate::record::FlagCode;
+use impact_records::message::Message;
+use impact_records::motion::{Motion, Observation, Undetermined};
+use impact_records::record::FlagCode;
 
 /// Why a record cannot be used.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,13 +6,13 @@ use super::input::Input;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::replay::LIVELY_SPEED;
 use crate::identify::uncertainty::band::Spread;
-use crate::motion::{BoundaryKind, Motion};
-use crate::signal::robust::range;
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::atlas::{MapGrid, MapSettings, region_map as simulate_map};
 use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::params::{Initial, Machine};
+use impact_records::motion::{BoundaryKind, Motion};
+use impact_records::signal::robust::range;
 
 /// A simulated boundary in the (η, ρ) plane.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,9 +3,9 @@
 use super::input::Input;
 use crate::identify::evidence::boundary::predicted_hz;
 use crate::identify::{Method, Reason};
-use crate::motion::{BoundaryKind, Bracket, Motion, Observation};
-use crate::record::{FlagCode, Sweep};
-use crate::signal::robust;
+use impact_records::motion::{BoundaryKind, Bracket, Motion, Observation};
+use impact_records::record::{FlagCode, Sweep};
+use impact_records::signal::robust;
 
 /// Counts and ranges of what was measured.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -6,11 +6,11 @@ use rayon::prelude::*;
 
 use super::input::{Input, place};
 use super::traces::{Cut, Trace, largest_residual, traces};
-use crate::event::{DetectSettings, DriveTone, detect};
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::replay::{Replay, Stretch};
-use crate::motion::{Motion, Observation};
-use crate::record::Record;
+use impact_records::event::{DetectSettings, DriveTone, detect};
+use impact_records::motion::{Motion, Observation};
+use impact_records::record::Record;
 
 /// A record compared with its simulation, from a zero phase of the drive on.
 #[derive(Debug, Clone, PartialEq)]

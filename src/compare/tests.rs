@@ -2,10 +2,10 @@
 
 use super::fixture::{decay, decays, nothing_touches, one_of_two, whole};
 use super::left_out::{UnusableReason, unusable};
-use crate::event::{DetectSettings, DriveTone, RigKind};
 use crate::identify::{Finding, Method, Note, Status};
-use crate::motion::{BoundaryKind, ClassifySettings, Motion, Undetermined, observe};
-use crate::record::{Flag, FlagCode};
+use impact_records::event::{DetectSettings, DriveTone, RigKind};
+use impact_records::motion::{BoundaryKind, ClassifySettings, Motion, Undetermined, observe};
+use impact_records::record::{Flag, FlagCode};
 
 #[test]
 fn the_fitted_model_replays_the_records_it_was_fitted_to() {

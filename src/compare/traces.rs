@@ -4,12 +4,12 @@
 //! as it is: a channel's drift is what it changes from one period of the motion to the next, and measured
 //! and simulated values are shown about their means, as no channel measures a constant part.
 
-use crate::event::{Impact, Kinematics};
 use crate::identify::replay::{Replay, Stretch};
-use crate::record::{Record, Role};
-use crate::signal::drift::{fitted_line, strobed_slope};
-use crate::signal::robust::{mean, rms};
-use crate::signal::whole;
+use impact_records::event::{Impact, Kinematics};
+use impact_records::record::{Record, Role};
+use impact_records::signal::drift::{fitted_line, strobed_slope};
+use impact_records::signal::robust::{mean, rms};
+use impact_records::signal::whole;
 use labfiles::units::Dimension;
 
 /// A sampled signal on its own time axis.
@@ -200,7 +200,7 @@ fn centre(values: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::event::DriveTone;
+    use impact_records::event::DriveTone;
 
     fn cut(phase_rad: f64, periods: f64, impacts: &[Impact]) -> Cut<'_> {
         let drive = DriveTone {

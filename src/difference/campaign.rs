@@ -1,11 +1,11 @@
 //! A campaign as it enters a comparison.
 
 use crate::difference::Common;
-use crate::event::{FlightKind, RigKind};
 use crate::identify::fit::coordinate::Coordinate;
 use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::identify::{Allowed, Estimate, JointFit, ParameterSet, VerdictKind};
-use crate::record::calibrate::ChannelSetup;
+use impact_records::event::{FlightKind, RigKind};
+use impact_records::record::calibrate::ChannelSetup;
 
 /// An identified campaign, or one specimen of it.
 #[derive(Debug, Clone)]
@@ -78,7 +78,7 @@ impl Campaign {
     }
 
     /// The channel of a role.
-    pub(super) fn channel(&self, role: crate::record::Role) -> Option<&ChannelSetup> {
+    pub(super) fn channel(&self, role: impact_records::record::Role) -> Option<&ChannelSetup> {
         self.channels.iter().find(|c| c.role == role)
     }
 }

@@ -7,12 +7,12 @@ use crate::difference::campaign::Known;
 use crate::difference::share::{SeparateNuisance, SharedNuisance, sharing};
 use crate::difference::stack::Stack;
 use crate::difference::{Campaign, Outcome, Remark, decision};
-use crate::event::{FlightKind, RigKind};
 use crate::identify::fit::coordinate::Coordinate;
 use crate::identify::fit::normal::inverse;
 use crate::identify::uncertainty::distribution::{fisher_tail, student_tail};
 use crate::identify::uncertainty::quantile::student_975;
 use crate::identify::{ParameterSet, VerdictKind};
+use impact_records::event::{FlightKind, RigKind};
 
 /// What is shown of a campaign.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

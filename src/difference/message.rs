@@ -5,8 +5,8 @@ use strum::IntoEnumIterator;
 
 use crate::identify::VerdictKind;
 use crate::identify::fit::coordinate::Coordinate;
-use crate::message::{Message, Value, boxed};
-use crate::{message_table, messages};
+use impact_records::message::{Message, Value, boxed};
+use impact_records::{message_table, messages};
 
 /// Why a nuisance is one unknown of several campaigns.
 #[derive(

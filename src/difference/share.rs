@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::difference::{Campaign, Common, NotShared, WhyShared};
 use crate::identify::fit::coordinate::Coordinate;
 use crate::identify::{GAIN_ROLES, JointFit};
-use crate::record::Role;
+use impact_records::record::Role;
 
 /// A nuisance of several campaigns, and why it is one unknown of them or why not.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

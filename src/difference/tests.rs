@@ -4,13 +4,13 @@ use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 
 use super::*;
-use crate::event::{FlightKind, RigKind};
 use crate::identify::fit::normal::inverse;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Fit, FitReport, Prior};
 use crate::identify::uncertainty::distribution::student_tail;
 use crate::identify::{Allowed, Estimate, GAIN_ROLES, JointFit, ParameterSet, Status, VerdictKind};
-use crate::record::calibrate::{ChannelKey, ChannelSetup};
+use impact_records::event::{FlightKind, RigKind};
+use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
 use labfiles::units::Scale;
 
 /// A linear measurement of R and some nuisances with unit noise: slopes, values.

@@ -8,19 +8,19 @@ use super::ExploreError;
 use super::state::{Cursor, Panel, RigScale, State, Window};
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::compare::{self, Input, Placed};
-use crate::event::RigKind;
 use crate::identify::evidence::Blocks;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::{Estimate, Identification};
-use crate::motion::Observation;
 use crate::pipeline::identify::{IdentificationFile, evidence};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::theory::plan::Law;
 use crate::pipeline::watch::Live;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, inputs, layout, store};
-use crate::record::Record;
 use crate::report::style::MotionStyle;
-use crate::signal::robust;
+use impact_records::event::RigKind;
+use impact_records::motion::Observation;
+use impact_records::record::Record;
+use impact_records::signal::robust;
 
 /// A campaign with what was observed and identified.
 pub struct Campaign {

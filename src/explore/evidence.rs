@@ -15,9 +15,9 @@ use crate::identify::fit::Block;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::joint;
 use crate::identify::plan::propose;
-use crate::motion::{BoundaryKind, Motion, Observation};
 use crate::pipeline::identify::evidence;
 use crate::report::style::MotionStyle;
+use impact_records::motion::{BoundaryKind, Motion, Observation};
 
 /// Settings that are proposed.
 const PROPOSALS: usize = 6;

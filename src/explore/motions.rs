@@ -10,9 +10,7 @@ use super::jobs::Job;
 use super::maps::cells;
 use super::state::Cursor;
 use super::{ExploreError, State};
-use crate::motion::Motion;
 use crate::report::style::MotionStyle;
-use crate::signal::whole;
 use impact_oscillator::atlas::BasinGrid;
 use impact_oscillator::atlas::basins::basin_rows;
 use impact_oscillator::atlas::map::{UnitMass, even};
@@ -20,6 +18,8 @@ use impact_oscillator::atlas::portrait::{Portrait, portrait};
 use impact_oscillator::atlas::sweep::{Carried, SweepPoint, impactless};
 use impact_oscillator::model::range;
 use impact_oscillator::{Machine, MapSettings, Setting, SettledMotion, Simulator, Trajectory};
+use impact_records::motion::Motion;
+use impact_records::signal::whole;
 
 /// Time after which steps of a sweep are sent together.
 const BATCH: Duration = Duration::from_millis(40);

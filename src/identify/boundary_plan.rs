@@ -12,7 +12,7 @@ use crate::identify::results;
 use crate::identify::selection::Selection;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::surroundings::Surroundings;
-use crate::motion::{BoundaryKind, Bracket};
+use impact_records::motion::{BoundaryKind, Bracket};
 
 /// A sweep in small steps through a bracket.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -174,8 +174,8 @@ fn sweeps(block: &BoundaryBlock, parts: u32) -> Vec<FineSweep> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::event::RigKind;
     use crate::identify::evidence::boundary::tests::bracket;
+    use impact_records::event::RigKind;
 
     #[test]
     fn a_bracket_is_narrowed_to_the_part_that_holds_the_boundary() {

@@ -1,13 +1,13 @@
 //! R by plain least squares on the midpoints of the brackets of s2, as a paper would do it by hand:
 //! printed beside the posterior, which takes the brackets as the intervals that they are.
 
-use crate::event::RigKind;
 use crate::identify::evidence::boundary::{BoundaryBlock, predicted_hz};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Problem};
 use crate::identify::methods::fit_blocks;
 use crate::identify::{Estimate, estimate};
-use crate::motion::{BoundaryKind, Bracket};
+use impact_records::event::RigKind;
+use impact_records::motion::{BoundaryKind, Bracket};
 
 /// The brackets of s2 that the model reaches, their midpoints as measured values.
 struct Midpoints {

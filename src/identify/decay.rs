@@ -8,9 +8,9 @@ use crate::identify::identification::MethodResult;
 use crate::identify::messages::{DampingPoint, Item, LeftOut, Note, Reason, Remark};
 use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::identify::uncertainty::scatter::Spread;
-use crate::motion::Observation;
-use crate::signal::decay::Decay;
-use crate::signal::robust;
+use impact_records::motion::Observation;
+use impact_records::signal::decay::Decay;
+use impact_records::signal::robust;
 
 /// Relative spread of f0 from which decays are not of one oscillator.
 const ONE_OSCILLATOR: f64 = 0.02;

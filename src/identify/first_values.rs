@@ -8,7 +8,7 @@ use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::methods::{self, FitResult, succeeded};
 use crate::identify::selection::Selection;
 use crate::identify::uncertainty::scatter::Spread;
-use crate::motion::Observation;
+use impact_records::motion::Observation;
 
 /// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
 pub(super) fn start(evidence: &Evidence<'_>, resonance: &Option<FitResult>) -> Parameters {
@@ -26,7 +26,8 @@ pub(super) fn start(evidence: &Evidence<'_>, resonance: &Option<FitResult>) -> P
         .iter()
         .filter_map(|o| o.setting.clearance_m)
         .collect();
-    let median = |v: &[f64], default: f64| crate::signal::robust::median(v).unwrap_or(default);
+    let median =
+        |v: &[f64], default: f64| impact_records::signal::robust::median(v).unwrap_or(default);
     nominal.applied(Parameters::symmetric(
         nominal.restitution.unwrap_or(0.8),
         nominal

@@ -16,8 +16,8 @@ use crate::identify::evidence::structure::{
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::identification::MethodResult;
 use crate::identify::messages::Remark;
-use crate::motion::Observation;
-use crate::signal::robust;
+use impact_records::motion::Observation;
+use impact_records::signal::robust;
 
 /// Ratios of a flight to the one before, relative to the median, outside of which an impact was missed
 /// or something else was heard.
@@ -54,7 +54,7 @@ struct Fitted {
 
 /// Whether R of a record rests on the times of its impacts: it has neither drive nor speeds.
 pub fn is_timed(o: &Observation) -> bool {
-    let no_speed = |i: &crate::event::Impact| i.approach_speed_before_m_s.is_none();
+    let no_speed = |i: &impact_records::event::Impact| i.approach_speed_before_m_s.is_none();
     o.drive.is_none() && o.impacts.len() > 2 && o.impacts.iter().all(no_speed)
 }
 
@@ -375,8 +375,8 @@ fn ratios(row: &Row, error_s: f64) -> impl Iterator<Item = GroupedRatio> + '_ {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::event::Impact;
-    use crate::motion::Motion;
+    use impact_records::event::Impact;
+    use impact_records::motion::Motion;
 
     /// A record of impacts at given times, without speeds.
     fn timed(name: &str, times_s: &[f64]) -> Observation {

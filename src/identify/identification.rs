@@ -13,8 +13,8 @@ use crate::identify::messages::{Finding, LeftOut, PairAgreement, Remark, Sentenc
 use crate::identify::method::Method;
 use crate::identify::residuals::MethodResiduals;
 use crate::identify::uncertainty::Uncertainty;
-use crate::message::{Message, Value, plain, plain_all, sentence};
-use crate::serialised_with_text;
+use impact_records::message::{Message, Value, plain, plain_all, sentence};
+use impact_records::serialised_with_text;
 
 /// What one method found.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

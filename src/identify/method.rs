@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize, Serializer};
 
-use crate::message::Message;
-use crate::message_table;
+use impact_records::message::Message;
+use impact_records::message_table;
 
 /// A method of identification.
 #[derive(

@@ -13,13 +13,13 @@ use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
 use crate::identify::fit::normal::inverse;
 use crate::identify::fit::parameters::{Coordinate, GAIN_ROLES, Parameters};
 use crate::identify::fit::{Fit, Problem};
-use crate::motion::Observation;
-use crate::motion::{Folded, FoldedChannel, FoldedPoint};
-use crate::record::Role;
-use crate::signal::robust;
-use crate::signal::whole;
-use crate::{message_table, messages};
 use impact_oscillator::model::orbit::{Orbit, stable_orbit};
+use impact_records::motion::Observation;
+use impact_records::motion::{Folded, FoldedChannel, FoldedPoint};
+use impact_records::record::Role;
+use impact_records::signal::robust;
+use impact_records::signal::whole;
+use impact_records::{message_table, messages};
 
 /// A setting to measure, with what a record there would bring.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

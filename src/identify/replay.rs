@@ -5,16 +5,16 @@
 
 use std::f64::consts::TAU;
 
-use crate::event::{DriveTone, RigKind};
 use crate::identify::evidence::trajectory::channel_value;
 use crate::identify::fit::parameters::Parameters;
-use crate::motion::{Motion, Observation};
-use crate::record::Role;
 use impact_oscillator::atlas::MapSettings;
 use impact_oscillator::atlas::map::{End, Start, march_from};
 use impact_oscillator::model::flight::{Drive, State, forced_amplitude};
 use impact_oscillator::model::params::{Initial, Machine, Oscillator, Setting};
 use impact_oscillator::model::simulate::{Simulator, Trajectory};
+use impact_records::event::{DriveTone, RigKind};
+use impact_records::motion::{Motion, Observation};
+use impact_records::record::Role;
 
 /// Most measured impacts after which a simulation is started.
 const MOST_STARTS: usize = 6;

@@ -7,8 +7,8 @@ use crate::identify::evidence::Blocks;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::method::Method;
-use crate::signal::robust;
-use crate::signal::thinning::thinned;
+use impact_records::signal::robust;
+use impact_records::signal::thinning::thinned;
 
 /// Lags of the autocorrelation.
 const LAGS: usize = 20;

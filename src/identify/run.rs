@@ -50,12 +50,12 @@ use crate::identify::{decay, estimate, flight_times, residuals, results};
 /// Records of a simulated rig whose masses never touch determine f0, β and `x_st`, but not R:
 ///
 /// ```
-/// use impactid::event::{DetectSettings, RigKind};
+/// use impact_records::event::{DetectSettings, RigKind};
 /// use impactid::identify::evidence::{Evidence, Nominal};
 /// use impactid::identify::run::identify;
 /// use impactid::identify::{Method, Status};
-/// use impactid::motion::{ClassifySettings, observe};
-/// use impactid::record::Sweep;
+/// use impact_records::motion::{ClassifySettings, observe};
+/// use impact_records::record::Sweep;
 /// use impactid::synthetic::run::calibrated;
 /// use impactid::synthetic::{Effects, Faults, Laboratory, Plan, Step, Truth, records};
 ///

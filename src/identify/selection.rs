@@ -18,7 +18,7 @@ use crate::identify::messages::{Item, LeftOut, Reason};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult};
 use crate::identify::starts;
-use crate::motion::{Bracket, Observation};
+use impact_records::motion::{Bracket, Observation};
 
 /// Slowest multiplier's distance from 1 at which a motion is at its end.
 const END: f64 = 2e-3;

@@ -12,7 +12,7 @@ use crate::identify::messages::{Finding, Item, LeftOut, Note, Sentence};
 use crate::identify::method::Method;
 use crate::identify::run::identify;
 use crate::identify::{decay, estimate};
-use crate::motion::{Bracket, Observation};
+use impact_records::motion::{Bracket, Observation};
 
 /// Identify a campaign: as a whole if it holds one specimen, else each specimen by itself.
 ///

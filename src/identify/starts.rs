@@ -12,7 +12,7 @@ use crate::identify::fit::{Block, Precision, Problem, mean_squares};
 use crate::identify::joint::{self, Weights};
 use crate::identify::method::Method;
 use crate::identify::methods::deflection_guess;
-use crate::signal::robust;
+use impact_records::signal::robust;
 
 /// Share of the periodic records that a good start gives an orbit.
 const ENOUGH: f64 = 0.8;

@@ -80,10 +80,10 @@ fn state(file: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::Observation;
     use crate::pipeline::observe::observe_in_chunks;
     use crate::pipeline::synthesise::{Recipe, write_campaign};
     use crate::synthetic::Truth;
+    use impact_records::motion::Observation;
 
     #[test]
     fn a_resumed_observation_is_that_of_an_uninterrupted_run() {

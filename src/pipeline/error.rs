@@ -1,7 +1,7 @@
 //! Why the pipeline stops, and how it reports its progress.
 
-use crate::record::Flag;
 use impact_oscillator::model::ModelError;
+use impact_records::record::Flag;
 use labfiles::ReadError;
 use labfiles::output::OutputError;
 

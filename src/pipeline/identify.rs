@@ -14,9 +14,9 @@ use crate::identify::uncertainty::UncertaintyOptions;
 use crate::identify::{Identification, Provenance, identify_campaign};
 use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs};
-use crate::record::calibrate::ChannelSetup;
-use crate::record::late::remainder_s;
-use crate::signal::robust;
+use impact_records::record::calibrate::ChannelSetup;
+use impact_records::record::late::remainder_s;
+use impact_records::signal::robust;
 use labfiles::output::write_bytes;
 
 /// Name of the result's file.

@@ -6,11 +6,11 @@ use rayon::prelude::*;
 
 use crate::campaign::check::by_file;
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
-use crate::motion::{Observation, observe};
 use crate::pipeline::Progress;
 use crate::pipeline::block_cache::BlockCache;
-use crate::record::calibrate::{calibrate, unreadable};
-use crate::record::{Flag, FlagCode, Record};
+use impact_records::motion::{Observation, observe};
+use impact_records::record::calibrate::{calibrate, unreadable};
+use impact_records::record::{Flag, FlagCode, Record};
 use labfiles::Source;
 use labfiles::output::OutputError;
 

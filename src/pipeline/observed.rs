@@ -7,7 +7,9 @@ use super::checkpoint;
 use super::error::{PipelineError, Progress, RefusedRecord};
 use super::observe;
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::motion::{Bracket, LateChannel, Observation, brackets, late_channels, scale_drives};
+use impact_records::motion::{
+    Bracket, LateChannel, Observation, brackets, late_channels, scale_drives,
+};
 use labfiles::output::OutputError;
 
 /// All records as observed.

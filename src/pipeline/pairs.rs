@@ -10,14 +10,14 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::difference::{self, Campaign, Common, Comparison, Outcome};
-use crate::event::{FlightKind, RigKind};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::{GAIN_ROLES, Identification};
 use crate::pipeline::coverage::{Tally, identified};
 use crate::pipeline::{PipelineError, Progress};
-use crate::record::calibrate::{ChannelKey, ChannelSetup};
-use crate::signal::robust;
 use crate::synthetic::{Faults, Laboratory, Reach, RigSpec, Truth, draw};
+use impact_records::event::{FlightKind, RigKind};
+use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
+use impact_records::signal::robust;
 
 /// What a study of pairs simulates.
 #[derive(Debug, Clone)]

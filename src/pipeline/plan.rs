@@ -7,9 +7,9 @@ use serde::Serialize;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::boundary_plan::{BoundaryPlan, halving};
 use crate::identify::plan::{Obstacle, Proposal, propose};
-use crate::motion::Motion;
 use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, report};
+use impact_records::motion::Motion;
 use labfiles::output::write_together;
 
 /// What is written as plan.json.

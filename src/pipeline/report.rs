@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use crate::campaign::resolved::{Report as StatedOptions, ResolvedCampaign};
 use crate::campaign::written::Language;
 use crate::compare::{self, Input};
-use crate::event::RigKind;
 use crate::identify::Provenance;
 use crate::pipeline::identify::{IdentificationFile, settings};
 use crate::pipeline::observe::read_one;
@@ -17,6 +16,7 @@ use crate::report::{
     CampaignFacts, Format, LivePage, Logo, NominalValue, Report, ReportContent, ReportOptions,
     Subject,
 };
+use impact_records::event::RigKind;
 use labfiles::output::write_together;
 
 /// Name of the report's file.

@@ -9,8 +9,8 @@ use super::{checkpoint, identify, memory, published, report, store, tables};
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::Identification;
 use crate::identify::fit::FitProgress;
-use crate::motion::Observation;
 use crate::report::Format;
+use impact_records::motion::Observation;
 
 /// Where a run's results go.
 #[derive(Debug, Clone, Copy)]

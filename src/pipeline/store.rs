@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
-use crate::motion::{Folded, Observation, brackets};
 use crate::pipeline::identify::{self, IdentificationFile};
 use crate::pipeline::json::{read_json, store_error, write_json};
 use crate::pipeline::observe::each_record;
 use crate::pipeline::{Observed, PipelineError, Progress, RefusedRecord, gzip_json};
-use crate::record::calibrate::{ChannelKey, ChannelSetup};
-use crate::record::{ContactContent, Flag, Record, Role};
+use impact_records::motion::{Folded, Observation, brackets};
+use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
+use impact_records::record::{ContactContent, Flag, Record, Role};
 use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
 use labfiles::units::{Dimension, Quantity, Unit};
 

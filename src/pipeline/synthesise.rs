@@ -300,7 +300,7 @@ fn campaign_toml(recipe: &Recipe, clearance_uncertainty_m: Option<f64>) -> Strin
                 sensitivity.name
             );
         }
-        if role == crate::record::Role::Contact {
+        if role == impact_records::record::Role::Contact {
             text.push_str("threshold = \"2.5 V\"\n");
         } else {
             let _ = writeln!(text, "range = \"{FULL_SCALE_V} V\"");

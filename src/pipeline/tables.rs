@@ -3,11 +3,11 @@
 
 use std::path::Path;
 
-use crate::event::{Impact, MassSpeeds};
-use crate::motion::{Bracket, Motion, Observation};
 use crate::pipeline::table::{Get, Table};
 use crate::pipeline::{Observed, PipelineError};
-use crate::record::Role;
+use impact_records::event::{Impact, MassSpeeds};
+use impact_records::motion::{Bracket, Motion, Observation};
+use impact_records::record::Role;
 use labfiles::output::write_together;
 
 fn amplitude(o: &Observation, role: Role) -> Option<f64> {

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use super::phrase::Phrase;
 use crate::difference;
 use crate::identify;
-use crate::message::{Language, Message};
+use impact_records::message::{Language, Message};
 
 /// Phrases and messages, and what is printed instead of their English.
 #[derive(Debug, Clone, Default, PartialEq, Eq, serde::Deserialize)]

@@ -4,8 +4,8 @@ use crate::compare::Compared;
 use crate::difference::{Common, Comparison};
 use crate::identify::plan::Proposal;
 use crate::identify::{Identification, Provenance};
-use crate::record::calibrate::ChannelSetup;
 use crate::report::phrase::{Phrase, Text};
+use impact_records::record::calibrate::ChannelSetup;
 
 /// Everything that a report shows. All quantities are SI; what a campaign does not have is empty, so
 /// that free decays alone give a report of the pages that apply.

@@ -3,10 +3,10 @@
 
 use super::catalog::Catalog;
 use super::phrase::{Phrase, Text, motion_text, role_text};
-use crate::message::{Language, Message, Print, filled, sentence};
-use crate::motion::Motion;
-use crate::record::Role;
-use crate::signal::whole;
+use impact_records::message::{Language, Message, Print, filled, sentence};
+use impact_records::motion::Motion;
+use impact_records::record::Role;
+use impact_records::signal::whole;
 
 /// What the reader chose about numbers and language.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

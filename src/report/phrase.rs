@@ -1,8 +1,8 @@
 //! What a report states of its own: axes, keys, headings, captions, heads of tables. Each phrase is a
 //! variant with its English and its German text, so that none lacks a translation.
 
-use crate::motion::Motion;
-use crate::record::Role;
+use impact_records::motion::Motion;
+use impact_records::record::Role;
 
 /// Defines [`Phrase`]: the variant, its English, its German. Symbols are between dollars, places of
 /// values in braces.

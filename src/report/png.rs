@@ -1,6 +1,6 @@
 //! Figures as PNG, for pages that cannot show SVG.
 
-use crate::signal::whole;
+use impact_records::signal::whole;
 use std::sync::{Arc, OnceLock};
 
 use resvg::tiny_skia::{Color, Pixmap, Transform};

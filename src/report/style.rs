@@ -3,7 +3,7 @@
 use super::figures::canvas::Colour;
 pub use super::figures::fonts::{Face as FontFace, face_bytes as font};
 use super::figures::marks;
-use crate::motion::Motion;
+use impact_records::motion::Motion;
 use serde::Serialize;
 
 /// How a motion is shown.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::plan::{Plan, Step};
-use crate::record::Sweep;
+use impact_records::record::Sweep;
 
 /// A gap as stated and as it is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

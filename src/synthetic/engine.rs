@@ -9,7 +9,7 @@ use super::equations::{ContactLaw, Equations, Phase4};
 use super::integrate::{Hit, Integrator, Recording};
 use super::laboratory::Laboratory;
 use super::plan::Step;
-use crate::signal::whole;
+use impact_records::signal::whole;
 
 /// A motion that goes on through a sweep, in units of the nominal `x_st` and 1/Ω.
 #[derive(Debug, Clone)]
@@ -231,10 +231,10 @@ impl Recorded {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Sweep;
     use crate::synthetic::effects::{Effects, Harmonic};
     use crate::synthetic::plan::Plan;
     use crate::synthetic::truth::{Differences, Faults, Truth};
+    use impact_records::record::Sweep;
 
     fn step(eta: f64, rho: f64) -> Step {
         Step {

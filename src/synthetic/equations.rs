@@ -224,7 +224,7 @@ impl Equations {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Sweep;
+    use impact_records::record::Sweep;
 
     #[test]
     fn prop_hysteretic_damping_halves_at_twice_the_frequency() {

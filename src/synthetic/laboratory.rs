@@ -8,7 +8,7 @@ use super::effects::Effects;
 use super::plan::Plan;
 use super::rig_spec::RigSpec;
 use super::truth::{Faults, Truth, draw_differences};
-use crate::signal::whole;
+use impact_records::signal::whole;
 
 /// A virtual laboratory: what it is made of, what it visits and what it states.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,5 +1,5 @@
 //! A virtual laboratory: campaigns simulated with a known truth and with the faults of a real
-//! rig, as the same [`Record`](crate::record::Record)s that a real campaign gives. They test
+//! rig, as the same [`Record`](impact_records::record::Record)s that a real campaign gives. They test
 //! detector, classifier and identification alike, and are always labelled as synthetic.
 
 pub mod acquisition;

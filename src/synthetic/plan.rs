@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::record::Sweep;
 use crate::synthetic::truth::Truth;
 use impact_oscillator::model::boundary::eta_s2;
 use impact_oscillator::model::params::Machine;
+use impact_records::record::Sweep;
 
 /// One setting: a record is taken there once the motion has settled.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

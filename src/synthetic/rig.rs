@@ -1,8 +1,8 @@
 //! The virtual rig's channels: what each watches, and what a volt of it stands for.
 
-use crate::record::Role;
 use crate::synthetic::acquisition;
 use crate::synthetic::truth::Truth;
+use impact_records::record::Role;
 use labfiles::units::Dimension;
 
 /// Role, dimension and whether an integrator filters it, of each channel of the virtual rig.

@@ -4,9 +4,6 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use crate::motion::Motion;
-use crate::record::{self, Channel, Record, Role};
-use crate::signal::whole;
 use crate::synthetic::acquisition::{self, Disturbance, HighPass};
 use crate::synthetic::engine::{Engine, Recorded};
 use crate::synthetic::equations::Phase4;
@@ -16,6 +13,9 @@ use crate::synthetic::rig::{ROLES, sensitivities};
 use crate::synthetic::settled::true_motion;
 use crate::synthetic::truth::{Faults, TrueImpact, Truth, draw_corners, draw_gains};
 use impact_oscillator::model::params::ModelError;
+use impact_records::motion::Motion;
+use impact_records::record::{self, Channel, Record, Role};
+use impact_records::signal::whole;
 
 pub use crate::synthetic::acquisition::RATE_HZ;
 

@@ -1,8 +1,8 @@
 //! On which motion a simulated rig has settled.
 
 use super::engine::{Engine, repeats};
-use crate::motion::{Motion, Undetermined};
 use impact_oscillator::model::params::Setting;
+use impact_records::motion::{Motion, Undetermined};
 
 /// Largest period looked for in the noiseless motion, drive periods.
 const LONGEST: usize = 16;

@@ -3,10 +3,10 @@
 use super::acquisition::RATE_HZ;
 use super::run::calibrated;
 use super::{Effects, Faults, Laboratory, Plan, Truth, records};
-use crate::event::{DetectSettings, Impact, RigKind, detect};
-use crate::motion::{ClassifySettings, LateChannel, late_channels, observe};
-use crate::record::{Record, Role};
-use crate::signal::robust;
+use impact_records::event::{DetectSettings, Impact, RigKind, detect};
+use impact_records::motion::{ClassifySettings, LateChannel, late_channels, observe};
+use impact_records::record::{Record, Role};
+use impact_records::signal::robust;
 
 /// A campaign of forty records with R = 0.7.
 fn campaign(effects: &Effects) -> Vec<Record> {

@@ -1,7 +1,7 @@
 //! SIGKILL at random moments: while records are observed and observations are kept, while the
 //! parameters are fitted, and while the outputs are written.
 
-use impactid::signal::whole;
+use impact_records::signal::whole;
 use std::collections::BTreeMap;
 use std::fs;
 use std::time::{Duration, Instant};

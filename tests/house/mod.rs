@@ -100,7 +100,7 @@ fn no_module_imports_from_its_right() {
 fn the_report_computes_nothing() {
     let computing = [
         "impact_oscillator",
-        "crate::event",
+        "impact_records::event",
         "crate::synthetic",
         "identify::evidence",
         "identify::fit",

@@ -1,11 +1,11 @@
 //! What was probably measured: a driven rig, free decays, free flights, or the times of impacts.
 
 use super::{FolderContents, InferredChannel, Place, spread};
-use crate::event::{DetectSettings, Detection, FlightKind, RigKind, detect};
-use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
-use crate::record::{ContactContent, FlagCode, Record, Role, Setting, changes};
-use crate::signal::columns::{self, dot};
-use crate::signal::{decay, onsets, robust};
+use impact_records::event::{DetectSettings, Detection, FlightKind, RigKind, detect};
+use impact_records::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
+use impact_records::record::{ContactContent, FlagCode, Record, Role, Setting, changes};
+use impact_records::signal::columns::{self, dot};
+use impact_records::signal::{decay, onsets, robust};
 use labfiles::DatasetInfo;
 use labfiles::units::{self, Dimension};
 

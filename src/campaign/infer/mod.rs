@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 
 use super::discovery::Opener;
 use super::run_table;
-use crate::record::{Role, time_axis};
-use crate::signal::robust;
+use impact_records::record::{Role, time_axis};
+use impact_records::signal::robust;
 use labfiles::{ChannelInfo, Clock, DatasetInfo, Samples, Source};
 
 pub use experiment::Experiment;
@@ -424,12 +424,21 @@ mod tests {
     #[test]
     fn a_list_of_changes_is_one_of_times() {
         let folder = tempfile::tempdir().unwrap();
-        let list = crate::record::calibrate::tests::list_of_changes();
+        // bounces as a logic analyser lists them: the contact is closed for 2 ms
+        let closings = (0..12).scan(0.5, |at, k| {
+            let closed = *at;
+            *at += 0.5 * 0.8f64.powi(k);
+            Some(format!("{closed:.9},1\n{:.9},0\n", closed + 2e-3))
+        });
+        let list = format!(
+            "Time [s],Channel 0\n0.000000000,0\n{}",
+            closings.collect::<String>()
+        );
         std::fs::write(folder.path().join("digital.csv"), list).unwrap();
         let found = inspect_folder(folder.path(), &labfiles::open);
         assert_eq!(
             found.experiment,
-            Experiment::Events(crate::record::ContactContent::Times)
+            Experiment::Events(impact_records::record::ContactContent::Times)
         );
         let role = |name: &str| found.channels.iter().find(|c| c.name == name).unwrap().role;
         assert_eq!(

@@ -1,7 +1,7 @@
 //! The role that each channel probably has, from its name, unit and shape.
 
 use super::InferredChannel;
-use crate::record::Role;
+use impact_records::record::Role;
 use labfiles::units::{self, Dimension};
 
 /// Give each role to the channel that fits best.

@@ -129,7 +129,7 @@ mod tests {
     use crate::identify::estimate::estimate;
     use crate::identify::fit::effect::Effect;
     use crate::identify::messages::{PairAgreement, Remark};
-    use crate::record::Role;
+    use impact_records::record::Role;
 
     fn changes() -> Remark {
         Remark::RestitutionChanges {

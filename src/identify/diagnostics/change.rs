@@ -23,8 +23,8 @@ use crate::identify::method::Method;
 use crate::identify::selection::Selection;
 use crate::identify::uncertainty::distribution::student_tail;
 use crate::identify::uncertainty::scatter::Spread;
-use crate::motion::Observation;
-use crate::signal::robust;
+use impact_records::motion::Observation;
+use impact_records::signal::robust;
 
 /// Records that either part has at least.
 const FEWEST: usize = 6;
@@ -353,7 +353,7 @@ mod tests {
     use crate::identify::VerdictKind;
     use crate::identify::fixture::{evidence, observed, recorded};
     use crate::identify::run::identify;
-    use crate::record::Record;
+    use impact_records::record::Record;
 
     /// A measurement of the first of two numbers, or of their sum, with a unit error.
     fn measured(value: f64, both: bool) -> PlacedRows {

@@ -14,9 +14,9 @@ use crate::identify::fit::parameters::Coordinate;
 use crate::identify::identification::MethodResult;
 use crate::identify::messages::{Finding, Note};
 use crate::identify::uncertainty::quantile::{NORMAL_975, student_975};
-use crate::motion::Observation;
-use crate::record::FlagCode;
-use crate::signal::robust;
+use impact_records::motion::Observation;
+use impact_records::record::FlagCode;
+use impact_records::signal::robust;
 
 /// Standard deviations from which a common ratio is named.
 const SURE: f64 = 3.0;
@@ -96,8 +96,8 @@ pub fn widen(result: &mut MethodResult, clock: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::event::DriveTone;
-    use crate::motion::Motion;
+    use impact_records::event::DriveTone;
+    use impact_records::motion::Motion;
 
     /// Records at stated frequencies, and the ratio at which each is measured.
     fn observed(ratios: impl Fn(usize) -> f64) -> Vec<Observation> {

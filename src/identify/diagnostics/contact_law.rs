@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::fit::normal::inverse;
-use crate::signal::whole;
+use impact_records::signal::whole;
 
 /// How R depends on the closing speed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -9,7 +9,7 @@ use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
 use crate::identify::fit::mean_squares;
 use crate::identify::fit::parameters::Parameters;
-use crate::signal::robust;
+use impact_records::signal::robust;
 
 /// Mean square of the residuals from which the records contradict each other.
 const MISFIT: f64 = 4.0;

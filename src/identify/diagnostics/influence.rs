@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::identify::fit::normal::{Normal, inverse};
 use crate::identify::fit::placed_rows::PlacedRows;
-use crate::signal::robust;
+use impact_records::signal::robust;
 
 /// A record's influence on a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,8 +5,8 @@ use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::fit::parameters::{Coordinate, GAIN_ROLES};
 use crate::identify::messages::{Finding, Note};
 use crate::identify::method_fit::MethodFit;
-use crate::motion::Observation;
-use crate::record::LowPass;
+use impact_records::motion::Observation;
+use impact_records::record::LowPass;
 
 /// Standard deviations of what is stated from which a delay is named.
 const SURE: f64 = 4.0;

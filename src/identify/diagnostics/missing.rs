@@ -1,13 +1,13 @@
 //! Parameters that a campaign asks for and no method tells: each gets the reason instead of a value.
 
-use crate::event::{FlightKind, RigKind};
 use crate::identify::estimate::not_identifiable;
 use crate::identify::evidence::Evidence;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::identification::MethodResult;
 use crate::identify::messages::Note;
-use crate::motion::Observation;
-use crate::record::Excitation;
+use impact_records::event::{FlightKind, RigKind};
+use impact_records::motion::Observation;
+use impact_records::record::Excitation;
 
 /// Give each parameter that a campaign asks for, and that its joint result lacks, the reason why. A result
 /// without any parameter stays empty: then nothing was usable.
@@ -63,11 +63,11 @@ fn why(parameter: Coordinate, observations: &[&Observation]) -> Note {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::event::Impact;
     use crate::identify::Status;
     use crate::identify::estimate::estimate;
     use crate::identify::evidence::Nominal;
-    use crate::motion::Motion;
+    use impact_records::event::Impact;
+    use impact_records::motion::Motion;
 
     /// What records are asked for beside the one parameter that they told.
     fn missing(told: Coordinate, observations: &[Observation], rig: RigKind) -> MethodResult {

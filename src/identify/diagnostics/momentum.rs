@@ -1,10 +1,10 @@
 //! The masses' ratio by conservation of momentum at impacts of two free masses, against the stated one.
 
-use crate::event::{Impact, RigKind};
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::impacts::ImpactBlock;
 use crate::identify::messages::{Finding, Remark};
 use crate::identify::uncertainty::quantile::NORMAL_975;
+use impact_records::event::{Impact, RigKind};
 
 /// Standard errors by which the ratio must be off the stated one.
 const SIGNIFICANT: f64 = 4.0;
@@ -78,7 +78,7 @@ pub fn momentum(block: &ImpactBlock, evidence: &Evidence<'_>) -> Option<(Remark,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::event::MassSpeeds;
+    use impact_records::event::MassSpeeds;
 
     #[test]
     fn valid_the_ratio_of_masses_follows_from_the_changes_of_speed() {

@@ -2,8 +2,8 @@
 
 use crate::identify::estimate::ParameterSet;
 use crate::identify::messages::Finding;
-use crate::motion::Observation;
-use crate::signal::robust;
+use impact_records::motion::Observation;
+use impact_records::signal::robust;
 
 /// Fewest records, and the least share of a campaign's, that are more than single slow motions near a
 /// boundary.
@@ -46,7 +46,7 @@ mod tests {
     use super::*;
     use crate::identify::estimate::estimate;
     use crate::identify::fit::parameters::Coordinate;
-    use crate::motion::Motion;
+    use impact_records::motion::Motion;
 
     fn observed(settling: Option<f64>) -> Observation {
         let mut o = Observation::of("r", 12.0, Motion::Impactless);

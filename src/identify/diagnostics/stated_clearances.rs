@@ -7,12 +7,12 @@
 
 use impact_oscillator::model::flight::{Drive, State, free_flight};
 
-use crate::event::{Impact, RigKind};
 use crate::identify::evidence::Evidence;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::messages::Finding;
-use crate::motion::Observation;
-use crate::signal::robust;
+use impact_records::event::{Impact, RigKind};
+use impact_records::motion::Observation;
+use impact_records::signal::robust;
 
 /// Records from which a contradiction is none of single rows of the run table.
 const FEWEST: usize = 6;

@@ -2,9 +2,9 @@
 //! drive was measured.
 
 use crate::identify::messages::Finding;
-use crate::motion::Observation;
-use crate::record::FlagCode;
-use crate::signal::robust;
+use impact_records::motion::Observation;
+use impact_records::record::FlagCode;
+use impact_records::signal::robust;
 
 /// Records from which a contradiction is none of single rows of the run table.
 const FEWEST: usize = 3;
@@ -47,13 +47,13 @@ pub fn contradicted(observations: &[Observation]) -> Option<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::event::DriveTone;
     use crate::identify::fit::parameters::Coordinate;
     use crate::identify::fixture::{evidence, observed as observed_all, recorded};
     use crate::identify::run::identify;
-    use crate::motion::Motion;
-    use crate::record::{Flag, Role};
-    use crate::signal::tone;
+    use impact_records::event::DriveTone;
+    use impact_records::motion::Motion;
+    use impact_records::record::{Flag, Role};
+    use impact_records::signal::tone;
 
     fn observed(stated_hz: f64, frequency_hz: f64) -> Observation {
         let mut o = Observation::of("r", stated_hz, Motion::Impactless);

@@ -13,7 +13,7 @@ use crate::identify::fit::parameters::{Coordinate, GAIN_ROLES, Parameters};
 use crate::identify::fit::{Block, Fit, Prior, mean_squares};
 use crate::identify::messages::Finding;
 use crate::identify::method_fit::MethodFit;
-use crate::signal::columns::dot;
+use impact_records::signal::columns::dot;
 
 /// Standard errors from which a deviation is named.
 pub(super) const SURE: f64 = 6.0;

@@ -10,7 +10,7 @@ use crate::identify::fit::parameters::gain_index;
 use crate::identify::joint::Weights;
 use crate::identify::messages::Finding;
 use crate::identify::method::Method;
-use crate::record::Role;
+use impact_records::record::Role;
 
 /// Relative difference of two sums of squares that errors of the model may make.
 const MODEL_CHANCE: f64 = 0.3;

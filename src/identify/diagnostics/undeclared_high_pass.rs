@@ -7,7 +7,7 @@ use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::gain_index;
 use crate::identify::messages::Finding;
-use crate::record::Role;
+use impact_records::record::Role;
 
 /// Standard uncertainty of the corners' logarithms in these fits.
 pub const WIDE: f64 = 1.5;

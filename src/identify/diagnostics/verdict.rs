@@ -18,8 +18,8 @@ use crate::identify::messages::{
 };
 use crate::identify::method::Method;
 use crate::identify::uncertainty::quantile::NORMAL_975;
-use crate::motion::Observation;
-use crate::signal::robust;
+use impact_records::motion::Observation;
+use impact_records::signal::robust;
 
 /// Relative deviation of responses from which one degree of freedom does not fit.
 const RESONANCE_DEVIATION: f64 = 0.15;

@@ -12,7 +12,7 @@ use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
 use crate::identify::fit::parameters::{Coordinate, GAIN_ROLES};
 use crate::identify::messages::{Finding, Note};
 use crate::identify::method_fit::MethodFit;
-use crate::record::Role;
+use impact_records::record::Role;
 
 /// Standard deviations from which a gain is named: chance makes one of two differ so in 0.3 %. What masses
 /// that were made alike may differ hides the difference of their gains, so that a gain ten times its

@@ -1,14 +1,14 @@
 //! Brackets of boundaries against the closed-form s2, s1 and ρ'.
 
-use crate::event::RigKind;
 use crate::identify::evidence::jump::Jump;
 use crate::identify::fit::Block;
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::own::Circumstances;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::motion::{BoundaryKind, Bracket};
 use impact_oscillator::model::boundary::{rho_grazing, s1_of_branch, s2_of_branch};
 use impact_oscillator::model::orbit::Branch;
+use impact_records::event::RigKind;
+use impact_records::motion::{BoundaryKind, Bracket};
 
 /// Brackets that the fit uses, with the likelihood of each.
 #[derive(Debug, Clone)]
@@ -261,11 +261,11 @@ impl Block for BoundaryBlock {
 pub(in crate::identify) mod tests {
     use super::*;
     use crate::identify::bracket_midpoints;
-    use crate::record::Sweep;
     use impact_oscillator::model::boundary::{eta_s2, rho_s1, rho_s2};
     use impact_oscillator::model::orbit::stable_orbit;
     use impact_oscillator::model::params::{Initial, Machine, Setting};
     use impact_oscillator::model::soft::{SoftContact, simulate_soft};
+    use impact_records::record::Sweep;
 
     /// A bracket 2 % wide about the boundary of a kind at η, as the model itself has it; `off_middle`: how far
     /// its middle lies below, in half widths.

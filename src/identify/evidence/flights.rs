@@ -10,17 +10,17 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use crate::event::{CornerShift, Impact, RigKind, extrapolation_error};
 use crate::identify::evidence::impacts::corners_in;
 use crate::identify::fit::Block;
 use crate::identify::fit::group::Group;
 use crate::identify::fit::own::Circumstances;
 use crate::identify::fit::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
-use crate::motion::{Motion, Observation};
-use crate::record::Role;
 use impact_oscillator::model::flight::{Drive, State, free_flight};
 use impact_oscillator::model::params::Machine;
 use impact_oscillator::model::variation::free_flow;
+use impact_records::event::{CornerShift, Impact, RigKind, extrapolation_error};
+use impact_records::motion::{Motion, Observation};
+use impact_records::record::Role;
 
 /// One impact as it was measured, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]

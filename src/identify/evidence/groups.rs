@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::identify::fit::group::Group;
-use crate::motion::Observation;
-use crate::record::Role;
-use crate::signal::robust;
+use impact_records::motion::Observation;
+use impact_records::record::Role;
+use impact_records::signal::robust;
 
 /// Fewest groups by setting that are looked for.
 const FEWEST_GROUPS: usize = 8;

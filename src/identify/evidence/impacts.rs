@@ -1,12 +1,12 @@
 //! R from the speeds after over before each impact.
 
-use crate::event::{CornerShift, Impact, Lag, RigKind, extrapolation_error};
 use crate::identify::evidence::pickup::Pickups;
 use crate::identify::fit::Block;
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
-use crate::motion::Observation;
-use crate::record::Role;
+use impact_records::event::{CornerShift, Impact, Lag, RigKind, extrapolation_error};
+use impact_records::motion::Observation;
+use impact_records::record::Role;
 
 /// One impact's speeds.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -233,7 +233,7 @@ impl ImpactBlock {
             .iter()
             .map(|p| p.after_m_s / p.before_m_s)
             .collect();
-        crate::signal::robust::median(&ratios)
+        impact_records::signal::robust::median(&ratios)
     }
 
     /// What the unknown law of contact leaves open in R.
@@ -248,7 +248,7 @@ impl ImpactBlock {
         }
         let error = |p: &SpeedPair| self.error(p, p.after_m_s / p.before_m_s) / p.before_m_s;
         let errors: Vec<f64> = self.pairs.iter().map(error).collect();
-        COMMON * crate::signal::robust::median(&errors).unwrap_or(0.0)
+        COMMON * impact_records::signal::robust::median(&errors).unwrap_or(0.0)
     }
 
     /// Fewest impacts that a fit needs: one between free flights has a ratio of its own.
@@ -294,7 +294,7 @@ impl ImpactBlock {
             .iter()
             .map(|p| (p.after_m_s - centre * p.before_m_s) / self.error(p, centre))
             .collect();
-        let spread = crate::signal::robust::robust_deviation(&scores)
+        let spread = impact_records::signal::robust::robust_deviation(&scores)
             .unwrap_or(1.0)
             .max(0.5);
         let mut is_odd = scores.iter().map(|s| !(s.abs() <= limit * spread));
@@ -364,7 +364,7 @@ fn push(observations: &[Observation]) -> f64 {
         let before = i.approach_speed_before_m_s.filter(|v| *v > 0.0)?;
         Some((i.external_push_m_s? / before).abs())
     });
-    crate::signal::robust::median(&pushed.collect::<Vec<f64>>()).unwrap_or(0.0)
+    impact_records::signal::robust::median(&pushed.collect::<Vec<f64>>()).unwrap_or(0.0)
 }
 
 impl Block for ImpactBlock {
@@ -423,7 +423,7 @@ impl Block for ImpactBlock {
 mod tests {
     use super::*;
     use crate::identify::fit::block::difference;
-    use crate::record::Role;
+    use impact_records::record::Role;
 
     fn lag(velocity: Role, displacement: Role, accelerations_m_s2: [f64; 2]) -> Option<Lag> {
         Some(Lag {

@@ -3,8 +3,8 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use crate::motion::{BoundaryKind, Bracket};
-use crate::record::Sweep;
+use impact_records::motion::{BoundaryKind, Bracket};
+use impact_records::record::Sweep;
 
 /// How often a change of z = 1/n is not that of the nearest s1 (other doubled motions lie beside it)
 /// or, for n > 1, not that of the nearest s2 (an impact more may end it first).

@@ -24,7 +24,6 @@ pub mod waveform;
 pub mod weighing;
 mod within_record;
 
-use crate::event::{FlightKind, RigKind};
 use crate::identify::evidence::boundary::BoundaryBlock;
 use crate::identify::evidence::flights::FlightBlock;
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
@@ -37,8 +36,9 @@ use crate::identify::fit::group::Group;
 use crate::identify::fit::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
 use crate::identify::fit::{Block, Fit, FitProgress, Prior, Problem};
 use crate::identify::uncertainty::options::UncertaintyOptions;
-use crate::motion::{Bracket, Observation};
-use crate::signal::robust;
+use impact_records::event::{FlightKind, RigKind};
+use impact_records::motion::{Bracket, Observation};
+use impact_records::signal::robust;
 
 /// What the laboratory states about its rig.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

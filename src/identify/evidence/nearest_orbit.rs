@@ -1,10 +1,10 @@
 //! The model's orbit that a periodic record shows.
 
-use crate::event::RigKind;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::fit::parameters::Parameters;
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::params::{Machine, Setting};
+use impact_records::event::RigKind;
 
 /// The z = 1/n orbit at a record's setting whose closing speed is nearest to the measured one.
 pub struct NearestOrbit {

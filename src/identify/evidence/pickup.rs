@@ -2,8 +2,8 @@
 //! every frequency, which no motion of a mass is.
 
 use crate::identify::fit::effect::Effect;
-use crate::motion::Observation;
-use crate::record::Role;
+use impact_records::motion::Observation;
+use impact_records::record::Role;
 
 /// The channel of each mass that may pick up the drive, with its greatest amplitude in the campaign, SI, to
 /// which the strength of that effect refers: the velocity, else the displacement, else the acceleration.
@@ -57,7 +57,7 @@ impl Pickups {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::{Amplitude, Motion};
+    use impact_records::motion::{Amplitude, Motion};
 
     #[test]
     fn the_velocity_of_a_mass_picks_up_a_share_of_its_greatest_amplitude() {

@@ -6,7 +6,6 @@ mod points;
 
 pub use points::MotionPoints;
 
-use crate::event::RigKind;
 use crate::identify::evidence::direction::{change, relative_length, relative_rate};
 use crate::identify::evidence::high_pass::{HighPass, HighPassSlope, Passed};
 use crate::identify::evidence::nearest_orbit::NearestOrbit;
@@ -16,11 +15,12 @@ use crate::identify::evidence::waveform::{
 };
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
-use crate::motion::FoldedChannel;
-use crate::record::{LowPass, Role};
 use impact_oscillator::model::params::Machine;
 use impact_oscillator::model::path::C64;
 use impact_oscillator::model::sensitivity::{Change, MassMotion, OrbitMotion, Sensitivity};
+use impact_records::event::RigKind;
+use impact_records::motion::FoldedChannel;
+use impact_records::record::{LowPass, Role};
 
 /// A record's orbit as its channels show it.
 pub struct RecordMotion<'a> {
@@ -592,7 +592,7 @@ pub(super) mod tests {
     use crate::identify::fit::effect::Effect;
     use crate::identify::fit::effect::Effects;
     use crate::identify::fit::parameters::GAIN_ROLES;
-    use crate::motion::{Folded, FoldedPoint};
+    use impact_records::motion::{Folded, FoldedPoint};
 
     /// Everything in effect that is not a perturbation.
     pub(in crate::identify::evidence) fn parameters() -> Parameters {
@@ -672,11 +672,11 @@ pub(super) mod tests {
 
     /// Channel by channel, as their units differ.
     fn agree(exact: &[f64], above: &[f64], below: &[f64], width: f64) {
-        assert!(crate::signal::robust::rms(exact) > 0.0);
+        assert!(impact_records::signal::robust::rms(exact) > 0.0);
         let points = exact.len() / GAIN_ROLES.len();
         let channels = exact.chunks(points).zip(above.chunks(points));
         for ((exact, above), below) in channels.zip(below.chunks(points)) {
-            let size = crate::signal::robust::rms(exact);
+            let size = impact_records::signal::robust::rms(exact);
             // Values are rounded by units of the last place of their terms, over the width: of tenths of a m/s,
             // and of accelerations of tens of m/s².
             let largest = above.iter().fold(0.0f64, |most, a| most.max(a.abs()));

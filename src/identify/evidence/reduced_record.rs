@@ -10,8 +10,8 @@ use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::evidence::waveform::{ChannelRates, Phases, Rates, Terms, Timing};
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::rows::Rows;
-use crate::signal::columns::subtract;
 use impact_oscillator::model::path::C64;
+use impact_records::signal::columns::subtract;
 
 /// Greatest change of κθ and γθ: what the series leave out is below 1e-11 of the motion then.
 const REACH: f64 = 4e-3;
@@ -336,7 +336,6 @@ mod tests {
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
-    use crate::event::RigKind;
     use crate::identify::evidence::record_motion::RecordMotion;
     use crate::identify::evidence::record_motion::tests::{parameters, record};
     use crate::identify::evidence::trajectory::TrajectoryBlock;
@@ -344,6 +343,7 @@ mod tests {
     use crate::identify::fit::effect::Effects;
     use crate::identify::fit::normal::Normal;
     use crate::identify::fit::parameters::{Coordinate, Parameters};
+    use impact_records::event::RigKind;
 
     const RIG: RigKind = RigKind::Double;
 

@@ -2,7 +2,6 @@
 
 use nalgebra::Complex;
 
-use crate::event::RigKind;
 use crate::identify::evidence::direction::{change, relative_length};
 use crate::identify::evidence::pickup::Pickups;
 use crate::identify::evidence::shared_error::Whitening;
@@ -11,13 +10,14 @@ use crate::identify::fit::effect::{Effect, EffectKind};
 use crate::identify::fit::group::Group;
 use crate::identify::fit::own::Circumstances;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
-use crate::motion::Observation;
-use crate::motion::Response;
-use crate::record::Role;
-use crate::signal::columns::{dot, subtract};
 use impact_oscillator::model::flight::{Drive, dynamic_stiffness, forced_amplitude};
 use impact_oscillator::model::params::{Machine, Oscillator};
 use impact_oscillator::model::sensitivity::{Change, forced_slope};
+use impact_records::event::RigKind;
+use impact_records::motion::Observation;
+use impact_records::motion::Response;
+use impact_records::record::Role;
+use impact_records::signal::columns::{dot, subtract};
 
 /// One impactless record.
 #[derive(Debug, Clone, Default)]
@@ -695,7 +695,7 @@ mod tests {
     use super::*;
     use crate::identify::fit::Problem;
     use crate::identify::fit::block::difference;
-    use crate::motion::{Amplitude, Motion};
+    use impact_records::motion::{Amplitude, Motion};
 
     /// Impactless records of two masses (m, k, b, F), by their own transfer functions.
     fn measured(masses: [[f64; 4]; 2]) -> ResonanceBlock {
@@ -843,7 +843,7 @@ mod tests {
         let (here, columns) = block.slopes(0, &p, &coordinates).expect("slopes");
         for (coordinate, exact) in coordinates.iter().zip(columns) {
             let found = difference(&p, *coordinate, &here, |p| block.residuals(0, p));
-            let size = crate::signal::robust::rms(&exact);
+            let size = impact_records::signal::robust::rms(&exact);
             for (e, f) in exact.iter().zip(found.expect("differences")) {
                 assert!((e - f).abs() < 1e-6 * size, "{coordinate:?}: {e} {f}");
             }
@@ -933,7 +933,7 @@ mod tests {
         let (here, columns) = block.slopes(0, &truth, &coordinates).expect("slopes");
         for (coordinate, exact) in coordinates.iter().zip(columns) {
             let found = difference(&truth, *coordinate, &here, |p| block.residuals(0, p));
-            let size = crate::signal::robust::rms(&exact);
+            let size = impact_records::signal::robust::rms(&exact);
             for (e, f) in exact.iter().zip(found.expect("differences")) {
                 assert!((e - f).abs() < 1e-5 * size, "{coordinate:?}: {e} {f}");
             }

@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::signal::columns::{dot, subtract};
+use impact_records::signal::columns::{dot, subtract};
 
 /// The inverse root of I + `VVᵀ`, by its few directions: I − Σ kept·d dᵀ with orthonormal d.
 #[derive(Debug, Clone, Default)]

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
-use crate::motion::Observation;
+use impact_records::motion::Observation;
 
 /// Normal deviate from which scatter beyond the stated errors, or what a grouping explains of it, is no
 /// chance.
@@ -146,7 +146,7 @@ fn group(name: String, members: &[GroupedRatio]) -> ImpactGroup {
     ImpactGroup {
         group: name,
         impacts: members.len(),
-        speed_m_s: (!speeds.is_empty()).then(|| crate::signal::robust::mean(&speeds)),
+        speed_m_s: (!speeds.is_empty()).then(|| impact_records::signal::robust::mean(&speeds)),
         restitution,
         standard_error: error * (chi2 / freedom).max(1.0).sqrt(),
     }
@@ -173,7 +173,7 @@ pub fn structure(ratios: &[GroupedRatio]) -> Option<Grouping> {
 pub fn differ(ratios: &[GroupedRatio]) -> bool {
     let (_, _, chi2) = mean(ratios);
     let values = ratios.iter().map(|r| r.ratio);
-    let range = crate::signal::robust::range(values).map_or(0.0, |(low, high)| high - low);
+    let range = impact_records::signal::robust::range(values).map_or(0.0, |(low, high)| high - low);
     ratios.len() > 1 && deviate(chi2, ratios.len() - 1) > SIGNIFICANT && range > MATTERS
 }
 

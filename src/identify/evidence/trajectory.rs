@@ -2,7 +2,6 @@
 
 use rayon::prelude::*;
 
-use crate::event::RigKind;
 use crate::identify::evidence::nearest_orbit::NearestOrbit;
 use crate::identify::evidence::pickup::Pickups;
 use crate::identify::evidence::record_motion::{Column, RecordMotion, Slopes};
@@ -13,11 +12,12 @@ use crate::identify::fit::effect::{Effect, EffectKind, Effects};
 use crate::identify::fit::group::Group;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::rows::Rows;
-use crate::motion::Folded;
-use crate::motion::Observation;
-use crate::record::Role;
 use impact_oscillator::model::flight::State;
 use impact_oscillator::model::orbit::orbit_with_speed;
+use impact_records::event::RigKind;
+use impact_records::motion::Folded;
+use impact_records::motion::Observation;
+use impact_records::record::Role;
 
 /// All periodic records with one impact in n drive periods.
 #[derive(Debug, Clone)]
@@ -239,7 +239,7 @@ fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> 
         drive_amplitude: o.setting.drive_amplitude,
         phases: distinct_phases(&folded).into(),
         folded,
-        closing_speed_m_s: crate::signal::robust::median(&speeds)?,
+        closing_speed_m_s: impact_records::signal::robust::median(&speeds)?,
         ..TrajectoryRecord::default()
     })
 }

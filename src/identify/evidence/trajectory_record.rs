@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::event::RigKind;
 use crate::identify::evidence::reduced_record::{ReducedRecord, Weighted};
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::evidence::waveform::{Phases, Rates};
@@ -10,9 +9,10 @@ use crate::identify::fit::effect::Effect;
 use crate::identify::fit::group::Group;
 use crate::identify::fit::own::Circumstances;
 use crate::identify::fit::parameters::{Parameters, gain_index};
-use crate::motion::{Folded, FoldedChannel};
-use crate::signal::columns::{dot, subtract};
-use crate::signal::robust;
+use impact_records::event::RigKind;
+use impact_records::motion::{Folded, FoldedChannel};
+use impact_records::signal::columns::{dot, subtract};
+use impact_records::signal::robust;
 
 /// One folded record.
 #[derive(Debug, Clone, Default)]

@@ -4,9 +4,9 @@
 //! A mass is a sum of exponentials of time; the mean of e^{λt} over t ± δ is e^{λt}(1 + λ²δ²/2)
 //! up to the fourth power of δ. What depends on the drive's phases alone is kept.
 
-use crate::motion::FoldedPoint;
 use impact_oscillator::model::path::C64;
 use impact_oscillator::model::sensitivity::MassMotion;
+use impact_records::motion::FoldedPoint;
 
 /// The phases of a channel's points.
 #[derive(Debug, Clone, PartialEq)]

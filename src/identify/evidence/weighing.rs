@@ -7,7 +7,7 @@ use crate::identify::evidence::Blocks;
 use crate::identify::evidence::trajectory_record::Misfit;
 use crate::identify::fit::mean_squares;
 use crate::identify::fit::parameters::Parameters;
-use crate::signal::robust;
+use impact_records::signal::robust;
 
 impl Blocks {
     /// Weigh resonance curve and trajectories as the fit that led to these parameters did.

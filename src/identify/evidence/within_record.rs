@@ -19,7 +19,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::fit::normal::inverse;
-use crate::signal::robust;
+use impact_records::signal::robust;
 
 /// Terms of the law over the speed that records may follow.
 const TERMS: usize = 3;

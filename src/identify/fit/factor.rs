@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::identify::fit::reflection::NewRows;
 use crate::identify::fit::rows::{BLOCK, Rows};
-use crate::signal::columns::dot;
+use impact_records::signal::columns::dot;
 
 /// Rows with the places of their unknowns among those of a factor.
 pub(super) type Placed<'a> = (&'a Rows, &'a [usize]);

@@ -4,12 +4,12 @@ use serde::{Deserialize, Serialize};
 
 pub use super::coordinate::{CHANNELS, Coordinate};
 use super::gap_errors::GapErrors;
-use crate::event::{CornerShift, RigKind};
 use crate::identify::fit::effect::Effect;
-use crate::record::Role;
 use impact_oscillator::model::params::{
     Contact, Flight, Machine, Oscillator, Restitution, Setting,
 };
+use impact_records::event::{CornerShift, RigKind};
+use impact_records::record::Role;
 
 /// Parameters of rig and instruments.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

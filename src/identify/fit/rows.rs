@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::identify::fit::normal::Normal;
 use crate::identify::fit::placed_rows::PlacedRows;
 use crate::identify::fit::reflection::NewRows;
-use crate::signal::columns::{dot, subtract};
+use impact_records::signal::columns::{dot, subtract};
 
 /// Rows [J r] of some weighted residuals and their slopes over some unknowns, or fewer rows that have
 /// the same normal equations.

@@ -1,7 +1,7 @@
 //! Texts on the effects beyond the model.
 
 use crate::identify::fit::effect::Effect;
-use crate::texts;
+use impact_records::texts;
 
 /// An effect beyond the model, and what can be done about it, in English and in German; `rises`:
 /// whether its strength is positive.

@@ -3,9 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::identify::uncertainty::quantile::NORMAL_975;
-use crate::message::{Message, Value};
-use crate::message_table;
-use crate::signal::decay::{DampingLaw, PartOfDecay};
+use impact_records::message::{Message, Value};
+use impact_records::signal::decay::PartOfDecay;
 
 /// The damping ratio of a part of a decay.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -47,20 +46,4 @@ impl Message for DampingPoint {
             ("share", Value::Percent(self.amplitude_ratio, 0)),
         ]
     }
-}
-
-message_table! { DampingLaw;
-    Self::Friction =>
-        "dry friction explains it, which adds to $β$ what grows as the amplitude falls",
-        "trockene Reibung erklärt es; sie fügt $β$ hinzu, was mit fallender Amplitude wächst";
-    Self::Drag =>
-        "drag in proportion to the square of the velocity explains it, which adds to $β$ in \
-         proportion to the amplitude",
-        "ein Widerstand mit dem Quadrat der Geschwindigkeit erklärt es; er fügt $β$ etwas \
-         proportional zur Amplitude hinzu";
-    Self::Unknown =>
-        "neither dry friction nor drag alone explains it: the damping depends on the amplitude or \
-         on time in another way",
-        "weder trockene Reibung noch Widerstand allein erklärt es: Die Dämpfung hängt anders von \
-         der Amplitude oder der Zeit ab";
 }

@@ -1,7 +1,7 @@
 //! Whether a deviation is high or low, as a word.
 
-use crate::message::Value;
-use crate::message_table;
+use impact_records::message::Value;
+use impact_records::message_table;
 
 /// Whether something is too high or too low.
 #[derive(Debug, Clone, Copy, strum::IntoStaticStr)]

@@ -9,9 +9,9 @@ use crate::identify::diagnostics::cause::Cause;
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
-use crate::message::{Message, Value};
-use crate::record::Role;
-use crate::{message_table, messages};
+use impact_records::message::{Message, Value};
+use impact_records::record::Role;
+use impact_records::{message_table, messages};
 
 /// Something that the data give away. Deviations are relative (0.01 is 1 %); a z-score is a deviation
 /// over its standard error.

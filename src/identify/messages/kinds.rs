@@ -5,10 +5,10 @@ use strum::IntoEnumIterator;
 use super::*;
 use crate::identify::fit::effect::Effect;
 use crate::identify::method::Method;
-use crate::message::boxed;
-use crate::motion::Undetermined;
-use crate::record::FlagCode;
-use crate::signal::decay::DampingLaw;
+use impact_records::message::boxed;
+use impact_records::motion::Undetermined;
+use impact_records::record::FlagCode;
+use impact_records::signal::decay::DampingLaw;
 
 /// One message of each kind of an identification.
 pub fn kinds() -> Vec<Box<dyn Message>> {
@@ -41,8 +41,8 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::message::{Language, plain};
-    use crate::record::Role;
+    use impact_records::message::{Language, plain};
+    use impact_records::record::Role;
 
     /// The names in braces of a template.
     fn names(template: &str) -> BTreeSet<&str> {

@@ -22,7 +22,7 @@ pub use remark::{GroupPoint, Remark, SpeedPoint};
 pub use sentence::{Sentence, StatedValue};
 
 use crate::identify::fit::parameters::Coordinate;
-use crate::message::Message;
+use impact_records::message::Message;
 
 impl Message for Coordinate {
     fn kind(&self) -> &'static str {

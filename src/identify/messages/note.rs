@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use crate::identify::fit::FitError;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
-use crate::message::Value;
-use crate::{message_table, messages};
+use impact_records::message::Value;
+use impact_records::{message_table, messages};
 
 /// Why a parameter is weak or not identifiable, or why a method has no result.
 #[derive(

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
-use crate::message::{Message, Value};
+use impact_records::message::{Message, Value};
 
 /// The estimates of a parameter by two methods, compared; as a message, how far they are apart.
 #[derive(Debug, Default, Clone, PartialEq, Serialize, Deserialize)]

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::identify::method::Method;
-use crate::message::Value;
-use crate::motion::{BoundaryKind, Bracket};
-use crate::{message_table, messages};
+use impact_records::message::Value;
+use impact_records::motion::{BoundaryKind, Bracket};
+use impact_records::{message_table, messages};
 
 /// Something that a fit may leave out. Indices count from 0: records in the order of acquisition, the
 /// rows of records.parquet; brackets in the order of boundaries.csv.

@@ -7,9 +7,9 @@ use crate::identify::diagnostics::cause::Cause;
 use crate::identify::evidence::structure::ImpactGroup;
 use crate::identify::method::Method;
 use crate::identify::uncertainty::quantile::NORMAL_975;
-use crate::message::{Message, Value};
-use crate::signal::decay::DampingLaw;
-use crate::{message_table, messages};
+use impact_records::message::{Message, Value};
+use impact_records::signal::decay::DampingLaw;
+use impact_records::{message_table, messages};
 
 /// R at one approach speed.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::parameters::Coordinate;
-use crate::message::{Message, Value};
-use crate::signal::whole;
-use crate::{message_table, messages};
+use impact_records::message::{Message, Value};
+use impact_records::signal::whole;
+use impact_records::{message_table, messages};
 
 /// A parameter with its value as a sentence states it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

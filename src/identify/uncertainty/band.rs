@@ -1,11 +1,11 @@
 //! How far a curve in the (η, ρ) plane may be off: what the fit leaves open in R and β, on which alone
 //! the boundaries of the symmetric machine depend there.
 
-use crate::event::RigKind;
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::uncertainty::quantile::NORMAL_975;
 use impact_oscillator::model::params::Machine;
+use impact_records::event::RigKind;
 
 /// The machines that a fit leaves possible, one standard error off in R and in β.
 #[derive(Debug, Clone)]

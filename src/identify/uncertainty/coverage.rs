@@ -137,13 +137,13 @@ fn score(trials: &[Trial], estimator: Estimator, coordinate: Coordinate) -> Opti
     let count = errors.len().max(1) as f64;
     score.estimates = errors.len();
     score.bias = errors.iter().sum::<f64>() / count;
-    score.rms_error = crate::signal::robust::rms(&errors);
-    score.bound = crate::signal::robust::rms(&bounds);
-    score.rms_error_over_bound = crate::signal::robust::rms(&ratios);
+    score.rms_error = impact_records::signal::robust::rms(&errors);
+    score.bound = impact_records::signal::robust::rms(&bounds);
+    score.rms_error_over_bound = impact_records::signal::robust::rms(&ratios);
     let sizes: Vec<f64> = ratios.iter().map(|r| r.abs()).collect();
-    score.median_error_over_bound = crate::signal::robust::median(&sizes).unwrap_or(0.0);
+    score.median_error_over_bound = impact_records::signal::robust::median(&sizes).unwrap_or(0.0);
     score.coverage95 = covered as f64 / count;
-    score.median_half_width95 = crate::signal::robust::median(&half_widths).unwrap_or(0.0);
+    score.median_half_width95 = impact_records::signal::robust::median(&half_widths).unwrap_or(0.0);
     Some(score)
 }
 

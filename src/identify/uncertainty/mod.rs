@@ -35,7 +35,7 @@ use crate::identify::method_fit::MethodFit;
 use crate::identify::uncertainty::budget::Budget;
 use crate::identify::uncertainty::profile::profile;
 use crate::identify::uncertainty::scatter::Scatter;
-use crate::signal::whole;
+use impact_records::signal::whole;
 
 /// What a bootstrap over records gives for one parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -197,14 +197,14 @@ fn summary(coordinate: Coordinate, sorted: &[f64]) -> Option<Bootstrapped> {
         let i = whole::index((share * (sorted.len().saturating_sub(1)) as f64).round());
         sorted.get(i).copied()
     };
-    let mean = crate::signal::robust::mean(sorted);
+    let mean = impact_records::signal::robust::mean(sorted);
     let apart: Vec<f64> = sorted
         .iter()
         .map(|v| physical(*v) - physical(mean))
         .collect();
     Some(Bootstrapped {
         parameter: coordinate,
-        standard_error: crate::signal::robust::rms(&apart),
+        standard_error: impact_records::signal::robust::rms(&apart),
         interval95: [physical(at(0.025)?), physical(at(0.975)?)],
     })
 }

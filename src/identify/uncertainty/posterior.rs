@@ -20,7 +20,7 @@ use crate::identify::evidence::jump::{Jump, Tilt, density, mills_ratio, normal};
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::uncertainty::propagation::{Factors, Propagation};
 use crate::identify::uncertainty::surroundings::{Boundary, Surroundings};
-use crate::motion::{BoundaryKind, Bracket};
+use impact_records::motion::{BoundaryKind, Bracket};
 
 /// What brackets say of R.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -276,11 +276,11 @@ fn mean_distance(block: &BoundaryBlock, parameters: &Parameters) -> Option<f64> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::event::RigKind;
     use crate::identify::evidence::boundary::tests::bracket;
     use crate::identify::fit::Prior;
     use crate::identify::fit::effect::Effect;
     use crate::identify::fit::parameters::Coordinate;
+    use impact_records::event::RigKind;
 
     #[test]
     fn valid_moments_of_three_weights() {

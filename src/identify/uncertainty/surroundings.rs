@@ -9,7 +9,7 @@ use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Prior};
 use crate::identify::method_fit::MethodFit;
-use crate::motion::Bracket;
+use impact_records::motion::Bracket;
 
 /// Where a boundary lies, and how far each deviate moves it.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::event::{DetectSettings, RigKind};
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::run::identify;
@@ -15,13 +14,14 @@ use crate::identify::uncertainty::bound::bounds;
 use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
 use crate::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
 use crate::identify::{Estimator, Identification, Method, boundary_plan};
-use crate::motion::{
-    Bracket, ClassifySettings, Motion, Observation, brackets, observe, scale_drives,
-};
 use crate::pipeline::{PipelineError, Progress};
-use crate::record::{FlagCode, Record};
 use crate::synthetic::run::calibrated;
 use crate::synthetic::{Laboratory, Reach, RigSpec, TrueMass, Truth, draw, records};
+use impact_records::event::{DetectSettings, RigKind};
+use impact_records::motion::{
+    Bracket, ClassifySettings, Motion, Observation, brackets, observe, scale_drives,
+};
+use impact_records::record::{FlagCode, Record};
 
 mod mistake;
 mod tallies;
@@ -135,7 +135,7 @@ fn seen(
     let mut observations: Vec<Observation> = records
         .into_par_iter()
         .map(|mut record| {
-            let found = crate::record::consistency::inspect(&record);
+            let found = impact_records::record::consistency::inspect(&record);
             record.flags.extend(found);
             let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
             observe(&record, RigKind::Double, &detect, &classify)

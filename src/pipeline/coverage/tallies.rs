@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::Seen;
 use crate::identify::{Effect, Finding, VerdictKind};
-use crate::motion::{Motion, Observation};
+use impact_records::motion::{Motion, Observation};
 
 /// So many of so many.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -163,7 +163,7 @@ impl Tallies {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::Undetermined;
+    use impact_records::motion::Undetermined;
 
     #[test]
     fn motions_are_right_undetermined_or_wrong() {

@@ -4,11 +4,11 @@ use super::StudyContext;
 use super::plan::MapPlan;
 use super::table::Table;
 use crate::compare::RegionMap;
-use crate::motion::Motion;
 use crate::pipeline::PipelineError;
 use crate::report::theory::regions as figure;
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::{Machine, MapGrid, SettledMotion, region_map};
+use impact_records::motion::Motion;
 
 /// Rows of a block.
 const BLOCK: usize = 8;

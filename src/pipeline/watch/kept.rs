@@ -7,9 +7,9 @@ use sha2::{Digest, Sha256};
 
 use super::ledger::Stamp;
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
-use crate::motion::Observation;
 use crate::pipeline::observe;
-use crate::record::Record;
+use impact_records::motion::Observation;
+use impact_records::record::Record;
 
 /// Which record: its file, its dataset, and its name in the campaign.
 type Key = (PathBuf, Option<usize>, String);

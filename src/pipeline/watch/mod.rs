@@ -30,7 +30,7 @@ use super::{Observed, PipelineError, Progress, identify};
 use crate::campaign::diagnostic::{Diagnostic, Diagnostics};
 use crate::campaign::resolved::{Report, ResolvedCampaign};
 use crate::campaign::{NamedFiles, load_taken};
-use crate::motion::{Bracket, Observation, brackets, scale_drives};
+use impact_records::motion::{Bracket, Observation, brackets, scale_drives};
 
 /// A campaign that is watched.
 pub struct Watcher {

@@ -2,13 +2,13 @@
 
 use crate::compare::Comparison;
 use crate::identify::{Method, MethodResult};
-use crate::message::sentence;
-use crate::motion::Motion;
 use crate::report::content::ReportContent;
 use crate::report::figures::{decays, numbered};
 use crate::report::locale::Locale;
 use crate::report::parameters::parameter;
 use crate::report::phrase::Phrase;
+use impact_records::message::sentence;
+use impact_records::motion::Motion;
 
 /// A figure's name and its caption.
 type Captioned = (String, String);

@@ -2,10 +2,10 @@
 
 use super::model::Rich;
 use crate::compare::Overview;
-use crate::record::calibrate::ChannelSetup;
 use crate::report::content::{CampaignFacts, NominalValue, ReportContent, Subject};
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
+use impact_records::record::calibrate::ChannelSetup;
 
 /// What was measured, when, with what: labels and values, those that are known.
 pub(super) fn facts(content: &ReportContent, locale: Locale<'_>) -> Vec<(Rich, Rich)> {

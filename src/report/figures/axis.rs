@@ -2,8 +2,8 @@
 
 use crate::report::locale::Locale;
 use crate::report::phrase::Text;
-use crate::signal::robust::range;
-use crate::signal::whole;
+use impact_records::signal::robust::range;
+use impact_records::signal::whole;
 
 /// One axis: its range in data and its title with unit, in the report's markup.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,8 +2,8 @@
 
 use super::canvas::Stroke;
 use super::look;
-use crate::motion::BoundaryKind;
 use crate::report::phrase::{Phrase, Text};
+use impact_records::motion::BoundaryKind;
 
 /// The boundaries in the order in which brackets are stacked.
 pub(crate) const ALL: [BoundaryKind; 4] = [

@@ -12,9 +12,9 @@ use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::plane::same;
 use crate::compare::BracketRow;
-use crate::motion::BoundaryKind;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
+use impact_records::motion::BoundaryKind;
 
 /// Height of the panel, points.
 const HEIGHT: f64 = 132.0;

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::signal::whole;
+use impact_records::signal::whole;
 
 /// Rows of text and numbers under a header; short rows are filled with empty fields.
 pub(crate) struct Csv {

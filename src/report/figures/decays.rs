@@ -13,7 +13,7 @@ use crate::compare::{FreeDecay, Signal};
 use crate::report::locale::Locale;
 use crate::report::parameters::decimals_for;
 use crate::report::phrase::{Phrase, Text};
-use crate::signal::robust::range;
+use impact_records::signal::robust::range;
 use labfiles::units::Dimension;
 
 /// How many decays one figure holds.

@@ -1,6 +1,6 @@
 //! Many small points: those that would cover one another are drawn once.
 
-use crate::signal::whole;
+use impact_records::signal::whole;
 use std::collections::HashSet;
 
 use super::canvas::{Canvas, Colour, Stroke};

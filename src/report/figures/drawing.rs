@@ -4,7 +4,7 @@ use plotters::style::RGBColor;
 
 use super::fonts::Face;
 use super::path::Point;
-use crate::signal::whole;
+use impact_records::signal::whole;
 
 /// A colour.
 pub(crate) type Colour = RGBColor;

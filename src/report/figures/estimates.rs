@@ -14,7 +14,7 @@ use crate::report::content::ReportContent;
 use crate::report::locale::Locale;
 use crate::report::parameters::{PARAMETERS, ParameterLook, interval95};
 use crate::report::phrase::Phrase;
-use crate::signal::robust::range;
+use impact_records::signal::robust::range;
 
 /// Height of a method's line, points.
 const ROW: f64 = 14.5;

@@ -12,7 +12,7 @@ use super::units::{PrintUnit, print_unit};
 use crate::compare::{ImpactPoint, ImpactScatter};
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
-use crate::signal::robust::range;
+use impact_records::signal::robust::range;
 use labfiles::units::Dimension;
 
 /// Height of the panels, points.

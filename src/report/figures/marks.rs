@@ -1,12 +1,12 @@
 //! How a motion looks: each has its own shape and its own colour, distinguishable in grey and by the
 //! colour-blind; and the pale tint of its region.
 
-use crate::signal::whole;
+use impact_records::signal::whole;
 use plotters::style::RGBColor;
 
 use super::canvas::{Canvas, Colour, Point, Stroke};
 use super::look;
-use crate::motion::Motion;
+use impact_records::motion::Motion;
 
 /// Shape of a mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -2,7 +2,7 @@
 
 use super::canvas::Point;
 use super::path::Rect;
-use crate::signal::whole;
+use impact_records::signal::whole;
 
 /// Which square points of a drawing are taken.
 pub(crate) struct Occupancy {

@@ -4,10 +4,10 @@ use super::axis::Axis;
 use crate::compare::{BracketRow, RecordRow};
 use crate::identify::Estimate;
 use crate::identify::plan::Proposal;
-use crate::motion::Motion;
 use crate::report::content::ReportContent;
 use crate::report::phrase::Phrase;
-use crate::signal::robust::range;
+use impact_records::motion::Motion;
+use impact_records::signal::robust::range;
 
 /// Least and greatest value, where there is any.
 type Range = Option<(f64, f64)>;

@@ -13,8 +13,8 @@ use crate::compare::{ResidualPoint, ResidualSet};
 use crate::report::locale::Locale;
 use crate::report::parameters::NORMAL_95;
 use crate::report::phrase::{Phrase, Text};
-use crate::signal::robust::range;
-use crate::signal::whole;
+use impact_records::signal::robust::range;
+use impact_records::signal::whole;
 
 /// Height of the panels, points.
 const HEIGHT: f64 = 84.0;

@@ -75,7 +75,8 @@ fn amplitude_panel(curve: &ResonanceCurve, unit: PrintUnit, rect: Rect) -> Panel
         .chain(within)
         .collect();
     let title = (Phrase::Amplitude, unit.symbol);
-    let (low, high) = crate::signal::robust::range(values.iter().copied()).unwrap_or((0.0, 1.0));
+    let (low, high) =
+        impact_records::signal::robust::range(values.iter().copied()).unwrap_or((0.0, 1.0));
     let y = if low > 0.0 && high / low > 12.0 {
         Axis::new(0.8 * low * unit.factor, 1.25 * high * unit.factor, title).logarithmic()
     } else {

@@ -11,12 +11,12 @@ use crate::difference::{
 };
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::{Provenance, VerdictKind};
-use crate::motion::{Motion, Undetermined};
-use crate::record::calibrate::{ChannelKey, ChannelSetup};
-use crate::record::{Role, Sweep};
 use crate::report::{
     CampaignFacts, CampaignsContent, NominalValue, Phrase, ReportContent, Subject,
 };
+use impact_records::motion::{Motion, Undetermined};
+use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
+use impact_records::record::{Role, Sweep};
 
 /// Every kind by its name.
 pub(super) fn kinds() -> &'static [(&'static str, ReportContent)] {

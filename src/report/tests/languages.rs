@@ -10,13 +10,13 @@ use crate::identify::uncertainty::budget::{
     Budget, Combined, Contribution, Evaluation, Row, Source,
 };
 use crate::identify::{Finding, Identification, Method, Reason};
-use crate::motion::{Motion, Undetermined};
-use crate::record::calibrate::{ChannelKey, ChannelSetup};
-use crate::record::{Role, Sweep};
 use crate::report::{
     DataTable, NominalValue, Phrase, Report, ReportContent, ReportOptions, Subject, catalog,
     document,
 };
+use impact_records::motion::{Motion, Undetermined};
+use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
+use impact_records::record::{Role, Sweep};
 
 /// A catalog that prints each phrase and each message as its number in brackets, with its values.
 fn marks_for_phrases() -> catalog::Catalog {
@@ -418,7 +418,7 @@ fn a_german_report_has_german_findings_and_no_english_ones() {
     let (english, german) = (text(&ReportOptions::default()), text(&german));
     for finding in &findings {
         let words = |language| {
-            let template = crate::message::Message::template(finding, language);
+            let template = impact_records::message::Message::template(finding, language);
             let pieces = template.split(['{', '}', '$']).step_by(2);
             let longest = pieces.max_by_key(|p| p.len()).unwrap_or_default();
             // a sentence begins with a capital
@@ -426,8 +426,8 @@ fn a_german_report_has_german_findings_and_no_english_ones() {
             rest.replace('"', "\\\"")
         };
         let (en, de) = (
-            words(crate::message::Language::English),
-            words(crate::message::Language::German),
+            words(impact_records::message::Language::English),
+            words(impact_records::message::Language::German),
         );
         // only templates with words of their own
         if en.len() > 12 {

@@ -2,11 +2,11 @@
 
 use super::ENGLISH;
 use crate::compare::RegionMap;
-use crate::motion::Motion;
 use crate::report::figures::canvas::Canvas;
 use crate::report::figures::legend::{self, Key, Sign};
 use crate::report::figures::look;
 use crate::report::figures::marks;
+use impact_records::motion::Motion;
 
 /// A canvas of the text's width for panels of a height, with keys on its top, and where the panels begin.
 pub(super) fn sheet(left: f64, keys: &[Key], height: f64) -> (Canvas, f64) {

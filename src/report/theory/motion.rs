@@ -12,7 +12,7 @@ use crate::report::figures::look;
 use crate::report::figures::marks::mix;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
-use crate::signal::robust::range;
+use impact_records::signal::robust::range;
 
 /// Room left of the panels, points.
 const LEFT: f64 = 36.0;

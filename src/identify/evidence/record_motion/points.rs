@@ -2,7 +2,7 @@
 
 use super::RecordMotion;
 use crate::identify::evidence::waveform::{Terms, VibrationPoints};
-use crate::record::Role;
+use impact_records::record::Role;
 
 /// Where the terms of a record's motion are taken at all of its points.
 pub struct MotionPoints<'a> {

@@ -4,13 +4,13 @@ use super::estimates::{LEAST_P, estimate_cells, p_value};
 use super::{Column, table};
 use crate::difference::{AcrossCampaigns, Comparison, Difference};
 use crate::identify::fit::parameters::Coordinate;
-use crate::message::Message;
 use crate::report::document::model::{Rich, Table};
 use crate::report::document::verdict::headline;
 use crate::report::figures::correlation::name;
 use crate::report::locale::Locale;
 use crate::report::parameters;
 use crate::report::phrase::Phrase;
+use impact_records::message::Message;
 
 /// A p-value as printed behind its name.
 pub(crate) fn p_equals(p: f64, locale: Locale<'_>) -> String {

@@ -15,11 +15,11 @@ pub(super) use records::records;
 
 use crate::compare::{Unusable, UnusableReason};
 use crate::identify::Item;
-use crate::record::Sweep;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Align, Rich, Table};
 use crate::report::locale::Locale;
 use crate::report::phrase::{Phrase, Text};
+use impact_records::record::Sweep;
 
 /// A column of a table.
 struct Column {

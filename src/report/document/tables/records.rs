@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use super::{Column, arrow, table};
 use crate::compare::RecordRow;
-use crate::motion::Motion;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::figures::fonts::{self, Face};
@@ -12,7 +11,8 @@ use crate::report::figures::look;
 use crate::report::locale::Locale;
 use crate::report::parameters::method_inline;
 use crate::report::phrase::{Phrase, Text};
-use crate::signal::whole;
+use impact_records::motion::Motion;
+use impact_records::signal::whole;
 
 /// From how many records on the table is set small and in two columns.
 const MANY_RECORDS: usize = 45;

@@ -7,7 +7,6 @@ mod rows;
 pub(crate) use data::name;
 
 use crate::compare::{Comparison, Signal};
-use crate::record::Role;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
 use crate::report::figures::figure::Figure;
@@ -19,7 +18,8 @@ use crate::report::figures::path::Rect;
 use crate::report::figures::richtext;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
-use crate::signal::robust::range;
+use impact_records::record::Role;
+use impact_records::signal::robust::range;
 use rows::{Row, rows, shown, symbol};
 
 /// Room left of the first column, for numbers and titles, points.

@@ -2,7 +2,6 @@
 
 use super::{BACK_WIDTH, PORTRAIT_LEFT, PORTRAIT_WIDTH, Sheet, TOP};
 use crate::compare::{Comparison, Signal, Trace};
-use crate::record::Role;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Stroke, TextLook};
 use crate::report::figures::panel::{Panel, Sides};
@@ -10,6 +9,7 @@ use crate::report::figures::path::Rect;
 use crate::report::figures::units::{PrintUnit, print_unit};
 use crate::report::figures::{look, marks};
 use crate::report::phrase::Phrase;
+use impact_records::record::Role;
 use labfiles::units::Dimension;
 
 /// Velocity over displacement of one mass: points (m, m/s) in order of time.

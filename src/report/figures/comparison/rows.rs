@@ -1,11 +1,11 @@
 //! Which channels of a comparison share a row of panels, and in which unit.
 
 use crate::compare::{Comparison, Signal, Trace};
-use crate::record::Role;
 use crate::report::figures::canvas::Colour;
 use crate::report::figures::look;
 use crate::report::figures::units::{PrintUnit, print_unit};
 use crate::report::phrase::{Phrase, Text};
+use impact_records::record::Role;
 
 /// A row of panels: which channels, how tall, how titled.
 pub(super) struct Row<'a> {

@@ -1,12 +1,12 @@
 //! The map's data: the records' texts for hovering, and all layers as CSV.
 
 use crate::compare::{Compared, RecordRow, RegionMap};
-use crate::motion::Motion;
-use crate::record::Sweep;
 use crate::report::figures::boundaries;
 use crate::report::figures::csv::Csv;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
+use impact_records::motion::Motion;
+use impact_records::record::Sweep;
 
 /// The text that is shown on hovering over a record.
 pub(super) fn describe(record: &RecordRow, locale: Locale<'_>) -> String {

@@ -1,11 +1,11 @@
 //! The map's keys.
 
 use crate::compare::Compared;
-use crate::motion::BoundaryKind;
 use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::plane::Plane;
 use crate::report::figures::{boundaries, look, marks};
 use crate::report::phrase::{Phrase, motion_text};
+use impact_records::motion::BoundaryKind;
 
 /// Keys of the motions that were measured.
 pub(super) fn motions(compared: &Compared) -> Vec<Key> {

@@ -7,8 +7,6 @@ mod labels;
 use std::collections::{BTreeMap, HashSet};
 
 use crate::compare::{BoundaryCurve, BracketRow, RecordRow, RegionMap};
-use crate::motion::Motion;
-use crate::record::Sweep;
 use crate::report::content::ReportContent;
 use crate::report::figures::boundaries;
 use crate::report::figures::canvas::{Canvas, Point};
@@ -23,7 +21,9 @@ use crate::report::figures::plane::{Plane, View, same};
 use crate::report::figures::regions::Regions;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
-use crate::signal::whole;
+use impact_records::motion::Motion;
+use impact_records::record::Sweep;
+use impact_records::signal::whole;
 
 /// Which of the two maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -16,7 +16,7 @@ use crate::report::figures::look;
 use crate::report::figures::marks;
 use crate::report::figures::panel::Panel;
 use crate::report::figures::path;
-use crate::signal::whole;
+use impact_records::signal::whole;
 
 /// Regions smaller than this share of the map get no label and no outline.
 const LEAST_SHARE: f64 = 0.0025;

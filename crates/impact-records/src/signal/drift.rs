@@ -10,7 +10,7 @@ use super::robust;
 /// Both are left in the result: see [`remove_line`].
 ///
 /// ```
-/// use impactid::signal::drift::undo_high_pass;
+/// use impact_records::signal::drift::undo_high_pass;
 ///
 /// // The step response e^{−ω_c t} becomes a step again, up to the constant.
 /// let (rate_hz, corner_hz) = (2000.0, 0.5);

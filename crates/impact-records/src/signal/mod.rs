@@ -2,7 +2,7 @@
 //!
 //! Nothing here depends on records: every function takes samples at a uniform step.
 
-pub(crate) mod columns;
+pub mod columns;
 pub mod decay;
 pub mod drift;
 pub mod interpolation;
@@ -10,7 +10,7 @@ pub mod local_fit;
 pub mod onsets;
 pub mod robust;
 mod spectrum;
-pub(crate) mod thinning;
+pub mod thinning;
 pub mod tone;
 pub(crate) mod turns;
 pub mod whole;

@@ -134,10 +134,9 @@ impl Impact {
     }
 }
 
-#[cfg(test)]
 impl Impact {
     /// An impact of a time and an approach speed; nothing else is known.
-    pub(crate) fn at(time_s: f64, approach_speed_m_s: f64) -> Self {
+    pub fn at(time_s: f64, approach_speed_m_s: f64) -> Self {
         Self {
             approach_speed_before_m_s: Some(approach_speed_m_s),
             source: DetectionSource::Both,

@@ -25,7 +25,7 @@ mod lag;
 mod refine;
 
 pub use channel_lags::ChannelLag;
-pub(crate) use detect::extrapolation_error;
+pub use detect::extrapolation_error;
 pub use detect::{DetectSettings, Detection, FlightKind, detect};
 pub use drive::{DriveTone, of_motion};
 pub use impact::{CornerShift, DetectionSource, Impact, Lag, MassSpeeds};

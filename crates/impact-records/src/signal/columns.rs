@@ -30,7 +30,7 @@ pub(crate) fn sum(values: &[f64]) -> f64 {
 
 /// Inner product, as far as both columns go, in sixteen sums that do not wait for each other.
 #[multiversion(targets("x86_64+avx2"))]
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let common = a.len().min(b.len());
     let (a, b) = (&a[..common], &b[..common]);
     let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<16>(), b.as_chunks::<16>());
@@ -77,7 +77,7 @@ fn total([a, b, c, d]: [f64; 4]) -> f64 {
 
 /// Subtract a multiple of another column.
 #[multiversion(targets("x86_64+avx2"))]
-pub(crate) fn subtract(from: &mut [f64], share: f64, column: &[f64]) {
+pub fn subtract(from: &mut [f64], share: f64, column: &[f64]) {
     for (x, y) in from.iter_mut().zip(column) {
         *x -= share * y;
     }
@@ -111,7 +111,7 @@ pub(crate) fn all_finite(values: &[f64]) -> bool {
 
 /// The least and the greatest number; (∞, −∞) if there is none.
 #[multiversion(targets("x86_64+avx2"))]
-pub(crate) fn extremes(values: &[f64]) -> (f64, f64) {
+pub fn extremes(values: &[f64]) -> (f64, f64) {
     let (wide, rest) = values.as_chunks::<16>();
     let (mut low, mut high) = ([f64::INFINITY; 16], [f64::NEG_INFINITY; 16]);
     for x in wide {

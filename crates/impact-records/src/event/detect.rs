@@ -100,8 +100,8 @@ pub struct Detection {
 /// A mass against a stop whose velocity climbs from −1 to 1 m/s and turns every 0.1 s:
 ///
 /// ```
-/// use impactid::event::{DetectSettings, RigKind, detect};
-/// use impactid::record::{Channel, Excitation, Record, Role, Setting, Sweep};
+/// use impact_records::event::{DetectSettings, RigKind, detect};
+/// use impact_records::record::{Channel, Excitation, Record, Role, Setting, Sweep};
 /// use labfiles::units::Dimension;
 ///
 /// let values = (0..800).map(|i| (i % 100) as f64 / 49.5 - 1.0).collect();
@@ -269,7 +269,7 @@ fn stride_of(per_period: f64) -> usize {
 
 /// Error of a speed that is extrapolated by half a sample from an arc beside an impact, of a motion as fast as its
 /// drive, over its amplitude: what polynomials miss where a period has few samples.
-pub(crate) fn extrapolation_error(samples_per_period: f64) -> f64 {
+pub fn extrapolation_error(samples_per_period: f64) -> f64 {
     let per_period = samples_per_period / stride_of(samples_per_period) as f64;
     let width = window_samples(per_period, DetectSettings::default().window_periods);
     let count = arc_samples(width);

@@ -6,7 +6,7 @@ use super::whole;
 /// `None` outside the samples.
 ///
 /// ```
-/// use impactid::signal::interpolation::interpolate;
+/// use impact_records::signal::interpolation::interpolate;
 ///
 /// let cubes: Vec<f64> = (0..6).map(|i| f64::from(i).powi(3)).collect();
 /// assert!((interpolate(&cubes, 2.5).unwrap() - 15.625).abs() < 1e-12);

@@ -78,9 +78,9 @@ impl Bracket {
 /// the bracket then spans them.
 ///
 /// ```
-/// use impactid::event::{DetectSettings, RigKind};
-/// use impactid::motion::{BoundaryKind, ClassifySettings, Motion, brackets, observe};
-/// use impactid::record::{Excitation, Record, Setting, Sweep};
+/// use impact_records::event::{DetectSettings, RigKind};
+/// use impact_records::motion::{BoundaryKind, ClassifySettings, Motion, brackets, observe};
+/// use impact_records::record::{Excitation, Record, Setting, Sweep};
 ///
 /// let observed = |sequence: usize, frequency_hz: f64, motion: Motion| {
 ///     let record = Record {

@@ -102,7 +102,7 @@ const LEAST_PERIODS: f64 = 1.4;
 /// Fit the first free decay of the samples of one channel.
 ///
 /// ```
-/// use impactid::signal::decay;
+/// use impact_records::signal::decay;
 ///
 /// // f0 = 14 Hz, β = 0.02, released at t = 0.
 /// let natural = std::f64::consts::TAU * 14.0;

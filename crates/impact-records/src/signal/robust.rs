@@ -59,7 +59,7 @@ pub fn robust_deviation(values: &[f64]) -> Option<f64> {
 /// scale that isolated jumps do not move. A quantised signal at rest gives zero.
 ///
 /// ```
-/// use impactid::signal::robust::{median, noise_deviation};
+/// use impact_records::signal::robust::{median, noise_deviation};
 ///
 /// assert_eq!(median(&[3.0, 1.0, 2.0, 10.0]), Some(2.5));
 /// // A parabola with one jump has no noise.

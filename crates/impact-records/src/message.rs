@@ -204,8 +204,8 @@ pub fn plain_all(messages: &[impl Display]) -> String {
 /// where it is not the kind.
 ///
 /// ```
-/// use impactid::message::{Value, plain};
-/// use impactid::message_table;
+/// use impact_records::message::{Value, plain};
+/// use impact_records::message_table;
 ///
 /// #[derive(strum::IntoStaticStr)]
 /// enum Doubt {

@@ -23,7 +23,7 @@ const OF_PEAK: f64 = 0.2;
 /// within 15 ms to well above the noise; it is timed where the envelope passes a fifth of its peak.
 ///
 /// ```
-/// use impactid::signal::onsets;
+/// use impact_records::signal::onsets;
 ///
 /// // Two clicks of 3 kHz at 0.1 and 0.5 s that die away, the second much weaker.
 /// let click = |i: usize, from: usize, size: f64| match i.checked_sub(from) {

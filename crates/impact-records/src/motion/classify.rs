@@ -97,50 +97,7 @@ pub(super) fn undetermined(reason: Undetermined, evidence: Evidence) -> Classifi
     }
 }
 
-/// Classify the motion of a record from what was detected in it.
-///
-/// A contact that closes once in each of ten drive periods is the motion z = 1:
-///
-/// ```
-/// use impactid::event::{DetectSettings, RigKind, detect};
-/// use impactid::motion::{ClassifySettings, classify};
-/// use impactid::record::{Channel, Excitation, Record, Role, Setting, Sweep};
-/// use labfiles::units::Dimension;
-///
-/// let channel = |role: Role, values: Vec<f64>| Channel {
-///     role,
-///     name: role.name().into(),
-///     dimension: Dimension::Voltage,
-///     values,
-///     high_pass_hz: None,
-///     low_pass: None,
-///     threshold: (role == Role::Contact).then_some(2.5),
-/// };
-/// let phase = |i: usize| std::f64::consts::TAU * i as f64 / 200.0;
-/// let closed = |i: usize| if (20..23).contains(&(i % 200)) { 5.0 } else { 0.0 };
-/// let record = Record {
-///     id: "r1".into(),
-///     sample_rate_hz: 2000.0,
-///     channels: vec![
-///         channel(Role::Drive, (0..2000).map(|i| phase(i).cos()).collect()),
-///         channel(Role::Contact, (0..2000).map(closed).collect()),
-///     ],
-///     setting: Setting {
-///         stated_frequency_hz: Some(10.0),
-///         clearance_m: Some(1e-3),
-///         sweep: Sweep::Up,
-///         drive_amplitude: 1.0,
-///         sequence: 0,
-///         specimen: None,
-///         excitation: Excitation::Harmonic,
-///     },
-///     flags: Vec::new(),
-/// };
-/// let found = detect(&record, RigKind::Double, &DetectSettings::default());
-/// let motion = classify(&found, record.duration_s(), &ClassifySettings::default());
-/// assert_eq!(motion.motion.label(), "1");
-/// assert_eq!(motion.impacts_and_periods(), Some((1, 1)));
-/// ```
+/// Classify the motion of a record of `duration_s` from what was detected in it; the crate's example does so.
 pub fn classify(
     detection: &Detection,
     duration_s: f64,

@@ -353,10 +353,10 @@ fn amplitudes(record: &Record) -> Vec<Amplitude> {
         .collect()
 }
 
-#[cfg(test)]
 impl Observation {
-    /// A record of a motion at a drive frequency in an upward sweep at a clearance of 1 mm.
-    pub(crate) fn of(record: &str, frequency_hz: f64, motion: Motion) -> Self {
+    /// A record of a motion at a drive frequency in an upward sweep at a clearance of 1 mm, sampled at
+    /// 2 kHz for 1 s; nothing else is known.
+    pub fn of(record: &str, frequency_hz: f64, motion: Motion) -> Self {
         let setting = Setting {
             stated_frequency_hz: Some(frequency_hz),
             clearance_m: Some(1e-3),

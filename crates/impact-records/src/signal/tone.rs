@@ -30,7 +30,7 @@ pub struct Tone {
 /// `None` if the samples hold no peak or the fit does not settle.
 ///
 /// ```
-/// use impactid::signal::tone;
+/// use impact_records::signal::tone;
 ///
 /// let angle = |i: i32| std::f64::consts::TAU * 12.6 * f64::from(i) / 2000.0;
 /// let samples: Vec<f64> = (0..2000).map(|i| 0.5 + 2.0 * angle(i).cos()).collect();

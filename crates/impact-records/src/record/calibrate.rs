@@ -71,8 +71,8 @@ fn empty(id: &str, setting: &Setting) -> Record {
 /// and a channel that cannot be used is left out.
 ///
 /// ```
-/// use impactid::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
-/// use impactid::record::{Excitation, Role, Setting, Sweep};
+/// use impact_records::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
+/// use impact_records::record::{Excitation, Role, Setting, Sweep};
 ///
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("run.csv");
@@ -309,7 +309,7 @@ fn all_skipped(duration_s: f64, skip_s: f64) -> Flag {
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
 
     /// A table of two columns, as a Record whose time axis is the first.
@@ -341,7 +341,7 @@ pub(crate) mod tests {
     }
 
     /// Bounces of R = 0.8 as a logic analyser lists them: the contact is closed for 2 ms.
-    pub(crate) fn list_of_changes() -> String {
+    fn list_of_changes() -> String {
         let mut text = String::from("Time [s],Channel 0\n0.000000000,0\n");
         let mut at = 0.5;
         for k in 0..12 {

@@ -26,7 +26,7 @@ impl LocalFit {
     /// than coefficients, except for a constant). `None` for an empty range.
     ///
     /// ```
-    /// use impactid::signal::local_fit::LocalFit;
+    /// use impact_records::signal::local_fit::LocalFit;
     ///
     /// let squares: Vec<f64> = (0..10).map(|i| f64::from(i).powi(2)).collect();
     /// let fit = LocalFit::new(&squares, 2, 8, 2).unwrap();
