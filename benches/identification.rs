@@ -15,8 +15,8 @@ use impact_records::motion::{ClassifySettings, Observation, brackets, observe, s
 use impactid::identify::evidence::{Evidence, Nominal};
 use impactid::identify::run::identify;
 use impactid::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
-use impactid::synthetic::run::calibrated;
-use impactid::synthetic::{Differences, Effects, Faults, Laboratory, Plan, Truth, records};
+use simulated_rig::run::calibrated;
+use simulated_rig::{Differences, Effects, Faults, Laboratory, Plan, Truth, records};
 
 const RECORDS: usize = 846;
 

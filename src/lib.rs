@@ -15,4 +15,3 @@ pub mod explore;
 pub mod identify;
 pub mod pipeline;
 pub mod report;
-pub mod synthetic;

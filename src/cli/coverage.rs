@@ -9,7 +9,7 @@ use super::stdout::{print, print_json};
 use super::{Exit, Failure, Progress, Verbosity};
 use crate::identify::uncertainty::coverage::Score;
 use crate::pipeline::coverage::{self, CoveragePlan, MotionTally, Tallies, Tally};
-use crate::synthetic::RigSpec;
+use simulated_rig::RigSpec;
 use labfiles::output::write_bytes;
 
 /// Arguments of `impactid study coverage`.

@@ -5,7 +5,7 @@ use clap::Args;
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Progress, Verbosity};
 use crate::pipeline::pairs::{self, Instruments, PairsPlan};
-use crate::synthetic::RigSpec;
+use simulated_rig::RigSpec;
 
 /// Arguments of `impactid study pairs`.
 #[derive(Debug, Args)]

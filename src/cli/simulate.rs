@@ -8,8 +8,8 @@ use super::machine::{MachineArgs, StartArgs};
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::synthesise::{Recipe, write_campaign};
-use crate::synthetic::truth::draw_differences;
-use crate::synthetic::{Faults, RigSpec, Truth};
+use simulated_rig::truth::draw_differences;
+use simulated_rig::{Faults, RigSpec, Truth};
 use impact_oscillator::atlas::portrait::{PortraitPlan, Soft};
 use impact_oscillator::model::Setting;
 

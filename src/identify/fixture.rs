@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use crate::identify::evidence::{Evidence, Nominal};
-use crate::synthetic::run::calibrated;
-use crate::synthetic::{Effects, Faults, Laboratory, Plan, Truth, records};
+use simulated_rig::run::calibrated;
+use simulated_rig::{Effects, Faults, Laboratory, Plan, Truth, records};
 use impact_records::event::{DetectSettings, RigKind};
 use impact_records::motion::{ClassifySettings, Observation, observe};
 use impact_records::record::Record;

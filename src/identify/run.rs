@@ -56,8 +56,8 @@ use crate::identify::{decay, estimate, flight_times, residuals, results};
 /// use impactid::identify::{Method, Status};
 /// use impact_records::motion::{ClassifySettings, observe};
 /// use impact_records::record::Sweep;
-/// use impactid::synthetic::run::calibrated;
-/// use impactid::synthetic::{Effects, Faults, Laboratory, Plan, Step, Truth, records};
+/// use simulated_rig::run::calibrated;
+/// use simulated_rig::{Effects, Faults, Laboratory, Plan, Step, Truth, records};
 ///
 /// let step = |i: u32| Step {
 ///     frequency_hz: 9.0 + 0.5 * f64::from(i),

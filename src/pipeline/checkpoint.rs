@@ -82,7 +82,7 @@ mod tests {
     use super::*;
     use crate::pipeline::observe::observe_in_chunks;
     use crate::pipeline::synthesise::{Recipe, write_campaign};
-    use crate::synthetic::Truth;
+    use simulated_rig::Truth;
     use impact_records::motion::Observation;
 
     #[test]
@@ -90,8 +90,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let recipe = Recipe {
             truth: Truth::symmetric(0.9, 12.6, 0.07, 1e-3),
-            faults: crate::synthetic::Faults::default(),
-            rig: crate::synthetic::RigSpec::exact(),
+            faults: simulated_rig::Faults::default(),
+            rig: simulated_rig::RigSpec::exact(),
             records: 12,
             seed: 5,
             rig_seed: None,

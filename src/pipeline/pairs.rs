@@ -14,7 +14,7 @@ use crate::identify::fit::parameters::Coordinate;
 use crate::identify::{GAIN_ROLES, Identification};
 use crate::pipeline::coverage::{Tally, identified};
 use crate::pipeline::{PipelineError, Progress};
-use crate::synthetic::{Faults, Laboratory, Reach, RigSpec, Truth, draw};
+use simulated_rig::{Faults, Laboratory, Reach, RigSpec, Truth, draw};
 use impact_records::event::{FlightKind, RigKind};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
 use impact_records::signal::robust;

@@ -8,10 +8,10 @@ use serde::Serialize;
 use crate::pipeline::PipelineError;
 use crate::pipeline::json::write_json;
 use crate::pipeline::store::RECORDS_A_FILE;
-use crate::synthetic::acquisition::{FULL_SCALE_V, converter_step};
-use crate::synthetic::rig::{ROLES, sensitivities};
-use crate::synthetic::run::RATE_HZ;
-use crate::synthetic::{
+use simulated_rig::acquisition::{FULL_SCALE_V, converter_step};
+use simulated_rig::rig::{ROLES, sensitivities};
+use simulated_rig::run::RATE_HZ;
+use simulated_rig::{
     Effects, Faults, Laboratory, Plan, RawRecord, RigSpec, TrueImpact, Truth, blocks,
 };
 use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Stored};

@@ -101,7 +101,7 @@ fn the_report_computes_nothing() {
     let computing = [
         "impact_oscillator",
         "impact_records::event",
-        "crate::synthetic",
+        "simulated_rig",
         "identify::evidence",
         "identify::fit",
         "identify::replay",

@@ -2,7 +2,7 @@
 
 use super::Seen;
 use crate::identify::Finding;
-use crate::synthetic::{Effect, Laboratory};
+use simulated_rig::{Effect, Laboratory};
 use impact_records::record::{FlagCode, Record, Role};
 
 /// A mistake of the laboratory.

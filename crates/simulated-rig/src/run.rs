@@ -4,20 +4,20 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use crate::synthetic::acquisition::{self, Disturbance, HighPass};
-use crate::synthetic::engine::{Engine, Recorded};
-use crate::synthetic::equations::Phase4;
-use crate::synthetic::laboratory::Laboratory;
-use crate::synthetic::plan::{Plan, Step};
-use crate::synthetic::rig::{ROLES, sensitivities};
-use crate::synthetic::settled::true_motion;
-use crate::synthetic::truth::{Faults, TrueImpact, Truth, draw_corners, draw_gains};
+use crate::acquisition::{self, Disturbance, HighPass};
+use crate::engine::{Engine, Recorded};
+use crate::equations::Phase4;
+use crate::laboratory::Laboratory;
+use crate::plan::{Plan, Step};
+use crate::rig::{ROLES, sensitivities};
+use crate::settled::true_motion;
+use crate::truth::{Faults, TrueImpact, Truth, draw_corners, draw_gains};
 use impact_oscillator::model::params::ModelError;
 use impact_records::motion::Motion;
 use impact_records::record::{self, Channel, Record, Role};
 use impact_records::signal::whole;
 
-pub use crate::synthetic::acquisition::RATE_HZ;
+pub use crate::acquisition::RATE_HZ;
 
 /// Samples of a record.
 pub const SAMPLES: usize = 2000;

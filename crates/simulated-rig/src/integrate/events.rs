@@ -1,7 +1,7 @@
 //! What ends a smooth piece of motion, and where.
 
 use super::{Integrator, SHORTEST, Touch};
-use crate::synthetic::equations::{ContactLaw, Phase4};
+use crate::equations::{ContactLaw, Phase4};
 
 /// What ends a smooth piece of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -337,7 +337,7 @@ impl Integrator {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::equations::Compliance;
+    use crate::equations::Compliance;
 
     /// Turning points of mass x from displacement `a` at rest: time and displacement.
     fn turning_points(equations: Equations, a: f64, count: usize) -> Vec<(f64, f64)> {

@@ -251,7 +251,7 @@ impl Switch {
 /// Which effects a simulated rig has; [`RigSpec::exact`] has none.
 ///
 /// ```
-/// use impactid::synthetic::RigSpec;
+/// use simulated_rig::RigSpec;
 /// let rig: RigSpec = "contact=0.3,friction".parse().unwrap();
 /// assert_eq!(rig.to_string(), "contact=0.3,friction=0.005");
 /// assert!("fricton".parse::<RigSpec>().is_err());

@@ -1,6 +1,6 @@
 //! A recorded motion: steps with the motion's derivatives at both ends, and its impacts.
 
-use crate::synthetic::equations::Phase4;
+use crate::equations::Phase4;
 
 /// One impact: dimensionless time since the recording began and speeds.
 #[derive(Debug, Clone, Copy, PartialEq)]

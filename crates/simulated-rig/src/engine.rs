@@ -231,9 +231,9 @@ impl Recorded {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::effects::{Effects, Harmonic};
-    use crate::synthetic::plan::Plan;
-    use crate::synthetic::truth::{Differences, Faults, Truth};
+    use crate::effects::{Effects, Harmonic};
+    use crate::plan::Plan;
+    use crate::truth::{Differences, Faults, Truth};
     use impact_records::record::Sweep;
 
     fn step(eta: f64, rho: f64) -> Step {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::synthetic::truth::Truth;
+use crate::truth::Truth;
 use impact_oscillator::model::boundary::eta_s2;
 use impact_oscillator::model::params::Machine;
 use impact_records::record::Sweep;

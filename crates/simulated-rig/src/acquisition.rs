@@ -4,8 +4,8 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::synthetic::effects::Effects;
-use crate::synthetic::truth::{Faults, TrueImpact};
+use crate::effects::Effects;
+use crate::truth::{Faults, TrueImpact};
 
 /// Samples per second, Hz.
 pub const RATE_HZ: f64 = 2000.0;

@@ -1,7 +1,7 @@
 //! The virtual rig's channels: what each watches, and what a volt of it stands for.
 
-use crate::synthetic::acquisition;
-use crate::synthetic::truth::Truth;
+use crate::acquisition;
+use crate::truth::Truth;
 use impact_records::record::Role;
 use labfiles::units::Dimension;
 
