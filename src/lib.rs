@@ -10,8 +10,8 @@
 pub mod campaign;
 pub mod cli;
 pub mod compare;
-pub mod difference;
 pub mod explore;
 pub mod identify;
 pub mod pipeline;
+pub mod replay;
 pub mod report;

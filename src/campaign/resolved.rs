@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::sources::Sources;
 use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
-use crate::difference::Common;
+use crate::compare::Common;
 use crate::identify::fit::effect::EffectKind;
 use crate::identify::uncertainty::IntervalMethod;
 use impact_records::event::DetectSettings;

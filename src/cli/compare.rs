@@ -9,7 +9,7 @@ use super::progress::Progress;
 use super::report_args::quoted;
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity, interrupt};
-use crate::difference::{self, Campaign, Comparison};
+use crate::compare::{self, Campaign, Comparison};
 use crate::pipeline::campaigns;
 use crate::pipeline::{self, Observed};
 use crate::report::catalog::Catalog;
@@ -90,7 +90,7 @@ impl Compare {
             .map(|p| p.display().to_string())
             .collect();
         campaigns::tell_apart(&mut all, &places);
-        let comparison = difference::compare(&all).map_err(pipeline::PipelineError::from)?;
+        let comparison = compare::compare(&all).map_err(pipeline::PipelineError::from)?;
         let content = CampaignsContent {
             title: self.title.clone(),
             comparison,

@@ -9,8 +9,8 @@ use super::stdout::{print, print_json};
 use super::{Exit, Failure, Progress, Verbosity};
 use crate::identify::uncertainty::coverage::Score;
 use crate::pipeline::coverage::{self, CoveragePlan, MotionTally, Tallies, Tally};
-use simulated_rig::RigSpec;
 use labfiles::output::write_bytes;
+use simulated_rig::RigSpec;
 
 /// Arguments of `impactid study coverage`.
 #[derive(Debug, Args)]

@@ -103,7 +103,7 @@ fn first_of_specimen<'a>(finding: &Finding, found: &'a Identification) -> Option
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compare::fixture;
+    use crate::replay::fixture;
 
     #[test]
     fn a_specimen_that_does_not_fit_shows_its_first_finding() {

@@ -8,10 +8,10 @@ use super::machine::{MachineArgs, StartArgs};
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::synthesise::{Recipe, write_campaign};
-use simulated_rig::truth::draw_differences;
-use simulated_rig::{Faults, RigSpec, Truth};
 use impact_oscillator::atlas::portrait::{PortraitPlan, Soft};
 use impact_oscillator::model::Setting;
+use simulated_rig::truth::draw_differences;
+use simulated_rig::{Faults, RigSpec, Truth};
 
 /// Arguments of `impactid simulate`.
 #[derive(Debug, Args)]

@@ -1,119 +1,33 @@
-//! Simulated against measured: the fitted model beside a campaign's records, as plain typed data.
+//! Differences between campaigns: what changed of R, f0, β and `x_st`, with intervals in which the errors
+//! that campaigns have in common cancel instead of adding.
 //!
-//! [`compare`] simulates the regions of motion and the boundaries with their 95 % bands in the (η, ρ)
-//! plane, replays chosen records, and collects what each method of the identification used: resonance
-//! curves, speeds at impacts, free decays and residuals. Nothing is identified here, and nothing drawn.
+//! Each joint fit of campaign k is, at its optimum, a Gaussian of its coordinates: parameters and
+//! nuisances (gains, corners, delays, errors of clearances, asymmetries, effects) with the information
+//! `A_k` = `Λ_k` + `P_k`, the likelihood's and the priors'. A nuisance that campaigns share is one unknown with
+//! one prior, so that all of them together have the information
+//!
+//! A = `Σ_k` `Λ_k` + P                                                                           (21)
+//!
+//! with one row for each nuisance that is shared; shared clearances enter by their logarithms (module
+//! `chart`). Its inverse holds the correlation between the campaigns'
+//! parameters, from which the differences follow. What the intervals of each campaign allow for beyond
+//! its covariance (scatter between groups, first order of the effects, disagreement of methods) is taken
+//! as independent: that is wider, never narrower.
 
-mod decays;
-mod evidence;
-mod input;
-mod left_out;
-mod plane;
-mod records;
-mod replays;
-mod single;
-mod traces;
+mod campaign;
+mod chart;
+mod common;
+mod comparison;
+mod decision;
+mod message;
+mod share;
+mod stack;
 
-pub use decays::FreeDecay;
-pub use evidence::{
-    Correlation, ImpactPoint, ImpactScatter, ResidualPoint, ResidualSet, ResonanceCurve,
-    ResonancePoint,
-};
-pub use input::Input;
-pub use left_out::{Unusable, UnusableReason};
-pub use plane::{BoundaryCurve, RegionMap};
-pub use records::{BracketRow, Overview, RecordRow};
-pub use replays::Comparison;
-pub use single::{Beside, WhyNot, beside};
-pub use traces::{Signal, Trace};
-
-/// What the figures of the theory draw.
-pub(crate) use impact_oscillator::atlas::{
-    Curve, SweepPoint,
-    portrait::{Portrait, Sample},
-    sweep::Impactless,
-};
-
-/// The fitted model and the measurement, side by side. All quantities are SI; every list may be empty.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Compared {
-    /// Counts and ranges of what was measured.
-    pub overview: Overview,
-    /// One row per record; of very many every second, third …
-    pub records: Vec<RecordRow>,
-    /// Measured brackets of the boundaries.
-    pub brackets: Vec<BracketRow>,
-    /// Simulated boundaries in the (η, ρ) plane.
-    pub curves: Vec<BoundaryCurve>,
-    /// Simulated regions of motion in the (η, ρ) plane.
-    pub region_map: Option<RegionMap>,
-    /// Records beside their simulation.
-    pub comparisons: Vec<Comparison>,
-    /// Resonance curves without impacts.
-    pub resonance: Vec<ResonanceCurve>,
-    /// Speeds after over before impact, one entry per specimen.
-    pub impacts: Vec<ImpactScatter>,
-    /// Free decays with their fits.
-    pub free_decays: Vec<FreeDecay>,
-    /// Residuals of each method.
-    pub residuals: Vec<ResidualSet>,
-    /// Correlation of the parameters that were fitted together.
-    pub correlation: Option<Correlation>,
-    /// Records that no method could use, by reason.
-    pub unusable: Vec<Unusable>,
-}
-
-/// Compare a campaign with its fitted model.
-pub fn compare(input: &Input<'_>) -> Compared {
-    let chosen = replays::chosen_records(input);
-    // the map's cells keep all threads busy, what rests on the blocks of the identification few
-    let ((region_map, curves, comparisons), (residuals, impacts)) = rayon::join(
-        || {
-            (
-                plane::region_map(input),
-                plane::curves(input),
-                replays::comparisons(input, &chosen),
-            )
-        },
-        || (evidence::residuals(input), evidence::impacts(input)),
-    );
-    Compared {
-        overview: records::overview(input),
-        records: records::records(input, &chosen),
-        brackets: records::brackets(input),
-        curves,
-        region_map,
-        comparisons,
-        resonance: evidence::resonance(input),
-        impacts,
-        free_decays: decays::free_decays(input),
-        residuals,
-        correlation: evidence::correlation(input),
-        unusable: left_out::unusable(input.observations),
-    }
-}
-
-/// Where a campaign's records, brackets and fitted boundaries are in the (η, ρ) plane.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Placed {
-    /// One row per record.
-    pub records: Vec<RecordRow>,
-    /// Measured brackets of the boundaries.
-    pub brackets: Vec<BracketRow>,
-    /// Simulated boundaries with their 95 % bands.
-    pub curves: Vec<BoundaryCurve>,
-}
-
-/// Place every record, bracket and boundary; nothing is replayed.
-pub fn placed(input: &Input<'_>) -> Placed {
-    Placed {
-        records: records::all_records(input),
-        brackets: records::brackets(input),
-        curves: plane::curves(input),
-    }
-}
-
-#[cfg(test)]
-pub(crate) mod fixture;
 #[cfg(test)]
 mod tests;
+
+pub use campaign::Campaign;
+pub use common::Common;
+pub use comparison::{Comparison, ComparisonError, Difference, EqualityTest, Summary, compare};
+pub use message::{NotShared, Outcome, Remark, WhyShared, kinds};
+pub use share::{AcrossCampaigns, SeparateNuisance, SharedNuisance};

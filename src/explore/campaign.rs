@@ -7,7 +7,6 @@ use serde_json::{Value, json};
 use super::ExploreError;
 use super::state::{Cursor, Panel, RigScale, State, Window};
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::compare::{self, Input, Placed};
 use crate::identify::evidence::Blocks;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::{Estimate, Identification};
@@ -16,6 +15,7 @@ use crate::pipeline::observe::read_one;
 use crate::pipeline::theory::plan::Law;
 use crate::pipeline::watch::Live;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, inputs, layout, store};
+use crate::replay::{self, Input, Placed};
 use crate::report::style::MotionStyle;
 use impact_records::event::RigKind;
 use impact_records::motion::Observation;
@@ -99,7 +99,7 @@ impl Campaign {
             blocks,
             placed: Placed::default(),
         };
-        campaign.placed = campaign.with_input(compare::placed);
+        campaign.placed = campaign.with_input(replay::placed);
         campaign
     }
 

@@ -8,7 +8,6 @@ use super::answer::Stop;
 use super::campaign::Campaign;
 use super::jobs::Job;
 use super::{ExploreError, State};
-use crate::compare::{Beside, Signal, beside};
 use crate::identify::Method;
 use crate::identify::evidence::boundary::predicted_hz;
 use crate::identify::fit::Block;
@@ -16,6 +15,7 @@ use crate::identify::fit::parameters::Parameters;
 use crate::identify::joint;
 use crate::identify::plan::propose;
 use crate::pipeline::identify::evidence;
+use crate::replay::{Beside, Signal, beside};
 use crate::report::style::MotionStyle;
 use impact_records::motion::{BoundaryKind, Motion, Observation};
 

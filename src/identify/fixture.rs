@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 
 use crate::identify::evidence::{Evidence, Nominal};
-use simulated_rig::run::calibrated;
-use simulated_rig::{Effects, Faults, Laboratory, Plan, Truth, records};
 use impact_records::event::{DetectSettings, RigKind};
 use impact_records::motion::{ClassifySettings, Observation, observe};
 use impact_records::record::Record;
+use simulated_rig::run::calibrated;
+use simulated_rig::{Effects, Faults, Laboratory, Plan, Truth, records};
 
 /// Records of a rig without effects: two equal masses with R, f0 in Hz, β = 0.06 and `x_st` = 1 mm.
 pub(super) fn recorded((restitution, f0): (f64, f64), count: usize, seed: u64) -> Vec<Record> {

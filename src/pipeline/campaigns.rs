@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::difference::{Campaign, Comparison, Difference};
+use crate::compare::{Campaign, Comparison, Difference};
 use crate::identify::{Identification, JointFit, ParameterSet, VerdictKind};
 use crate::pipeline::identify::{FILE, IdentificationFile, versions};
 use crate::pipeline::report::ReportFile;
@@ -124,7 +124,7 @@ pub fn tell_apart(campaigns: &mut [Campaign], places: &[String]) {
 /// versions.
 #[derive(Serialize)]
 struct Written<'a> {
-    outcome: crate::difference::Outcome,
+    outcome: crate::compare::Outcome,
     p_value: Option<f64>,
     #[serde(flatten)]
     comparison: &'a Comparison,

@@ -82,8 +82,8 @@ mod tests {
     use super::*;
     use crate::pipeline::observe::observe_in_chunks;
     use crate::pipeline::synthesise::{Recipe, write_campaign};
-    use simulated_rig::Truth;
     use impact_records::motion::Observation;
+    use simulated_rig::Truth;
 
     #[test]
     fn a_resumed_observation_is_that_of_an_uninterrupted_run() {

@@ -9,15 +9,15 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::difference::{self, Campaign, Common, Comparison, Outcome};
+use crate::compare::{self, Campaign, Common, Comparison, Outcome};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::{GAIN_ROLES, Identification};
 use crate::pipeline::coverage::{Tally, identified};
 use crate::pipeline::{PipelineError, Progress};
-use simulated_rig::{Faults, Laboratory, Reach, RigSpec, Truth, draw};
 use impact_records::event::{FlightKind, RigKind};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
 use impact_records::signal::robust;
+use simulated_rig::{Faults, Laboratory, Reach, RigSpec, Truth, draw};
 
 /// What a study of pairs simulates.
 #[derive(Debug, Clone)]
@@ -167,7 +167,7 @@ fn pair(plan: &PairsPlan, index: u64) -> Result<Pair, PipelineError> {
     let [before, after] = campaigns;
     Ok(Pair {
         changed,
-        comparison: difference::compare(&[before?, after?]).ok(),
+        comparison: compare::compare(&[before?, after?]).ok(),
         truths: [first.truth, second.truth],
     })
 }

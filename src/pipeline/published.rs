@@ -4,11 +4,11 @@ use std::path::Path;
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::written::Published;
-use crate::compare::Compared;
 use crate::identify::Identification;
 use crate::identify::published::{PublishedSpeed, Where, identify, predicted};
 use crate::pipeline::identify::{IdentificationFile, provenance};
 use crate::pipeline::{PipelineError, report, store};
+use crate::replay::Compared;
 use crate::report::{CampaignFacts, DataTable, ReportContent, Subject};
 use crate::report::{Phrase, Text};
 use labfiles::ReadError;

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use crate::campaign::resolved::{Report as StatedOptions, ResolvedCampaign};
 use crate::campaign::written::Language;
-use crate::compare::{self, Input};
 use crate::identify::Provenance;
 use crate::pipeline::identify::{IdentificationFile, settings};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::{Observed, PipelineError};
+use crate::replay::{self, Input};
 use crate::report::Phrase;
 use crate::report::catalog::Catalog;
 use crate::report::{
@@ -126,7 +126,7 @@ pub fn content(
         let entry = aligned.records.get(index)?;
         Some(read_one(&aligned, entry))
     };
-    let compared = compare::compare(&Input {
+    let compared = replay::replay(&Input {
         rig: campaign.machine,
         observations: &observed.observations,
         brackets: &observed.brackets,

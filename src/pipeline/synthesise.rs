@@ -8,14 +8,14 @@ use serde::Serialize;
 use crate::pipeline::PipelineError;
 use crate::pipeline::json::write_json;
 use crate::pipeline::store::RECORDS_A_FILE;
+use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Stored};
+use labfiles::output::write_bytes;
 use simulated_rig::acquisition::{FULL_SCALE_V, converter_step};
 use simulated_rig::rig::{ROLES, sensitivities};
 use simulated_rig::run::RATE_HZ;
 use simulated_rig::{
     Effects, Faults, Laboratory, Plan, RawRecord, RigSpec, TrueImpact, Truth, blocks,
 };
-use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Stored};
-use labfiles::output::write_bytes;
 
 /// What a synthetic campaign is made of.
 #[derive(Debug, Clone, Serialize)]

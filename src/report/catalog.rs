@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
 use super::phrase::Phrase;
-use crate::difference;
+use crate::compare;
 use crate::identify;
 use impact_records::message::{Language, Message};
 
@@ -157,7 +157,7 @@ impl Catalog {
 /// The English template of every message, by its key.
 fn messages() -> BTreeMap<String, &'static str> {
     let identified = identify::messages::kinds();
-    let each = identified.into_iter().chain(difference::kinds());
+    let each = identified.into_iter().chain(compare::kinds());
     each.map(|m| (m.key(), m.template(Language::English)))
         .collect()
 }

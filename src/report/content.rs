@@ -1,9 +1,9 @@
 //! What a report shows: the campaign, the answer, and the comparison with the model, as plain data.
 
-use crate::compare::Compared;
-use crate::difference::{Common, Comparison};
+use crate::compare::{Common, Comparison};
 use crate::identify::plan::Proposal;
 use crate::identify::{Identification, Provenance};
+use crate::replay::Compared;
 use crate::report::phrase::{Phrase, Text};
 use impact_records::record::calibrate::ChannelSetup;
 

@@ -9,7 +9,7 @@
 //! use impact_records::record::Sweep;
 //! use simulated_rig::run::calibrated;
 //! use simulated_rig::{Effects, Faults, Laboratory, Plan, Step, Truth, records};
-//! 
+//!
 //! let step = |i: u32| Step {
 //!     frequency_hz: 9.0 + 0.5 * f64::from(i),
 //!     clearance_m: 2e-3,

@@ -2,8 +2,8 @@
 
 use super::Seen;
 use crate::identify::Finding;
-use simulated_rig::{Effect, Laboratory};
 use impact_records::record::{FlagCode, Record, Role};
+use simulated_rig::{Effect, Laboratory};
 
 /// A mistake of the laboratory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr, strum::VariantArray)]

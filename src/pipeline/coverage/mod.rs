@@ -15,13 +15,13 @@ use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
 use crate::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
 use crate::identify::{Estimator, Identification, Method, boundary_plan};
 use crate::pipeline::{PipelineError, Progress};
-use simulated_rig::run::calibrated;
-use simulated_rig::{Laboratory, Reach, RigSpec, TrueMass, Truth, draw, records};
 use impact_records::event::{DetectSettings, RigKind};
 use impact_records::motion::{
     Bracket, ClassifySettings, Motion, Observation, brackets, observe, scale_drives,
 };
 use impact_records::record::{FlagCode, Record};
+use simulated_rig::run::calibrated;
+use simulated_rig::{Laboratory, Reach, RigSpec, TrueMass, Truth, draw, records};
 
 mod mistake;
 mod tallies;

@@ -3,8 +3,8 @@
 use super::StudyContext;
 use super::plan::BasinPlan;
 use super::table::Table;
-use crate::compare::RegionMap;
 use crate::pipeline::PipelineError;
+use crate::replay::RegionMap;
 use crate::report::theory::basins::draw;
 use impact_oscillator::atlas::basins::{Basins, basin_rows};
 use impact_oscillator::atlas::map::even;

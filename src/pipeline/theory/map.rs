@@ -3,8 +3,8 @@
 use super::StudyContext;
 use super::plan::MapPlan;
 use super::table::Table;
-use crate::compare::RegionMap;
 use crate::pipeline::PipelineError;
+use crate::replay::RegionMap;
 use crate::report::theory::regions as figure;
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::{Machine, MapGrid, SettledMotion, region_map};

@@ -5,7 +5,7 @@ use super::layout_phrases;
 use super::model::{Answer, Block, Document, Front, Rich, Section};
 use super::sections::{paragraph, section};
 use super::tables::{self, p_equals};
-use crate::difference::{Comparison, Difference, EqualityTest, Outcome};
+use crate::compare::{Comparison, Difference, EqualityTest, Outcome};
 use crate::report::content::CampaignsContent;
 use crate::report::figures::Figure;
 use crate::report::locale::Locale;

@@ -1,7 +1,7 @@
 //! Captions, and the figures of the methods' section in their order.
 
-use crate::compare::Comparison;
 use crate::identify::{Method, MethodResult};
+use crate::replay::ReplayedRecord;
 use crate::report::content::ReportContent;
 use crate::report::figures::{decays, numbered};
 use crate::report::locale::Locale;
@@ -26,7 +26,7 @@ pub(super) fn method_figures(content: &ReportContent, locale: Locale<'_>) -> Vec
 }
 
 /// The caption of a comparison, with markup.
-pub(super) fn comparison(comparison: &Comparison, locale: Locale<'_>) -> String {
+pub(super) fn comparison(comparison: &ReplayedRecord, locale: Locale<'_>) -> String {
     let letter = comparison.letter.to_string();
     let mut text = locale.translate_with(Phrase::CaptionPoint, &[("letter", &letter)]);
     let label = locale.motion(&comparison.motion);

@@ -1,7 +1,7 @@
 //! The measurement on the first page: labels and values.
 
 use super::model::Rich;
-use crate::compare::Overview;
+use crate::replay::Overview;
 use crate::report::content::{CampaignFacts, NominalValue, ReportContent, Subject};
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;

@@ -11,7 +11,7 @@ use super::marks;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::plane::same;
-use crate::compare::BracketRow;
+use crate::replay::BracketRow;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
 use impact_records::motion::BoundaryKind;

@@ -9,7 +9,7 @@ use super::look;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::units::print_unit;
-use crate::compare::{FreeDecay, Signal};
+use crate::replay::{FreeDecay, Signal};
 use crate::report::locale::Locale;
 use crate::report::parameters::decimals_for;
 use crate::report::phrase::{Phrase, Text};

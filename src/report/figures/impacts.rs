@@ -9,7 +9,7 @@ use super::legend::{self, Key, Sign};
 use super::look;
 use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::units::{PrintUnit, print_unit};
-use crate::compare::{ImpactPoint, ImpactScatter};
+use crate::replay::{ImpactPoint, ImpactScatter};
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
 use impact_records::signal::robust::range;

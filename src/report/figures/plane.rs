@@ -1,9 +1,9 @@
 //! The plane of the map: (η, ρ) where f0 and `x_st` are known, else frequency and clearance.
 
 use super::axis::Axis;
-use crate::compare::{BracketRow, RecordRow};
 use crate::identify::Estimate;
 use crate::identify::plan::Proposal;
+use crate::replay::{BracketRow, RecordRow};
 use crate::report::content::ReportContent;
 use crate::report::phrase::Phrase;
 use impact_records::motion::Motion;

@@ -9,7 +9,7 @@ use super::look;
 use super::marks;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
-use crate::compare::{ResidualPoint, ResidualSet};
+use crate::replay::{ResidualPoint, ResidualSet};
 use crate::report::locale::Locale;
 use crate::report::parameters::NORMAL_95;
 use crate::report::phrase::{Phrase, Text};

@@ -10,7 +10,7 @@ use super::look;
 use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::path::Rect;
 use super::units::{PrintUnit, print_unit};
-use crate::compare::{ResonanceCurve, ResonancePoint};
+use crate::replay::{ResonanceCurve, ResonancePoint};
 use crate::report::locale::Locale;
 use crate::report::phrase::{Phrase, role_text};
 

@@ -9,7 +9,7 @@ use super::legend::{self, Key, Sign};
 use super::look;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
-use crate::difference::{Comparison, Difference};
+use crate::compare::{Comparison, Difference};
 use crate::identify::ParameterSet;
 use crate::report::locale::Locale;
 use crate::report::parameters::{PARAMETERS, ParameterLook, interval95, short};

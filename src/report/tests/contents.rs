@@ -1,16 +1,16 @@
-//! Contents of all kinds of campaign: identified and compared by [`crate::compare::fixture`], with
+//! Contents of all kinds of campaign: identified and compared by [`crate::replay::fixture`], with
 //! what a campaign states about itself.
 
 use std::sync::OnceLock;
 
-use crate::compare::fixture::{self, Identified};
-use crate::compare::{ImpactScatter, RecordRow};
-use crate::difference::{
+use crate::compare::{
     Comparison, Difference, EqualityTest, NotShared, Remark, SeparateNuisance, SharedNuisance,
     Summary, WhyShared,
 };
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::{Provenance, VerdictKind};
+use crate::replay::fixture::{self, Identified};
+use crate::replay::{ImpactScatter, RecordRow};
 use crate::report::{
     CampaignFacts, CampaignsContent, NominalValue, Phrase, ReportContent, Subject,
 };
@@ -125,7 +125,7 @@ fn cart() -> ReportContent {
         subject: Subject::OneMass,
         ..CampaignFacts::default()
     };
-    content.compared = crate::compare::Compared {
+    content.compared = crate::replay::Compared {
         impacts: whole
             .impacts
             .iter()

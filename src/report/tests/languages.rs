@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use super::contents::{kind, kinds};
-use crate::compare::{BracketRow, Correlation, Unusable, UnusableReason};
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::uncertainty::budget::{
     Budget, Combined, Contribution, Evaluation, Row, Source,
 };
 use crate::identify::{Finding, Identification, Method, Reason};
+use crate::replay::{BracketRow, Correlation, Unusable, UnusableReason};
 use crate::report::{
     DataTable, NominalValue, Phrase, Report, ReportContent, ReportOptions, Subject, catalog,
     document,
@@ -31,7 +31,7 @@ fn marks_for_phrases() -> catalog::Catalog {
     }
     text.push_str("\n[findings]\n");
     let all = crate::identify::messages::kinds().into_iter();
-    let all = all.chain(crate::difference::kinds());
+    let all = all.chain(crate::compare::kinds());
     for (i, message) in all.enumerate() {
         let names: String = message
             .values()

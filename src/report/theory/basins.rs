@@ -2,7 +2,7 @@
 
 use super::ENGLISH;
 use super::keys::{sheet, tint_keys};
-use crate::compare::RegionMap;
+use crate::replay::RegionMap;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::figure::Figure;
 use crate::report::figures::look;

@@ -1,7 +1,7 @@
 //! The keys of the theory's figures.
 
 use super::ENGLISH;
-use crate::compare::RegionMap;
+use crate::replay::RegionMap;
 use crate::report::figures::canvas::Canvas;
 use crate::report::figures::legend::{self, Key, Sign};
 use crate::report::figures::look;

@@ -2,7 +2,6 @@
 
 use super::ENGLISH;
 use super::keys::sheet;
-use crate::compare::{Portrait, Sample};
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Canvas, Stroke};
 use crate::report::figures::dots::{self, DotLook, Dots};
@@ -12,6 +11,7 @@ use crate::report::figures::look;
 use crate::report::figures::marks::mix;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
+use impact_oscillator::atlas::portrait::{Portrait, Sample};
 use impact_records::signal::robust::range;
 
 /// Room left of the panels, points.

@@ -3,7 +3,7 @@
 
 use super::ENGLISH;
 use super::keys::sheet;
-use crate::compare::{Curve, RegionMap};
+use crate::replay::RegionMap;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Canvas, Stroke};
 use crate::report::figures::figure::Figure;
@@ -13,6 +13,7 @@ use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::regions::Regions;
+use impact_oscillator::atlas::Curve;
 
 /// Room left of the panel, points.
 const LEFT: f64 = 34.0;

@@ -3,7 +3,6 @@
 
 use super::ENGLISH;
 use super::keys::sheet;
-use crate::compare::{Impactless, SweepPoint};
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Canvas, Colour, Stroke};
 use crate::report::figures::dots::{self, DotLook, Dots};
@@ -12,6 +11,8 @@ use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::look;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
+use impact_oscillator::atlas::SweepPoint;
+use impact_oscillator::atlas::sweep::Impactless;
 use impact_records::signal::robust::range;
 
 /// Room left of the panels, points.

@@ -1,7 +1,7 @@
 //! The table of measured brackets.
 
 use super::{Column, arrow, table};
-use crate::compare::BracketRow;
+use crate::replay::BracketRow;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::figures::boundaries::symbol;

@@ -2,7 +2,7 @@
 
 use super::estimates::{LEAST_P, estimate_cells, p_value};
 use super::{Column, table};
-use crate::difference::{AcrossCampaigns, Comparison, Difference};
+use crate::compare::{AcrossCampaigns, Comparison, Difference};
 use crate::identify::fit::parameters::Coordinate;
 use crate::report::document::model::{Rich, Table};
 use crate::report::document::verdict::headline;

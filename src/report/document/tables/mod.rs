@@ -13,8 +13,8 @@ pub(super) use campaigns::{campaigns, differences, p_equals, separate, shared};
 pub(super) use estimates::{agreement, methods, specimen_methods, specimens};
 pub(super) use records::records;
 
-use crate::compare::{Unusable, UnusableReason};
 use crate::identify::Item;
+use crate::replay::{Unusable, UnusableReason};
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Align, Rich, Table};
 use crate::report::locale::Locale;

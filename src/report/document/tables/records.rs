@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{Column, arrow, table};
-use crate::compare::RecordRow;
+use crate::replay::RecordRow;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::figures::fonts::{self, Face};

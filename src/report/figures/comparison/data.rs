@@ -1,16 +1,16 @@
 //! A comparison's name and its data as CSV.
 
-use crate::compare::{Comparison, Signal, Trace};
+use crate::replay::{ReplayedRecord, Signal, Trace};
 use crate::report::figures::csv::Csv;
 
 /// Name of a comparison's figure.
-pub(crate) fn name(comparison: &Comparison) -> String {
+pub(crate) fn name(comparison: &ReplayedRecord) -> String {
     format!("comparison_{}", comparison.letter)
 }
 
 /// All traces as CSV: a row a time, a column a trace with its SI unit. Traces on other times than
 /// the first have rows of their own below.
-pub(super) fn csv(comparison: &Comparison) -> String {
+pub(super) fn csv(comparison: &ReplayedRecord) -> String {
     let traces: Vec<(String, &Signal)> = comparison.traces.iter().flat_map(columns).collect();
     let mut heads = vec!["time_s"];
     heads.extend(traces.iter().map(|(head, _)| head.as_str()));

@@ -6,7 +6,7 @@ mod rows;
 
 pub(crate) use data::name;
 
-use crate::compare::{Comparison, Signal};
+use crate::replay::{ReplayedRecord, Signal};
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
 use crate::report::figures::figure::Figure;
@@ -44,7 +44,7 @@ const BOTTOM: f64 = 22.0;
 const BACK_WIDTH: f64 = 1.7;
 
 /// Draws one comparison; `None` if it has no trace at all.
-pub(crate) fn draw<'a>(comparison: &'a Comparison, locale: Locale<'a>) -> Option<Figure> {
+pub(crate) fn draw<'a>(comparison: &'a ReplayedRecord, locale: Locale<'a>) -> Option<Figure> {
     let rows = rows(comparison);
     let portraits = portraits::portraits(comparison);
     if rows.is_empty() {
@@ -75,7 +75,7 @@ pub(crate) fn draw<'a>(comparison: &'a Comparison, locale: Locale<'a>) -> Option
 }
 
 /// Time axis in drive periods from the first whole period.
-fn time_axis(comparison: &Comparison, rows: &[Row<'_>]) -> TimeAxis {
+fn time_axis(comparison: &ReplayedRecord, rows: &[Row<'_>]) -> TimeAxis {
     let signals = rows.iter().flat_map(|r| &r.traces).flat_map(|(t, _)| {
         let others = t.simulated.iter().chain(&t.residual);
         std::iter::once(&t.measured).chain(others)
@@ -118,7 +118,7 @@ enum Side {
 }
 
 struct Sheet<'a> {
-    comparison: &'a Comparison,
+    comparison: &'a ReplayedRecord,
     locale: Locale<'a>,
     canvas: Canvas,
     time: TimeAxis,

@@ -1,7 +1,7 @@
 //! The phase portraits of a comparison.
 
 use super::{BACK_WIDTH, PORTRAIT_LEFT, PORTRAIT_WIDTH, Sheet, TOP};
-use crate::compare::{Comparison, Signal, Trace};
+use crate::replay::{ReplayedRecord, Signal, Trace};
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Stroke, TextLook};
 use crate::report::figures::panel::{Panel, Sides};
@@ -21,7 +21,7 @@ pub(super) struct Portrait {
 }
 
 /// The portraits of the masses whose displacement and velocity are both known.
-pub(super) fn portraits(comparison: &Comparison) -> Vec<Portrait> {
+pub(super) fn portraits(comparison: &ReplayedRecord) -> Vec<Portrait> {
     let trace = |role: Role| comparison.traces.iter().find(|t| t.role == role);
     let points = |d: &Signal, v: &Signal| -> Vec<[f64; 2]> {
         let pairs = d.values.iter().zip(&v.values);

@@ -1,6 +1,6 @@
 //! Which channels of a comparison share a row of panels, and in which unit.
 
-use crate::compare::{Comparison, Signal, Trace};
+use crate::replay::{ReplayedRecord, Signal, Trace};
 use crate::report::figures::canvas::Colour;
 use crate::report::figures::look;
 use crate::report::figures::units::{PrintUnit, print_unit};
@@ -22,7 +22,7 @@ pub(super) struct Row<'a> {
 }
 
 /// The rows of a comparison, those with anything to show; residuals last.
-pub(super) fn rows(comparison: &Comparison) -> Vec<Row<'_>> {
+pub(super) fn rows(comparison: &ReplayedRecord) -> Vec<Row<'_>> {
     let pairs = [
         ([Role::DisplacementX, Role::DisplacementY], None, 38.0),
         ([Role::VelocityX, Role::VelocityY], None, 38.0),
@@ -40,7 +40,7 @@ pub(super) fn rows(comparison: &Comparison) -> Vec<Row<'_>> {
 }
 
 fn row<'a>(
-    comparison: &'a Comparison,
+    comparison: &'a ReplayedRecord,
     roles: &[Role; 2],
     name: Option<Phrase>,
     height: f64,
@@ -72,7 +72,7 @@ fn row<'a>(
 }
 
 /// The residual of the best channel that has one: velocity first.
-fn residual_row(comparison: &Comparison) -> Option<Row<'_>> {
+fn residual_row(comparison: &ReplayedRecord) -> Option<Row<'_>> {
     let families = [
         [Role::VelocityX, Role::VelocityY],
         [Role::DisplacementX, Role::DisplacementY],
@@ -99,7 +99,7 @@ fn residual_row(comparison: &Comparison) -> Option<Row<'_>> {
 }
 
 fn pick<'a>(
-    comparison: &'a Comparison,
+    comparison: &'a ReplayedRecord,
     roles: &[Role; 2],
     wanted: impl Fn(&Trace) -> bool,
 ) -> Vec<(&'a Trace, Colour)> {

@@ -1,6 +1,6 @@
 //! The map's data: the records' texts for hovering, and all layers as CSV.
 
-use crate::compare::{Compared, RecordRow, RegionMap};
+use crate::replay::{Compared, RecordRow, RegionMap};
 use crate::report::figures::boundaries;
 use crate::report::figures::csv::Csv;
 use crate::report::locale::Locale;

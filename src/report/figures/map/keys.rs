@@ -1,6 +1,6 @@
 //! The map's keys.
 
-use crate::compare::Compared;
+use crate::replay::Compared;
 use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::plane::Plane;
 use crate::report::figures::{boundaries, look, marks};

@@ -2,7 +2,7 @@
 //! units.
 
 use super::{Map, STRIP_HALF, STRIP_STEP};
-use crate::compare::BoundaryCurve;
+use crate::replay::BoundaryCurve;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::boundaries::symbol;
 use crate::report::figures::canvas::{Anchor, Point, Stroke, TextLook};

@@ -6,7 +6,7 @@ mod labels;
 
 use std::collections::{BTreeMap, HashSet};
 
-use crate::compare::{BoundaryCurve, BracketRow, RecordRow, RegionMap};
+use crate::replay::{BoundaryCurve, BracketRow, RecordRow, RegionMap};
 use crate::report::content::ReportContent;
 use crate::report::figures::boundaries;
 use crate::report::figures::canvas::{Canvas, Point};

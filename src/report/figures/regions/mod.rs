@@ -10,7 +10,7 @@
 
 mod labels;
 
-use crate::compare::RegionMap;
+use crate::replay::RegionMap;
 use crate::report::figures::canvas::{Canvas, Colour, Point, Stroke};
 use crate::report::figures::look;
 use crate::report::figures::marks;

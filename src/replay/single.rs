@@ -4,14 +4,14 @@ use std::fmt;
 
 use super::decays::{FreeDecay, free_decay};
 use super::input::Input;
-use super::replays::{Comparison, comparison};
+use super::replays::{ReplayedRecord, comparison};
 use crate::identify::fit::parameters::Parameters;
 
 /// A record beside its simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Beside {
     /// A driven record beside the motion of the model.
-    Motion(Box<Comparison>),
+    Motion(Box<ReplayedRecord>),
     /// A free decay beside its fit.
     Decay(Box<FreeDecay>),
     /// Nothing can be shown.

@@ -1,6 +1,6 @@
 //! A campaign as it enters a comparison.
 
-use crate::difference::Common;
+use crate::compare::Common;
 use crate::identify::fit::coordinate::Coordinate;
 use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::identify::{Allowed, Estimate, JointFit, ParameterSet, VerdictKind};

@@ -14,7 +14,7 @@ use impact_records::record::Record;
 
 /// A record compared with its simulation, from a zero phase of the drive on.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Comparison {
+pub struct ReplayedRecord {
     /// The point's letter in the map, `A`, `B` …
     pub letter: char,
     /// The record's name.
@@ -82,7 +82,7 @@ fn quality(o: &Observation) -> f64 {
 }
 
 /// The chosen records with letters in their order; none for a record without a drive.
-pub(super) fn comparisons(input: &Input<'_>, chosen: &[usize]) -> Vec<Comparison> {
+pub(super) fn comparisons(input: &Input<'_>, chosen: &[usize]) -> Vec<ReplayedRecord> {
     let letters: Vec<char> = ('A'..='Z').collect();
     let lettered = chosen.par_iter().zip(letters);
     lettered
@@ -99,7 +99,7 @@ pub(super) fn comparison(
     o: &Observation,
     record: &Record,
     (letter, parameters): (char, Option<&Parameters>),
-) -> Option<Comparison> {
+) -> Option<ReplayedRecord> {
     let drive = o.drive?;
     let detection = detect(record, input.rig, &DetectSettings::default());
     let periods = match o.classification.motion {
@@ -123,7 +123,7 @@ pub(super) fn comparison(
         if same { motion } else { &s.motion }.clone()
     });
     let impacts = o.impacts.iter().map(|i| i.time_s - stretch.start_s);
-    Some(Comparison {
+    Some(ReplayedRecord {
         letter,
         record: o.record.clone(),
         eta,

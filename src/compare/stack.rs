@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::difference::chart::Chart;
-use crate::difference::share::{Nuisance, Sharing};
-use crate::difference::{Campaign, chart};
+use crate::compare::chart::Chart;
+use crate::compare::share::{Nuisance, Sharing};
+use crate::compare::{Campaign, chart};
 use crate::identify::JointFit;
 use crate::identify::fit::coordinate::Coordinate;
 use crate::identify::fit::normal::inverse;

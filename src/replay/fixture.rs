@@ -4,16 +4,16 @@ use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
-use super::{Compared, Input, compare};
+use super::{Compared, Input, replay};
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::{Identification, identify_campaign};
-use simulated_rig::run::calibrated;
-use simulated_rig::{Differences, Effects, Faults, Laboratory, Plan, Truth, records};
 use impact_records::event::DetectSettings;
 use impact_records::event::RigKind;
 use impact_records::motion::{ClassifySettings, brackets, observe, scale_drives};
 use impact_records::record::{Channel, Excitation, Record, Role, Setting};
 use labfiles::units::Dimension;
+use simulated_rig::run::calibrated;
+use simulated_rig::{Differences, Effects, Faults, Laboratory, Plan, Truth, records};
 
 /// A campaign identified and compared.
 pub(crate) struct Identified {
@@ -135,7 +135,7 @@ fn identified(records: &[Record], rig: RigKind) -> Identified {
         uncertainty: Default::default(),
         progress: None,
     });
-    let compared = compare(&Input {
+    let compared = replay(&Input {
         rig,
         observations: &observations,
         brackets: &brackets,

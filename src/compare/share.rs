@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::difference::{Campaign, Common, NotShared, WhyShared};
+use crate::compare::{Campaign, Common, NotShared, WhyShared};
 use crate::identify::fit::coordinate::Coordinate;
 use crate::identify::{GAIN_ROLES, JointFit};
 use impact_records::record::Role;

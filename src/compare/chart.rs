@@ -9,8 +9,8 @@ use std::collections::BTreeSet;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::difference::Campaign;
-use crate::difference::share::{Nuisance, Sharing};
+use crate::compare::Campaign;
+use crate::compare::share::{Nuisance, Sharing};
 use crate::identify::JointFit;
 use crate::identify::fit::coordinate::Coordinate;
 

@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use crate::difference::campaign::Known;
-use crate::difference::share::{SeparateNuisance, SharedNuisance, sharing};
-use crate::difference::stack::Stack;
-use crate::difference::{Campaign, Outcome, Remark, decision};
+use crate::compare::campaign::Known;
+use crate::compare::share::{SeparateNuisance, SharedNuisance, sharing};
+use crate::compare::stack::Stack;
+use crate::compare::{Campaign, Outcome, Remark, decision};
 use crate::identify::fit::coordinate::Coordinate;
 use crate::identify::fit::normal::inverse;
 use crate::identify::uncertainty::distribution::{fisher_tail, student_tail};
