@@ -8,13 +8,13 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
+use impact_identification::identify::evidence::{Evidence, Nominal};
+use impact_identification::identify::run::identify;
+use impact_identification::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
 use impact_oscillator::model::params::ModelError;
 use impact_records::event::DetectSettings;
 use impact_records::event::RigKind;
 use impact_records::motion::{ClassifySettings, Observation, brackets, observe, scale_drives};
-use impactid::identify::evidence::{Evidence, Nominal};
-use impactid::identify::run::identify;
-use impactid::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
 use simulated_rig::run::calibrated;
 use simulated_rig::{Differences, Effects, Faults, Laboratory, Plan, Truth, records};
 

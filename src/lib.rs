@@ -9,9 +9,6 @@
 
 pub mod campaign;
 pub mod cli;
-pub mod compare;
 pub mod explore;
-pub mod identify;
 pub mod pipeline;
-pub mod replay;
 pub mod report;

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::sources::Sources;
 use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
-use crate::compare::Common;
-use crate::identify::fit::effect::EffectKind;
-use crate::identify::uncertainty::IntervalMethod;
+use impact_identification::compare::Common;
+use impact_identification::identify::fit::effect::EffectKind;
+use impact_identification::identify::uncertainty::IntervalMethod;
 use impact_records::event::DetectSettings;
 use impact_records::motion::{ClassifySettings, LateChannel};
 use impact_records::record::Setting;

@@ -8,8 +8,8 @@ use super::context::ResolveContext;
 use super::diagnostic::Code;
 use super::resolved::{NominalValues, RecordEntry};
 use super::written::{self, Placed};
-use crate::compare::Common;
-use crate::identify::fit::effect::EffectKind;
+use impact_identification::compare::Common;
+use impact_identification::identify::fit::effect::EffectKind;
 use impact_records::record::calibrate::ChannelSetup;
 use labfiles::units::Dimension;
 

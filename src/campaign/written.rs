@@ -10,8 +10,8 @@ use std::fmt;
 use serde::{Deserialize, Deserializer, Serialize, de};
 use toml::Spanned;
 
-pub use crate::identify::uncertainty::IntervalMethod;
 pub use crate::report::{Format, Paper};
+pub use impact_identification::identify::uncertainty::IntervalMethod;
 pub use impact_records::event::{FlightKind as Flight, RigKind as Machine};
 use impact_records::record::ContactContent;
 use impact_records::record::calibrate::ChannelKey;

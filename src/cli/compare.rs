@@ -9,11 +9,11 @@ use super::progress::Progress;
 use super::report_args::quoted;
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity, interrupt};
-use crate::compare::{self, Campaign, Comparison};
 use crate::pipeline::campaigns;
 use crate::pipeline::{self, Observed};
 use crate::report::catalog::Catalog;
 use crate::report::{CampaignsContent, Format, Paper, ReportOptions};
+use impact_identification::compare::{self, Campaign, Comparison};
 
 /// Arguments of `impactid compare`.
 #[derive(Debug, Args)]

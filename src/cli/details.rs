@@ -1,7 +1,7 @@
 //! What `-v` and `-vv` print of records and fits.
 
 use super::Verbosity;
-use crate::identify::{Estimator, Identification};
+use impact_identification::identify::{Estimator, Identification};
 use impact_records::motion::Observation;
 
 /// Print how each fit ended, with `-v`.

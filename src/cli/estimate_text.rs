@@ -1,6 +1,6 @@
 //! Estimates in a line of the terminal.
 
-use crate::identify::{Estimate, Status};
+use impact_identification::identify::{Estimate, Status};
 use impact_records::signal::whole;
 
 /// A value with half of its 95 % interval.

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::estimate_text::with_error;
-use crate::identify::Identification;
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::plan::Proposal;
 use crate::pipeline::watch::{Live, NewsKind, Outline, Watcher};
 use crate::report::budget_source;
+use impact_identification::identify::Identification;
+use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::plan::Proposal;
 use impact_records::message::counted;
 use impact_records::motion::{Bracket, Motion, Observation};
 use impact_records::signal::{robust, whole};

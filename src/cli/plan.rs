@@ -6,8 +6,8 @@ use clap::Args;
 
 use super::stdout::print_json;
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
-use crate::identify::boundary_plan::BoundaryPlan;
 use crate::pipeline::plan;
+use impact_identification::identify::boundary_plan::BoundaryPlan;
 use impact_records::motion::Motion;
 
 /// Arguments of `impactid plan`.
@@ -131,7 +131,7 @@ fn print_settings(found: &plan::Plan) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::boundary_plan::FineSweep;
+    use impact_identification::identify::boundary_plan::FineSweep;
 
     #[test]
     fn what_finer_steps_make_of_boundaries_is_said() {

@@ -8,8 +8,8 @@ use super::load::load_campaign;
 use super::progress::{LATER, Progress};
 use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::{Failure, Verbosity, interrupt};
-use crate::identify::{Finding, Identification, VerdictKind};
 use crate::pipeline::{self, Completed, Destination, checkpoint};
+use impact_identification::identify::{Finding, Identification, VerdictKind};
 
 /// From how many records on checkpoints are written; `IMPACTID_KEEP_FROM` sets another number, for
 /// trials with small campaigns.
@@ -103,7 +103,7 @@ fn first_of_specimen<'a>(finding: &Finding, found: &'a Identification) -> Option
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::replay::fixture;
+    use impact_identification::replay::fixture;
 
     #[test]
     fn a_specimen_that_does_not_fit_shows_its_first_finding() {

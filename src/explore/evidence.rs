@@ -8,15 +8,15 @@ use super::answer::Stop;
 use super::campaign::Campaign;
 use super::jobs::Job;
 use super::{ExploreError, State};
-use crate::identify::Method;
-use crate::identify::evidence::boundary::predicted_hz;
-use crate::identify::fit::Block;
-use crate::identify::fit::parameters::Parameters;
-use crate::identify::joint;
-use crate::identify::plan::propose;
 use crate::pipeline::identify::evidence;
-use crate::replay::{Beside, Signal, beside};
 use crate::report::style::MotionStyle;
+use impact_identification::identify::Method;
+use impact_identification::identify::evidence::boundary::predicted_hz;
+use impact_identification::identify::fit::Block;
+use impact_identification::identify::fit::parameters::Parameters;
+use impact_identification::identify::joint;
+use impact_identification::identify::plan::propose;
+use impact_identification::replay::{Beside, Signal, beside};
 use impact_records::motion::{BoundaryKind, Motion, Observation};
 
 /// Settings that are proposed.
@@ -113,7 +113,7 @@ fn evidence_of(campaign: &Campaign, index: usize) -> Value {
     let used = campaign.identification.methods_using(index);
     let left_out = campaign.identification.left_out.iter();
     let left_out = left_out.filter(
-        |l| matches!(&l.item, crate::identify::Item::Record { index: i, .. } if *i == index),
+        |l| matches!(&l.item, impact_identification::identify::Item::Record { index: i, .. } if *i == index),
     );
     json!({
         "measures": o.classification.evidence,

@@ -6,12 +6,12 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::compare::{Campaign, Comparison, Difference};
-use crate::identify::{Identification, JointFit, ParameterSet, VerdictKind};
 use crate::pipeline::identify::{FILE, IdentificationFile, versions};
 use crate::pipeline::report::ReportFile;
 use crate::pipeline::{PipelineError, layout};
 use crate::report::{CampaignsContent, Format, Report, ReportOptions};
+use impact_identification::compare::{Campaign, Comparison, Difference};
+use impact_identification::identify::{Identification, JointFit, ParameterSet, VerdictKind};
 
 /// Name of the result's file.
 pub const COMPARISON: &str = "comparison.json";
@@ -124,7 +124,7 @@ pub fn tell_apart(campaigns: &mut [Campaign], places: &[String]) {
 /// versions.
 #[derive(Serialize)]
 struct Written<'a> {
-    outcome: crate::compare::Outcome,
+    outcome: impact_identification::compare::Outcome,
     p_value: Option<f64>,
     #[serde(flatten)]
     comparison: &'a Comparison,
@@ -178,7 +178,7 @@ struct Line<'a> {
 
 /// The estimates of all campaigns and their differences as CSV.
 fn table(comparison: &Comparison) -> Result<Vec<u8>, PipelineError> {
-    use crate::identify::fit::parameters::Coordinate;
+    use impact_identification::identify::fit::parameters::Coordinate;
     let mut writer = csv::Writer::from_writer(Vec::new());
     for (number, campaign) in comparison.campaigns.iter().enumerate() {
         for parameter in Coordinate::PHYSICAL {

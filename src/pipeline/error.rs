@@ -54,7 +54,7 @@ pub enum PipelineError {
     },
     /// Campaigns cannot be compared.
     #[error(transparent)]
-    Comparison(#[from] crate::compare::ComparisonError),
+    Comparison(#[from] impact_identification::compare::ComparisonError),
     /// Results were written by another version of the program.
     #[error("{path} has layout {found}; this program reads and writes layout {expected}")]
     Layout {

@@ -9,11 +9,11 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::compare::{self, Campaign, Common, Comparison, Outcome};
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::{GAIN_ROLES, Identification};
 use crate::pipeline::coverage::{Tally, identified};
 use crate::pipeline::{PipelineError, Progress};
+use impact_identification::compare::{self, Campaign, Common, Comparison, Outcome};
+use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::{GAIN_ROLES, Identification};
 use impact_records::event::{FlightKind, RigKind};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
 use impact_records::signal::robust;

@@ -5,10 +5,10 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::identify::boundary_plan::{BoundaryPlan, halving};
-use crate::identify::plan::{Obstacle, Proposal, propose};
 use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, report};
+use impact_identification::identify::boundary_plan::{BoundaryPlan, halving};
+use impact_identification::identify::plan::{Obstacle, Proposal, propose};
 use impact_records::motion::Motion;
 use labfiles::output::write_together;
 

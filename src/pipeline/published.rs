@@ -4,13 +4,13 @@ use std::path::Path;
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::written::Published;
-use crate::identify::Identification;
-use crate::identify::published::{PublishedSpeed, Where, identify, predicted};
 use crate::pipeline::identify::{IdentificationFile, provenance};
 use crate::pipeline::{PipelineError, report, store};
-use crate::replay::Compared;
 use crate::report::{CampaignFacts, DataTable, ReportContent, Subject};
 use crate::report::{Phrase, Text};
+use impact_identification::identify::Identification;
+use impact_identification::identify::published::{PublishedSpeed, Where, identify, predicted};
+use impact_identification::replay::Compared;
 use labfiles::ReadError;
 
 /// Identify from published speeds and write identification.json and report.pdf.

@@ -5,17 +5,17 @@ use std::path::{Path, PathBuf};
 
 use crate::campaign::resolved::{Report as StatedOptions, ResolvedCampaign};
 use crate::campaign::written::Language;
-use crate::identify::Provenance;
 use crate::pipeline::identify::{IdentificationFile, settings};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::{Observed, PipelineError};
-use crate::replay::{self, Input};
 use crate::report::Phrase;
 use crate::report::catalog::Catalog;
 use crate::report::{
     CampaignFacts, Format, LivePage, Logo, NominalValue, Report, ReportContent, ReportOptions,
     Subject,
 };
+use impact_identification::identify::Provenance;
+use impact_identification::replay::{self, Input};
 use impact_records::event::RigKind;
 use labfiles::output::write_together;
 

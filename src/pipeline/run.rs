@@ -7,9 +7,9 @@ use super::identify::IdentificationFile;
 use super::observed::Observed;
 use super::{checkpoint, identify, memory, published, report, store, tables};
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::identify::Identification;
-use crate::identify::fit::FitProgress;
 use crate::report::Format;
+use impact_identification::identify::Identification;
+use impact_identification::identify::fit::FitProgress;
 use impact_records::motion::Observation;
 
 /// Where a run's results go.

@@ -346,8 +346,8 @@ pub fn read_without_waveforms(out: &Path) -> Result<Observed, PipelineError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::residuals::MethodResiduals;
-    use crate::identify::{Identification, Method, Provenance};
+    use impact_identification::identify::residuals::MethodResiduals;
+    use impact_identification::identify::{Identification, Method, Provenance};
 
     #[test]
     fn results_of_a_run_are_refused_with_the_remedy() {

@@ -8,8 +8,8 @@ use serde::Serialize;
 use super::identify;
 use super::json::{store_error, write_json};
 use super::{Completed, PipelineError};
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::{Estimate, ParameterSet, VerdictKind};
+use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::{Estimate, ParameterSet, VerdictKind};
 use labfiles::output::write_bytes;
 
 /// Name of the summary as a table.
@@ -177,7 +177,7 @@ fn estimate_cells(estimate: Option<&Estimate>) -> [String; 5] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::Status;
+    use impact_identification::identify::Status;
 
     fn row(folder: &str, exit_code: u8, outcome: Outcome) -> Row {
         Row {

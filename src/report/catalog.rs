@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
 use super::phrase::Phrase;
-use crate::compare;
-use crate::identify;
+use impact_identification::compare;
+use impact_identification::identify;
 use impact_records::message::{Language, Message};
 
 /// Phrases and messages, and what is printed instead of their English.
@@ -252,7 +252,7 @@ mod tests {
     fn a_message_is_translated_by_its_kind() {
         let text = "[words]\n[findings]\nwrong_clearance = \"{fitting_mm} statt {stated_mm}\"\n";
         let catalog = Catalog::read(text).expect("a catalog");
-        let message = crate::identify::Finding::WrongClearance {
+        let message = impact_identification::identify::Finding::WrongClearance {
             stated_m: 1e-3,
             fitting_m: 1.1e-3,
             z_score: 9.0,

@@ -1,10 +1,10 @@
 //! What a report shows: the campaign, the answer, and the comparison with the model, as plain data.
 
-use crate::compare::{Common, Comparison};
-use crate::identify::plan::Proposal;
-use crate::identify::{Identification, Provenance};
-use crate::replay::Compared;
 use crate::report::phrase::{Phrase, Text};
+use impact_identification::compare::{Common, Comparison};
+use impact_identification::identify::plan::Proposal;
+use impact_identification::identify::{Identification, Provenance};
+use impact_identification::replay::Compared;
 use impact_records::record::calibrate::ChannelSetup;
 
 /// Everything that a report shows. All quantities are SI; what a campaign does not have is empty, so

@@ -165,7 +165,7 @@ fn superscript(exponent: i32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::{Item, Remark};
+    use impact_identification::identify::{Item, Remark};
 
     #[test]
     fn numbers_are_printed_as_books_do() {

@@ -1,9 +1,9 @@
 //! Parameters and methods as printed: names, symbols, units, digits.
 
 use super::locale::{Locale, decimal_exponent};
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::{Estimate, Method};
 use crate::report::phrase::Phrase;
+use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::{Estimate, Method};
 
 /// How a parameter is named and printed.
 #[derive(Debug, Clone, Copy)]
@@ -135,7 +135,7 @@ pub(super) fn short(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::Status;
+    use impact_identification::identify::Status;
 
     fn estimate(value: f64, half: f64) -> Estimate {
         Estimate {

@@ -7,8 +7,10 @@ mod models;
 use std::path::Path;
 
 use dual::Dual;
-use impactid::identify::fit::factor::Factor;
-use impactid::identify::fit::least_squares::{LeastSquares, Limits, Variance, minimise};
+use impact_identification::identify::fit::factor::Factor;
+use impact_identification::identify::fit::least_squares::{
+    LeastSquares, Limits, Variance, minimise,
+};
 
 /// One set: what its file says.
 struct Set {

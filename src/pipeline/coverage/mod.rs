@@ -7,14 +7,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::identify::evidence::{Evidence, Nominal};
-use crate::identify::fit::parameters::Parameters;
-use crate::identify::run::identify;
-use crate::identify::uncertainty::bound::bounds;
-use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
-use crate::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
-use crate::identify::{Estimator, Identification, Method, boundary_plan};
 use crate::pipeline::{PipelineError, Progress};
+use impact_identification::identify::evidence::{Evidence, Nominal};
+use impact_identification::identify::fit::parameters::Parameters;
+use impact_identification::identify::run::identify;
+use impact_identification::identify::uncertainty::bound::bounds;
+use impact_identification::identify::uncertainty::coverage::{Score, Trial, scores, table};
+use impact_identification::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
+use impact_identification::identify::{Estimator, Identification, Method, boundary_plan};
 use impact_records::event::{DetectSettings, RigKind};
 use impact_records::motion::{
     Bracket, ClassifySettings, Motion, Observation, brackets, observe, scale_drives,
@@ -277,7 +277,7 @@ pub fn study(plan: &CoveragePlan, progress: Progress<'_>) -> Result<Coverage, Pi
 mod tests {
     use super::mistake::widen_one_gap;
     use super::*;
-    use crate::identify::Finding;
+    use impact_identification::identify::Finding;
 
     /// The clearance as stated and as it fits of a gap that alone is named, m.
     fn named_gap(seen: &Seen) -> (f64, f64) {
@@ -323,7 +323,10 @@ mod tests {
         let found = identified(&draw).expect("a campaign");
         let trajectories = &found.methods[&Method::Trajectories].parameters;
         let estimate = trajectories.restitution.as_ref().expect("R");
-        assert_ne!(estimate.note, Some(crate::identify::Note::NotSeparable));
+        assert_ne!(
+            estimate.note,
+            Some(impact_identification::identify::Note::NotSeparable)
+        );
         let value = estimate
             .value
             .unwrap_or_else(|| panic!("{:?}", estimate.note));

@@ -7,11 +7,11 @@ use sha2::{Digest, Sha256};
 
 use super::processor_time::Meter;
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::identify::plan::{Proposal, propose};
 use crate::pipeline::identify::{self, IdentificationFile};
 use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs, report};
 use crate::report::LivePage;
+use impact_identification::identify::plan::{Proposal, propose};
 use labfiles::output::write_bytes;
 
 /// The records taken so far with their fit.

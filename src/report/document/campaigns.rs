@@ -5,12 +5,12 @@ use super::layout_phrases;
 use super::model::{Answer, Block, Document, Front, Rich, Section};
 use super::sections::{paragraph, section};
 use super::tables::{self, p_equals};
-use crate::compare::{Comparison, Difference, EqualityTest, Outcome};
 use crate::report::content::CampaignsContent;
 use crate::report::figures::Figure;
 use crate::report::locale::Locale;
 use crate::report::parameters::{self, PARAMETERS};
 use crate::report::phrase::Phrase;
+use impact_identification::compare::{Comparison, Difference, EqualityTest, Outcome};
 
 /// Builds the document's data.
 pub(in crate::report) fn campaigns(

@@ -1,12 +1,12 @@
 //! Captions, and the figures of the methods' section in their order.
 
-use crate::identify::{Method, MethodResult};
-use crate::replay::ReplayedRecord;
 use crate::report::content::ReportContent;
 use crate::report::figures::{decays, numbered};
 use crate::report::locale::Locale;
 use crate::report::parameters::parameter;
 use crate::report::phrase::Phrase;
+use impact_identification::identify::{Method, MethodResult};
+use impact_identification::replay::ReplayedRecord;
 use impact_records::message::sentence;
 use impact_records::motion::Motion;
 

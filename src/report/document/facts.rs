@@ -1,10 +1,10 @@
 //! The measurement on the first page: labels and values.
 
 use super::model::Rich;
-use crate::replay::Overview;
 use crate::report::content::{CampaignFacts, NominalValue, ReportContent, Subject};
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
+use impact_identification::replay::Overview;
 use impact_records::record::calibrate::ChannelSetup;
 
 /// What was measured, when, with what: labels and values, those that are known.

@@ -7,12 +7,12 @@ use super::facts::facts;
 use super::model::{Answer, Front, Rich};
 use super::tables;
 use super::verdict::headline;
-use crate::identify::fit::effect::EffectKind;
-use crate::identify::{Estimate, Finding, VerdictKind};
 use crate::report::content::ReportContent;
 use crate::report::locale::Locale;
 use crate::report::parameters::{self, PARAMETERS, ParameterLook};
 use crate::report::phrase::Phrase;
+use impact_identification::identify::fit::effect::EffectKind;
+use impact_identification::identify::{Estimate, Finding, VerdictKind};
 
 /// Builds the first page.
 pub(super) fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
@@ -173,7 +173,7 @@ fn answer(look: &ParameterLook, estimate: Option<&Estimate>, locale: Locale<'_>)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::Status;
+    use impact_identification::identify::Status;
 
     #[test]
     fn what_is_not_identifiable_has_no_number() {
@@ -182,7 +182,7 @@ mod tests {
             standard_error: None,
             interval95: None,
             status: Status::NotIdentifiable,
-            note: Some(crate::identify::Note::NotSeparable),
+            note: Some(impact_identification::identify::Note::NotSeparable),
         };
         let answer = super::answer(&PARAMETERS[0], Some(&none), Locale::default());
         assert_eq!((answer.value, answer.interval), (None, None));

@@ -5,14 +5,14 @@ use super::model::{Block, Rich, Section};
 use super::settings::settings;
 use super::tables;
 use super::{captions, conventions};
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::{Finding, Method, MethodResult};
 use crate::report::content::ReportContent;
 use crate::report::figures::comparison;
 use crate::report::figures::plane::Plane;
 use crate::report::locale::Locale;
 use crate::report::parameters::{method_inline, parameter, short};
 use crate::report::phrase::Phrase;
+use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::{Finding, Method, MethodResult};
 
 /// All sections in their order.
 pub(super) fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {

@@ -1,7 +1,7 @@
 //! A verdict as a headline.
 
-use crate::identify::VerdictKind;
 use crate::report::phrase::Phrase;
+use impact_identification::identify::VerdictKind;
 
 /// A verdict as a headline, a phrase; of a rig where records of one were measured.
 pub(super) fn headline(kind: VerdictKind, of_a_rig: bool) -> Phrase {

@@ -11,9 +11,9 @@ use super::marks;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::plane::same;
-use crate::replay::BracketRow;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
+use impact_identification::replay::BracketRow;
 use impact_records::motion::BoundaryKind;
 
 /// Height of the panel, points.

@@ -13,12 +13,12 @@ use super::look;
 use super::marks::mix;
 use super::path::Rect;
 use super::richtext;
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::{Effect, GAIN_ROLES};
-use crate::replay::Correlation;
 use crate::report::locale::Locale;
 use crate::report::parameters::parameter;
 use crate::report::phrase::{Phrase, Text};
+use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::{Effect, GAIN_ROLES};
+use impact_identification::replay::Correlation;
 
 /// Room above the cells for the columns' symbols, points.
 const TOP: f64 = 14.0;

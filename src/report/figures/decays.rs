@@ -9,10 +9,10 @@ use super::look;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::units::print_unit;
-use crate::replay::{FreeDecay, Signal};
 use crate::report::locale::Locale;
 use crate::report::parameters::decimals_for;
 use crate::report::phrase::{Phrase, Text};
+use impact_identification::replay::{FreeDecay, Signal};
 use impact_records::signal::robust::range;
 use labfiles::units::Dimension;
 

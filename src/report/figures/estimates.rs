@@ -9,11 +9,11 @@ use super::fonts::{self, Face};
 use super::look;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
-use crate::identify::{Estimate, Status};
 use crate::report::content::ReportContent;
 use crate::report::locale::Locale;
 use crate::report::parameters::{PARAMETERS, ParameterLook, interval95};
 use crate::report::phrase::Phrase;
+use impact_identification::identify::{Estimate, Status};
 use impact_records::signal::robust::range;
 
 /// Height of a method's line, points.

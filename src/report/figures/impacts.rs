@@ -9,9 +9,9 @@ use super::legend::{self, Key, Sign};
 use super::look;
 use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::units::{PrintUnit, print_unit};
-use crate::replay::{ImpactPoint, ImpactScatter};
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
+use impact_identification::replay::{ImpactPoint, ImpactScatter};
 use impact_records::signal::robust::range;
 use labfiles::units::Dimension;
 

@@ -38,9 +38,9 @@ pub(crate) use svg::escape;
 
 use rayon::prelude::*;
 
-use crate::identify::Method;
 use crate::report::content::ReportContent;
 use crate::report::locale::Locale;
+use impact_identification::identify::Method;
 
 /// A figure waiting to be drawn.
 type Job<'a> = Box<dyn Fn() -> Option<Figure> + Send + Sync + 'a>;

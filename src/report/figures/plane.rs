@@ -1,11 +1,11 @@
 //! The plane of the map: (η, ρ) where f0 and `x_st` are known, else frequency and clearance.
 
 use super::axis::Axis;
-use crate::identify::Estimate;
-use crate::identify::plan::Proposal;
-use crate::replay::{BracketRow, RecordRow};
 use crate::report::content::ReportContent;
 use crate::report::phrase::Phrase;
+use impact_identification::identify::Estimate;
+use impact_identification::identify::plan::Proposal;
+use impact_identification::replay::{BracketRow, RecordRow};
 use impact_records::motion::Motion;
 use impact_records::signal::robust::range;
 

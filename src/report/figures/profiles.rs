@@ -7,12 +7,12 @@ use super::figure::Figure;
 use super::look;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
-use crate::identify::Identification;
-use crate::identify::uncertainty::ProfileCurve;
 use crate::report::figures::correlation::name;
 use crate::report::locale::Locale;
 use crate::report::parameters::parameter;
 use crate::report::phrase::{Phrase, Text};
+use impact_identification::identify::Identification;
+use impact_identification::identify::uncertainty::ProfileCurve;
 
 /// Rise of χ² at the ends of a 95 % interval of one parameter.
 const RISE_95: f64 = 3.841_458_820_694_124;

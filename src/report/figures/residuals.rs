@@ -9,10 +9,10 @@ use super::look;
 use super::marks;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
-use crate::replay::{ResidualPoint, ResidualSet};
 use crate::report::locale::Locale;
 use crate::report::parameters::NORMAL_95;
 use crate::report::phrase::{Phrase, Text};
+use impact_identification::replay::{ResidualPoint, ResidualSet};
 use impact_records::signal::robust::range;
 use impact_records::signal::whole;
 

@@ -10,9 +10,9 @@ use super::look;
 use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::path::Rect;
 use super::units::{PrintUnit, print_unit};
-use crate::replay::{ResonanceCurve, ResonancePoint};
 use crate::report::locale::Locale;
 use crate::report::phrase::{Phrase, role_text};
+use impact_identification::replay::{ResonanceCurve, ResonancePoint};
 
 /// Height of the panels, points.
 const HEIGHT: f64 = 128.0;

@@ -9,11 +9,11 @@ use super::legend::{self, Key, Sign};
 use super::look;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
-use crate::compare::{Comparison, Difference};
-use crate::identify::ParameterSet;
 use crate::report::locale::Locale;
 use crate::report::parameters::{PARAMETERS, ParameterLook, interval95, short};
 use crate::report::phrase::Phrase;
+use impact_identification::compare::{Comparison, Difference};
+use impact_identification::identify::ParameterSet;
 
 /// Height of a panel, points.
 const HEIGHT: f64 = 96.0;

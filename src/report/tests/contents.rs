@@ -1,19 +1,19 @@
-//! Contents of all kinds of campaign: identified and compared by [`crate::replay::fixture`], with
+//! Contents of all kinds of campaign: identified and compared by [`impact_identification::replay::fixture`], with
 //! what a campaign states about itself.
 
 use std::sync::OnceLock;
 
-use crate::compare::{
-    Comparison, Difference, EqualityTest, NotShared, Remark, SeparateNuisance, SharedNuisance,
-    Summary, WhyShared,
-};
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::{Provenance, VerdictKind};
-use crate::replay::fixture::{self, Identified};
-use crate::replay::{ImpactScatter, RecordRow};
 use crate::report::{
     CampaignFacts, CampaignsContent, NominalValue, Phrase, ReportContent, Subject,
 };
+use impact_identification::compare::{
+    Comparison, Difference, EqualityTest, NotShared, Remark, SeparateNuisance, SharedNuisance,
+    Summary, WhyShared,
+};
+use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::{Provenance, VerdictKind};
+use impact_identification::replay::fixture::{self, Identified};
+use impact_identification::replay::{ImpactScatter, RecordRow};
 use impact_records::motion::{Motion, Undetermined};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
 use impact_records::record::{Role, Sweep};
@@ -125,7 +125,7 @@ fn cart() -> ReportContent {
         subject: Subject::OneMass,
         ..CampaignFacts::default()
     };
-    content.compared = crate::replay::Compared {
+    content.compared = impact_identification::replay::Compared {
         impacts: whole
             .impacts
             .iter()

@@ -3,17 +3,17 @@
 use std::path::Path;
 
 use super::contents::{kind, kinds};
-use crate::identify::fit::effect::Effect;
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::uncertainty::budget::{
-    Budget, Combined, Contribution, Evaluation, Row, Source,
-};
-use crate::identify::{Finding, Identification, Method, Reason};
-use crate::replay::{BracketRow, Correlation, Unusable, UnusableReason};
 use crate::report::{
     DataTable, NominalValue, Phrase, Report, ReportContent, ReportOptions, Subject, catalog,
     document,
 };
+use impact_identification::identify::fit::effect::Effect;
+use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::uncertainty::budget::{
+    Budget, Combined, Contribution, Evaluation, Row, Source,
+};
+use impact_identification::identify::{Finding, Identification, Method, Reason};
+use impact_identification::replay::{BracketRow, Correlation, Unusable, UnusableReason};
 use impact_records::motion::{Motion, Undetermined};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
 use impact_records::record::{Role, Sweep};
@@ -30,8 +30,8 @@ fn marks_for_phrases() -> catalog::Catalog {
         text.push_str(&format!("{key} = \"⟦{i}⟧{values}\"\n"));
     }
     text.push_str("\n[findings]\n");
-    let all = crate::identify::messages::kinds().into_iter();
-    let all = all.chain(crate::compare::kinds());
+    let all = impact_identification::identify::messages::kinds().into_iter();
+    let all = all.chain(impact_identification::compare::kinds());
     for (i, message) in all.enumerate() {
         let names: String = message
             .values()

@@ -2,13 +2,13 @@
 
 use super::ENGLISH;
 use super::keys::{sheet, tint_keys};
-use crate::replay::RegionMap;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::figure::Figure;
 use crate::report::figures::look;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::figures::regions::Regions;
+use impact_identification::replay::RegionMap;
 
 /// Room left of the panel, points.
 const LEFT: f64 = 36.0;

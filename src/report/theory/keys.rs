@@ -1,11 +1,11 @@
 //! The keys of the theory's figures.
 
 use super::ENGLISH;
-use crate::replay::RegionMap;
 use crate::report::figures::canvas::Canvas;
 use crate::report::figures::legend::{self, Key, Sign};
 use crate::report::figures::look;
 use crate::report::figures::marks;
+use impact_identification::replay::RegionMap;
 use impact_records::motion::Motion;
 
 /// A canvas of the text's width for panels of a height, with keys on its top, and where the panels begin.

@@ -3,7 +3,6 @@
 
 use super::ENGLISH;
 use super::keys::sheet;
-use crate::replay::RegionMap;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Canvas, Stroke};
 use crate::report::figures::figure::Figure;
@@ -13,6 +12,7 @@ use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::regions::Regions;
+use impact_identification::replay::RegionMap;
 use impact_oscillator::atlas::Curve;
 
 /// Room left of the panel, points.

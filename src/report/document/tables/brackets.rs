@@ -1,12 +1,12 @@
 //! The table of measured brackets.
 
 use super::{Column, arrow, table};
-use crate::replay::BracketRow;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::figures::boundaries::symbol;
 use crate::report::locale::Locale;
 use crate::report::phrase::{Phrase, Text};
+use impact_identification::replay::BracketRow;
 
 /// From how many brackets on their table is set small and in two columns.
 const MANY_BRACKETS: usize = 14;

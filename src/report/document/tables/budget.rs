@@ -1,15 +1,17 @@
 //! The uncertainty budget of the joint estimate.
 
 use super::{Column, table};
-use crate::identify::fit::effect::Effect;
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::uncertainty::budget::{Budget, Combined, Contribution, Row, Source};
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::figures::correlation::name;
 use crate::report::figures::richtext::plain;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
+use impact_identification::identify::fit::effect::Effect;
+use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::uncertainty::budget::{
+    Budget, Combined, Contribution, Row, Source,
+};
 
 /// Size of the table's type, points.
 const SIZE: f64 = 7.5;

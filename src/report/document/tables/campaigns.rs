@@ -2,14 +2,14 @@
 
 use super::estimates::{LEAST_P, estimate_cells, p_value};
 use super::{Column, table};
-use crate::compare::{AcrossCampaigns, Comparison, Difference};
-use crate::identify::fit::parameters::Coordinate;
 use crate::report::document::model::{Rich, Table};
 use crate::report::document::verdict::headline;
 use crate::report::figures::correlation::name;
 use crate::report::locale::Locale;
 use crate::report::parameters;
 use crate::report::phrase::Phrase;
+use impact_identification::compare::{AcrossCampaigns, Comparison, Difference};
+use impact_identification::identify::fit::parameters::Coordinate;
 use impact_records::message::Message;
 
 /// A p-value as printed behind its name.

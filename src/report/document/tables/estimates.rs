@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use super::{Column, table};
-use crate::identify::diagnostics::agreement::LEVEL;
-use crate::identify::{Method, MethodResult, ParameterSet};
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::document::verdict::headline;
 use crate::report::locale::Locale;
 use crate::report::parameters::{self, PARAMETERS, ParameterLook};
 use crate::report::phrase::{Phrase, Text};
+use impact_identification::identify::diagnostics::agreement::LEVEL;
+use impact_identification::identify::{Method, MethodResult, ParameterSet};
 
 /// Size of the type of the methods' tables, points.
 const SIZE: f64 = 7.5;

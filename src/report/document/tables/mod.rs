@@ -13,12 +13,12 @@ pub(super) use campaigns::{campaigns, differences, p_equals, separate, shared};
 pub(super) use estimates::{agreement, methods, specimen_methods, specimens};
 pub(super) use records::records;
 
-use crate::identify::Item;
-use crate::replay::{Unusable, UnusableReason};
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Align, Rich, Table};
 use crate::report::locale::Locale;
 use crate::report::phrase::{Phrase, Text};
+use impact_identification::identify::Item;
+use impact_identification::replay::{Unusable, UnusableReason};
 use impact_records::record::Sweep;
 
 /// A column of a table.

@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::{Column, arrow, table};
-use crate::replay::RecordRow;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::figures::fonts::{self, Face};
@@ -11,6 +10,7 @@ use crate::report::figures::look;
 use crate::report::locale::Locale;
 use crate::report::parameters::method_inline;
 use crate::report::phrase::{Phrase, Text};
+use impact_identification::replay::RecordRow;
 use impact_records::motion::Motion;
 use impact_records::signal::whole;
 

@@ -1,7 +1,7 @@
 //! A comparison's name and its data as CSV.
 
-use crate::replay::{ReplayedRecord, Signal, Trace};
 use crate::report::figures::csv::Csv;
+use impact_identification::replay::{ReplayedRecord, Signal, Trace};
 
 /// Name of a comparison's figure.
 pub(crate) fn name(comparison: &ReplayedRecord) -> String {

@@ -6,7 +6,6 @@ mod rows;
 
 pub(crate) use data::name;
 
-use crate::replay::{ReplayedRecord, Signal};
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
 use crate::report::figures::figure::Figure;
@@ -18,6 +17,7 @@ use crate::report::figures::path::Rect;
 use crate::report::figures::richtext;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
+use impact_identification::replay::{ReplayedRecord, Signal};
 use impact_records::record::Role;
 use impact_records::signal::robust::range;
 use rows::{Row, rows, shown, symbol};

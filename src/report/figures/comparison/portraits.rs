@@ -1,7 +1,6 @@
 //! The phase portraits of a comparison.
 
 use super::{BACK_WIDTH, PORTRAIT_LEFT, PORTRAIT_WIDTH, Sheet, TOP};
-use crate::replay::{ReplayedRecord, Signal, Trace};
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Stroke, TextLook};
 use crate::report::figures::panel::{Panel, Sides};
@@ -9,6 +8,7 @@ use crate::report::figures::path::Rect;
 use crate::report::figures::units::{PrintUnit, print_unit};
 use crate::report::figures::{look, marks};
 use crate::report::phrase::Phrase;
+use impact_identification::replay::{ReplayedRecord, Signal, Trace};
 use impact_records::record::Role;
 use labfiles::units::Dimension;
 

@@ -1,10 +1,10 @@
 //! Which channels of a comparison share a row of panels, and in which unit.
 
-use crate::replay::{ReplayedRecord, Signal, Trace};
 use crate::report::figures::canvas::Colour;
 use crate::report::figures::look;
 use crate::report::figures::units::{PrintUnit, print_unit};
 use crate::report::phrase::{Phrase, Text};
+use impact_identification::replay::{ReplayedRecord, Signal, Trace};
 use impact_records::record::Role;
 
 /// A row of panels: which channels, how tall, how titled.

@@ -1,10 +1,10 @@
 //! The map's data: the records' texts for hovering, and all layers as CSV.
 
-use crate::replay::{Compared, RecordRow, RegionMap};
 use crate::report::figures::boundaries;
 use crate::report::figures::csv::Csv;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
+use impact_identification::replay::{Compared, RecordRow, RegionMap};
 use impact_records::motion::Motion;
 use impact_records::record::Sweep;
 

@@ -1,10 +1,10 @@
 //! The map's keys.
 
-use crate::replay::Compared;
 use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::plane::Plane;
 use crate::report::figures::{boundaries, look, marks};
 use crate::report::phrase::{Phrase, motion_text};
+use impact_identification::replay::Compared;
 use impact_records::motion::BoundaryKind;
 
 /// Keys of the motions that were measured.

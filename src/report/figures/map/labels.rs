@@ -2,7 +2,6 @@
 //! units.
 
 use super::{Map, STRIP_HALF, STRIP_STEP};
-use crate::replay::BoundaryCurve;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::boundaries::symbol;
 use crate::report::figures::canvas::{Anchor, Point, Stroke, TextLook};
@@ -12,6 +11,7 @@ use crate::report::figures::path::Rect;
 use crate::report::figures::richtext;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
+use impact_identification::replay::BoundaryCurve;
 
 impl Map<'_> {
     /// Names a curve beside the middle of its longest visible piece.

@@ -6,7 +6,6 @@ mod labels;
 
 use std::collections::{BTreeMap, HashSet};
 
-use crate::replay::{BoundaryCurve, BracketRow, RecordRow, RegionMap};
 use crate::report::content::ReportContent;
 use crate::report::figures::boundaries;
 use crate::report::figures::canvas::{Canvas, Point};
@@ -21,6 +20,7 @@ use crate::report::figures::plane::{Plane, View, same};
 use crate::report::figures::regions::Regions;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
+use impact_identification::replay::{BoundaryCurve, BracketRow, RecordRow, RegionMap};
 use impact_records::motion::Motion;
 use impact_records::record::Sweep;
 use impact_records::signal::whole;

@@ -10,12 +10,12 @@
 
 mod labels;
 
-use crate::replay::RegionMap;
 use crate::report::figures::canvas::{Canvas, Colour, Point, Stroke};
 use crate::report::figures::look;
 use crate::report::figures::marks;
 use crate::report::figures::panel::Panel;
 use crate::report::figures::path;
+use impact_identification::replay::RegionMap;
 use impact_records::signal::whole;
 
 /// Regions smaller than this share of the map get no label and no outline.

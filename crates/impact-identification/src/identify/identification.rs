@@ -216,8 +216,8 @@ pub struct Allowed {
 /// What it states is typed; JSON adds the English sentence to each variant:
 ///
 /// ```
-/// use impactid::identify::published::{PublishedSpeed, Where, identify};
-/// use impactid::identify::{Finding, Identification, Method};
+/// use impact_identification::identify::published::{PublishedSpeed, Where, identify};
+/// use impact_identification::identify::{Finding, Identification, Method};
 ///
 /// let speed = |restitution, frequency_ratio, speed| PublishedSpeed {
 ///     restitution,

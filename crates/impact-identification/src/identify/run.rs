@@ -44,60 +44,7 @@ use crate::identify::{decay, estimate, flight_times, residuals, results};
 /// Identify from observations and brackets, as records of one specimen.
 ///
 /// What cannot be identified has no value but a note; what was left out of the fits is in `left_out`.
-///
-/// # Examples
-///
-/// Records of a simulated rig whose masses never touch determine f0, β and `x_st`, but not R:
-///
-/// ```
-/// use impact_records::event::{DetectSettings, RigKind};
-/// use impactid::identify::evidence::{Evidence, Nominal};
-/// use impactid::identify::run::identify;
-/// use impactid::identify::{Method, Status};
-/// use impact_records::motion::{ClassifySettings, observe};
-/// use impact_records::record::Sweep;
-/// use simulated_rig::run::calibrated;
-/// use simulated_rig::{Effects, Faults, Laboratory, Plan, Step, Truth, records};
-///
-/// let step = |i: u32| Step {
-///     frequency_hz: 9.0 + 0.5 * f64::from(i),
-///     clearance_m: 20e-3,
-///     sweep: Sweep::Up,
-///     from_rest: i == 0,
-/// };
-/// let laboratory = Laboratory {
-///     truth: Truth::symmetric(0.8, 12.0, 0.05, 1e-3),
-///     faults: Faults::default(),
-///     effects: Effects::default(),
-///     clearance_uncertainty_m: None,
-///     plan: Plan { steps: (0..14).map(step).collect() },
-///     rig_seed: 1,
-///     seed: 1,
-/// };
-/// let observations: Vec<_> = records(&laboratory)?
-///     .iter()
-///     .map(|raw| calibrated(raw, &laboratory.truth, &laboratory.faults))
-///     .map(|record| {
-///         let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
-///         observe(&record, RigKind::Double, &detect, &classify)
-///     })
-///     .collect();
-/// let found = identify(&Evidence {
-///     rig: RigKind::Double,
-///     observations: &observations,
-///     brackets: &[],
-///     nominal: Nominal { gain_uncertainty: 5e-3, corner_uncertainty: 2e-2, ..Nominal::default() },
-///     uncertainty: Default::default(),
-///     progress: None,
-/// });
-/// assert_eq!(found.used_by[&Method::Resonance].len(), 14);
-/// let f0 = found.joint.parameters.natural_frequency_hz.as_ref().expect("an estimate");
-/// assert_eq!(f0.status, Status::Identified);
-/// assert!((f0.value.expect("f0") - 12.0).abs() < 0.05);
-/// let r = found.joint.parameters.restitution.and_then(|r| r.value);
-/// assert_eq!(r, None);
-/// # Ok::<(), impact_oscillator::model::params::ModelError>(())
-/// ```
+/// The example of the crate identifies a simulated campaign.
 pub fn identify(evidence: &Evidence<'_>) -> Identification {
     let mut run = IdentificationRun {
         evidence,

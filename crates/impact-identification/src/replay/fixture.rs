@@ -16,19 +16,21 @@ use simulated_rig::run::calibrated;
 use simulated_rig::{Differences, Effects, Faults, Laboratory, Plan, Truth, records};
 
 /// A campaign identified and compared.
-pub(crate) struct Identified {
-    pub(crate) identification: Identification,
-    pub(crate) compared: Compared,
+pub struct Identified {
+    /// What was identified.
+    pub identification: Identification,
+    /// The fitted model beside the records.
+    pub compared: Compared,
 }
 
 /// The paper's setting: R = 0.9, f0 = 12.6 Hz, β = 0.07, `x_st` = 1.25 mm, two gaps up and down.
-pub(crate) fn whole() -> &'static Identified {
+pub fn whole() -> &'static Identified {
     static CAMPAIGN: OnceLock<Identified> = OnceLock::new();
     CAMPAIGN.get_or_init(|| identified(&laboratory(), RigKind::Double))
 }
 
 /// The same rig with its gap so wide that nothing touches: R cannot be identified.
-pub(crate) fn nothing_touches() -> &'static Identified {
+pub fn nothing_touches() -> &'static Identified {
     static CAMPAIGN: OnceLock<Identified> = OnceLock::new();
     CAMPAIGN.get_or_init(|| {
         let mut records = laboratory();
@@ -39,7 +41,7 @@ pub(crate) fn nothing_touches() -> &'static Identified {
 }
 
 /// The same two masses, of which only x has a velocity, and no displacement is measured.
-pub(crate) fn one_of_two() -> &'static Identified {
+pub fn one_of_two() -> &'static Identified {
     static CAMPAIGN: OnceLock<Identified> = OnceLock::new();
     CAMPAIGN.get_or_init(|| {
         let mut records = laboratory();
@@ -52,7 +54,7 @@ pub(crate) fn one_of_two() -> &'static Identified {
 }
 
 /// Nine free decays of three masses on one spring, the last filed under the wrong mass.
-pub(crate) fn decays() -> &'static Identified {
+pub fn decays() -> &'static Identified {
     static CAMPAIGN: OnceLock<Identified> = OnceLock::new();
     CAMPAIGN.get_or_init(|| {
         let masses = [11.0, 11.05, 10.96, 14.0, 14.06, 13.97, 17.2, 17.1, 14.01];
@@ -83,7 +85,7 @@ fn laboratory() -> Vec<Record> {
 }
 
 /// Two seconds of a decay a(t) = 3 e^(−βΩt) cos(√(1−β²)Ωt) m/s² with β = 0.02, after 0.05 s of rest.
-pub(crate) fn decay(id: &str, mass: usize, f0_hz: f64) -> Record {
+pub fn decay(id: &str, mass: usize, f0_hz: f64) -> Record {
     let (rate_hz, beta) = (800.0, 0.02);
     let omega = std::f64::consts::TAU * f0_hz;
     let value = |i: usize| {

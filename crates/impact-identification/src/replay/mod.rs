@@ -106,7 +106,7 @@ pub fn placed(input: &Input<'_>) -> Placed {
     }
 }
 
-#[cfg(test)]
-pub(crate) mod fixture;
+#[cfg(any(test, feature = "fixture"))]
+pub mod fixture;
 #[cfg(test)]
 mod tests;
