@@ -11,4 +11,3 @@ pub mod campaign;
 pub mod cli;
 pub mod explore;
 pub mod pipeline;
-pub mod report;

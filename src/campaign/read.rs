@@ -238,7 +238,7 @@ mod tests {
             let (written, faults) = faults_of(&format!("[report]\npaper = \"{name}\"\n"));
             assert!(faults.is_empty(), "{faults:?}");
             let paper = written.report.paper.map(toml::Spanned::into_inner);
-            assert_eq!(paper, Some(crate::report::Paper::UsLetter));
+            assert_eq!(paper, Some(impact_report::Paper::UsLetter));
         }
     }
 

@@ -16,7 +16,7 @@ use super::sources::Sources;
 use super::written::{
     self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign, value,
 };
-use crate::report::catalog::Catalog;
+use impact_report::catalog::Catalog;
 use labfiles::units::{self, Dimension};
 
 /// A campaign as far as it could be resolved, and everything that is wrong with it.

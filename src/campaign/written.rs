@@ -10,12 +10,12 @@ use std::fmt;
 use serde::{Deserialize, Deserializer, Serialize, de};
 use toml::Spanned;
 
-pub use crate::report::{Format, Paper};
 pub use impact_identification::identify::uncertainty::IntervalMethod;
 pub use impact_records::event::{FlightKind as Flight, RigKind as Machine};
 use impact_records::record::ContactContent;
 use impact_records::record::calibrate::ChannelKey;
 pub use impact_records::record::{Excitation, Sweep};
+pub use impact_report::{Format, Paper};
 
 /// A value with its place in the file.
 pub type Placed<T> = Option<Spanned<T>>;

@@ -6,14 +6,14 @@ use clap::{Args, ValueEnum};
 
 use super::load::load_campaign;
 use super::progress::Progress;
-use super::report_args::quoted;
+use super::report_args::{paper_parser, quoted};
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::campaigns;
 use crate::pipeline::{self, Observed};
-use crate::report::catalog::Catalog;
-use crate::report::{CampaignsContent, Format, Paper, ReportOptions};
 use impact_identification::compare::{self, Campaign, Comparison};
+use impact_report::catalog::Catalog;
+use impact_report::{CampaignsContent, Format, Paper, ReportOptions};
 
 /// Arguments of `impactid compare`.
 #[derive(Debug, Args)]
@@ -41,7 +41,7 @@ pub(super) struct Compare {
     #[arg(long, value_name = "LANGUAGE", value_enum, default_value = "en")]
     language: Language,
     /// Paper size; us-letter is the same as letter
-    #[arg(long, value_name = "PAPER", value_enum)]
+    #[arg(long, value_name = "PAPER", value_parser = paper_parser())]
     paper: Option<Paper>,
     /// Print numbers with a decimal comma
     #[arg(long)]

@@ -5,13 +5,13 @@ use std::path::Path;
 
 use super::estimate_text::with_error;
 use crate::pipeline::watch::{Live, NewsKind, Outline, Watcher};
-use crate::report::budget_source;
 use impact_identification::identify::Identification;
 use impact_identification::identify::fit::parameters::Coordinate;
 use impact_identification::identify::plan::Proposal;
 use impact_records::message::counted;
 use impact_records::motion::{Bracket, Motion, Observation};
 use impact_records::signal::{robust, whole};
+use impact_report::budget_source;
 
 /// Most files that are named in one line.
 const MOST_NAMES: usize = 4;

@@ -3,14 +3,14 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::builder::PossibleValue;
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::{Failure, Verbosity};
 use crate::campaign::resolved::{Report, ResolvedCampaign};
 use crate::campaign::written::Paper;
 use crate::pipeline;
-use crate::report::Format;
+use impact_report::Format;
 
 /// Options of the report.
 #[derive(Debug, Clone, Default, Args)]
@@ -30,24 +30,23 @@ pub(super) struct ReportArgs {
     #[arg(long, value_name = "FILE")]
     logo: Option<PathBuf>,
     /// Paper size; us-letter is the same as letter
-    #[arg(long, value_name = "PAPER", value_enum)]
+    #[arg(long, value_name = "PAPER", value_parser = paper_parser())]
     paper: Option<Paper>,
     /// Print numbers with a decimal comma
     #[arg(long)]
     decimal_comma: bool,
 }
 
-impl ValueEnum for Paper {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Self::A4, Self::UsLetter]
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(match self {
-            Self::A4 => PossibleValue::new("a4"),
-            Self::UsLetter => PossibleValue::new("letter").alias("us-letter"),
-        })
-    }
+/// Reads the name of a paper on the command line.
+pub(super) fn paper_parser() -> impl TypedValueParser<Value = Paper> {
+    let names = [
+        PossibleValue::new("a4"),
+        PossibleValue::new("letter").alias("us-letter"),
+    ];
+    PossibleValuesParser::new(names).map(|name| match name.as_str() {
+        "a4" => Paper::A4,
+        _ => Paper::UsLetter,
+    })
 }
 
 impl ReportArgs {

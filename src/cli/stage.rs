@@ -15,7 +15,7 @@ use super::run_one::print_verdict;
 use super::stdout::print;
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::{self, store};
-use crate::report::catalog::Catalog;
+use impact_report::catalog::Catalog;
 use labfiles::output::Lock;
 
 /// Arguments of `impactid ingest`.

@@ -15,7 +15,7 @@ use super::screen::Screen;
 use super::{Exit, Failure, Verbosity, interrupt, live_text};
 use crate::pipeline::watch::{News, NewsKind, Pace, Patience, Seen, Watcher, write_live};
 use crate::pipeline::{Completed, Destination, layout};
-use crate::report::Format;
+use impact_report::Format;
 use labfiles::output::Lock;
 
 /// Arguments of `impactid watch`.

@@ -12,7 +12,6 @@ use crate::pipeline::observe::read_one;
 use crate::pipeline::theory::plan::Law;
 use crate::pipeline::watch::Live;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, inputs, layout, store};
-use crate::report::style::MotionStyle;
 use impact_identification::identify::evidence::Blocks;
 use impact_identification::identify::fit::parameters::Parameters;
 use impact_identification::identify::{Estimate, Identification};
@@ -21,6 +20,7 @@ use impact_records::event::RigKind;
 use impact_records::motion::Observation;
 use impact_records::record::Record;
 use impact_records::signal::robust;
+use impact_report::style::MotionStyle;
 
 /// A campaign with what was observed and identified.
 pub struct Campaign {

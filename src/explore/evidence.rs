@@ -9,7 +9,6 @@ use super::campaign::Campaign;
 use super::jobs::Job;
 use super::{ExploreError, State};
 use crate::pipeline::identify::evidence;
-use crate::report::style::MotionStyle;
 use impact_identification::identify::Method;
 use impact_identification::identify::evidence::boundary::predicted_hz;
 use impact_identification::identify::fit::Block;
@@ -18,6 +17,7 @@ use impact_identification::identify::joint;
 use impact_identification::identify::plan::propose;
 use impact_identification::replay::{Beside, Signal, beside};
 use impact_records::motion::{BoundaryKind, Motion, Observation};
+use impact_report::style::MotionStyle;
 
 /// Settings that are proposed.
 const PROPOSALS: usize = 6;

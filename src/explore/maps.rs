@@ -10,7 +10,6 @@ use super::frame::Frame;
 use super::jobs::Job;
 use super::state::MAP_CELLS;
 use super::{ExploreError, State};
-use crate::report::style::MotionStyle;
 use impact_oscillator::atlas::map::{UnitMass, even};
 use impact_oscillator::model::boundary::{rho_sticking, s1_of_branch, s2_of_branch};
 use impact_oscillator::model::orbit::Branch;
@@ -19,6 +18,7 @@ use impact_oscillator::{
     BoundaryPoint, Machine, MapGrid, SettledMotion, region_map, rho_grazing, rho_s1, rho_s2,
 };
 use impact_records::motion::Motion;
+use impact_report::style::MotionStyle;
 
 /// Columns and rows of the first tile.
 const COARSE: (usize, usize) = (32, 24);

@@ -10,7 +10,6 @@ use super::jobs::Job;
 use super::maps::cells;
 use super::state::Cursor;
 use super::{ExploreError, State};
-use crate::report::style::MotionStyle;
 use impact_oscillator::atlas::BasinGrid;
 use impact_oscillator::atlas::basins::basin_rows;
 use impact_oscillator::atlas::map::{UnitMass, even};
@@ -20,6 +19,7 @@ use impact_oscillator::model::range;
 use impact_oscillator::{Machine, MapSettings, Setting, SettledMotion, Simulator, Trajectory};
 use impact_records::motion::Motion;
 use impact_records::signal::whole;
+use impact_report::style::MotionStyle;
 
 /// Time after which steps of a sweep are sent together.
 const BATCH: Duration = Duration::from_millis(40);

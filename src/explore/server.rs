@@ -22,7 +22,7 @@ use super::answer::campaign_now;
 use super::frame::Frame;
 use super::jobs::{Jobs, refusal};
 use super::{ExploreError, Session, wire};
-use crate::report::style::{FontFace, font};
+use impact_report::style::{FontFace, font};
 
 /// Largest message that a page may send, bytes.
 const LARGEST_MESSAGE: usize = 1 << 18;

@@ -9,9 +9,9 @@ use crate::campaign::resolved::ResolvedCampaign;
 use crate::pipeline::identify::{FILE, IdentificationFile, versions};
 use crate::pipeline::report::ReportFile;
 use crate::pipeline::{PipelineError, layout};
-use crate::report::{CampaignsContent, Format, Report, ReportOptions};
 use impact_identification::compare::{Campaign, Comparison, Difference};
 use impact_identification::identify::{Identification, JointFit, ParameterSet, VerdictKind};
+use impact_report::{CampaignsContent, Format, Report, ReportOptions};
 
 /// Name of the result's file.
 pub const COMPARISON: &str = "comparison.json";

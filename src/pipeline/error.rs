@@ -78,7 +78,7 @@ pub enum PipelineError {
     },
     /// The report could not be made.
     #[error(transparent)]
-    Report(#[from] crate::report::ReportError),
+    Report(#[from] impact_report::ReportError),
     /// The simulation refused its parameters.
     #[error(transparent)]
     Model(#[from] ModelError),

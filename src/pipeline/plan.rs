@@ -66,7 +66,7 @@ pub fn plan(
     let mut content = report::content(campaign, &observed, &found, "")?;
     content.compared.comparisons.clear();
     content.proposals.clone_from(&plan.proposals);
-    let mut files = crate::report::plan_map(&content, campaign.report.decimal_comma)?;
+    let mut files = impact_report::plan_map(&content, campaign.report.decimal_comma)?;
     files.push(("plan.csv".to_owned(), csv(&plan.proposals).into_bytes()));
     write_together(out, &files)?;
     write_json(&out.join(FILE), &plan)?;

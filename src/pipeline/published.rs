@@ -6,11 +6,11 @@ use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::written::Published;
 use crate::pipeline::identify::{IdentificationFile, provenance};
 use crate::pipeline::{PipelineError, report, store};
-use crate::report::{CampaignFacts, DataTable, ReportContent, Subject};
-use crate::report::{Phrase, Text};
 use impact_identification::identify::Identification;
 use impact_identification::identify::published::{PublishedSpeed, Where, identify, predicted};
 use impact_identification::replay::Compared;
+use impact_report::{CampaignFacts, DataTable, ReportContent, Subject};
+use impact_report::{Phrase, Text};
 use labfiles::ReadError;
 
 /// Identify from published speeds and write identification.json and report.pdf.

@@ -8,15 +8,15 @@ use crate::campaign::written::Language;
 use crate::pipeline::identify::{IdentificationFile, settings};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::{Observed, PipelineError};
-use crate::report::Phrase;
-use crate::report::catalog::Catalog;
-use crate::report::{
-    CampaignFacts, Format, LivePage, Logo, NominalValue, Report, ReportContent, ReportOptions,
-    Subject,
-};
 use impact_identification::identify::Provenance;
 use impact_identification::replay::{self, Input};
 use impact_records::event::RigKind;
+use impact_report::Phrase;
+use impact_report::catalog::Catalog;
+use impact_report::{
+    CampaignFacts, Format, LivePage, Logo, NominalValue, Report, ReportContent, ReportOptions,
+    Subject,
+};
 use labfiles::output::write_together;
 
 /// Name of the report's file.

@@ -7,10 +7,10 @@ use super::identify::IdentificationFile;
 use super::observed::Observed;
 use super::{checkpoint, identify, memory, published, report, store, tables};
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::report::Format;
 use impact_identification::identify::Identification;
 use impact_identification::identify::fit::FitProgress;
 use impact_records::motion::Observation;
+use impact_report::Format;
 
 /// Where a run's results go.
 #[derive(Debug, Clone, Copy)]

@@ -4,12 +4,12 @@ use super::StudyContext;
 use super::plan::BasinPlan;
 use super::table::Table;
 use crate::pipeline::PipelineError;
-use crate::report::theory::basins::draw;
 use impact_identification::replay::RegionMap;
 use impact_oscillator::atlas::basins::{Basins, basin_rows};
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::{Machine, MapSettings, Restitution, SettledMotion};
 use impact_records::motion::{Motion, Undetermined};
+use impact_report::theory::basins::draw;
 
 /// Rows of a block.
 const BLOCK: usize = 8;

@@ -4,11 +4,11 @@ use super::StudyContext;
 use super::plan::MapPlan;
 use super::table::Table;
 use crate::pipeline::PipelineError;
-use crate::report::theory::regions as figure;
 use impact_identification::replay::RegionMap;
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::{Machine, MapGrid, SettledMotion, region_map};
 use impact_records::motion::Motion;
+use impact_report::theory::regions as figure;
 
 /// Rows of a block.
 const BLOCK: usize = 8;

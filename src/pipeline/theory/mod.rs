@@ -16,8 +16,8 @@ use serde::de::DeserializeOwned;
 use crate::pipeline::PipelineError;
 use crate::pipeline::block_cache::BlockCache;
 use crate::pipeline::table::{self, Table};
-use crate::report::figures::Figure;
-use crate::report::picture::pictures;
+use impact_report::figures::Figure;
+use impact_report::picture::pictures;
 use labfiles::output::OutputError;
 pub use plan::Study;
 

@@ -7,7 +7,6 @@ use super::StudyContext;
 use super::plan::RegionsPlan;
 use super::table::Table;
 use crate::pipeline::PipelineError;
-use crate::report::theory::regions::draw;
 use impact_identification::replay::RegionMap;
 use impact_oscillator::atlas::curves::{Curve, CurvePoint};
 use impact_oscillator::atlas::regions::{assemble, columns};
@@ -15,6 +14,7 @@ use impact_oscillator::atlas::shard::AtlasRequest;
 use impact_oscillator::atlas::{Atlas, Cause, MapGrid, Maps, Slice, brute_maps};
 use impact_oscillator::{Machine, SettledMotion, periodic_label};
 use impact_records::motion::Motion;
+use impact_report::theory::regions::draw;
 
 /// Columns of a block.
 const BLOCK: usize = 16;

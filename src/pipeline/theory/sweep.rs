@@ -8,11 +8,11 @@ use super::StudyContext;
 use super::plan::SweepPlan;
 use super::table::Table;
 use crate::pipeline::PipelineError;
-use crate::report::theory::sweep::{Characteristics, draw};
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactless};
 use impact_oscillator::model::Machine;
 use impact_oscillator::model::simulate::Snapshot;
+use impact_report::theory::sweep::{Characteristics, draw};
 
 /// Steps after which a sweep saves its points.
 const KEEP_EVERY: usize = 16;

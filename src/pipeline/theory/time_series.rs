@@ -3,9 +3,9 @@
 use super::StudyContext;
 use super::table::Table;
 use crate::pipeline::PipelineError;
-use crate::report::theory::motion::draw;
 use impact_oscillator::atlas::portrait::{Portrait, PortraitPlan, Strike, portrait};
 use impact_oscillator::model::Machine;
+use impact_report::theory::motion::draw;
 
 /// Simulate and write tables and figure.
 ///

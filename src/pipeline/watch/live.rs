@@ -10,8 +10,8 @@ use crate::campaign::resolved::ResolvedCampaign;
 use crate::pipeline::identify::{self, IdentificationFile};
 use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs, report};
-use crate::report::LivePage;
 use impact_identification::identify::plan::{Proposal, propose};
+use impact_report::LivePage;
 use labfiles::output::write_bytes;
 
 /// The records taken so far with their fit.

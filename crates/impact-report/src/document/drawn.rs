@@ -1,0 +1,37 @@
+//! The figures as drawn, to be referred to by name.
+
+use super::model::{Block, FigureRef, Rich};
+use crate::figures::{Figure, richtext};
+use crate::locale::Locale;
+
+/// The figures as drawn, to be referred to by name.
+pub(super) struct Drawn<'a> {
+    /// The figures.
+    pub figures: &'a [Figure],
+    /// How numbers are printed.
+    pub locale: Locale<'a>,
+}
+
+impl Drawn<'_> {
+    /// Refers to a figure by its name; `None` if it was not drawn.
+    pub(super) fn figure(&self, name: &str, caption: &str) -> Option<FigureRef> {
+        let figure = self.figures.iter().find(|f| f.name == name)?;
+        Some(FigureRef {
+            name: figure.name.clone(),
+            width: figure.drawing.width,
+            height: figure.drawing.height,
+            number: None,
+            caption: Rich::from(caption),
+            alt: richtext::plain(&figure.title),
+        })
+    }
+
+    /// A block of those of the named figures that were drawn.
+    pub(super) fn figures_block(&self, named: &[(&str, &str)]) -> Option<Block> {
+        let figures: Vec<FigureRef> = named
+            .iter()
+            .filter_map(|(name, caption)| self.figure(name, caption))
+            .collect();
+        (!figures.is_empty()).then_some(Block::Figures { figures })
+    }
+}

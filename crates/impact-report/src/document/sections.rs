@@ -1,0 +1,265 @@
+//! The sections after the first page, each only where there is something to show.
+
+use super::drawn::Drawn;
+use super::model::{Block, Rich, Section};
+use super::settings::settings;
+use super::tables;
+use super::{captions, conventions};
+use crate::content::ReportContent;
+use crate::figures::comparison;
+use crate::figures::plane::Plane;
+use crate::locale::Locale;
+use crate::parameters::{method_inline, parameter, short};
+use crate::phrase::Phrase;
+use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::{Finding, Method, MethodResult};
+
+/// All sections in their order.
+pub(super) fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
+    let mut sections: Vec<Section> = [
+        regions(content, drawn),
+        comparisons(content, drawn),
+        methods(content, drawn),
+        uncertainty(content, drawn),
+        specimens(content, drawn),
+        left_out(content, drawn),
+        records(content, drawn),
+        conventions(content, drawn),
+        provenance(content, drawn),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    letter_appendices(&mut sections, drawn.locale);
+    sections
+}
+
+/// Letters before the titles of the appendices, in the order in which they come; the first begins a page.
+fn letter_appendices(sections: &mut [Section], locale: Locale<'_>) {
+    let appendices = sections.iter_mut().filter(|s| s.appendix);
+    for (section, letter) in appendices.zip('A'..='Z') {
+        section.new_page = letter == 'A';
+        let (letter, title) = (letter.to_string(), section.title.plain());
+        let values = [("letter", letter.as_str()), ("title", title.as_str())];
+        section.title = Rich::from(locale.translate_with(Phrase::Appendix, &values));
+    }
+}
+
+fn appendix(title: String, blocks: Vec<Block>) -> Option<Section> {
+    section(title, false, blocks).map(|s| Section {
+        appendix: true,
+        ..s
+    })
+}
+
+pub(super) fn section(title: String, new_page: bool, blocks: Vec<Block>) -> Option<Section> {
+    (!blocks.is_empty()).then(|| Section {
+        title: Rich::from(title),
+        level: 1,
+        new_page,
+        appendix: false,
+        blocks,
+    })
+}
+
+pub(super) fn paragraph(text: impl AsRef<str>) -> Block {
+    Block::Paragraph {
+        text: Rich::from(text),
+    }
+}
+
+fn regions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let mut blocks = Vec::new();
+    blocks.extend(drawn.figures_block(&[("map", &map_caption(content, drawn.locale))]));
+    blocks.extend(boundaries_alone(content, drawn.locale).map(paragraph));
+    blocks.extend(tables::brackets(content, drawn.locale).map(|t| t.block("brackets")));
+    section(
+        drawn.locale.translate(Phrase::RegionsOfMotion),
+        true,
+        blocks,
+    )
+}
+
+/// R of the boundaries beside that of all methods together.
+fn boundaries_alone(content: &ReportContent, locale: Locale<'_>) -> Option<String> {
+    let id = &content.identification;
+    let look = parameter(Coordinate::Restitution)?;
+    let of = |result: &MethodResult| {
+        let estimate = result.parameters.restitution.as_ref();
+        let known = estimate.filter(|e| e.value.is_some());
+        known.map(|e| short(look, Some(e), locale))
+    };
+    let boundaries = of(id.methods.get(&Method::Boundaries)?)?;
+    let joint = of(&id.joint)?;
+    let values = [("boundaries", boundaries.as_str()), ("joint", &joint)];
+    Some(locale.translate_with(Phrase::CaptionBoundariesAlone, &values))
+}
+
+fn map_caption(content: &ReportContent, locale: Locale<'_>) -> String {
+    let mut text = locale.translate(Phrase::CaptionMap);
+    let mut add = |sentence: &str| text.push_str(&format!(" {sentence}"));
+    let strips = Plane::of(content).map(|p| p.view(content).strips);
+    if strips.is_some_and(|s| !s.is_empty()) {
+        add(&locale.translate(Phrase::CaptionStrips));
+    }
+    if content.compared.region_map.is_some() {
+        add(&locale.translate(Phrase::CaptionRegions));
+        add(&locale.translate(Phrase::CaptionCells));
+    }
+    if content.compared.curves.iter().any(|c| !c.band95.is_empty()) {
+        add(&locale.translate(Phrase::CaptionBands));
+    }
+    if !content.compared.comparisons.is_empty() {
+        add(&locale.translate(Phrase::CaptionLetters));
+    }
+    text
+}
+
+fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let mut blocks = Vec::new();
+    for comparison in &content.compared.comparisons {
+        let name = comparison::name(comparison);
+        let caption = captions::comparison(comparison, drawn.locale);
+        blocks.extend(drawn.figures_block(&[(&name, &caption)]));
+    }
+    if !blocks.is_empty() {
+        let keys = Phrase::CaptionComparisons;
+        blocks.insert(0, paragraph(drawn.locale.translate(keys)));
+    }
+    section(
+        drawn.locale.translate(Phrase::SimulatedAndMeasuredMotions),
+        false,
+        blocks,
+    )
+}
+
+/// What was found of each specimen, by method.
+fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let table =
+        tables::specimen_methods(content, drawn.locale).map(|t| t.block("specimen_methods"));
+    let mut blocks: Vec<Block> = table.into_iter().collect();
+    for (specimen, result) in &content.identification.specimens {
+        for (method, result) in &result.methods {
+            let name = method_inline(*method, drawn.locale);
+            blocks.extend(result.remarks.iter().map(|r| {
+                let text = drawn.locale.sentence(r);
+                paragraph(format!("{specimen}, {name}: {text}"))
+            }));
+        }
+    }
+    section(
+        drawn.locale.translate(Phrase::SpecimenBySpecimen),
+        false,
+        blocks,
+    )
+}
+
+fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let mut blocks = Vec::new();
+    if content.identification.specimens.is_empty() {
+        blocks.extend(tables::methods(content, drawn.locale).map(|t| t.block("methods")));
+    }
+    blocks.extend(tables::agreement(content, drawn.locale).map(|t| t.block("agreement")));
+    let remarks = content
+        .identification
+        .methods
+        .iter()
+        .flat_map(|(name, method)| {
+            let name = drawn.locale.message(name);
+            method
+                .remarks
+                .iter()
+                .map(move |r| paragraph(format!("{name}: {}", drawn.locale.sentence(r))))
+        });
+    blocks.extend(remarks);
+    blocks.extend(tables::further(content, drawn.locale).map(|t| t.block("further")));
+    for group in captions::method_figures(content, drawn.locale) {
+        let named: Vec<(&str, &str)> = group
+            .iter()
+            .map(|(n, c)| (n.as_str(), c.as_str()))
+            .collect();
+        blocks.extend(drawn.figures_block(&named));
+    }
+    // Three comparisons fill a page; below one alone there is room. Pages that begin anew are set beside
+    // each other.
+    let comparisons = content.compared.comparisons.len();
+    let new_page = comparisons > 0 && comparisons % 3 != 1;
+    section(
+        drawn.locale.translate(Phrase::MethodByMethod),
+        new_page,
+        blocks,
+    )
+}
+
+/// What the rig has beyond the model, and the uncertainty budget.
+fn uncertainty(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let findings = content.identification.verdict.findings.iter();
+    let beyond = findings.filter(|f| matches!(f, Finding::BeyondModel { .. }));
+    let mut blocks: Vec<Block> = beyond
+        .map(|finding| paragraph(drawn.locale.sentence(finding)))
+        .collect();
+    blocks.extend(tables::budget(content, drawn.locale).map(|t| t.block("budget")));
+    let title = Phrase::UncertaintyAndEffects;
+    section(drawn.locale.translate(title), false, blocks)
+}
+
+fn left_out(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let table = tables::left_out(content, drawn.locale).map(|t| t.block("left_out"));
+    let title = drawn.locale.translate(Phrase::WhatWasLeftOut);
+    section(title, false, table.into_iter().collect())
+}
+
+fn records(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let table = tables::records(content, drawn.locale).map(|t| t.block("records"));
+    appendix(
+        drawn.locale.translate(Phrase::AllRecords),
+        table.into_iter().collect(),
+    )
+}
+
+fn conventions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let records = &content.compared.records;
+    let driven = records.is_empty() || records.iter().any(|r| r.frequency_hz.is_some());
+    let intervals = Phrase::IntervalsAndUnits;
+    let blocks = vec![
+        Block::Definitions {
+            entries: conventions::entries(driven, drawn.locale),
+        },
+        paragraph(drawn.locale.translate(intervals)),
+    ];
+    appendix(drawn.locale.translate(Phrase::Conventions), blocks)
+}
+
+/// Versions of program and formats.
+fn versions(content: &ReportContent, locale: Locale<'_>) -> Option<Block> {
+    let versions = &content.provenance.versions;
+    let each: Vec<String> = versions.iter().map(|(k, v)| format!("{k} {v}")).collect();
+    let list = each.join(", ");
+    let text = locale.translate_with(Phrase::Versions, &[("list", &list)]);
+    (!each.is_empty()).then(|| Block::Paragraph {
+        text: Rich::verbatim(text),
+    })
+}
+
+fn provenance(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let mut blocks = Vec::new();
+    if !content.command_line.is_empty() {
+        blocks.push(paragraph(drawn.locale.translate(Phrase::CommandAgain)));
+        blocks.push(Block::Verbatim {
+            text: content.command_line.clone(),
+            columns: 1,
+        });
+    }
+    blocks.extend(versions(content, drawn.locale));
+    blocks.extend(tables::hashes(content, drawn.locale).map(|t| t.block("hashes")));
+    if !content.provenance.settings.is_null() {
+        blocks.push(paragraph(
+            drawn.locale.translate(Phrase::SettingsAsResolved),
+        ));
+        blocks.push(settings(&content.provenance.settings));
+    }
+    appendix(
+        drawn.locale.translate(Phrase::SettingsVersionsInputs),
+        blocks,
+    )
+}

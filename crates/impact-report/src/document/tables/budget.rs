@@ -1,0 +1,197 @@
+//! The uncertainty budget of the joint estimate.
+
+use super::{Column, table};
+use crate::content::ReportContent;
+use crate::document::model::{Rich, Table};
+use crate::figures::correlation::name;
+use crate::figures::richtext::plain;
+use crate::locale::Locale;
+use crate::phrase::Phrase;
+use impact_identification::identify::fit::effect::Effect;
+use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::uncertainty::budget::{
+    Budget, Combined, Contribution, Row, Source,
+};
+
+/// Size of the table's type, points.
+const SIZE: f64 = 7.5;
+/// Least share of a parameter's variance from which a source has a row of its own.
+const LEAST_SHARE: f64 = 0.01;
+/// Unit of the contributions.
+const UNIT: f64 = 1e-4;
+/// More degrees of freedom than this are printed as infinitely many.
+const MANY: f64 = 1e4;
+
+/// A row for each source that matters, one for all others, and what they amount to.
+pub(crate) fn budget(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
+    let budget = &content.identification.uncertainty.budget;
+    if budget.rows.is_empty() {
+        return None;
+    }
+    let (mut main, minor): (Vec<&Row>, Vec<&Row>) =
+        budget.rows.iter().partition(|row| matters(row, budget));
+    main.sort_by(|a, b| greatest_share(b, budget).total_cmp(&greatest_share(a, budget)));
+    let mut rows: Vec<Vec<Rich>> = main.iter().map(|row| source_row(row, locale)).collect();
+    if !minor.is_empty() {
+        rows.push(others(&minor, locale));
+    }
+    rows.extend(sums(budget, locale));
+    let columns = vec![
+        Column::wide(Phrase::UncertaintySource, 1),
+        Column::center(Phrase::EvaluationType),
+        Column::right(Phrase::StandardUncertainty),
+        Column::right("$R$"),
+        Column::right("$f_0$"),
+        Column::right("$β$"),
+        Column::right("$x_st$"),
+        Column::right(Phrase::DegreesOfFreedom),
+    ];
+    table(Phrase::UncertaintyBudget, columns, rows, locale).map(|t| Table { size: SIZE, ..t })
+}
+
+fn matters(row: &Row, budget: &Budget) -> bool {
+    greatest_share(row, budget) >= LEAST_SHARE
+}
+
+/// The greatest share that a source has in the variance of a parameter.
+fn greatest_share(row: &Row, budget: &Budget) -> f64 {
+    let share = |c: &Combined| {
+        let own = contribution(row, c.parameter).unwrap_or(0.0);
+        (own / c.standard_uncertainty).powi(2)
+    };
+    budget.combined.iter().map(share).fold(0.0, f64::max)
+}
+
+fn contribution(row: &Row, parameter: Coordinate) -> Option<f64> {
+    let mut all = row.contributions.iter();
+    all.find(|c| c.parameter == parameter)
+        .map(|c: &Contribution| c.uncertainty)
+}
+
+fn source_row(row: &Row, locale: Locale<'_>) -> Vec<Rich> {
+    let mut cells = vec![
+        Rich::from(source(row.source, locale)),
+        Rich::from(format!("{:?}", row.evaluation)),
+        Rich::from(stated(row, locale)),
+    ];
+    cells.extend(per_parameter(|c| contribution(row, c), locale));
+    cells.push(Rich::from(freedom(row.degrees_of_freedom, locale)));
+    cells
+}
+
+fn source(source: Source, locale: Locale<'_>) -> String {
+    match source {
+        Source::Noise { method } => {
+            let method = locale.message(&method);
+            locale.translate_with(Phrase::NoiseOf, &[("method", &method)])
+        }
+        Source::BetweenGroups { groups } => locale.translate_with(
+            Phrase::ScatterBetweenGroups,
+            &[("count", &groups.to_string())],
+        ),
+        Source::Stated {
+            clearance_m: Some(m),
+            ..
+        } => {
+            let clearance = locale.significant(1e3 * m, 3);
+            locale.translate_with(Phrase::StatedClearance, &[("clearance", &clearance)])
+        }
+        Source::Stated { coordinate, .. } => name(coordinate, locale),
+        Source::FirstOrder => locale.translate(Phrase::BeyondFirstOrder),
+        Source::RestitutionOverSpeed => locale.translate(Phrase::ChangeOverSpeed),
+        Source::BetweenMethods => locale.translate(Phrase::DisagreementOfMethods),
+        Source::Clock => locale.translate(Phrase::ClockOfSampler),
+        Source::InstrumentOff => locale.translate(Phrase::InstrumentThatIsOff),
+    }
+}
+
+/// The name of a source of uncertainty in English.
+pub fn budget_source(of: Source) -> String {
+    plain(&source(of, Locale::default()))
+}
+
+/// The standard uncertainty of a source in its own unit.
+fn stated(row: &Row, locale: Locale<'_>) -> String {
+    let Some(u) = row.standard_uncertainty else {
+        return "–".into();
+    };
+    let coordinate = match row.source {
+        Source::Stated { coordinate, .. } => coordinate,
+        Source::Clock => return format!("{} ppm", locale.significant(1e6 * u, 2)),
+        _ => return "–".into(),
+    };
+    let (factor, unit) = match coordinate {
+        Coordinate::ScrewZero | Coordinate::Gap(_) => (1e3, "µm"),
+        Coordinate::Delay(_) | Coordinate::Effect(Effect::ContactDuration) => (1.0, "ms"),
+        _ => (1e2, "%"),
+    };
+    format!("{} {unit}", locale.significant(factor * u, 2))
+}
+
+fn per_parameter(
+    of: impl Fn(Coordinate) -> Option<f64>,
+    locale: Locale<'_>,
+) -> impl Iterator<Item = Rich> {
+    let cell = move |c| of(c).map_or("–".into(), |u| locale.fixed(u / UNIT, 2));
+    Coordinate::PHYSICAL
+        .into_iter()
+        .map(cell)
+        .map(|text: String| Rich::from(text))
+}
+
+fn freedom(freedom: Option<f64>, locale: Locale<'_>) -> String {
+    let few = freedom.filter(|n| *n < MANY);
+    few.map_or("∞".into(), |n| locale.fixed(n, 0))
+}
+
+/// The sources that matter little, together.
+fn others(minor: &[&Row], locale: Locale<'_>) -> Vec<Rich> {
+    let count = minor.len().to_string();
+    let together = |c: Coordinate| {
+        let squares = minor.iter().filter_map(|row| contribution(row, c));
+        let sum: f64 = squares.map(|u| u * u).sum();
+        Some(sum.sqrt())
+    };
+    let mut cells = vec![
+        Rich::from(locale.translate_with(Phrase::FurtherSources, &[("count", &count)])),
+        Rich::from("A, B"),
+        Rich::from("–"),
+    ];
+    cells.extend(per_parameter(together, locale));
+    cells.push(Rich::from("–"));
+    cells
+}
+
+/// Combined standard uncertainty, degrees of freedom, coverage factor, expanded uncertainty.
+fn sums(budget: &Budget, locale: Locale<'_>) -> [Vec<Rich>; 4] {
+    let of = |c: Coordinate| budget.combined.iter().find(|sum| sum.parameter == c);
+    let line = |name: Phrase, cells: Vec<Rich>| {
+        let head = [locale.translate(name), String::new(), "–".into()];
+        let mut row: Vec<Rich> = head.into_iter().map(Rich::from).collect();
+        row.extend(cells);
+        row.push(Rich::from("–"));
+        row
+    };
+    let texts = |text: &dyn Fn(&Combined) -> String| {
+        let cell = |c| Rich::from(of(c).map_or("–".into(), text));
+        Coordinate::PHYSICAL.into_iter().map(cell).collect()
+    };
+    [
+        line(
+            Phrase::CombinedUncertainty,
+            per_parameter(|c| of(c).map(|sum| sum.standard_uncertainty), locale).collect(),
+        ),
+        line(
+            Phrase::EffectiveDegreesOfFreedom,
+            texts(&|sum| freedom(sum.degrees_of_freedom, locale)),
+        ),
+        line(
+            Phrase::CoverageFactor,
+            texts(&|sum| locale.fixed(sum.coverage_factor, 2)),
+        ),
+        line(
+            Phrase::ExpandedUncertainty,
+            per_parameter(|c| of(c).map(|sum| sum.expanded_uncertainty), locale).collect(),
+        ),
+    ]
+}

@@ -1,0 +1,56 @@
+//! The map's keys.
+
+use crate::figures::legend::{Key, Sign};
+use crate::figures::plane::Plane;
+use crate::figures::{boundaries, look, marks};
+use crate::phrase::{Phrase, motion_text};
+use impact_identification::replay::Compared;
+use impact_records::motion::BoundaryKind;
+
+/// Keys of the motions that were measured.
+pub(super) fn motions(compared: &Compared) -> Vec<Key> {
+    let met = marks::met(compared.records.iter().map(|r| &r.motion));
+    met.into_iter()
+        .map(|m| Key::new(Sign::Mark(marks::of(m)), motion_text(m)))
+        .collect()
+}
+
+/// All keys of the large map.
+pub(super) fn full(compared: &Compared, plane: Plane) -> Vec<Key> {
+    let mut keys = vec![Key::new(Sign::Nothing, Phrase::MeasuredMotions)];
+    keys.extend(motions(compared));
+    if !compared.brackets.is_empty() {
+        keys.push(Key::new(Sign::Bracket(look::INK), Phrase::MeasuredBracket));
+        if compared.brackets.iter().any(|b| b.left_out.is_some()) {
+            keys.push(Key::new(
+                Sign::Bracket(look::UNUSED),
+                Phrase::BracketNotUsed,
+            ));
+        }
+    }
+    if plane.dimensionless {
+        keys.extend(curve_keys(compared));
+    }
+    keys
+}
+
+fn curve_keys(compared: &Compared) -> Vec<Key> {
+    let kinds = [
+        (BoundaryKind::SaddleNode, Phrase::SaddleNodeSimulated),
+        (
+            BoundaryKind::PeriodDoubling,
+            Phrase::PeriodDoublingSimulated,
+        ),
+        (BoundaryKind::Grazing, Phrase::GrazingSimulated),
+        (BoundaryKind::Other, Phrase::OtherEdgeSimulated),
+    ];
+    let mut keys: Vec<Key> = kinds
+        .into_iter()
+        .filter(|(kind, _)| compared.curves.iter().any(|c| c.kind == *kind))
+        .map(|(kind, text)| Key::new(Sign::Line(boundaries::stroke(kind, 1.1)), text))
+        .collect();
+    if compared.curves.iter().any(|c| !c.band95.is_empty()) {
+        keys.push(Key::new(Sign::Patch(look::BOUNDARY_BAND), Phrase::Band95));
+    }
+    keys
+}
