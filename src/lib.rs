@@ -7,7 +7,9 @@
 //! `campaign`, `pipeline`, `explore`, `cli`. The model itself is the crate `impact-oscillator`, files
 //! are read by the crate `labfiles`.
 
-pub mod campaign;
 pub mod cli;
+pub mod coverage;
 pub mod explore;
-pub mod pipeline;
+pub mod pairs;
+pub mod selftest;
+pub mod theory;

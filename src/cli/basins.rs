@@ -5,7 +5,7 @@ use clap::Args;
 use super::machine::{MachineArgs, WatchArgs, range};
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity};
-use crate::pipeline::theory::plan::BasinPlan;
+use crate::theory::plan::BasinPlan;
 use impact_oscillator::atlas::basins::{BasinGrid, Starts};
 use impact_oscillator::model::Setting;
 

@@ -7,9 +7,9 @@ use clap::Args;
 use super::failure::print_diagnostics;
 use super::read_log::ReadLog;
 use super::{Exit, Failure, Progress, Verbosity};
-use crate::campaign::check;
-use crate::campaign::diagnostic::{Diagnostics, Severity};
-use crate::campaign::load;
+use impact_campaign::campaign::check;
+use impact_campaign::campaign::diagnostic::{Diagnostics, Severity};
+use impact_campaign::campaign::load;
 
 /// Arguments of `impactid check`.
 #[derive(Debug, Args)]

@@ -14,8 +14,8 @@ use super::stdout::print;
 use super::watch::{PaceArgs, tell};
 use super::{Exit, Failure, Progress, Verbosity};
 use crate::explore::{Campaign, ExploreError, Server, Session, check};
-use crate::pipeline::theory::Study;
-use crate::pipeline::watch::Watcher;
+use crate::theory::Study;
+use impact_campaign::pipeline::watch::Watcher;
 
 /// Arguments of `impactid explore`.
 #[derive(Debug, Args)]

@@ -5,8 +5,8 @@ use std::path::Path;
 use miette::{GraphicalReportHandler, GraphicalTheme};
 
 use super::Verbosity;
-use crate::campaign::diagnostic::{Code, Diagnostic, Diagnostics, Place, Severity};
-use crate::pipeline::{PipelineError, RefusedRecord};
+use impact_campaign::campaign::diagnostic::{Code, Diagnostic, Diagnostics, Place, Severity};
+use impact_campaign::pipeline::{PipelineError, RefusedRecord};
 use labfiles::ReadError;
 use labfiles::output::OutputError;
 use labfiles::panic_is_caught;

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::{Exit, Failure, Verbosity};
-use crate::campaign::infer::{self, FolderContents};
-use crate::campaign::template;
+use impact_campaign::campaign::infer::{self, FolderContents};
+use impact_campaign::campaign::template;
 use impact_records::message::counted;
 use labfiles::open;
 use labfiles::output;

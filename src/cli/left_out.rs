@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::Verbosity;
-use crate::campaign::check::LISTED;
-use crate::campaign::diagnostic::{Diagnostic, Diagnostics, Group};
+use impact_campaign::campaign::check::LISTED;
+use impact_campaign::campaign::diagnostic::{Diagnostic, Diagnostics, Group};
 use impact_records::motion::Observation;
 use impact_records::record::FlagCode;
 

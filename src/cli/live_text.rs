@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::estimate_text::with_error;
-use crate::pipeline::watch::{Live, NewsKind, Outline, Watcher};
+use impact_campaign::pipeline::watch::{Live, NewsKind, Outline, Watcher};
 use impact_identification::identify::Identification;
 use impact_identification::identify::fit::parameters::Coordinate;
 use impact_identification::identify::plan::Proposal;

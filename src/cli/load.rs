@@ -5,9 +5,9 @@ use std::path::Path;
 use super::failure::print_diagnostics;
 use super::read_log::ReadLog;
 use super::{Failure, Verbosity};
-use crate::campaign::diagnostic::{Diagnostics, Severity};
-use crate::campaign::load;
-use crate::campaign::resolved::ResolvedCampaign;
+use impact_campaign::campaign::diagnostic::{Diagnostics, Severity};
+use impact_campaign::campaign::load;
+use impact_campaign::campaign::resolved::ResolvedCampaign;
 
 /// The resolved campaign; problems that stop it are an error, the others are printed (notes only
 /// with `-v`).

@@ -3,8 +3,8 @@
 use clap::Args;
 
 use super::Failure;
-use crate::pipeline::theory::Study;
-use crate::pipeline::theory::plan::Law;
+use crate::theory::Study;
+use crate::theory::plan::Law;
 use impact_oscillator::model::params::Asymmetry;
 use impact_oscillator::model::{Initial, Machine, Restitution, Watch};
 

@@ -8,7 +8,7 @@ use clap::Args;
 use super::atlas::NAME;
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity};
-use crate::pipeline::theory::regions::write_atlas;
+use crate::theory::regions::write_atlas;
 use impact_oscillator::atlas::shard::{AtlasPart, merge};
 
 /// Arguments of `impactid merge`.

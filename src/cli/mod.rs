@@ -54,7 +54,7 @@ pub use failure::Failure;
 pub use progress::Progress;
 pub use verbosity::Verbosity;
 
-use crate::pipeline;
+use impact_campaign::pipeline;
 
 /// From a laboratory campaign on an impact oscillator to restitution, natural frequency,
 /// damping and a comparison report.

@@ -7,8 +7,8 @@ use super::atlas::computed;
 use super::merge::whole;
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity};
-use crate::pipeline::theory::Study;
-use crate::pipeline::theory::plan::RegionsPlan;
+use crate::theory::Study;
+use crate::theory::plan::RegionsPlan;
 use impact_oscillator::atlas::shard::AtlasPart;
 
 /// What a rank sends to the first: its part as JSON, or why it has none.

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::stdout::print_json;
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
-use crate::pipeline::plan;
+use impact_campaign::pipeline::plan;
 use impact_identification::identify::boundary_plan::BoundaryPlan;
 use impact_records::motion::Motion;
 

@@ -7,9 +7,9 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::{Failure, Verbosity};
-use crate::campaign::resolved::{Report, ResolvedCampaign};
-use crate::campaign::written::Paper;
-use crate::pipeline;
+use impact_campaign::campaign::resolved::{Report, ResolvedCampaign};
+use impact_campaign::campaign::written::Paper;
+use impact_campaign::pipeline;
 use impact_report::Format;
 
 /// Options of the report.

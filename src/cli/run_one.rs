@@ -8,7 +8,7 @@ use super::load::load_campaign;
 use super::progress::{LATER, Progress};
 use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::{Failure, Verbosity, interrupt};
-use crate::pipeline::{self, Completed, Destination, checkpoint};
+use impact_campaign::pipeline::{self, Completed, Destination, checkpoint};
 use impact_identification::identify::{Finding, Identification, VerdictKind};
 
 /// From how many records on checkpoints are written; `IMPACTID_KEEP_FROM` sets another number, for

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use super::estimate_text::with_error;
 use super::run_one::RunOptions;
 use super::{Exit, Failure, Verbosity, interrupt};
-use crate::pipeline::summary::{Fault, Found, Outcome, Row, Summary};
-use crate::pipeline::{campaign_folders, layout, summary};
+use impact_campaign::pipeline::summary::{Fault, Found, Outcome, Row, Summary};
+use impact_campaign::pipeline::{campaign_folders, layout, summary};
 use impact_identification::identify::VerdictKind;
 
 /// The campaigns as typed; a pattern that the shell has left as it is stands for the files that match

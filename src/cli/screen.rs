@@ -4,7 +4,7 @@ use std::io::{IsTerminal, Write};
 
 use super::failure::print_diagnostics;
 use super::{Failure, Verbosity};
-use crate::campaign::diagnostic::Diagnostics;
+use impact_campaign::campaign::diagnostic::Diagnostics;
 
 /// The part at the end of the standard error stream that is drawn again.
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::stdout::print;
 use super::{Exit, Failure, Verbosity};
-use crate::pipeline::selftest::{Check, checks};
+use crate::selftest::{Check, checks};
 
 /// Arguments of `impactid selftest`.
 #[derive(Debug, Args)]

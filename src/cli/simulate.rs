@@ -7,7 +7,7 @@ use clap::{Args, Subcommand};
 use super::machine::{MachineArgs, StartArgs};
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity, interrupt};
-use crate::pipeline::synthesise::{Recipe, write_campaign};
+use impact_campaign::pipeline::synthesise::{Recipe, write_campaign};
 use impact_oscillator::atlas::portrait::{PortraitPlan, Soft};
 use impact_oscillator::model::Setting;
 use simulated_rig::truth::draw_differences;

@@ -14,7 +14,7 @@ use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::run_one::print_verdict;
 use super::stdout::print;
 use super::{Exit, Failure, Verbosity, interrupt};
-use crate::pipeline::{self, store};
+use impact_campaign::pipeline::{self, store};
 use impact_report::catalog::Catalog;
 use labfiles::output::Lock;
 

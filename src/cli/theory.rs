@@ -6,8 +6,8 @@ use std::sync::Mutex;
 use clap::Args;
 
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
-use crate::pipeline::block_cache::BlockCache;
-use crate::pipeline::theory::{Pictures, Study, StudyContext, run};
+use crate::theory::{Pictures, Study, StudyContext, run};
+use impact_campaign::pipeline::block_cache::BlockCache;
 use labfiles::output::write_bytes;
 
 /// Where results go.

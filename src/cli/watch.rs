@@ -13,8 +13,8 @@ use super::report_args::{ReportArgs, print_report_paths};
 use super::run_one::{command_line, keep_from, print_completed};
 use super::screen::Screen;
 use super::{Exit, Failure, Verbosity, interrupt, live_text};
-use crate::pipeline::watch::{News, NewsKind, Pace, Patience, Seen, Watcher, write_live};
-use crate::pipeline::{Completed, Destination, layout};
+use impact_campaign::pipeline::watch::{News, NewsKind, Pace, Patience, Seen, Watcher, write_live};
+use impact_campaign::pipeline::{Completed, Destination, layout};
 use impact_report::Format;
 use labfiles::output::Lock;
 

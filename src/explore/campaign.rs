@@ -6,12 +6,14 @@ use serde_json::{Value, json};
 
 use super::ExploreError;
 use super::state::{Cursor, Panel, RigScale, State, Window};
-use crate::campaign::resolved::ResolvedCampaign;
-use crate::pipeline::identify::{IdentificationFile, evidence};
-use crate::pipeline::observe::read_one;
-use crate::pipeline::theory::plan::Law;
-use crate::pipeline::watch::Live;
-use crate::pipeline::{Observed, PipelineError, Progress, identify, inputs, layout, store};
+use crate::theory::plan::Law;
+use impact_campaign::campaign::resolved::ResolvedCampaign;
+use impact_campaign::pipeline::identify::{IdentificationFile, evidence};
+use impact_campaign::pipeline::observe::read_one;
+use impact_campaign::pipeline::watch::Live;
+use impact_campaign::pipeline::{
+    Observed, PipelineError, Progress, identify, inputs, layout, store,
+};
 use impact_identification::identify::evidence::Blocks;
 use impact_identification::identify::fit::parameters::Parameters;
 use impact_identification::identify::{Estimate, Identification};

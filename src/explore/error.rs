@@ -40,7 +40,7 @@ pub enum ExploreError {
     Server(String),
     /// A stage of the pipeline failed.
     #[error(transparent)]
-    Pipeline(#[from] crate::pipeline::PipelineError),
+    Pipeline(#[from] impact_campaign::pipeline::PipelineError),
     /// Steps of demos did not show what they state.
     #[error("{} of the demos' steps differ: {}", .0.len(), .0.join("; "))]
     Demos(Vec<String>),

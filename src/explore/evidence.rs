@@ -8,7 +8,7 @@ use super::answer::Stop;
 use super::campaign::Campaign;
 use super::jobs::Job;
 use super::{ExploreError, State};
-use crate::pipeline::identify::evidence;
+use impact_campaign::pipeline::identify::evidence;
 use impact_identification::identify::Method;
 use impact_identification::identify::evidence::boundary::predicted_hz;
 use impact_identification::identify::fit::Block;

@@ -9,8 +9,8 @@ use super::answer::Stop;
 use super::jobs::Job;
 use super::state::State;
 use super::wire::ExportFile;
-use crate::pipeline::block_cache::BlockCache;
-use crate::pipeline::theory::{Pictures, StudyContext, run};
+use crate::theory::{Pictures, StudyContext, run};
+use impact_campaign::pipeline::block_cache::BlockCache;
 
 /// The files that `impactid study` would write of the state's study.
 pub(super) fn files(

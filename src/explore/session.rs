@@ -7,7 +7,7 @@ use tokio::sync::watch;
 use super::campaign::Campaign;
 use super::state::{Line, Panel, State, Window};
 use super::{ExploreError, demo};
-use crate::pipeline::theory::Study;
+use crate::theory::Study;
 
 /// What the explorer was started with.
 pub struct Session {
@@ -95,7 +95,7 @@ impl Session {
                 starts: plan.grid.starts,
             });
             if let Some(r) = plan.restitution {
-                state.restitution = crate::pipeline::theory::plan::Law::Constant(r);
+                state.restitution = crate::theory::plan::Law::Constant(r);
             }
         }
         if let Some(plan) = study.sweep.values().next() {

@@ -6,8 +6,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::ExploreError;
-use crate::pipeline::theory::Study;
-use crate::pipeline::theory::plan::{BasinPlan, Law, MapPlan, SweepPlan};
+use crate::theory::Study;
+use crate::theory::plan::{BasinPlan, Law, MapPlan, SweepPlan};
 use impact_oscillator::atlas::portrait::PortraitPlan;
 use impact_oscillator::atlas::{BasinGrid, MapSettings, Starts};
 use impact_oscillator::model::params::Asymmetry;

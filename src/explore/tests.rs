@@ -6,7 +6,7 @@ use super::demo::{self, Demo};
 use super::frame::Frame;
 use super::state::{Line, Panel, State};
 use super::{ExploreError, Session, export};
-use crate::pipeline::theory::{Pictures, Study};
+use crate::theory::{Pictures, Study};
 
 #[test]
 fn a_frame_is_its_header_then_numbers_then_cells() {

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
-use impactid::pipeline::Observed;
+use impact_campaign::pipeline::Observed;
 use labfiles::open;
 use labfiles::{Samples, Source};
 
@@ -13,7 +13,7 @@ use crate::support::{Lab, wav_format};
 /// A good campaign listed, one of its files changed, then observed.
 fn observed_after(change: impl Fn(&Path)) -> Observed {
     let lab = Lab::new();
-    let loaded = impactid::campaign::load(&lab.path("campaign.toml"), &open);
+    let loaded = impact_campaign::campaign::load(&lab.path("campaign.toml"), &open);
     let campaign = loaded.campaign.expect("a good campaign");
     change(&lab.path("r2.csv"));
     Observed::of(&campaign, &|_, _, _| {}).expect("the others can be used")

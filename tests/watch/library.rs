@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use impactid::pipeline::watch::{News, Pace, Patience, Seen, Watcher};
+use impact_campaign::pipeline::watch::{News, Pace, Patience, Seen, Watcher};
 
 use crate::support::{Lab, table};
 

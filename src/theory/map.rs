@@ -2,8 +2,8 @@
 
 use super::StudyContext;
 use super::plan::MapPlan;
-use super::table::Table;
-use crate::pipeline::PipelineError;
+use impact_campaign::pipeline::PipelineError;
+use impact_campaign::pipeline::table::Table;
 use impact_identification::replay::RegionMap;
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::{Machine, MapGrid, SettledMotion, region_map};

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::StudyContext;
 use super::plan::SweepPlan;
-use super::table::Table;
-use crate::pipeline::PipelineError;
+use impact_campaign::pipeline::PipelineError;
+use impact_campaign::pipeline::table::Table;
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactless};
 use impact_oscillator::model::Machine;

@@ -2,8 +2,8 @@
 
 use super::StudyContext;
 use super::plan::BasinPlan;
-use super::table::Table;
-use crate::pipeline::PipelineError;
+use impact_campaign::pipeline::PipelineError;
+use impact_campaign::pipeline::table::Table;
 use impact_identification::replay::RegionMap;
 use impact_oscillator::atlas::basins::{Basins, basin_rows};
 use impact_oscillator::atlas::map::even;

@@ -5,8 +5,8 @@ use serde_json::json;
 
 use super::StudyContext;
 use super::plan::RegionsPlan;
-use super::table::Table;
-use crate::pipeline::PipelineError;
+use impact_campaign::pipeline::PipelineError;
+use impact_campaign::pipeline::table::Table;
 use impact_identification::replay::RegionMap;
 use impact_oscillator::atlas::curves::{Curve, CurvePoint};
 use impact_oscillator::atlas::regions::{assemble, columns};

@@ -32,13 +32,13 @@ pub(super) enum Get<T> {
 
 /// A table: columns of one length, each with its name (unit included).
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Table {
+pub struct Table {
     columns: Vec<(String, Values)>,
 }
 
 impl Table {
     /// A table without columns.
-    pub(super) fn new() -> Self {
+    pub fn new() -> Self {
         Self::default()
     }
 
@@ -54,32 +54,28 @@ impl Table {
     }
 
     /// With a column of numbers.
-    pub(super) fn numbers(self, name: &str, values: impl IntoIterator<Item = f64>) -> Self {
+    pub fn numbers(self, name: &str, values: impl IntoIterator<Item = f64>) -> Self {
         self.missing(name, values.into_iter().map(Some))
     }
 
     /// With a column of numbers some of which are missing.
-    pub(super) fn missing(self, name: &str, values: impl IntoIterator<Item = Option<f64>>) -> Self {
+    pub fn missing(self, name: &str, values: impl IntoIterator<Item = Option<f64>>) -> Self {
         self.with(name, Values::Numbers(values.into_iter().collect()))
     }
 
     /// With a column of counts; one above `u32::MAX` is written as that.
-    pub(super) fn counts(self, name: &str, values: impl IntoIterator<Item = usize>) -> Self {
+    pub fn counts(self, name: &str, values: impl IntoIterator<Item = usize>) -> Self {
         self.with(name, counts(values.into_iter().map(Some)))
     }
 
     /// With a column of yes and no.
-    pub(super) fn flags(self, name: &str, values: impl IntoIterator<Item = bool>) -> Self {
+    pub fn flags(self, name: &str, values: impl IntoIterator<Item = bool>) -> Self {
         let values = values.into_iter().map(Some).collect();
         self.with(name, Values::Flags(values))
     }
 
     /// With a column of texts.
-    pub(super) fn texts(
-        self,
-        name: &str,
-        values: impl IntoIterator<Item = impl Into<String>>,
-    ) -> Self {
+    pub fn texts(self, name: &str, values: impl IntoIterator<Item = impl Into<String>>) -> Self {
         let values = values.into_iter().map(|text| Some(text.into())).collect();
         self.with(name, Values::Texts(values))
     }
@@ -94,7 +90,7 @@ impl Table {
     }
 
     /// The table as CSV; numbers in the shortest form that reads back exactly, missing ones empty.
-    pub(super) fn csv(&self) -> String {
+    pub fn csv(&self) -> String {
         let names: Vec<&str> = self.columns.iter().map(|c| c.0.as_str()).collect();
         let mut text = names.join(",") + "\n";
         for row in 0..self.rows() {
@@ -109,7 +105,7 @@ impl Table {
     ///
     /// # Errors
     /// Those of the library.
-    pub(super) fn parquet(&self) -> Result<Vec<u8>, PolarsError> {
+    pub fn parquet(&self) -> Result<Vec<u8>, PolarsError> {
         let frame = self.frame()?;
         let rows = frame.height().max(1);
         let parts = (0..rows).step_by(ROW_GROUP).map(|first| {

@@ -97,7 +97,7 @@ pub enum PipelineError {
 
 impl PipelineError {
     /// A model's refusal of a named study.
-    pub(super) fn in_study(name: &str) -> impl Fn(ModelError) -> Self + use<'_> {
+    pub fn in_study(name: &str) -> impl Fn(ModelError) -> Self + use<'_> {
         move |source| Self::Study {
             name: name.to_owned(),
             source,
@@ -105,7 +105,7 @@ impl PipelineError {
     }
 
     /// Why a table could not be made or read.
-    pub(super) fn in_table<E: ToString>(table: &str) -> impl Fn(E) -> Self + use<'_, E> {
+    pub fn in_table<E: ToString>(table: &str) -> impl Fn(E) -> Self + use<'_, E> {
         move |error| Self::Table {
             table: table.to_owned(),
             reason: error.to_string(),

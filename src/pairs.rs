@@ -9,8 +9,8 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::pipeline::coverage::{Tally, identified};
-use crate::pipeline::{PipelineError, Progress};
+use crate::coverage::{Tally, identified};
+use impact_campaign::pipeline::{PipelineError, Progress};
 use impact_identification::compare::{self, Campaign, Common, Comparison, Outcome};
 use impact_identification::identify::fit::parameters::Coordinate;
 use impact_identification::identify::{GAIN_ROLES, Identification};

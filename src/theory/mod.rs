@@ -13,9 +13,9 @@ use std::ops::Range;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::pipeline::PipelineError;
-use crate::pipeline::block_cache::BlockCache;
-use crate::pipeline::table::{self, Table};
+use impact_campaign::pipeline::PipelineError;
+use impact_campaign::pipeline::block_cache::BlockCache;
+use impact_campaign::pipeline::table::{self, Table};
 use impact_report::figures::Figure;
 use impact_report::picture::pictures;
 use labfiles::output::OutputError;

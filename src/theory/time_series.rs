@@ -1,8 +1,8 @@
 //! A motion in full: time series, impacts, Poincaré map, autocorrelation, and their figure.
 
 use super::StudyContext;
-use super::table::Table;
-use crate::pipeline::PipelineError;
+use impact_campaign::pipeline::PipelineError;
+use impact_campaign::pipeline::table::Table;
 use impact_oscillator::atlas::portrait::{Portrait, PortraitPlan, Strike, portrait};
 use impact_oscillator::model::Machine;
 use impact_report::theory::motion::draw;

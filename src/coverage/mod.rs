@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::pipeline::{PipelineError, Progress};
+use impact_campaign::pipeline::{PipelineError, Progress};
 use impact_identification::identify::evidence::{Evidence, Nominal};
 use impact_identification::identify::fit::parameters::Parameters;
 use impact_identification::identify::run::identify;
