@@ -8,8 +8,3 @@
 //! are read by the crate `labfiles`.
 
 pub mod cli;
-pub mod coverage;
-pub mod explore;
-pub mod pairs;
-pub mod selftest;
-pub mod theory;

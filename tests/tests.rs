@@ -36,9 +36,6 @@ mod house;
 /// The main job on campaigns with known truth.
 mod main_job;
 
-/// The solver on NIST's nonlinear regression sets with certified answers.
-mod nist_strd;
-
 /// Records that nobody here wrote.
 mod real_data;
 

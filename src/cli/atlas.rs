@@ -6,10 +6,10 @@ use clap::{Args, ValueEnum};
 use super::machine::{MachineArgs, WatchArgs, range, refused};
 use super::theory::{OutArgs, study_text};
 use super::{Exit, Failure, Verbosity, interrupt};
-use crate::theory::Study;
-use crate::theory::plan::RegionsPlan;
 use impact_oscillator::atlas::map::{Kernel, MapSettings};
 use impact_oscillator::atlas::shard::{AtlasPart, AtlasRequest, part};
+use impact_workbench::theory::Study;
+use impact_workbench::theory::plan::RegionsPlan;
 use labfiles::output::{Lock, write_json_line};
 
 /// Arguments of `impactid atlas`.

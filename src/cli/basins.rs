@@ -5,9 +5,9 @@ use clap::Args;
 use super::machine::{MachineArgs, WatchArgs, range};
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity};
-use crate::theory::plan::BasinPlan;
 use impact_oscillator::atlas::basins::{BasinGrid, Starts};
 use impact_oscillator::model::Setting;
+use impact_workbench::theory::plan::BasinPlan;
 
 /// Arguments of `impactid basins`.
 #[derive(Debug, Args)]

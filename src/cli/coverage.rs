@@ -7,8 +7,8 @@ use clap::Args;
 use super::simulate::within;
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Progress, Verbosity};
-use crate::coverage::{self, CoveragePlan, MotionTally, Tallies, Tally};
 use impact_identification::identify::uncertainty::coverage::Score;
+use impact_workbench::coverage::{self, CoveragePlan, MotionTally, Tallies, Tally};
 use labfiles::output::write_bytes;
 use simulated_rig::RigSpec;
 

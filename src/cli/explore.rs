@@ -13,9 +13,9 @@ use super::screen::Screen;
 use super::stdout::print;
 use super::watch::{PaceArgs, tell};
 use super::{Exit, Failure, Progress, Verbosity};
-use crate::explore::{Campaign, ExploreError, Server, Session, check};
-use crate::theory::Study;
 use impact_campaign::pipeline::watch::Watcher;
+use impact_workbench::explore::{Campaign, ExploreError, Server, Session, check};
+use impact_workbench::theory::Study;
 
 /// Arguments of `impactid explore`.
 #[derive(Debug, Args)]

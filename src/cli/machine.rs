@@ -3,10 +3,10 @@
 use clap::Args;
 
 use super::Failure;
-use crate::theory::Study;
-use crate::theory::plan::Law;
 use impact_oscillator::model::params::Asymmetry;
 use impact_oscillator::model::{Initial, Machine, Restitution, Watch};
+use impact_workbench::theory::Study;
+use impact_workbench::theory::plan::Law;
 
 /// The dimensionless machine.
 #[derive(Debug, Clone, Args)]

@@ -8,8 +8,8 @@ use clap::Args;
 use super::atlas::NAME;
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity};
-use crate::theory::regions::write_atlas;
 use impact_oscillator::atlas::shard::{AtlasPart, merge};
+use impact_workbench::theory::regions::write_atlas;
 
 /// Arguments of `impactid merge`.
 #[derive(Debug, Args)]

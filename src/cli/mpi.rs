@@ -7,9 +7,9 @@ use super::atlas::computed;
 use super::merge::whole;
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity};
-use crate::theory::Study;
-use crate::theory::plan::RegionsPlan;
 use impact_oscillator::atlas::shard::AtlasPart;
+use impact_workbench::theory::Study;
+use impact_workbench::theory::plan::RegionsPlan;
 
 /// What a rank sends to the first: its part as JSON, or why it has none.
 type PartResult = Result<AtlasPart, String>;

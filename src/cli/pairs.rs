@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Progress, Verbosity};
-use crate::pairs::{self, Instruments, PairsPlan};
+use impact_workbench::pairs::{self, Instruments, PairsPlan};
 use simulated_rig::RigSpec;
 
 /// Arguments of `impactid study pairs`.

@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::stdout::print;
 use super::{Exit, Failure, Verbosity};
-use crate::selftest::{Check, checks};
+use impact_workbench::selftest::{Check, checks};
 
 /// Arguments of `impactid selftest`.
 #[derive(Debug, Args)]

@@ -9,7 +9,7 @@ use super::coverage::Coverage;
 use super::pairs::Pairs;
 use super::theory::{COPY, in_folder};
 use super::{Exit, Failure, Verbosity, interrupt};
-use crate::theory::{self, Study as Written};
+use impact_workbench::theory::{self, Study as Written};
 use labfiles::output::write_bytes;
 
 /// Arguments of `impactid study`.

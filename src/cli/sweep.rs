@@ -5,7 +5,7 @@ use clap::Args;
 use super::machine::{MachineArgs, StartArgs, WatchArgs, range};
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity};
-use crate::theory::plan::SweepPlan;
+use impact_workbench::theory::plan::SweepPlan;
 
 /// Arguments of `impactid sweep`.
 #[derive(Debug, Args)]

@@ -6,8 +6,8 @@ use std::sync::Mutex;
 use clap::Args;
 
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
-use crate::theory::{Pictures, Study, StudyContext, run};
 use impact_campaign::pipeline::block_cache::BlockCache;
+use impact_workbench::theory::{Pictures, Study, StudyContext, run};
 use labfiles::output::write_bytes;
 
 /// Where results go.

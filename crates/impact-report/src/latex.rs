@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::document::model::{Align, Block, Document, Rich, Table};
-use super::figures::richtext::Level;
+use super::kit::richtext::Level;
 
 /// From this many rows on a table may run over pages.
 const LONG: usize = 45;

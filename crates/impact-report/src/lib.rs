@@ -37,15 +37,15 @@ mod document;
 mod error;
 pub mod figures;
 mod html;
+pub mod kit;
 mod latex;
-pub(crate) mod locale;
+pub mod locale;
 mod options;
 mod parameters;
 mod phrase;
 pub mod picture;
 mod png;
 pub mod style;
-pub mod theory;
 
 pub use content::{
     CampaignFacts, CampaignsContent, DataTable, NominalValue, ReportContent, Subject,
@@ -55,7 +55,7 @@ pub use error::ReportError;
 pub use options::{Format, LivePage, Logo, Paper, ReportOptions};
 pub use phrase::{Phrase, Text};
 
-use figures::Figure;
+use kit::Figure;
 use locale::Locale;
 use rayon::prelude::*;
 

@@ -10,7 +10,7 @@ use impact_records::signal::whole;
 
 /// What the reader chose about numbers and language.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) struct Locale<'a> {
+pub struct Locale<'a> {
     /// Whether numbers have a decimal comma.
     pub decimal_comma: bool,
     /// Phrases and messages in the reader's language; `None`: English.
@@ -85,7 +85,7 @@ impl Locale<'_> {
     }
 
     /// A number with a fixed count of decimals, a true minus and the chosen decimal sign.
-    pub(crate) fn fixed(self, value: f64, decimals: usize) -> String {
+    pub fn fixed(self, value: f64, decimals: usize) -> String {
         self.digits(&format!("{value:.decimals$}"))
     }
 

@@ -2,7 +2,7 @@
 
 use super::document::world::{MemoryWorld, Unset};
 use super::error::ReportError;
-use super::figures::Figure;
+use super::kit::Figure;
 
 /// A page as large as its figure.
 const PAGE: &str = r#"#set page(width: auto, height: auto, margin: 3pt)
@@ -45,7 +45,7 @@ pub(super) fn pdf(figure: &Figure, language: &str) -> Result<Vec<u8>, ReportErro
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::canvas::{Canvas, Stroke};
+    use crate::kit::canvas::{Canvas, Stroke};
 
     #[test]
     fn a_figure_whose_name_is_no_path_is_set() {

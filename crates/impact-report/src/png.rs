@@ -7,7 +7,7 @@ use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb::Database};
 
 use super::error::ReportError;
-use super::figures::{Figure, fonts};
+use super::kit::{Figure, fonts};
 
 /// Dots per inch of the pictures.
 const RESOLUTION_DPI: f32 = 200.0;

@@ -1,8 +1,8 @@
 //! The report's type, colours and marks, for pages that look like it.
 
-use super::figures::canvas::Colour;
-pub use super::figures::fonts::{Face as FontFace, face_bytes as font};
-use super::figures::marks;
+use super::kit::canvas::Colour;
+pub use super::kit::fonts::{Face as FontFace, face_bytes as font};
+use super::kit::marks;
 use impact_records::motion::Motion;
 use serde::Serialize;
 

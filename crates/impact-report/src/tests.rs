@@ -170,7 +170,7 @@ fn words_within_margins(name: &str, boxes: &str) {
         } else if line.contains("<word ") {
             let (left, right) = (number(line, "xMin"), number(line, "xMax"));
             let (top, bottom) = (number(line, "yMin"), number(line, "yMax"));
-            let margin = 0.5 * (width - figures::look::FULL_WIDTH) - 2.5;
+            let margin = 0.5 * (width - kit::look::FULL_WIDTH) - 2.5;
             let inside =
                 left >= margin && right <= width - margin && top > 20.0 && bottom < height - 20.0;
             assert!(inside, "{name}: {line}");

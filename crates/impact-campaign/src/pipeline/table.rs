@@ -4,7 +4,7 @@ use polars::error::PolarsError;
 use polars::prelude::{Column, DataFrame};
 use polars_io::parquet::write::ParquetWriter;
 
-use impact_report::figures::csv::quoted;
+use impact_report::kit::csv::quoted;
 
 /// Most rows in a row group of a Parquet file.
 const ROW_GROUP: usize = 1 << 18;

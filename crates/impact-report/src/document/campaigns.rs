@@ -6,7 +6,7 @@ use super::model::{Answer, Block, Document, Front, Rich, Section};
 use super::sections::{paragraph, section};
 use super::tables::{self, p_equals};
 use crate::content::CampaignsContent;
-use crate::figures::Figure;
+use crate::kit::Figure;
 use crate::locale::Locale;
 use crate::parameters::{self, PARAMETERS};
 use crate::phrase::Phrase;

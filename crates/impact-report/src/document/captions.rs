@@ -1,7 +1,8 @@
 //! Captions, and the figures of the methods' section in their order.
 
 use crate::content::ReportContent;
-use crate::figures::{decays, numbered};
+use crate::figures::decays;
+use crate::kit::numbered;
 use crate::locale::Locale;
 use crate::parameters::parameter;
 use crate::phrase::Phrase;

@@ -1,7 +1,7 @@
 //! The figures as drawn, to be referred to by name.
 
 use super::model::{Block, FigureRef, Rich};
-use crate::figures::{Figure, richtext};
+use crate::kit::{Figure, richtext};
 use crate::locale::Locale;
 
 /// The figures as drawn, to be referred to by name.

@@ -24,7 +24,7 @@ use drawn::Drawn;
 use model::{Document, Rich};
 
 use crate::content::ReportContent;
-use crate::figures::Figure;
+use crate::kit::Figure;
 use crate::locale::Locale;
 
 /// Builds the document's data.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
 
-use crate::figures::richtext::{self, Run};
+use crate::kit::richtext::{self, Run};
 use crate::phrase::Phrase;
 
 /// A text with markup, split into runs; serialised as a string where it has none.

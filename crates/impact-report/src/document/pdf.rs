@@ -3,7 +3,7 @@
 use super::model::Document;
 use super::world::{MemoryWorld, Unset};
 use crate::error::ReportError;
-use crate::figures::Figure;
+use crate::kit::Figure;
 use crate::options::ReportOptions;
 
 /// The built-in layout.

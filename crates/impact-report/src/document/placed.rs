@@ -10,7 +10,7 @@ use typst::text::Lang;
 use typst::visualize::{Curve, ImageKind};
 use typst_layout::{Page, PagedDocument};
 
-use crate::figures::{Figure, escape};
+use crate::kit::{Figure, escape};
 
 /// The frames of figures by what stands for them.
 pub(super) struct Placed(HashMap<Bytes, Frame>);

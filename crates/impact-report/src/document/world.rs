@@ -14,7 +14,7 @@ use typst_layout::PagedDocument;
 use typst_pdf::PdfOptions;
 
 use super::placed::{self, Placed};
-use crate::figures::{Figure, fonts};
+use crate::kit::{Figure, fonts};
 
 /// Files in memory; there is no clock and no access to the disk.
 pub(crate) struct MemoryWorld<'a> {
@@ -169,7 +169,7 @@ mod tests {
     use typst::layout::{Frame, FrameItem};
 
     use super::*;
-    use crate::figures::canvas::{Anchor, Canvas, TextLook};
+    use crate::kit::canvas::{Anchor, Canvas, TextLook};
 
     /// Texts of a frame with their sizes across the page in points, and the numbers of its pictures and
     /// of its groups that are clipped.

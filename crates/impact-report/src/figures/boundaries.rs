@@ -1,7 +1,7 @@
 //! How the boundaries of motion are named and drawn.
 
-use super::canvas::Stroke;
-use super::look;
+use crate::kit::canvas::Stroke;
+use crate::kit::look;
 use crate::phrase::{Phrase, Text};
 use impact_records::motion::BoundaryKind;
 

@@ -1,16 +1,16 @@
 //! The boundary fit: measured brackets less the simulated boundary, over the clearance.
 
-use super::axis::Axis;
 use super::boundaries;
-use super::canvas::{Canvas, Colour};
-use super::csv::Csv;
-use super::figure::Figure;
-use super::legend::{self, Key, Sign};
-use super::look;
-use super::marks;
-use super::panel::{Panel, Sides};
-use super::path::Rect;
 use super::plane::same;
+use crate::kit::axis::Axis;
+use crate::kit::canvas::{Canvas, Colour};
+use crate::kit::csv::Csv;
+use crate::kit::figure::Figure;
+use crate::kit::legend::{self, Key, Sign};
+use crate::kit::look;
+use crate::kit::marks;
+use crate::kit::panel::{Panel, Sides};
+use crate::kit::path::Rect;
 use crate::locale::Locale;
 use crate::phrase::Phrase;
 use impact_identification::replay::BracketRow;

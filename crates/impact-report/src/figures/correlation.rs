@@ -5,14 +5,14 @@
 
 use std::ops::Range;
 
-use super::canvas::{Anchor, Canvas, Colour, TextLook};
-use super::csv::Csv;
-use super::figure::Figure;
-use super::fonts::Face;
-use super::look;
-use super::marks::mix;
-use super::path::Rect;
-use super::richtext;
+use crate::kit::canvas::{Anchor, Canvas, Colour, TextLook};
+use crate::kit::csv::Csv;
+use crate::kit::figure::Figure;
+use crate::kit::fonts::Face;
+use crate::kit::look;
+use crate::kit::marks::mix;
+use crate::kit::path::Rect;
+use crate::kit::richtext;
 use crate::locale::Locale;
 use crate::parameters::parameter;
 use crate::phrase::{Phrase, Text};

@@ -1,14 +1,14 @@
 //! Free decays with their fits, three to a row.
 
-use super::axis::Axis;
-use super::canvas::{Anchor, Canvas, Stroke, TextLook};
-use super::csv::Csv;
-use super::figure::Figure;
-use super::fonts::Face;
-use super::look;
-use super::panel::{Panel, Sides};
-use super::path::Rect;
-use super::units::print_unit;
+use crate::kit::axis::Axis;
+use crate::kit::canvas::{Anchor, Canvas, Stroke, TextLook};
+use crate::kit::csv::Csv;
+use crate::kit::figure::Figure;
+use crate::kit::fonts::Face;
+use crate::kit::look;
+use crate::kit::panel::{Panel, Sides};
+use crate::kit::path::Rect;
+use crate::kit::units::print_unit;
 use crate::locale::Locale;
 use crate::parameters::decimals_for;
 use crate::phrase::{Phrase, Text};

@@ -1,15 +1,15 @@
 //! The estimates of all methods beside the joint one, a panel for each parameter.
 
-use super::axis::Axis;
-use super::canvas::{Anchor, Canvas, Stroke, TextLook};
-use super::csv::Csv;
-use super::dots::{DotLook, Dots};
-use super::figure::Figure;
-use super::fonts::{self, Face};
-use super::look;
-use super::panel::{Panel, Sides};
-use super::path::Rect;
 use crate::content::ReportContent;
+use crate::kit::axis::Axis;
+use crate::kit::canvas::{Anchor, Canvas, Stroke, TextLook};
+use crate::kit::csv::Csv;
+use crate::kit::dots::{DotLook, Dots};
+use crate::kit::figure::Figure;
+use crate::kit::fonts::{self, Face};
+use crate::kit::look;
+use crate::kit::panel::{Panel, Sides};
+use crate::kit::path::Rect;
 use crate::locale::Locale;
 use crate::parameters::{PARAMETERS, ParameterLook, interval95};
 use crate::phrase::Phrase;

@@ -1,14 +1,14 @@
 //! Speeds after over before each impact, and their ratio over the closing speed.
 
-use super::axis::Axis;
-use super::canvas::{Canvas, Stroke};
-use super::csv::Csv;
-use super::dots::{self, DotLook, Dots};
-use super::figure::Figure;
-use super::legend::{self, Key, Sign};
-use super::look;
-use super::panel::{PAIR_LEFT, Panel, Sides, pair};
-use super::units::{PrintUnit, print_unit};
+use crate::kit::axis::Axis;
+use crate::kit::canvas::{Canvas, Stroke};
+use crate::kit::csv::Csv;
+use crate::kit::dots::{self, DotLook, Dots};
+use crate::kit::figure::Figure;
+use crate::kit::legend::{self, Key, Sign};
+use crate::kit::look;
+use crate::kit::panel::{PAIR_LEFT, Panel, Sides, pair};
+use crate::kit::units::{PrintUnit, print_unit};
 use crate::locale::Locale;
 use crate::phrase::Phrase;
 use impact_identification::replay::{ImpactPoint, ImpactScatter};

@@ -1,44 +1,24 @@
 //! The figures, one file each: its drawing, its data as CSV, its points for hovering.
 
-pub(super) mod axis;
 pub(super) mod boundaries;
 pub(super) mod boundary_fit;
-pub(super) mod canvas;
-mod compact;
 pub(super) mod comparison;
 pub(super) mod correlation;
-pub mod csv;
 pub(super) mod decays;
-pub(super) mod dots;
-mod drawing;
 pub(super) mod estimates;
-pub(super) mod figure;
-pub(super) mod fonts;
-mod frame;
 pub(super) mod impacts;
-pub(super) mod legend;
-pub(super) mod look;
 pub(super) mod map;
-pub(super) mod marks;
-pub(super) mod panel;
-pub(super) mod path;
-pub(super) mod placing;
 pub(super) mod plane;
 pub(super) mod profiles;
-pub(super) mod regions;
+pub mod regions;
 pub(super) mod residuals;
 pub(super) mod resonance;
-pub(super) mod richtext;
-mod svg;
 pub(super) mod trend;
-pub(super) mod units;
-
-pub use figure::{Figure, numbered};
-pub(crate) use svg::escape;
 
 use rayon::prelude::*;
 
 use crate::content::ReportContent;
+use crate::kit::figure::{Figure, numbered};
 use crate::locale::Locale;
 use impact_identification::identify::Method;
 

@@ -1,7 +1,7 @@
 //! The plane of the map: (η, ρ) where f0 and `x_st` are known, else frequency and clearance.
 
-use super::axis::Axis;
 use crate::content::ReportContent;
+use crate::kit::axis::Axis;
 use crate::phrase::Phrase;
 use impact_identification::identify::Estimate;
 use impact_identification::identify::plan::Proposal;

@@ -1,13 +1,13 @@
 //! Profile likelihoods of the parameters, four to a row.
 
-use super::axis::Axis;
-use super::canvas::{Anchor, Canvas, Stroke, TextLook};
-use super::csv::Csv;
-use super::figure::Figure;
-use super::look;
-use super::panel::{Panel, Sides};
-use super::path::Rect;
 use crate::figures::correlation::name;
+use crate::kit::axis::Axis;
+use crate::kit::canvas::{Anchor, Canvas, Stroke, TextLook};
+use crate::kit::csv::Csv;
+use crate::kit::figure::Figure;
+use crate::kit::look;
+use crate::kit::panel::{Panel, Sides};
+use crate::kit::path::Rect;
 use crate::locale::Locale;
 use crate::parameters::parameter;
 use crate::phrase::{Phrase, Text};

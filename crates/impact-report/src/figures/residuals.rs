@@ -1,14 +1,14 @@
 //! Residual diagnostics of one method: histogram, autocorrelation, over frequency, over gap.
 
-use super::axis::Axis;
-use super::canvas::{Canvas, Stroke};
-use super::csv::Csv;
-use super::dots::{self, DotLook, Dots};
-use super::figure::Figure;
-use super::look;
-use super::marks;
-use super::panel::{Panel, Sides};
-use super::path::Rect;
+use crate::kit::axis::Axis;
+use crate::kit::canvas::{Canvas, Stroke};
+use crate::kit::csv::Csv;
+use crate::kit::dots::{self, DotLook, Dots};
+use crate::kit::figure::Figure;
+use crate::kit::look;
+use crate::kit::marks;
+use crate::kit::panel::{Panel, Sides};
+use crate::kit::path::Rect;
 use crate::locale::Locale;
 use crate::parameters::NORMAL_95;
 use crate::phrase::{Phrase, Text};

@@ -1,14 +1,14 @@
 //! The estimates of several campaigns, a panel for each parameter: each alone, and against the first.
 
-use super::axis::Axis;
-use super::canvas::{Canvas, Stroke};
-use super::csv::Csv;
-use super::dots::{DotLook, Dots};
-use super::figure::Figure;
-use super::legend::{self, Key, Sign};
-use super::look;
-use super::panel::{Panel, Sides};
-use super::path::Rect;
+use crate::kit::axis::Axis;
+use crate::kit::canvas::{Canvas, Stroke};
+use crate::kit::csv::Csv;
+use crate::kit::dots::{DotLook, Dots};
+use crate::kit::figure::Figure;
+use crate::kit::legend::{self, Key, Sign};
+use crate::kit::look;
+use crate::kit::panel::{Panel, Sides};
+use crate::kit::path::Rect;
 use crate::locale::Locale;
 use crate::parameters::{PARAMETERS, ParameterLook, interval95, short};
 use crate::phrase::Phrase;

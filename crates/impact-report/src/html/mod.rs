@@ -8,9 +8,9 @@ use base64::prelude::BASE64_STANDARD;
 
 use super::document::model::Document;
 use super::error::ReportError;
-use super::figures::Figure;
-use super::figures::escape;
-use super::figures::fonts::{self, FAMILY, Face};
+use super::kit::Figure;
+use super::kit::escape;
+use super::kit::fonts::{self, FAMILY, Face};
 use super::options::ReportOptions;
 use super::phrase::Phrase;
 

@@ -2,10 +2,10 @@
 
 use crate::document::model::*;
 use crate::error::ReportError;
-use crate::figures::Figure;
-use crate::figures::escape;
-use crate::figures::look;
-use crate::figures::richtext::Level;
+use crate::kit::Figure;
+use crate::kit::escape;
+use crate::kit::look;
+use crate::kit::richtext::Level;
 use crate::phrase::Phrase;
 
 /// Longer tables can be scrolled.
@@ -154,7 +154,7 @@ impl<'a> Parts<'a> {
 
 /// A text with symbols as HTML.
 fn rich(text: &Rich) -> String {
-    let run = |r: &crate::figures::richtext::Run| {
+    let run = |r: &crate::kit::richtext::Run| {
         let body = escape(&r.text);
         let body = if r.italic {
             format!("<i>{body}</i>")

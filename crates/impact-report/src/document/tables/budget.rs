@@ -4,7 +4,7 @@ use super::{Column, table};
 use crate::content::ReportContent;
 use crate::document::model::{Rich, Table};
 use crate::figures::correlation::name;
-use crate::figures::richtext::plain;
+use crate::kit::richtext::plain;
 use crate::locale::Locale;
 use crate::phrase::Phrase;
 use impact_identification::identify::fit::effect::Effect;

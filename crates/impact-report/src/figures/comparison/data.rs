@@ -1,6 +1,6 @@
 //! A comparison's name and its data as CSV.
 
-use crate::figures::csv::Csv;
+use crate::kit::csv::Csv;
 use impact_identification::replay::{ReplayedRecord, Signal, Trace};
 
 /// Name of a comparison's figure.

@@ -6,15 +6,15 @@ mod rows;
 
 pub(crate) use data::name;
 
-use crate::figures::axis::Axis;
-use crate::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
-use crate::figures::figure::Figure;
-use crate::figures::fonts::Face;
-use crate::figures::look;
-use crate::figures::marks;
-use crate::figures::panel::{Panel, Sides};
-use crate::figures::path::Rect;
-use crate::figures::richtext;
+use crate::kit::axis::Axis;
+use crate::kit::canvas::{Anchor, Canvas, Stroke, TextLook};
+use crate::kit::figure::Figure;
+use crate::kit::fonts::Face;
+use crate::kit::look;
+use crate::kit::marks;
+use crate::kit::panel::{Panel, Sides};
+use crate::kit::path::Rect;
+use crate::kit::richtext;
 use crate::locale::Locale;
 use crate::phrase::Phrase;
 use impact_identification::replay::{ReplayedRecord, Signal};

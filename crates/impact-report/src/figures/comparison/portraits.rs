@@ -1,12 +1,12 @@
 //! The phase portraits of a comparison.
 
 use super::{BACK_WIDTH, PORTRAIT_LEFT, PORTRAIT_WIDTH, Sheet, TOP};
-use crate::figures::axis::Axis;
-use crate::figures::canvas::{Anchor, Stroke, TextLook};
-use crate::figures::panel::{Panel, Sides};
-use crate::figures::path::Rect;
-use crate::figures::units::{PrintUnit, print_unit};
-use crate::figures::{look, marks};
+use crate::kit::axis::Axis;
+use crate::kit::canvas::{Anchor, Stroke, TextLook};
+use crate::kit::panel::{Panel, Sides};
+use crate::kit::path::Rect;
+use crate::kit::units::{PrintUnit, print_unit};
+use crate::kit::{look, marks};
 use crate::phrase::Phrase;
 use impact_identification::replay::{ReplayedRecord, Signal, Trace};
 use impact_records::record::Role;

@@ -1,8 +1,8 @@
 //! Which channels of a comparison share a row of panels, and in which unit.
 
-use crate::figures::canvas::Colour;
-use crate::figures::look;
-use crate::figures::units::{PrintUnit, print_unit};
+use crate::kit::canvas::Colour;
+use crate::kit::look;
+use crate::kit::units::{PrintUnit, print_unit};
 use crate::phrase::{Phrase, Text};
 use impact_identification::replay::{ReplayedRecord, Signal, Trace};
 use impact_records::record::Role;

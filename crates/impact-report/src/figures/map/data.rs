@@ -1,7 +1,7 @@
 //! The map's data: the records' texts for hovering, and all layers as CSV.
 
 use crate::figures::boundaries;
-use crate::figures::csv::Csv;
+use crate::kit::csv::Csv;
 use crate::locale::Locale;
 use crate::phrase::Phrase;
 use impact_identification::replay::{Compared, RecordRow, RegionMap};

@@ -1,8 +1,9 @@
 //! The map's keys.
 
-use crate::figures::legend::{Key, Sign};
+use crate::figures::boundaries;
 use crate::figures::plane::Plane;
-use crate::figures::{boundaries, look, marks};
+use crate::kit::legend::{Key, Sign};
+use crate::kit::{look, marks};
 use crate::phrase::{Phrase, motion_text};
 use impact_identification::replay::Compared;
 use impact_records::motion::BoundaryKind;

@@ -2,13 +2,13 @@
 //! units.
 
 use super::{Map, STRIP_HALF, STRIP_STEP};
-use crate::figures::axis::Axis;
 use crate::figures::boundaries::symbol;
-use crate::figures::canvas::{Anchor, Point, Stroke, TextLook};
-use crate::figures::fonts::{self, Face};
-use crate::figures::look;
-use crate::figures::path::Rect;
-use crate::figures::richtext;
+use crate::kit::axis::Axis;
+use crate::kit::canvas::{Anchor, Point, Stroke, TextLook};
+use crate::kit::fonts::{self, Face};
+use crate::kit::look;
+use crate::kit::path::Rect;
+use crate::kit::richtext;
 use crate::locale::Locale;
 use crate::phrase::Phrase;
 use impact_identification::replay::BoundaryCurve;

@@ -1,16 +1,16 @@
 //! The labels of the regions.
 
 use super::{LEAST_SHARE, Regions};
-use crate::figures::canvas::{Anchor, Canvas, Point, TextLook};
-use crate::figures::fonts::{self, Face};
-use crate::figures::look;
-use crate::figures::path::Rect;
-use crate::figures::placing::Occupancy;
+use crate::kit::canvas::{Anchor, Canvas, Point, TextLook};
+use crate::kit::fonts::{self, Face};
+use crate::kit::look;
+use crate::kit::path::Rect;
+use crate::kit::placing::Occupancy;
 use crate::locale::Locale;
 
 impl Regions<'_> {
     /// Draws a label in each region that is large enough, where nothing else is drawn.
-    pub(crate) fn draw_labels(
+    pub fn draw_labels(
         &self,
         canvas: &mut Canvas,
         occupancy: &mut Occupancy,

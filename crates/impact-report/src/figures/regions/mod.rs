@@ -10,11 +10,11 @@
 
 mod labels;
 
-use crate::figures::canvas::{Canvas, Colour, Point, Stroke};
-use crate::figures::look;
-use crate::figures::marks;
-use crate::figures::panel::Panel;
-use crate::figures::path;
+use crate::kit::canvas::{Canvas, Colour, Point, Stroke};
+use crate::kit::look;
+use crate::kit::marks;
+use crate::kit::panel::Panel;
+use crate::kit::path;
 use impact_identification::replay::RegionMap;
 use impact_records::signal::whole;
 
@@ -22,7 +22,7 @@ use impact_records::signal::whole;
 const LEAST_SHARE: f64 = 0.0025;
 
 /// A map laid on a panel, with its connected regions.
-pub(crate) struct Regions<'a> {
+pub struct Regions<'a> {
     map: &'a RegionMap,
     panel: &'a Panel,
     /// Region of each cell, and each region's number of cells.
@@ -35,7 +35,7 @@ type Run = (Colour, Point, Point);
 
 impl<'a> Regions<'a> {
     /// Lays a map on a panel. `None` if its axes and cells contradict each other.
-    pub(crate) fn new(map: &'a RegionMap, panel: &'a Panel) -> Option<Self> {
+    pub fn new(map: &'a RegionMap, panel: &'a Panel) -> Option<Self> {
         let cells = map.x.len() * map.y.len();
         let in_range = map
             .cells
@@ -96,7 +96,7 @@ impl<'a> Regions<'a> {
     }
 
     /// Draws tints, outlines and the hatching of hysteresis.
-    pub(crate) fn draw(&self, canvas: &mut Canvas) {
+    pub fn draw(&self, canvas: &mut Canvas) {
         let (columns, rows) = (self.map.x.len() as isize, self.map.y.len() as isize);
         let mut runs: Vec<Run> = Vec::new();
         for j in -1..rows {

@@ -14,11 +14,11 @@ pub struct Figure {
     /// What it shows, with markup.
     pub title: String,
     /// The drawing.
-    pub drawing: Drawing,
+    pub(crate) drawing: Drawing,
     /// Its data; empty where another figure has them.
     pub csv: String,
     /// Points with a text that is shown on hovering.
-    pub spots: Vec<Spot>,
+    pub(crate) spots: Vec<Spot>,
     /// Texts that reach beyond the drawing's edges.
     pub overfull: Vec<String>,
 }
@@ -28,12 +28,7 @@ const MOST_SPOTS: usize = 2500;
 
 impl Figure {
     /// A figure from its drawing.
-    pub(crate) fn new(
-        name: impl Into<String>,
-        title: &str,
-        mut canvas: Canvas,
-        csv: String,
-    ) -> Self {
+    pub fn new(name: impl Into<String>, title: &str, mut canvas: Canvas, csv: String) -> Self {
         let overfull = canvas.overfull();
         let spots = fewer(std::mem::take(&mut canvas.spots));
         Self {

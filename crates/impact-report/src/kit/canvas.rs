@@ -2,7 +2,7 @@
 
 use plotters::style::BLACK;
 
-pub(crate) use super::drawing::{Colour, Stroke};
+pub use super::drawing::{Colour, Stroke};
 use super::drawing::{Drawing, Shape, TextShape};
 use super::fonts::Face;
 pub(crate) use super::path::Point;
@@ -69,20 +69,20 @@ pub(crate) struct Spot {
 }
 
 /// A drawing of a given size in points.
-pub(crate) struct Canvas {
+pub struct Canvas {
     /// Width, points.
     pub width: f64,
     /// Height, points.
     pub height: f64,
     /// Points with a text that is shown on hovering.
-    pub spots: Vec<Spot>,
+    pub(crate) spots: Vec<Spot>,
     layer: i32,
     shapes: Vec<(i32, Shape)>,
 }
 
 impl Canvas {
     /// An empty drawing.
-    pub(crate) fn new(width: f64, height: f64) -> Self {
+    pub fn new(width: f64, height: f64) -> Self {
         Self {
             width,
             height,
@@ -93,7 +93,7 @@ impl Canvas {
     }
 
     /// What follows is drawn in this layer; higher layers cover lower ones.
-    pub(crate) fn layer(&mut self, layer: i32) -> &mut Self {
+    pub fn layer(&mut self, layer: i32) -> &mut Self {
         self.layer = layer;
         self
     }
@@ -132,7 +132,7 @@ impl Canvas {
     }
 
     /// A filled rectangle from corner to corner.
-    pub(crate) fn rectangle(&mut self, (x0, y0): Point, (x1, y1): Point, colour: Colour) {
+    pub fn rectangle(&mut self, (x0, y0): Point, (x1, y1): Point, colour: Colour) {
         self.fill(&[(x0, y0), (x1, y0), (x1, y1), (x0, y1)], colour);
     }
 

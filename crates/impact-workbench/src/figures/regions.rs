@@ -3,17 +3,17 @@
 
 use super::ENGLISH;
 use super::keys::sheet;
-use crate::figures::axis::Axis;
-use crate::figures::canvas::{Canvas, Stroke};
-use crate::figures::figure::Figure;
-use crate::figures::legend::{Key, Sign};
-use crate::figures::look;
-use crate::figures::panel::{Panel, Sides};
-use crate::figures::path::{self, Rect};
-use crate::figures::placing::Occupancy;
-use crate::figures::regions::Regions;
 use impact_identification::replay::RegionMap;
 use impact_oscillator::atlas::Curve;
+use impact_report::figures::regions::Regions;
+use impact_report::kit::axis::Axis;
+use impact_report::kit::canvas::{Canvas, Stroke};
+use impact_report::kit::figure::Figure;
+use impact_report::kit::legend::{Key, Sign};
+use impact_report::kit::look;
+use impact_report::kit::panel::{Panel, Sides};
+use impact_report::kit::path::{self, Rect};
+use impact_report::kit::placing::Occupancy;
 
 /// Room left of the panel, points.
 const LEFT: f64 = 34.0;

@@ -10,7 +10,7 @@ use crate::phrase::Text;
 
 /// The sign before a key's text.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Sign {
+pub enum Sign {
     /// A mark of a motion.
     Mark(MotionLook),
     /// A line.
@@ -25,7 +25,7 @@ pub(crate) enum Sign {
 
 impl Sign {
     /// A filled dot.
-    pub(crate) fn dot(colour: Colour) -> Self {
+    pub fn dot(colour: Colour) -> Self {
         Self::shape(Shape::Dot, colour)
     }
 
@@ -56,7 +56,7 @@ impl Sign {
 
 /// A key: sign and text.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Key {
+pub struct Key {
     /// The sign.
     pub sign: Sign,
     /// The text, with markup.
@@ -65,7 +65,7 @@ pub(crate) struct Key {
 
 impl Key {
     /// A key.
-    pub(crate) fn new(sign: Sign, text: impl Into<Text>) -> Self {
+    pub fn new(sign: Sign, text: impl Into<Text>) -> Self {
         Self {
             sign,
             text: text.into(),
@@ -103,14 +103,14 @@ fn flow<'a>(keys: &'a [Key], width: f64, locale: Locale<'_>) -> Vec<(&'a Key, f6
 }
 
 /// Height that the keys need at a width.
-pub(crate) fn height(keys: &[Key], width: f64, locale: Locale<'_>) -> f64 {
+pub fn height(keys: &[Key], width: f64, locale: Locale<'_>) -> f64 {
     flow(keys, width, locale)
         .last()
         .map_or(0.0, |(_, _, line)| (*line + 1) as f64 * LINE_HEIGHT)
 }
 
 /// Draws the keys from an upper left corner.
-pub(crate) fn draw(
+pub fn draw(
     canvas: &mut Canvas,
     (left, top): (f64, f64),
     width: f64,

@@ -243,7 +243,7 @@ impl Shaper {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
+    use crate::kit::canvas::{Anchor, Canvas, Stroke, TextLook};
 
     const RED: Colour = plotters::style::RGBColor(200, 0, 0);
 

@@ -1,12 +1,12 @@
 //! The keys of the theory's figures.
 
 use super::ENGLISH;
-use crate::figures::canvas::Canvas;
-use crate::figures::legend::{self, Key, Sign};
-use crate::figures::look;
-use crate::figures::marks;
 use impact_identification::replay::RegionMap;
 use impact_records::motion::Motion;
+use impact_report::kit::canvas::Canvas;
+use impact_report::kit::legend::{self, Key, Sign};
+use impact_report::kit::look;
+use impact_report::kit::marks;
 
 /// A canvas of the text's width for panels of a height, with keys on its top, and where the panels begin.
 pub(super) fn sheet(left: f64, keys: &[Key], height: f64) -> (Canvas, f64) {

@@ -7,11 +7,11 @@ use super::path::Point;
 use impact_records::signal::whole;
 
 /// A colour.
-pub(crate) type Colour = RGBColor;
+pub type Colour = RGBColor;
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Stroke {
+pub struct Stroke {
     /// Colour.
     pub colour: Colour,
     /// Width in points.
@@ -22,7 +22,7 @@ pub(crate) struct Stroke {
 
 impl Stroke {
     /// A solid line.
-    pub(crate) const fn solid(colour: Colour, width: f64) -> Self {
+    pub const fn solid(colour: Colour, width: f64) -> Self {
         Self {
             colour,
             width,
@@ -31,7 +31,7 @@ impl Stroke {
     }
 
     /// A dashed line.
-    pub(crate) const fn dashed(colour: Colour, width: f64, dash: &'static [f64]) -> Self {
+    pub const fn dashed(colour: Colour, width: f64, dash: &'static [f64]) -> Self {
         Self {
             colour,
             width,

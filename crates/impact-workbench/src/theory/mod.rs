@@ -15,8 +15,8 @@ use serde::de::DeserializeOwned;
 
 use impact_campaign::pipeline::PipelineError;
 use impact_campaign::pipeline::block_cache::BlockCache;
-use impact_campaign::pipeline::table::{self, Table};
-use impact_report::figures::Figure;
+use impact_campaign::pipeline::table::Table;
+use impact_report::kit::Figure;
 use impact_report::picture::pictures;
 use labfiles::output::OutputError;
 pub use plan::Study;

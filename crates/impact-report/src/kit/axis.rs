@@ -7,7 +7,7 @@ use impact_records::signal::whole;
 
 /// One axis: its range in data and its title with unit, in the report's markup.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Axis {
+pub struct Axis {
     /// Least value shown.
     pub low: f64,
     /// Greatest value shown.
@@ -22,7 +22,7 @@ pub(crate) struct Axis {
 
 impl Axis {
     /// A linear axis.
-    pub(crate) fn new(low: f64, high: f64, title: impl Into<Text>) -> Self {
+    pub fn new(low: f64, high: f64, title: impl Into<Text>) -> Self {
         let (low, high) = if high > low {
             (low, high)
         } else {
@@ -38,7 +38,7 @@ impl Axis {
     }
 
     /// An axis that shows all values with a margin (a share of their range) at either end.
-    pub(crate) fn around(
+    pub fn around(
         values: impl IntoIterator<Item = f64>,
         margin: f64,
         title: impl Into<Text>,
@@ -54,7 +54,7 @@ impl Axis {
     }
 
     /// With another wanted number of ticks.
-    pub(crate) fn with_ticks(self, ticks: usize) -> Self {
+    pub fn with_ticks(self, ticks: usize) -> Self {
         Self { ticks, ..self }
     }
 

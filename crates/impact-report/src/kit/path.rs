@@ -8,7 +8,7 @@ const THINNING_TOLERANCE: f64 = 0.05;
 
 /// A rectangle in points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Rect {
+pub struct Rect {
     /// Left edge.
     pub left: f64,
     /// Upper edge.
@@ -21,7 +21,7 @@ pub(crate) struct Rect {
 
 impl Rect {
     /// A rectangle from its upper left corner and its size.
-    pub(crate) fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
+    pub fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
         Self {
             left,
             top,
@@ -55,7 +55,7 @@ impl Rect {
 
 /// The parts of a line inside a rectangle (Liang–Barsky, segment by segment).
 /// Points that are not finite break the line.
-pub(crate) fn clip(points: &[Point], rect: &Rect) -> Vec<Vec<Point>> {
+pub fn clip(points: &[Point], rect: &Rect) -> Vec<Vec<Point>> {
     let mut pieces: Vec<Vec<Point>> = Vec::new();
     let mut joined = false;
     for pair in points.windows(2) {

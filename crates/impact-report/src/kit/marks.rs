@@ -45,9 +45,9 @@ pub(crate) enum Shape {
 
 /// How a motion is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct MotionLook {
+pub struct MotionLook {
     /// Shape of its marks.
-    pub shape: Shape,
+    pub(crate) shape: Shape,
     /// Colour of its marks.
     pub colour: Colour,
     /// Tint of its region.
@@ -55,7 +55,7 @@ pub(crate) struct MotionLook {
 }
 
 /// The look of a motion: the common ones by name, all others by their p and n.
-pub(crate) fn of(motion: &Motion) -> MotionLook {
+pub fn of(motion: &Motion) -> MotionLook {
     match motion {
         Motion::Impactless => looks(Shape::Circle, look::SLATE, 0.0),
         Motion::Periodic {
@@ -112,7 +112,7 @@ fn looks(shape: Shape, colour: Colour, depth: f64) -> MotionLook {
 }
 
 /// A colour thinned with white.
-pub(crate) fn mix(colour: Colour, depth: f64) -> Colour {
+pub fn mix(colour: Colour, depth: f64) -> Colour {
     let thin = |c: u8| {
         let thinned = whole::count((255.0 - depth * (255.0 - f64::from(c))).round());
         u8::try_from(thinned).unwrap_or(u8::MAX)
@@ -121,7 +121,7 @@ pub(crate) fn mix(colour: Colour, depth: f64) -> Colour {
 }
 
 /// Order of motions in legends: impactless, then periodic by n and p, then the rest.
-pub(crate) fn order(motion: &Motion) -> (u32, u32, u32, bool) {
+pub fn order(motion: &Motion) -> (u32, u32, u32, bool) {
     match motion {
         Motion::Impactless => (0, 0, 0, false),
         Motion::Periodic {

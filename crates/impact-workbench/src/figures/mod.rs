@@ -6,7 +6,7 @@ pub mod motion;
 pub mod regions;
 pub mod sweep;
 
-use super::locale::Locale;
+use impact_report::locale::Locale;
 
 /// The figures of the theory are in English.
 const ENGLISH: Locale<'static> = Locale {

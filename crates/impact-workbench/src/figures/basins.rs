@@ -2,13 +2,13 @@
 
 use super::ENGLISH;
 use super::keys::{sheet, tint_keys};
-use crate::figures::axis::Axis;
-use crate::figures::figure::Figure;
-use crate::figures::look;
-use crate::figures::panel::{Panel, Sides};
-use crate::figures::path::Rect;
-use crate::figures::regions::Regions;
 use impact_identification::replay::RegionMap;
+use impact_report::figures::regions::Regions;
+use impact_report::kit::axis::Axis;
+use impact_report::kit::figure::Figure;
+use impact_report::kit::look;
+use impact_report::kit::panel::{Panel, Sides};
+use impact_report::kit::path::Rect;
 
 /// Room left of the panel, points.
 const LEFT: f64 = 36.0;

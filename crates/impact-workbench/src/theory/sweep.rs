@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use super::StudyContext;
 use super::plan::SweepPlan;
+use crate::figures::sweep::{Characteristics, draw};
 use impact_campaign::pipeline::PipelineError;
 use impact_campaign::pipeline::table::Table;
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactless};
 use impact_oscillator::model::Machine;
 use impact_oscillator::model::simulate::Snapshot;
-use impact_report::theory::sweep::{Characteristics, draw};
 
 /// Steps after which a sweep saves its points.
 const KEEP_EVERY: usize = 16;

@@ -5,7 +5,7 @@ use super::path::Rect;
 use impact_records::signal::whole;
 
 /// Which square points of a drawing are taken.
-pub(crate) struct Occupancy {
+pub struct Occupancy {
     columns: usize,
     rows: usize,
     taken: Vec<u8>,
@@ -13,7 +13,7 @@ pub(crate) struct Occupancy {
 
 impl Occupancy {
     /// An empty drawing of a size in points.
-    pub(crate) fn new(width: f64, height: f64) -> Self {
+    pub fn new(width: f64, height: f64) -> Self {
         let (columns, rows) = (
             whole::index(width.ceil()) + 1,
             whole::index(height.ceil()) + 1,
@@ -43,7 +43,7 @@ impl Occupancy {
     }
 
     /// Takes what a line covers.
-    pub(crate) fn take_line(&mut self, points: &[Point]) {
+    pub fn take_line(&mut self, points: &[Point]) {
         for pair in points.windows(2) {
             let length = (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1);
             let steps = whole::index(length.ceil().max(1.0));

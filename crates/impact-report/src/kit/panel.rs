@@ -24,7 +24,7 @@ pub(crate) fn pair(top: f64, height: f64) -> [Rect; 2] {
 
 /// Which sides of a panel carry ticks and labels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Sides {
+pub struct Sides {
     /// Numbers and title below.
     pub below: bool,
     /// Numbers and title on the left.
@@ -33,7 +33,7 @@ pub(crate) struct Sides {
 
 impl Sides {
     /// Both.
-    pub(crate) const BOTH: Self = Self {
+    pub const BOTH: Self = Self {
         below: true,
         left: true,
     };
@@ -41,7 +41,7 @@ impl Sides {
 
 /// A rectangle on paper with two axes.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Panel {
+pub struct Panel {
     /// The plotted area.
     pub rect: Rect,
     /// Across.
@@ -54,7 +54,7 @@ pub(crate) struct Panel {
 
 impl Panel {
     /// A panel.
-    pub(crate) fn new(rect: Rect, x: Axis, y: Axis) -> Self {
+    pub fn new(rect: Rect, x: Axis, y: Axis) -> Self {
         Self {
             rect,
             x,
@@ -64,7 +64,7 @@ impl Panel {
     }
 
     /// With the title of the upward axis at a distance, in line with other panels' titles.
-    pub(crate) fn with_title_reach(self, reach: f64) -> Self {
+    pub fn with_title_reach(self, reach: f64) -> Self {
         Self {
             title_reach: Some(reach),
             ..self
@@ -72,7 +72,7 @@ impl Panel {
     }
 
     /// Position of a pair of values on paper.
-    pub(crate) fn at(&self, x: f64, y: f64) -> Point {
+    pub fn at(&self, x: f64, y: f64) -> Point {
         (
             self.rect.left + self.x.share(x) * self.rect.width(),
             self.rect.bottom - self.y.share(y) * self.rect.height(),
@@ -85,7 +85,7 @@ impl Panel {
     }
 
     /// A curve through data, clipped and thinned; gives what was drawn, in points.
-    pub(crate) fn curve(
+    pub fn curve(
         &self,
         canvas: &mut Canvas,
         data: impl IntoIterator<Item = (f64, f64)>,
@@ -103,7 +103,7 @@ impl Panel {
     }
 
     /// A horizontal line at a value.
-    pub(crate) fn level(&self, canvas: &mut Canvas, y: f64, stroke: Stroke) {
+    pub fn level(&self, canvas: &mut Canvas, y: f64, stroke: Stroke) {
         self.curve(canvas, [(self.x.low, y), (self.x.high, y)], stroke);
     }
 
@@ -124,7 +124,7 @@ impl Panel {
     }
 
     /// Frame, ticks, numbers and titles.
-    pub(crate) fn frame(&self, canvas: &mut Canvas, sides: Sides, locale: Locale<'_>) {
+    pub fn frame(&self, canvas: &mut Canvas, sides: Sides, locale: Locale<'_>) {
         let r = &self.rect;
         canvas.outline(&r.corners(), look::FRAME_STROKE);
         self.ticks_below(canvas, sides.below, locale);

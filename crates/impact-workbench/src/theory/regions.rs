@@ -5,6 +5,7 @@ use serde_json::json;
 
 use super::StudyContext;
 use super::plan::RegionsPlan;
+use crate::figures::regions::draw;
 use impact_campaign::pipeline::PipelineError;
 use impact_campaign::pipeline::table::Table;
 use impact_identification::replay::RegionMap;
@@ -14,7 +15,6 @@ use impact_oscillator::atlas::shard::AtlasRequest;
 use impact_oscillator::atlas::{Atlas, Cause, MapGrid, Maps, Slice, brute_maps};
 use impact_oscillator::{Machine, SettledMotion, periodic_label};
 use impact_records::motion::Motion;
-use impact_report::theory::regions::draw;
 
 /// Columns of a block.
 const BLOCK: usize = 16;

@@ -3,17 +3,17 @@
 
 use super::ENGLISH;
 use super::keys::sheet;
-use crate::figures::axis::Axis;
-use crate::figures::canvas::{Canvas, Colour, Stroke};
-use crate::figures::dots::{self, DotLook, Dots};
-use crate::figures::figure::Figure;
-use crate::figures::legend::{Key, Sign};
-use crate::figures::look;
-use crate::figures::panel::{Panel, Sides};
-use crate::figures::path::Rect;
 use impact_oscillator::atlas::SweepPoint;
 use impact_oscillator::atlas::sweep::Impactless;
 use impact_records::signal::robust::range;
+use impact_report::kit::axis::Axis;
+use impact_report::kit::canvas::{Canvas, Colour, Stroke};
+use impact_report::kit::dots::{self, DotLook, Dots};
+use impact_report::kit::figure::Figure;
+use impact_report::kit::legend::{Key, Sign};
+use impact_report::kit::look;
+use impact_report::kit::panel::{Panel, Sides};
+use impact_report::kit::path::Rect;
 
 /// Room left of the panels, points.
 const LEFT: f64 = 42.0;

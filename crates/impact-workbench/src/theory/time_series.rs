@@ -1,11 +1,11 @@
 //! A motion in full: time series, impacts, Poincaré map, autocorrelation, and their figure.
 
 use super::StudyContext;
+use crate::figures::motion::draw;
 use impact_campaign::pipeline::PipelineError;
 use impact_campaign::pipeline::table::Table;
 use impact_oscillator::atlas::portrait::{Portrait, PortraitPlan, Strike, portrait};
 use impact_oscillator::model::Machine;
-use impact_report::theory::motion::draw;
 
 /// Simulate and write tables and figure.
 ///

@@ -2,6 +2,7 @@
 
 use super::StudyContext;
 use super::plan::BasinPlan;
+use crate::figures::basins::draw;
 use impact_campaign::pipeline::PipelineError;
 use impact_campaign::pipeline::table::Table;
 use impact_identification::replay::RegionMap;
@@ -9,7 +10,6 @@ use impact_oscillator::atlas::basins::{Basins, basin_rows};
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::{Machine, MapSettings, Restitution, SettledMotion};
 use impact_records::motion::{Motion, Undetermined};
-use impact_report::theory::basins::draw;
 
 /// Rows of a block.
 const BLOCK: usize = 8;

@@ -12,13 +12,13 @@ const CELL: f64 = 0.55;
 
 /// The squares that hold a dot.
 #[derive(Default)]
-pub(crate) struct Dots {
+pub struct Dots {
     taken: HashSet<(i32, i32)>,
 }
 
 impl Dots {
     /// Draws a dot at data unless its square is taken; returns its position, `None` outside the panel.
-    pub(crate) fn put(
+    pub fn put(
         &mut self,
         canvas: &mut Canvas,
         panel: &Panel,
@@ -44,7 +44,7 @@ impl Dots {
 
 /// How a dot looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct DotLook {
+pub struct DotLook {
     /// Radius, points.
     pub radius: f64,
     /// Colour.
@@ -55,7 +55,7 @@ pub(crate) struct DotLook {
 
 impl DotLook {
     /// A full dot.
-    pub(crate) const fn full(radius: f64, colour: Colour) -> Self {
+    pub const fn full(radius: f64, colour: Colour) -> Self {
         Self {
             radius,
             colour,
@@ -65,7 +65,7 @@ impl DotLook {
 }
 
 /// Radius for a number of dots.
-pub(crate) fn radius(count: usize) -> f64 {
+pub fn radius(count: usize) -> f64 {
     match count {
         0..=60 => 1.6,
         61..=400 => 1.15,

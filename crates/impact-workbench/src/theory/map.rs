@@ -2,13 +2,13 @@
 
 use super::StudyContext;
 use super::plan::MapPlan;
+use crate::figures::regions as figure;
 use impact_campaign::pipeline::PipelineError;
 use impact_campaign::pipeline::table::Table;
 use impact_identification::replay::RegionMap;
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::{Machine, MapGrid, SettledMotion, region_map};
 use impact_records::motion::Motion;
-use impact_report::theory::regions as figure;
 
 /// Rows of a block.
 const BLOCK: usize = 8;
