@@ -1,4 +1,9 @@
-//! The `impactid` program: see [`impactid::cli`].
+//! `impactid`: from a laboratory campaign on an impact oscillator to the coefficient of
+//! restitution R, the natural frequency f0 and the damping ratio β, each with a 95 % interval.
+//!
+//! The program is the command line alone; what it calls is in the crates of this workspace.
+
+mod cli;
 
 use std::process::ExitCode;
 
@@ -7,5 +12,5 @@ use std::process::ExitCode;
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 fn main() -> ExitCode {
-    impactid::cli::main()
+    cli::main()
 }

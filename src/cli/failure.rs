@@ -23,7 +23,7 @@ pub(super) fn hush_caught_panics() {
 
 /// Why a command could not do its work.
 #[derive(Debug)]
-pub enum Failure {
+pub(crate) enum Failure {
     /// What is wrong with the campaign.
     Campaign(Diagnostics),
     /// Anything else.
@@ -37,7 +37,7 @@ pub enum Failure {
 
 impl Failure {
     /// One error with its remedy.
-    pub fn new(message: impl Into<String>, remedy: impl Into<String>) -> Self {
+    pub(crate) fn new(message: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self::Other {
             message: message.into(),
             remedy: remedy.into(),
@@ -71,7 +71,7 @@ impl Failure {
     }
 
     /// A file that could not be read or written.
-    pub fn io(path: &Path, error: &std::io::Error) -> Self {
+    pub(crate) fn io(path: &Path, error: &std::io::Error) -> Self {
         Self::new(
             format!("{}: {error}", path.display()),
             "check path and permissions",

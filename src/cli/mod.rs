@@ -49,10 +49,10 @@ use std::time::Instant;
 
 use clap::{Args, Parser, Subcommand};
 
-pub use exit::Exit;
-pub use failure::Failure;
-pub use progress::Progress;
-pub use verbosity::Verbosity;
+pub(crate) use exit::Exit;
+pub(crate) use failure::Failure;
+pub(crate) use progress::Progress;
+pub(crate) use verbosity::Verbosity;
 
 use impact_campaign::pipeline;
 
@@ -60,7 +60,7 @@ use impact_campaign::pipeline;
 /// damping and a comparison report.
 #[derive(Debug, Parser)]
 #[command(name = "impactid", version, about, max_term_width = 100, after_help = EXAMPLE)]
-pub struct Cli {
+pub(crate) struct Cli {
     #[command(flatten)]
     common: Common,
     #[command(subcommand)]
@@ -81,7 +81,7 @@ const GENERAL: &str = "General";
 
 /// Options of every command.
 #[derive(Debug, Clone, Args)]
-pub struct Common {
+pub(crate) struct Common {
     /// Print errors only
     #[arg(long, short, global = true, help_heading = GENERAL)]
     quiet: bool,
@@ -170,7 +170,7 @@ commands! {
 }
 
 /// Run the program on the process's own arguments.
-pub fn main() -> ExitCode {
+pub(crate) fn main() -> ExitCode {
     failure::hush_caught_panics();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,

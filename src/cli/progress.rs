@@ -12,7 +12,7 @@ use impact_identification::identify::fit::FitProgress;
 
 /// The progress of the stages of a command; shared by threads.
 #[derive(Debug)]
-pub struct Progress {
+pub(crate) struct Progress {
     bar: ProgressBar,
     pace: Pace,
     verbosity: Verbosity,
@@ -24,7 +24,7 @@ pub struct Progress {
 
 impl Progress {
     /// A bar for `total` steps of a stage.
-    pub fn new(verbosity: Verbosity, stage: &'static str, total: u64) -> Self {
+    pub(crate) fn new(verbosity: Verbosity, stage: &'static str, total: u64) -> Self {
         let (pace, fits) = (Pace::default(), FitProgress::default());
         let visible = !verbosity.is_quiet() && std::io::stderr().is_terminal();
         let bar = match visible {
@@ -64,12 +64,12 @@ impl Progress {
     }
 
     /// What counts the iterations of the fits; the bar shows their number.
-    pub fn fits(&self) -> &FitProgress {
+    pub(crate) fn fits(&self) -> &FitProgress {
         &self.fits
     }
 
     /// Steps done so far and steps in all.
-    pub fn set(&self, done: u64, total: u64) {
+    pub(crate) fn set(&self, done: u64, total: u64) {
         self.pace.begin(Instant::now(), done);
         self.bar.set_length(total);
         self.bar.set_position(done);
@@ -77,13 +77,13 @@ impl Progress {
 
     /// The same bar for a run whose later stages count: the time left is that of all of them.
     #[must_use]
-    pub fn with_later(self, later: Later) -> Self {
+    pub(crate) fn with_later(self, later: Later) -> Self {
         self.pace.clock().later = Some(later);
         self
     }
 
     /// Steps done so far and steps in all of a stage, which begins where it is another than before.
-    pub fn step(&self, stage: &'static str, done: u64, total: u64) {
+    pub(crate) fn step(&self, stage: &'static str, done: u64, total: u64) {
         self.stage(stage);
         self.set(done, total);
     }
@@ -123,7 +123,7 @@ const TEMPLATE: &str = "{msg:12} {wide_bar} {pos}/{len}  {left} {iterations}";
 /// What the stages after the first take, as measured: they grow with the steps of the first and
 /// slow down with them.
 #[derive(Debug, Clone, Copy)]
-pub struct Later {
+pub(crate) struct Later {
     /// Their time as a part of the first stage's.
     pub part: f64,
     /// A further part, constant from that many steps on.

@@ -2,7 +2,7 @@
 
 /// Prints on the standard error stream what `--quiet`, `-v` and `-vv` ask for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Verbosity {
+pub(crate) enum Verbosity {
     /// `--quiet`: errors only.
     Quiet,
     /// Results and warnings.

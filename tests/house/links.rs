@@ -4,6 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::sources::packages;
+
 fn documents() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let entries = [root.to_path_buf(), root.join("docs")].map(fs::read_dir);
@@ -89,21 +91,21 @@ fn a_broken_link_is_seen() {
     assert_eq!(anchors("## How good: R, f0\n"), ["how-good-r-f0"]);
 }
 
-/// The sources of the program and of its crates.
-const SOURCES: [&str; 3] = ["src", "crates/impact-oscillator/src", "crates/labfiles/src"];
-
 /// The source folder that has the first part of a path like `module::file::Item`, and the path's
 /// parts; a crate's own name may come first.
 fn source_of(path: &str) -> Option<(PathBuf, Vec<&str>)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut parts: Vec<&str> = path.split("::").collect();
-    if ["impact_oscillator", "labfiles"].contains(&parts[0]) {
+    let mut folders = packages();
+    let named = folders.remove(&parts[0].replace('_', "-"));
+    if let Some(folder) = named {
         parts.remove(0);
+        folders = [(String::new(), folder)].into();
     }
+    let first = *parts.first()?;
     let has = |folder: &PathBuf| {
-        folder.join(parts[0]).is_dir() || folder.join(format!("{}.rs", parts[0])).is_file()
+        folder.join(first).is_dir() || folder.join(format!("{first}.rs")).is_file()
     };
-    let folder = SOURCES.map(|s| root.join(s)).into_iter().find(has)?;
+    let folder = folders.values().map(|f| f.join("src")).find(has)?;
     Some((folder, parts))
 }
 

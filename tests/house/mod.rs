@@ -1,98 +1,92 @@
-//! The rules of the layout: a module never imports from a module to its right.
+//! The rules of the layout that cargo cannot keep.
 
 mod circles;
 mod licences;
 mod links;
+mod sources;
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// The modules from left to right.
-const MODULES: [&str; 14] = [
-    "message",
-    "signal",
-    "record",
-    "event",
-    "motion",
-    "synthetic",
-    "identify",
-    "difference",
-    "compare",
-    "report",
-    "campaign",
-    "pipeline",
-    "explore",
-    "cli",
+use sources::{SourceFile, all_sources, packages, root, rust_files};
+
+/// The modules of a package in order: a module never imports from one after it.
+const MODULES: [(&str, &[&str]); 5] = [
+    ("impact-oscillator", &["parallel", "model", "atlas"]),
+    (
+        "impact-records",
+        &["message", "signal", "record", "event", "motion"],
+    ),
+    ("impact-identification", &["identify", "compare", "replay"]),
+    ("impact-campaign", &["campaign", "pipeline"]),
+    (
+        "impact-workbench",
+        &[
+            "figures", "theory", "coverage", "pairs", "selftest", "explore",
+        ],
+    ),
 ];
 
-fn sources(folder: &Path, all: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder)
-        .expect("src can be read")
-        .map(|e| e.expect("an entry"))
-    {
-        let path = entry.path();
-        if path.is_dir() {
-            sources(&path, all);
-        } else if path.extension().is_some_and(|e| e == "rs") {
-            all.push(path);
+/// The package whose own crates a package may use are those before it.
+const PACKAGES: [&str; 9] = [
+    "labfiles",
+    "impact-oscillator",
+    "impact-records",
+    "simulated-rig",
+    "impact-identification",
+    "impact-report",
+    "impact-campaign",
+    "impact-workbench",
+    "impactid",
+];
+
+#[test]
+fn a_package_uses_only_packages_before_it() {
+    let folders = packages();
+    assert_eq!(folders.len(), PACKAGES.len());
+    for (number, package) in PACKAGES.iter().enumerate() {
+        let manifest =
+            fs::read_to_string(folders[*package].join("Cargo.toml")).expect("a manifest");
+        let manifest: toml::Table = manifest.parse().expect("TOML");
+        let listed = manifest["dependencies"].as_table().expect("a table");
+        for name in listed.keys() {
+            let other = PACKAGES.iter().position(|p| p == name);
+            assert!(other.is_none_or(|o| o < number), "{package} uses {name}");
         }
     }
 }
 
-fn all_sources() -> Vec<(String, String)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut paths = Vec::new();
-    sources(&root, &mut paths);
-    paths
-        .iter()
-        .map(|p| {
-            let name = p
-                .strip_prefix(&root)
-                .expect("below src")
-                .to_string_lossy()
-                .into_owned();
-            (name, fs::read_to_string(p).expect("a source is text"))
-        })
-        .collect()
-}
-
-/// The module of a file: the first part of its path; `None` for lib.rs and main.rs.
-fn module(name: &str) -> Option<usize> {
-    let first = name.split(['/', '.']).next()?;
-    MODULES.iter().position(|r| *r == first)
-}
-
-/// Modules that a source names after `crate::`, tests in it included.
-fn imports(text: &str) -> Vec<&str> {
-    text.lines()
-        .filter(|line| !line.trim_start().starts_with("//"))
-        .flat_map(|line| line.split("crate::").skip(1))
-        .flat_map(|after| match after.strip_prefix('{') {
-            Some(list) => list.split(',').map(str::trim).collect(),
-            None => vec![after],
-        })
-        .filter_map(|path| {
-            path.split(|c: char| !c.is_alphanumeric() && c != '_')
-                .next()
-        })
-        .collect()
-}
-
 #[test]
-fn no_module_imports_from_its_right() {
+fn no_module_imports_from_one_after_it() {
     let mut faults = Vec::new();
-    for (name, text) in all_sources() {
-        let Some(own) = module(&name) else { continue };
-        for import in imports(&text) {
-            let other = MODULES.iter().position(|r| *r == import);
-            if other.is_some_and(|o| o > own) {
-                faults.push(format!(
-                    "{name} imports from {import}, a module to its right"
-                ));
+    for (package, modules) in MODULES {
+        let of_package = all_sources().into_iter().filter(|f| f.package == package);
+        for file in of_package {
+            let place = |name: &str| modules.iter().position(|m| *m == name);
+            let Some(own) = place(file.top()) else {
+                assert_eq!(file.module, "", "{} is in no module", file.place());
+                continue;
+            };
+            let lines = file
+                .text
+                .lines()
+                .filter(|l| !l.trim_start().starts_with("//"));
+            for after in lines.flat_map(|l| l.split("crate::").skip(1)) {
+                let name = after
+                    .split(|c: char| !c.is_alphanumeric() && c != '_')
+                    .next();
+                if name.and_then(place).is_some_and(|other| other > own) {
+                    faults.push(format!("{} imports from {name:?}", file.place()));
+                }
             }
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Lines of a file that are no comment.
+fn code_lines(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().filter(|l| !l.trim_start().starts_with("//"))
 }
 
 /// The report formats what it is given: it names neither the model nor what computes with it.
@@ -106,57 +100,83 @@ fn the_report_computes_nothing() {
         "identify::fit",
         "identify::replay",
     ];
-    let mut faults = Vec::new();
-    for (name, text) in all_sources() {
-        if !name.starts_with("report/") {
-            continue;
-        }
-        let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
-        // the names of the parameters and of the effects
-        let named = [
-            "identify::fit::parameters::Coordinate",
-            "identify::fit::effect::Effect",
-        ];
-        let code = code.map(|l| named.iter().fold(l.to_owned(), |l, n| l.replace(n, "")));
-        for line in code {
+    // the names of the parameters and of the effects
+    let named = [
+        "identify::fit::parameters::Coordinate",
+        "identify::fit::effect::Effect",
+    ];
+    for file in all_sources()
+        .iter()
+        .filter(|f| f.package == "impact-report")
+    {
+        for line in code_lines(&file.text) {
+            let line = named.iter().fold(line.to_owned(), |l, n| l.replace(n, ""));
             let found = computing.iter().find(|c| line.contains(**c));
-            faults.extend(found.map(|c| format!("src/{name} names {c}: {line}")));
+            assert!(found.is_none(), "{}: {line}", file.place());
         }
     }
-    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// The kit of the figures knows no campaign and no result.
+#[test]
+fn the_kit_knows_no_campaign() {
+    let foreign = [
+        "impact_identification",
+        "crate::content",
+        "crate::figures",
+        "crate::document",
+        "crate::parameters",
+        "impact_records::record",
+        "impact_records::event",
+    ];
+    let kit = |f: &&SourceFile| f.package == "impact-report" && f.top() == "kit";
+    let sources = all_sources();
+    assert!(sources.iter().filter(kit).count() > 10);
+    for file in sources.iter().filter(kit) {
+        for line in code_lines(&file.text) {
+            let found = foreign.iter().find(|c| line.contains(**c));
+            assert!(found.is_none(), "{}: {line}", file.place());
+        }
+    }
 }
 
 #[test]
-fn the_modules_are_those_of_architecture_md_in_its_order() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let page = fs::read_to_string(root.join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
+fn the_crates_and_modules_are_those_of_architecture_md() {
+    let page = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
     let rows = page.lines().filter_map(|line| line.strip_prefix("| `"));
-    let listed: Vec<&str> = rows
-        .filter_map(|row| row.split('`').next())
-        .filter(|name| !name.contains('/'))
+    let listed: Vec<&str> = rows.filter_map(|row| row.split('`').next()).collect();
+    let crates: Vec<&str> = PACKAGES.to_vec();
+    let found: Vec<&str> = listed
+        .iter()
+        .copied()
+        .filter(|n| crates.contains(n))
         .collect();
-    assert_eq!(listed, MODULES, "the table of ARCHITECTURE.md");
-    for (name, _) in all_sources() {
-        let known = module(&name).is_some() || ["lib.rs", "main.rs"].contains(&name.as_str());
-        assert!(known, "{name} is in no module");
-    }
+    assert_eq!(found, crates, "the table of crates in ARCHITECTURE.md");
+    let modules = MODULES
+        .iter()
+        .filter(|(package, _)| *package != "impact-oscillator");
+    let modules: Vec<&str> = modules
+        .flat_map(|(_, modules)| modules.iter().copied())
+        .collect();
+    let found: Vec<&str> = listed
+        .iter()
+        .copied()
+        .filter(|n| modules.contains(n))
+        .collect();
+    assert_eq!(found, modules, "the table of modules in ARCHITECTURE.md");
 }
 
 /// Whether a file is a module that only tests see.
-fn for_tests_alone(name: &str, all: &[(String, String)]) -> bool {
-    let stem = name
-        .trim_end_matches(".rs")
-        .rsplit('/')
-        .next()
-        .unwrap_or("");
+fn for_tests_alone(file: &SourceFile, all: &[SourceFile]) -> bool {
+    let stem = file.module.rsplit("::").next().unwrap_or("");
     let declared = ["mod", "pub mod"].map(|m| format!("#[cfg(test)]\n{m} {stem};"));
-    all.iter()
-        .any(|(_, text)| declared.iter().any(|d| text.contains(d)))
+    let of_package = all.iter().filter(|f| f.package == file.package);
+    let mut texts = of_package.map(|f| &f.text);
+    texts.any(|text| declared.iter().any(|d| text.contains(d)))
 }
 
 #[test]
 fn only_the_command_line_prints_or_exits() {
-    let all = all_sources();
     let printing = [
         "println!",
         "eprintln!",
@@ -165,19 +185,15 @@ fn only_the_command_line_prints_or_exits() {
         "process::exit",
         "dbg!",
     ];
-    for (name, text) in &all {
-        if name.starts_with("cli/") || for_tests_alone(name, &all) {
+    let all = all_sources();
+    for file in &all {
+        if file.package == "impactid" || for_tests_alone(file, &all) {
             continue;
         }
-        let code = text.split("#[cfg(test)]").next().unwrap_or("");
-        for (number, line) in code.lines().enumerate() {
-            let comment = line.trim_start().starts_with("//");
+        let code = file.text.split("#[cfg(test)]").next().unwrap_or("");
+        for line in code_lines(code) {
             let found = printing.iter().find(|p| line.contains(**p));
-            assert!(
-                comment || found.is_none(),
-                "src/{name}:{} prints or exits: {line}",
-                number + 1
-            );
+            assert!(found.is_none(), "{} prints or exits: {line}", file.place());
         }
     }
 }
@@ -188,21 +204,25 @@ fn only_the_command_line_prints_or_exits() {
 fn sockets_are_opened_on_loopback_alone_and_only_by_the_explorer() {
     let sockets = ["TcpListener", "TcpStream", "UdpSocket", "axum", "tokio::"];
     let mut binds = 0;
-    for (name, text) in all_sources() {
-        let code = text.split("#[cfg(test)]").next().unwrap_or("");
-        for line in code.lines().filter(|l| !l.trim_start().starts_with("//")) {
+    for file in all_sources() {
+        let explorer = file.package == "impact-workbench" && file.top() == "explore";
+        let code = file.text.split("#[cfg(test)]").next().unwrap_or("");
+        for line in code_lines(code) {
             let used = sockets.iter().any(|s| line.contains(s));
-            assert!(!used || name.starts_with("explore/"), "src/{name}: {line}");
+            assert!(!used || explorer, "{}: {line}", file.place());
             if line.contains("::bind(") && line.contains("TcpListener") {
                 binds += 1;
-                assert!(line.contains("Ipv4Addr::LOCALHOST"), "src/{name}: {line}");
+                assert!(
+                    line.contains("Ipv4Addr::LOCALHOST"),
+                    "{}: {line}",
+                    file.place()
+                );
             }
-            let connects = line.contains("::connect(");
-            assert!(!connects, "src/{name} connects: {line}");
+            assert!(!line.contains("::connect("), "{}: {line}", file.place());
         }
     }
     assert_eq!(binds, 1);
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/explore/page");
+    let page = root().join("crates/impact-workbench/src/explore/page");
     for entry in fs::read_dir(page).expect("the page") {
         let path = entry.expect("an entry").path();
         let name = path
@@ -219,30 +239,23 @@ fn sockets_are_opened_on_loopback_alone_and_only_by_the_explorer() {
     }
 }
 
+/// Within a package a foreign crate has one module.
 #[test]
 fn a_foreign_crate_is_used_in_its_module_alone() {
     let homes = [
-        ("rustfft", &["signal"][..]),
-        ("realfft", &["signal"]),
-        ("argmin", &["identify"]),
-        ("plotters", &["report"]),
-        ("indicatif", &["cli"]),
-        ("miette", &["cli"]),
-        ("clap", &["cli"]),
-        ("axum", &["explore"]),
-        ("tokio", &["explore"]),
-        ("futures_util", &["explore"]),
+        ("rustfft", "impact-records", "signal"),
+        ("argmin", "impact-identification", "identify"),
+        ("plotters", "impact-report", "kit"),
+        ("axum", "impact-workbench", "explore"),
+        ("tokio", "impact-workbench", "explore"),
+        ("futures_util", "impact-workbench", "explore"),
     ];
-    for (name, text) in all_sources() {
-        for (foreign, modules) in homes {
-            let uses = text
-                .lines()
-                .any(|l| l.trim_start().starts_with(&format!("use {foreign}::")));
-            let home = modules.iter().any(|r| name.starts_with(r));
-            assert!(
-                !uses || home,
-                "src/{name} uses {foreign}, which belongs to {modules:?}"
-            );
+    for file in all_sources() {
+        for (foreign, package, module) in homes {
+            let used = |l: &str| l.trim_start().starts_with(&format!("use {foreign}::"));
+            let uses = file.text.lines().any(used);
+            let home = file.package == package && file.top() == module;
+            assert!(!uses || home, "{} uses {foreign}", file.place());
         }
     }
 }
@@ -250,35 +263,28 @@ fn a_foreign_crate_is_used_in_its_module_alone() {
 /// What is built is used: a library in Cargo.toml that no source names only costs time.
 #[test]
 fn every_dependency_is_used() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let packages = [
-        (".", &["src", "tests", "benches"][..]),
-        ("crates/impact-oscillator", &["src"]),
-        ("crates/labfiles", &["src"]),
-    ];
-    for (package, folders) in packages {
-        let package = root.join(package);
-        let manifest = fs::read_to_string(package.join("Cargo.toml")).expect("Cargo.toml");
+    for (package, folder) in packages() {
+        let manifest = fs::read_to_string(folder.join("Cargo.toml")).expect("Cargo.toml");
         let manifest: toml::Table = manifest.parse().expect("TOML");
-        let mut paths = Vec::new();
-        for folder in folders {
-            sources(&package.join(folder), &mut paths);
+        let mut paths: Vec<PathBuf> = Vec::new();
+        for part in ["src", "tests", "benches"] {
+            rust_files(&folder.join(part), &mut paths);
         }
         let read = |path: &PathBuf| fs::read_to_string(path).expect("a source");
-        let all: Vec<String> = paths.iter().map(read).collect();
+        let mut all: Vec<String> = paths.iter().map(read).collect();
+        all.extend(fs::read_to_string(folder.join("README.md")));
         let named = |name: &str| {
             let uses = [format!("{name}::"), format!("use {name};")];
             let of = |text: &String| uses.iter().any(|u| text.contains(u.as_str()));
             all.iter().any(of)
         };
         for table in ["dependencies", "dev-dependencies"] {
-            let listed = manifest[table].as_table().expect("a table");
-            for name in listed.keys() {
+            let listed = manifest.get(table).and_then(toml::Value::as_table);
+            for name in listed.into_iter().flat_map(toml::Table::keys) {
                 let name = name.replace('-', "_");
                 assert!(
                     named(&name),
-                    "{}: {name} is listed in [{table}] and not used",
-                    package.display()
+                    "{package}: {name} is listed in [{table}] and not used"
                 );
             }
         }
