@@ -6,7 +6,7 @@ use std::path::Path;
 use super::estimate_text::with_error;
 use impact_campaign::pipeline::watch::{Live, NewsKind, Outline, Watcher};
 use impact_identification::identify::Identification;
-use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::plan::Proposal;
 use impact_records::message::counted;
 use impact_records::motion::{Bracket, Motion, Observation};

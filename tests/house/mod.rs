@@ -97,13 +97,13 @@ fn the_report_computes_nothing() {
         "impact_records::event",
         "simulated_rig",
         "identify::evidence",
-        "identify::fit",
+        "identify::solver",
         "identify::replay",
     ];
     // the names of the parameters and of the effects
     let named = [
-        "identify::fit::parameters::Coordinate",
-        "identify::fit::effect::Effect",
+        "identify::parameters::Coordinate",
+        "identify::parameters::effect::Effect",
     ];
     for file in all_sources()
         .iter()
@@ -287,6 +287,70 @@ fn every_dependency_is_used() {
                     "{package}: {name} is listed in [{table}] and not used"
                 );
             }
+        }
+    }
+}
+
+/// The layers of the identification in order: a unit of `identify` (a file or a folder) imports only from
+/// those before it.
+const LAYERS: [&str; 27] = [
+    "method",
+    "parameters",
+    "solver",
+    "statistics",
+    "evidence",
+    "messages",
+    "method_fit",
+    "estimate",
+    "answer",
+    "plan",
+    "replay",
+    "residuals",
+    "methods",
+    "flight_times",
+    "decay",
+    "bracket_midpoints",
+    "joint",
+    "starts",
+    "uncertainty",
+    "selection",
+    "identification",
+    "first_values",
+    "published",
+    "diagnostics",
+    "results",
+    "run",
+    "boundary_plan",
+];
+
+#[test]
+fn a_layer_of_the_identification_imports_only_from_those_before_it() {
+    let sources = all_sources();
+    let files: Vec<_> = sources
+        .iter()
+        .filter(|f| f.package == "impact-identification")
+        .collect();
+    let unit = |module: &str| {
+        module
+            .strip_prefix("identify::")?
+            .split("::")
+            .next()
+            .map(str::to_owned)
+    };
+    let layer = |unit: &str| LAYERS.iter().position(|l| *l == unit);
+    // what uses all layers, and what only tests see
+    let beyond = ["specimens", "fixture", "tests"];
+    for (module, imported) in sources::Imports::new(&files).of {
+        let Some(own) = unit(&module).filter(|u| !beyond.contains(&u.as_str())) else {
+            continue;
+        };
+        let number = layer(&own);
+        assert!(number.is_some(), "{own} is in no layer");
+        for other in imported.iter().filter_map(|m| unit(m)) {
+            assert!(
+                layer(&other) <= number && layer(&other).is_some(),
+                "{module} imports {other}"
+            );
         }
     }
 }

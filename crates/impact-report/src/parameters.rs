@@ -2,7 +2,7 @@
 
 use super::locale::{Locale, decimal_exponent};
 use crate::phrase::Phrase;
-use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::{Estimate, Method};
 
 /// How a parameter is named and printed.

@@ -12,7 +12,7 @@ use serde::Serialize;
 use crate::coverage::{Tally, identified};
 use impact_campaign::pipeline::{PipelineError, Progress};
 use impact_identification::compare::{self, Campaign, Common, Comparison, Outcome};
-use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::{GAIN_ROLES, Identification};
 use impact_records::event::{FlightKind, RigKind};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup};

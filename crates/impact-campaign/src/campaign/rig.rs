@@ -9,7 +9,7 @@ use super::diagnostic::Code;
 use super::resolved::{NominalValues, RecordEntry};
 use super::written::{self, Placed};
 use impact_identification::compare::Common;
-use impact_identification::identify::fit::effect::EffectKind;
+use impact_identification::identify::parameters::effect::EffectKind;
 use impact_records::record::calibrate::ChannelSetup;
 use labfiles::units::Dimension;
 

@@ -10,7 +10,7 @@ use std::fmt;
 use serde::{Deserialize, Deserializer, Serialize, de};
 use toml::Spanned;
 
-pub use impact_identification::identify::uncertainty::IntervalMethod;
+pub use impact_identification::identify::evidence::options::IntervalMethod;
 pub use impact_records::event::{FlightKind as Flight, RigKind as Machine};
 use impact_records::record::ContactContent;
 use impact_records::record::calibrate::ChannelKey;

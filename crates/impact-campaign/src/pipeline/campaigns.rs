@@ -178,7 +178,7 @@ struct Line<'a> {
 
 /// The estimates of all campaigns and their differences as CSV.
 fn table(comparison: &Comparison) -> Result<Vec<u8>, PipelineError> {
-    use impact_identification::identify::fit::parameters::Coordinate;
+    use impact_identification::identify::parameters::Coordinate;
     let mut writer = csv::Writer::from_writer(Vec::new());
     for (number, campaign) in comparison.campaigns.iter().enumerate() {
         for parameter in Coordinate::PHYSICAL {

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::identify;
 use super::json::{store_error, write_json};
 use super::{Completed, PipelineError};
-use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::{Estimate, ParameterSet, VerdictKind};
 use labfiles::output::write_bytes;
 

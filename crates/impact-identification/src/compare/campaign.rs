@@ -1,8 +1,8 @@
 //! A campaign as it enters a comparison.
 
 use crate::compare::Common;
-use crate::identify::fit::coordinate::Coordinate;
-use crate::identify::uncertainty::quantile::NORMAL_975;
+use crate::identify::parameters::coordinate::Coordinate;
+use crate::identify::statistics::quantile::NORMAL_975;
 use crate::identify::{Allowed, Estimate, JointFit, ParameterSet, VerdictKind};
 use impact_records::event::{FlightKind, RigKind};
 use impact_records::record::calibrate::ChannelSetup;

@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::compare::Campaign;
 use crate::compare::share::{Nuisance, Sharing};
 use crate::identify::JointFit;
-use crate::identify::fit::coordinate::Coordinate;
+use crate::identify::parameters::coordinate::Coordinate;
 
 /// Share of a stated clearance that the fitted one must reach for its logarithm to stand for its error.
 const LEAST_SHARE: f64 = 0.5;

@@ -7,10 +7,10 @@ use crate::compare::campaign::Known;
 use crate::compare::share::{SeparateNuisance, SharedNuisance, sharing};
 use crate::compare::stack::Stack;
 use crate::compare::{Campaign, Outcome, Remark, decision};
-use crate::identify::fit::coordinate::Coordinate;
-use crate::identify::fit::normal::inverse;
-use crate::identify::uncertainty::distribution::{fisher_tail, student_tail};
-use crate::identify::uncertainty::quantile::student_975;
+use crate::identify::parameters::coordinate::Coordinate;
+use crate::identify::solver::normal::inverse;
+use crate::identify::statistics::distribution::{fisher_tail, student_tail};
+use crate::identify::statistics::quantile::student_975;
 use crate::identify::{ParameterSet, VerdictKind};
 use impact_records::event::{FlightKind, RigKind};
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use strum::IntoEnumIterator;
 
 use crate::identify::VerdictKind;
-use crate::identify::fit::coordinate::Coordinate;
+use crate::identify::parameters::coordinate::Coordinate;
 use impact_records::message::{Message, Value, boxed};
 use impact_records::{message_table, messages};
 

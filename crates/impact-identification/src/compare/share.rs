@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::compare::{Campaign, Common, NotShared, WhyShared};
-use crate::identify::fit::coordinate::Coordinate;
+use crate::identify::parameters::coordinate::Coordinate;
 use crate::identify::{GAIN_ROLES, JointFit};
 use impact_records::record::Role;
 

@@ -8,8 +8,8 @@ use crate::compare::chart::Chart;
 use crate::compare::share::{Nuisance, Sharing};
 use crate::compare::{Campaign, chart};
 use crate::identify::JointFit;
-use crate::identify::fit::coordinate::Coordinate;
-use crate::identify::fit::normal::inverse;
+use crate::identify::parameters::coordinate::Coordinate;
+use crate::identify::solver::normal::inverse;
 
 /// The most probable values of all unknowns of all campaigns and their covariance.
 #[derive(Debug)]

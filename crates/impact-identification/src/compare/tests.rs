@@ -4,10 +4,10 @@ use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 
 use super::*;
-use crate::identify::fit::normal::inverse;
-use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Fit, FitReport, Prior};
-use crate::identify::uncertainty::distribution::student_tail;
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::normal::inverse;
+use crate::identify::solver::{Fit, FitReport, Prior};
+use crate::identify::statistics::distribution::student_tail;
 use crate::identify::{Allowed, Estimate, GAIN_ROLES, JointFit, ParameterSet, Status, VerdictKind};
 use impact_records::event::{FlightKind, RigKind};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup};

@@ -3,11 +3,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::identify::answer::MethodResult;
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::boundary::{BoundaryBlock, predicted_hz};
-use crate::identify::fit::parameters::Parameters;
-use crate::identify::identification::MethodResult;
 use crate::identify::methods::{self, succeeded};
+use crate::identify::parameters::Parameters;
 use crate::identify::results;
 use crate::identify::selection::Selection;
 use crate::identify::uncertainty::posterior::{self, Posterior};

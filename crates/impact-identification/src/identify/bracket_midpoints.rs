@@ -2,9 +2,9 @@
 //! printed beside the posterior, which takes the brackets as the intervals that they are.
 
 use crate::identify::evidence::boundary::{BoundaryBlock, predicted_hz};
-use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Block, Problem};
 use crate::identify::methods::fit_blocks;
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::{Block, Problem};
 use crate::identify::{Estimate, estimate};
 use impact_records::event::RigKind;
 use impact_records::motion::{BoundaryKind, Bracket};

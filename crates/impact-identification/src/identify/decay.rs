@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use crate::identify::answer::MethodResult;
 use crate::identify::estimate::{self, Estimate, Status};
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::identification::MethodResult;
 use crate::identify::messages::{DampingPoint, Item, LeftOut, Note, Reason, Remark};
-use crate::identify::uncertainty::quantile::NORMAL_975;
-use crate::identify::uncertainty::scatter::Spread;
+use crate::identify::parameters::Coordinate;
+use crate::identify::statistics::quantile::NORMAL_975;
+use crate::identify::statistics::scatter::Spread;
 use impact_records::motion::Observation;
 use impact_records::signal::decay::Decay;
 use impact_records::signal::robust;

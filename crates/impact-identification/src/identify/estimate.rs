@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::fit::Fit;
-use crate::identify::fit::parameters::Coordinate;
 use crate::identify::messages::Note;
 use crate::identify::method_fit::MethodFit;
-use crate::identify::uncertainty::quantile::NORMAL_975;
-use crate::identify::uncertainty::scatter::Spread;
+use crate::identify::parameters::Coordinate;
+use crate::identify::solver::Fit;
+use crate::identify::statistics::quantile::NORMAL_975;
+use crate::identify::statistics::scatter::Spread;
 
 /// How well the data determine a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
@@ -232,6 +232,18 @@ fn leaning(fit: &Fit, coordinate: Coordinate) -> Option<Note> {
     })
 }
 
+impl Estimate {
+    /// Mark it as no one number, with an interval that holds all of its values (of R).
+    pub fn is_not_one_number(&mut self, values: &[f64]) {
+        self.status = Status::Weak;
+        self.note = Some(Note::NotOneNumber);
+        if let Some([low, high]) = &mut self.interval95 {
+            *low = values.iter().copied().fold(*low, f64::min).max(0.0);
+            *high = values.iter().copied().fold(*high, f64::max).min(1.0);
+        }
+    }
+}
+
 impl ParameterSet {
     /// Estimate of a coordinate.
     pub fn get(&self, coordinate: Coordinate) -> Option<&Estimate> {
@@ -261,8 +273,8 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::identify::fit::FitReport;
-    use crate::identify::fit::parameters::Parameters;
+    use crate::identify::parameters::Parameters;
+    use crate::identify::solver::FitReport;
 
     #[test]
     fn valid_an_interval_is_1_96_errors_to_either_side_of_the_coordinate() {

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::impacts::ImpactBlock;
-use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::methods::{self, FitResult, succeeded};
+use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::selection::Selection;
-use crate::identify::uncertainty::scatter::Spread;
+use crate::identify::statistics::scatter::Spread;
 use impact_records::motion::Observation;
 
 /// Starting values: the resonance curve's, else the stated ones, else guesses of scale.

@@ -8,14 +8,13 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-use crate::identify::diagnostics::verdict::judge_structure;
+use crate::identify::answer::MethodResult;
 use crate::identify::estimate;
 use crate::identify::evidence::structure::{
     self, GroupedRatio, Grouping, ImpactGroup, ImpactGroups,
 };
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::identification::MethodResult;
 use crate::identify::messages::Remark;
+use crate::identify::parameters::Coordinate;
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
 
@@ -123,7 +122,7 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         false => between_records(&groups).or_else(|| structure::structure(&ratios)),
     };
     if let Some(grouping) = grouping.filter(|_| scatter) {
-        judge_structure(&mut result, grouping);
+        result.judge_structure(grouping);
     }
     Some(result)
 }

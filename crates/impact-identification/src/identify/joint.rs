@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 
 use crate::identify::evidence::{Blocks, Nominal};
-use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Block, FitError, Prior, Problem};
 use crate::identify::method::Method;
 use crate::identify::method_fit::MethodFit;
 use crate::identify::methods;
-use crate::identify::uncertainty::posterior::Posterior;
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::{Block, FitError, Prior, Problem};
 
 /// The residuals that a method fits; `None` of a method that has no block.
 pub fn block(method: Method, blocks: &Blocks) -> Option<&dyn Block> {
@@ -51,13 +50,13 @@ fn weighted<'b>(
 }
 
 /// The problem of all blocks, each with its weight; those without one stay out. What the brackets
-/// say of R may enter as a posterior of its own.
+/// say of R may enter as a distribution of its own.
 pub fn problem<'b>(
     blocks: &'b Blocks,
     start: Parameters,
     weights: &Weights,
     nominal: &Nominal,
-    posterior: Option<&Posterior>,
+    of_brackets: Option<Prior>,
 ) -> Option<Problem<'b>> {
     let list: Vec<(&'b dyn Block, f64)> = weighted(blocks, weights)
         .map(|(_, block, weight)| (block, weight))
@@ -70,13 +69,11 @@ pub fn problem<'b>(
         .filter(|c| list.iter().any(|(block, _)| block.touches(*c)))
         .collect();
     let mut priors = methods::wide_priors(&start, &free);
-    if let Some(found) = posterior {
-        let (centre, deviation) = found.restitution;
-        let coordinate = Coordinate::Restitution;
-        if !free.contains(&coordinate) {
-            free.insert(0, coordinate);
+    if let Some(restitution) = of_brackets {
+        if !free.contains(&restitution.coordinate) {
+            free.insert(0, restitution.coordinate);
         }
-        priors.push(Prior::new(coordinate, centre, deviation));
+        priors.push(restitution);
     }
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
     Some(blocks.problem(list, free, priors))
@@ -95,8 +92,8 @@ pub fn fit(problem: &Problem<'_>, start: Parameters) -> Result<MethodFit, FitErr
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::fit::effect::Effects;
     use crate::identify::fixture::{evidence, observed, recorded};
+    use crate::identify::parameters::effect::Effects;
 
     #[test]
     fn prop_more_freedom_never_costs_likelihood() {
@@ -105,7 +102,7 @@ mod tests {
             let evidence = evidence(&observations);
             let truth = Parameters::symmetric(0.75, 12.0, 0.06, 1e-3);
             let mut blocks = Blocks::new(&evidence);
-            let has_orbit = crate::identify::fit::mean_squares(&blocks.trajectory, &truth);
+            let has_orbit = crate::identify::solver::mean_squares(&blocks.trajectory, &truth);
             let mut has_orbit = has_orbit.iter().map(Option::is_some);
             blocks
                 .trajectory

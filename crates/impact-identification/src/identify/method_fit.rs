@@ -2,10 +2,10 @@
 
 use nalgebra::DMatrix;
 
-use crate::identify::fit::normal::{Normal, inverse};
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::fit::{Fit, Precision, Problem};
-use crate::identify::uncertainty::scatter::{self, Scatter, Spread};
+use crate::identify::parameters::Coordinate;
+use crate::identify::solver::normal::{Normal, inverse};
+use crate::identify::solver::{Fit, Precision, Problem};
+use crate::identify::statistics::scatter::{self, Scatter, Spread};
 
 /// A method's fit with its variance factor and the items left out.
 #[derive(Debug, Clone)]

@@ -1,15 +1,15 @@
 //! The methods, each alone: boundaries, trajectories, impacts, resonance.
 
+use crate::identify::answer::MethodResult;
 use crate::identify::estimate;
 use crate::identify::evidence::impacts::FirstValueOnly;
 use crate::identify::evidence::resonance::ResonanceBlock;
 use crate::identify::evidence::{Blocks, Nominal};
-use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Block, FitError, Precision, Prior, Problem, mean_squares};
-use crate::identify::identification::MethodResult;
 use crate::identify::messages::{Note, Remark};
 use crate::identify::method_fit::MethodFit;
-use crate::identify::uncertainty::scatter::Spread;
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::{Block, FitError, Precision, Prior, Problem, mean_squares};
+use crate::identify::statistics::scatter::Spread;
 
 /// Very wide priors that keep the equations regular where the data say nothing.
 pub fn wide_priors(start: &Parameters, free: &[Coordinate]) -> Vec<Prior> {

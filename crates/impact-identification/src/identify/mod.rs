@@ -1,10 +1,11 @@
 //! Identification: parameters fitted to what was measured, with uncertainty and a verdict.
 //!
 //! The result is plain data ([`Identification`]), written as `identification.json`. [`run`] leads from
-//! [`evidence`] (what was measured, as residuals of the model) over [`fit`] (least squares) to
+//! [`evidence`] (what was measured, as residuals of the model) over [`solver`] (least squares) to
 //! [`uncertainty`] and [`diagnostics`] (does the model fit, do the methods agree, was there a mistake). What it states is typed
 //! ([`messages`]); sentences are made when it is printed.
 
+mod answer;
 pub mod boundary_plan;
 pub mod bracket_midpoints;
 pub mod decay;
@@ -12,7 +13,6 @@ pub mod diagnostics;
 pub mod estimate;
 pub mod evidence;
 mod first_values;
-pub mod fit;
 #[cfg(test)]
 mod fixture;
 pub mod flight_times;
@@ -22,6 +22,7 @@ pub mod messages;
 pub mod method;
 pub mod method_fit;
 pub mod methods;
+pub mod parameters;
 pub mod plan;
 pub mod published;
 pub mod replay;
@@ -29,17 +30,17 @@ pub mod residuals;
 pub mod results;
 pub mod run;
 pub mod selection;
+pub mod solver;
 pub mod specimens;
 mod starts;
+pub mod statistics;
 pub mod uncertainty;
 
+pub use answer::{Agreement, Allowed, JointFit, MethodResult, Verdict, VerdictKind};
 pub use estimate::{Estimate, ParameterSet, Status};
-pub use fit::effect::Effect;
-pub use fit::parameters::GAIN_ROLES;
-pub use identification::{
-    Agreement, Allowed, Identification, JointFit, MethodResult, Provenance, SpecimenResult,
-    Verdict, VerdictKind,
-};
+pub use identification::{Identification, Provenance, SpecimenResult};
 pub use messages::{Finding, Item, LeftOut, Note, PairAgreement, Reason, Remark, Sentence};
 pub use method::{Estimator, Method};
+pub use parameters::GAIN_ROLES;
+pub use parameters::effect::Effect;
 pub use specimens::identify_campaign;

@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use crate::identify::evidence::trajectory::channel_value;
-use crate::identify::fit::parameters::Parameters;
+use crate::identify::parameters::Parameters;
 use impact_oscillator::atlas::MapSettings;
 use impact_oscillator::atlas::map::{End, Start, march_from};
 use impact_oscillator::model::flight::{Drive, State, forced_amplitude};

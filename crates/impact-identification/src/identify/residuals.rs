@@ -4,9 +4,9 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::Blocks;
-use crate::identify::fit::Block;
-use crate::identify::fit::parameters::Parameters;
 use crate::identify::method::Method;
+use crate::identify::parameters::Parameters;
+use crate::identify::solver::Block;
 use impact_records::signal::robust;
 use impact_records::signal::thinning::thinned;
 

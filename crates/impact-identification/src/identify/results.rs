@@ -2,15 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::diagnostics::contact_law::ContactLaw;
-use crate::identify::diagnostics::{contact_law, momentum, verdict};
+use crate::identify::diagnostics::{momentum, verdict};
+use crate::identify::evidence::contact_law;
+use crate::identify::evidence::contact_law::ContactLaw;
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::evidence::{Blocks, Evidence, impact_bias, structure};
-use crate::identify::fit::Fit;
-use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::methods::{self, FitResult};
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::Fit;
+use crate::identify::statistics::quantile::NORMAL_975;
 use crate::identify::uncertainty::posterior::Posterior;
-use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::identify::{Estimate, Item, Method, MethodResult, Remark, bracket_midpoints, estimate};
 
 /// f0, β and `x_st` from the impactless records.

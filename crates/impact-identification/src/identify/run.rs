@@ -2,12 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::identify::answer::{Allowed, JointFit, MethodResult};
 use crate::identify::diagnostics::agreement::{agreement, between_methods, which_restitution};
 use crate::identify::diagnostics::beyond;
-use crate::identify::diagnostics::cause::Cause;
 use crate::identify::diagnostics::change::{self, Change};
 use crate::identify::diagnostics::clock;
-use crate::identify::diagnostics::contact_law;
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::doubt::{self, Doubt, Suspicion};
 use crate::identify::diagnostics::late_channel;
@@ -22,19 +21,21 @@ use crate::identify::diagnostics::undeclared_high_pass;
 use crate::identify::diagnostics::verdict::{self, Basis};
 use crate::identify::diagnostics::wrong_gains;
 use crate::identify::estimate::ParameterSet;
+use crate::identify::evidence::contact_law;
 use crate::identify::evidence::{Blocks, Evidence, Nominal, impact_bias};
 use crate::identify::first_values::{start, with_restitution};
-use crate::identify::fit::effect::{Effect, EffectKind};
-use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Fit, Precision, Problem};
-use crate::identify::identification::{Allowed, Identification, JointFit, MethodResult};
+use crate::identify::identification::Identification;
 use crate::identify::joint::{self, Weights};
+use crate::identify::messages::cause::Cause;
 use crate::identify::messages::{Finding, Item, LeftOut, Reason, Remark};
 use crate::identify::method::Method;
 use crate::identify::method_fit::MethodFit;
 use crate::identify::methods::{self, FitResult, succeeded};
+use crate::identify::parameters::effect::{Effect, EffectKind};
+use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::residuals::MethodResiduals;
 use crate::identify::selection::Selection;
+use crate::identify::solver::{Fit, Precision, Problem};
 use crate::identify::uncertainty::budget::{self, Further, Source};
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::surroundings::Surroundings;
@@ -451,8 +452,8 @@ impl IdentificationRun<'_> {
         start: Parameters,
         weights: &Weights,
     ) -> Option<Problem<'b>> {
-        let posterior = self.posterior.as_ref();
-        joint::problem(blocks, start, weights, &self.evidence.nominal, posterior)
+        let of_brackets = self.posterior.as_ref().map(Posterior::as_prior);
+        joint::problem(blocks, start, weights, &self.evidence.nominal, of_brackets)
     }
 
     /// The joint fit with all that other campaigns' fits are combined with it by; `estimates`: what was

@@ -5,18 +5,18 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use crate::identify::diagnostics::influence;
 use crate::identify::evidence::Nominal;
+use crate::identify::evidence::influence;
 use crate::identify::evidence::resonance::ResonancePoint;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::weighing::Bulk;
 use crate::identify::evidence::{Blocks, Evidence, boundary};
-use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{FitError, Precision, Problem, mean_squares};
 use crate::identify::flight_times;
 use crate::identify::messages::{Item, LeftOut, Reason};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult};
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::{FitError, Precision, Problem, mean_squares};
 use crate::identify::starts;
 use impact_records::motion::{Bracket, Observation};
 

@@ -2,14 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::identify::answer::{MethodResult, Verdict, VerdictKind};
 use crate::identify::estimate::Status;
 use crate::identify::evidence::Evidence;
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::identification::{
-    Identification, MethodResult, SpecimenResult, Verdict, VerdictKind,
-};
+use crate::identify::identification::{Identification, SpecimenResult};
 use crate::identify::messages::{Finding, Item, LeftOut, Note, Sentence};
 use crate::identify::method::Method;
+use crate::identify::parameters::Coordinate;
 use crate::identify::run::identify;
 use crate::identify::{decay, estimate};
 use impact_records::motion::{Bracket, Observation};

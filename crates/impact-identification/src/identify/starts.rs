@@ -7,11 +7,11 @@
 use rayon::prelude::*;
 
 use crate::identify::evidence::{Blocks, Nominal};
-use crate::identify::fit::parameters::Parameters;
-use crate::identify::fit::{Block, Precision, Problem, mean_squares};
 use crate::identify::joint::{self, Weights};
 use crate::identify::method::Method;
 use crate::identify::methods::deflection_guess;
+use crate::identify::parameters::Parameters;
+use crate::identify::solver::{Block, Precision, Problem, mean_squares};
 use impact_records::signal::robust;
 
 /// Share of the periodic records that a good start gives an orbit.

@@ -1,11 +1,11 @@
 //! What each method used: resonance curves, speeds at impacts, residuals, correlation.
 
 use super::input::Input;
-use crate::identify::diagnostics::contact_law::Law;
+use crate::identify::evidence::contact_law::Law;
 use crate::identify::evidence::impacts::SpeedPair;
 use crate::identify::evidence::impacts_of_bulk;
 use crate::identify::evidence::resonance::predicted;
-use crate::identify::fit::parameters::Coordinate;
+use crate::identify::parameters::Coordinate;
 use crate::identify::residuals::MethodResiduals;
 use crate::identify::{Method, MethodResult, SpecimenResult};
 use impact_oscillator::atlas::map::even;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::fit::parameters::Parameters;
+use crate::identify::parameters::Parameters;
 use crate::identify::{Identification, Item, Reason};
 use impact_records::event::RigKind;
 use impact_records::motion::{Bracket, Observation};

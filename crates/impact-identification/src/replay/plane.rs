@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::input::Input;
-use crate::identify::fit::parameters::Coordinate;
+use crate::identify::parameters::Coordinate;
 use crate::identify::replay::LIVELY_SPEED;
 use crate::identify::uncertainty::band::Spread;
 use impact_oscillator::atlas::map::even;

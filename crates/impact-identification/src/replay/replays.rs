@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::input::{Input, place};
 use super::traces::{Cut, Trace, largest_residual, traces};
-use crate::identify::fit::parameters::Parameters;
+use crate::identify::parameters::Parameters;
 use crate::identify::replay::{Replay, Stretch};
 use impact_records::event::{DetectSettings, DriveTone, detect};
 use impact_records::motion::{Motion, Observation};

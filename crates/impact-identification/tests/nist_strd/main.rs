@@ -7,8 +7,8 @@ mod models;
 use std::path::Path;
 
 use dual::Dual;
-use impact_identification::identify::fit::factor::Factor;
-use impact_identification::identify::fit::least_squares::{
+use impact_identification::identify::solver::factor::Factor;
+use impact_identification::identify::solver::least_squares::{
     LeastSquares, Limits, Variance, minimise,
 };
 

@@ -11,7 +11,7 @@ use crate::content::ReportContent;
 use crate::locale::Locale;
 use crate::parameters::{self, PARAMETERS, ParameterLook};
 use crate::phrase::Phrase;
-use impact_identification::identify::fit::effect::EffectKind;
+use impact_identification::identify::parameters::effect::EffectKind;
 use impact_identification::identify::{Estimate, Finding, VerdictKind};
 
 /// Builds the first page.

@@ -11,7 +11,7 @@ use crate::figures::plane::Plane;
 use crate::locale::Locale;
 use crate::parameters::{method_inline, parameter, short};
 use crate::phrase::Phrase;
-use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::{Finding, Method, MethodResult};
 
 /// All sections in their order.

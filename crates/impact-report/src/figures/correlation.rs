@@ -16,7 +16,7 @@ use crate::kit::richtext;
 use crate::locale::Locale;
 use crate::parameters::parameter;
 use crate::phrase::{Phrase, Text};
-use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::{Effect, GAIN_ROLES};
 use impact_identification::replay::Correlation;
 

@@ -8,7 +8,7 @@ use impact_identification::compare::{
     Comparison, Difference, EqualityTest, NotShared, Remark, SeparateNuisance, SharedNuisance,
     Summary, WhyShared,
 };
-use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::{Provenance, VerdictKind};
 use impact_identification::replay::fixture::{self, Identified};
 use impact_identification::replay::{ImpactScatter, RecordRow};

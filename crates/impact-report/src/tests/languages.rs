@@ -7,8 +7,8 @@ use crate::{
     DataTable, NominalValue, Phrase, Report, ReportContent, ReportOptions, Subject, catalog,
     document,
 };
-use impact_identification::identify::fit::effect::Effect;
-use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::parameters::Coordinate;
+use impact_identification::identify::parameters::effect::Effect;
 use impact_identification::identify::uncertainty::budget::{
     Budget, Combined, Contribution, Evaluation, Row, Source,
 };

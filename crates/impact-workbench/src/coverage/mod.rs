@@ -8,12 +8,12 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use impact_campaign::pipeline::{PipelineError, Progress};
+use impact_identification::identify::evidence::options::{IntervalMethod, UncertaintyOptions};
 use impact_identification::identify::evidence::{Evidence, Nominal};
-use impact_identification::identify::fit::parameters::Parameters;
+use impact_identification::identify::parameters::Parameters;
 use impact_identification::identify::run::identify;
 use impact_identification::identify::uncertainty::bound::bounds;
 use impact_identification::identify::uncertainty::coverage::{Score, Trial, scores, table};
-use impact_identification::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
 use impact_identification::identify::{Estimator, Identification, Method, boundary_plan};
 use impact_records::event::{DetectSettings, RigKind};
 use impact_records::motion::{

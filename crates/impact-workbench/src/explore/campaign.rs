@@ -15,7 +15,7 @@ use impact_campaign::pipeline::{
     Observed, PipelineError, Progress, identify, inputs, layout, store,
 };
 use impact_identification::identify::evidence::Blocks;
-use impact_identification::identify::fit::parameters::Parameters;
+use impact_identification::identify::parameters::Parameters;
 use impact_identification::identify::{Estimate, Identification};
 use impact_identification::replay::{self, Input, Placed};
 use impact_records::event::RigKind;

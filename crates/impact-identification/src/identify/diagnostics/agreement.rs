@@ -2,13 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::identify::answer::{Agreement, MethodResult};
 use crate::identify::estimate::{Estimate, Status};
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::identification::{Agreement, MethodResult};
 use crate::identify::messages::{PairAgreement, Remark};
 use crate::identify::method::Method;
-use crate::identify::uncertainty::distribution::normal_tail;
-use crate::identify::uncertainty::quantile::NORMAL_975;
+use crate::identify::parameters::Coordinate;
+use crate::identify::statistics::distribution::normal_tail;
+use crate::identify::statistics::quantile::NORMAL_975;
 
 /// Level of the whole test; divided by the number of pairs.
 pub const LEVEL: f64 = 0.01;

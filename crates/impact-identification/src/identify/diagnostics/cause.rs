@@ -7,46 +7,14 @@
 
 use std::collections::BTreeMap;
 
+use crate::identify::answer::MethodResult;
 use crate::identify::estimate::{Estimate, Status};
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::identification::MethodResult;
+use crate::identify::messages::cause::Cause;
 use crate::identify::messages::{Finding, Note};
 use crate::identify::method::Method;
-
-/// The kinds of causes, each before those that it explains.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Cause {
-    /// A channel shows something else than the motion at its time: late, filtered, mixed with another signal.
-    Channel,
-    /// The records are not of one rig in one state.
-    Change,
-    /// The contact has no single coefficient of restitution.
-    Contact,
-    /// Most records begin before their motions have settled.
-    Unsettled,
-    /// A stated number is wrong, and the fit carries its error.
-    Statement,
-    /// An effect beyond the model that the fit carries.
-    Effect,
-    /// A fit is worse than its noise, or methods differ.
-    Symptom,
-}
+use crate::identify::parameters::Coordinate;
 
 impl Cause {
-    /// Whether the model has no place for it, so that it bends the fits that it reaches.
-    pub fn bends(self) -> bool {
-        self <= Self::Contact
-    }
-
-    /// Whether the data of a method can be bent by it.
-    pub fn reaches(self, method: Method) -> bool {
-        match self {
-            Self::Channel | Self::Change => true,
-            Self::Contact => !matches!(method, Method::Resonance | Method::FreeDecay),
-            Self::Unsettled | Self::Statement | Self::Effect | Self::Symptom => false,
-        }
-    }
-
     /// Whether a finding is a trace of this cause, so that it is not named beside it.
     pub fn explains(self, finding: &Finding) -> bool {
         let later = finding.cause().is_some_and(|other| other > self);
@@ -127,8 +95,8 @@ fn half_width(estimate: &Estimate) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::identify::estimate::estimate;
-    use crate::identify::fit::effect::Effect;
     use crate::identify::messages::{PairAgreement, Remark};
+    use crate::identify::parameters::effect::Effect;
     use impact_records::record::Role;
 
     fn changes() -> Remark {

@@ -9,20 +9,20 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::identify::answer::MethodResult;
 use crate::identify::estimate::{Estimate, Status, estimate_within};
 use crate::identify::evidence::{Blocks, Evidence};
 use crate::identify::first_values::part_alone;
-use crate::identify::fit::Problem;
-use crate::identify::fit::effect::Effect;
-use crate::identify::fit::normal::{Normal, inverse};
-use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::placed_rows::PlacedRows;
-use crate::identify::identification::MethodResult;
 use crate::identify::messages::{Finding, Note, StatedValue};
 use crate::identify::method::Method;
+use crate::identify::parameters::effect::Effect;
+use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::selection::Selection;
-use crate::identify::uncertainty::distribution::student_tail;
-use crate::identify::uncertainty::scatter::Spread;
+use crate::identify::solver::Problem;
+use crate::identify::solver::normal::{Normal, inverse};
+use crate::identify::solver::placed_rows::PlacedRows;
+use crate::identify::statistics::distribution::student_tail;
+use crate::identify::statistics::scatter::Spread;
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
 

@@ -7,13 +7,13 @@
 
 use std::collections::BTreeMap;
 
+use crate::identify::answer::MethodResult;
 use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
 use crate::identify::diagnostics::stated_frequencies;
 use crate::identify::estimate;
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::identification::MethodResult;
 use crate::identify::messages::{Finding, Note};
-use crate::identify::uncertainty::quantile::{NORMAL_975, student_975};
+use crate::identify::parameters::Coordinate;
+use crate::identify::statistics::quantile::{NORMAL_975, student_975};
 use impact_records::motion::Observation;
 use impact_records::record::FlagCode;
 use impact_records::signal::robust;

@@ -7,8 +7,8 @@ use crate::identify::diagnostics::suspicion::{OddGap, recover};
 use crate::identify::evidence::Blocks;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
-use crate::identify::fit::mean_squares;
-use crate::identify::fit::parameters::Parameters;
+use crate::identify::parameters::Parameters;
+use crate::identify::solver::mean_squares;
 use impact_records::signal::robust;
 
 /// Mean square of the residuals from which the records contradict each other.

@@ -1,10 +1,10 @@
 //! What a mistake that the data give away leaves open in the estimates.
 
+use crate::identify::answer::MethodResult;
 use crate::identify::estimate;
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::identification::MethodResult;
 use crate::identify::messages::{Finding, Note};
 use crate::identify::method_fit::MethodFit;
+use crate::identify::parameters::Coordinate;
 
 /// How far a parameter may be off beside its own uncertainty.
 #[derive(Debug, Clone, PartialEq)]

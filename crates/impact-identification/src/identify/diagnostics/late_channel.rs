@@ -2,9 +2,9 @@
 
 use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
 use crate::identify::evidence::{Blocks, Nominal};
-use crate::identify::fit::parameters::{Coordinate, GAIN_ROLES};
 use crate::identify::messages::{Finding, Note};
 use crate::identify::method_fit::MethodFit;
+use crate::identify::parameters::{Coordinate, GAIN_ROLES};
 use impact_records::motion::Observation;
 use impact_records::record::LowPass;
 

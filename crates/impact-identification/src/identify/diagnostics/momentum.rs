@@ -3,7 +3,7 @@
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::impacts::ImpactBlock;
 use crate::identify::messages::{Finding, Remark};
-use crate::identify::uncertainty::quantile::NORMAL_975;
+use crate::identify::statistics::quantile::NORMAL_975;
 use impact_records::event::{Impact, RigKind};
 
 /// Standard errors by which the ratio must be off the stated one.

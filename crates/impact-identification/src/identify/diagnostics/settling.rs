@@ -45,7 +45,7 @@ pub fn not_settled(observations: &[Observation], parameters: &ParameterSet) -> O
 mod tests {
     use super::*;
     use crate::identify::estimate::estimate;
-    use crate::identify::fit::parameters::Coordinate;
+    use crate::identify::parameters::Coordinate;
     use impact_records::motion::Motion;
 
     fn observed(settling: Option<f64>) -> Observation {

@@ -47,8 +47,8 @@ pub fn contradicted(observations: &[Observation]) -> Option<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::fit::parameters::Coordinate;
     use crate::identify::fixture::{evidence, observed as observed_all, recorded};
+    use crate::identify::parameters::Coordinate;
     use crate::identify::run::identify;
     use impact_records::event::DriveTone;
     use impact_records::motion::Motion;

@@ -9,10 +9,10 @@ use nalgebra::DVector;
 use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::{Blocks, Nominal};
-use crate::identify::fit::parameters::{Coordinate, GAIN_ROLES, Parameters};
-use crate::identify::fit::{Block, Fit, Prior, mean_squares};
 use crate::identify::messages::Finding;
 use crate::identify::method_fit::MethodFit;
+use crate::identify::parameters::{Coordinate, GAIN_ROLES, Parameters};
+use crate::identify::solver::{Block, Fit, Prior, mean_squares};
 use impact_records::signal::columns::dot;
 
 /// Standard errors from which a deviation is named.
@@ -276,8 +276,8 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::identify::fit::FitReport;
-    use crate::identify::uncertainty::scatter::{Excess, Scatter};
+    use crate::identify::solver::FitReport;
+    use crate::identify::statistics::scatter::{Excess, Scatter};
 
     /// A fit whose first gap is 6 µm off with a variance of 1 µm², 8/9 of it known by the data; `ratio`: the
     /// scatter between groups over what noise explains.

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use crate::identify::diagnostics::suspicion::SURE;
 use crate::identify::evidence::Blocks;
 use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
-use crate::identify::fit::parameters::gain_index;
 use crate::identify::joint::Weights;
 use crate::identify::messages::Finding;
 use crate::identify::method::Method;
+use crate::identify::parameters::gain_index;
 use impact_records::record::Role;
 
 /// Relative difference of two sums of squares that errors of the model may make.

@@ -4,9 +4,9 @@
 use crate::identify::diagnostics::suspicion::SURE;
 use crate::identify::evidence::Blocks;
 use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
-use crate::identify::fit::Fit;
-use crate::identify::fit::parameters::gain_index;
 use crate::identify::messages::Finding;
+use crate::identify::parameters::gain_index;
+use crate::identify::solver::Fit;
 use impact_records::record::Role;
 
 /// Standard uncertainty of the corners' logarithms in these fits.

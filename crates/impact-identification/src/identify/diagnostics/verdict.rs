@@ -2,22 +2,20 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::identify::diagnostics::cause::Cause;
-use crate::identify::diagnostics::contact_law::CurvePoint;
+use crate::identify::answer::{Agreement, MethodResult, Verdict, VerdictKind};
 use crate::identify::estimate::{Estimate, Status, not_identifiable};
 use crate::identify::evidence::Evidence;
+use crate::identify::evidence::contact_law::CurvePoint;
 use crate::identify::evidence::impacts::ImpactBlock;
 use crate::identify::evidence::resonance::{self, ResonanceBlock};
 use crate::identify::evidence::structure::Grouping;
 use crate::identify::evidence::trajectory::TrajectoryBlock;
-use crate::identify::fit::Block;
-use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::identification::{Agreement, MethodResult, Verdict, VerdictKind};
-use crate::identify::messages::{
-    Finding, GroupPoint, Note, Remark, Sentence, SpeedPoint, StatedValue,
-};
+use crate::identify::messages::cause::Cause;
+use crate::identify::messages::{Finding, Note, Remark, Sentence, SpeedPoint, StatedValue};
 use crate::identify::method::Method;
-use crate::identify::uncertainty::quantile::NORMAL_975;
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::Block;
+use crate::identify::statistics::quantile::NORMAL_975;
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
 
@@ -94,7 +92,7 @@ pub fn judge_impacts(
 ) {
     judge_law(result, block, evidence);
     if let Some(grouping) = structure {
-        judge_structure(result, grouping);
+        result.judge_structure(grouping);
     }
     judge_contacts(result, evidence.observations);
 }
@@ -120,34 +118,6 @@ fn judge_contacts(result: &mut MethodResult, observations: &[Observation]) {
     }
 }
 
-/// R that differs between bounces or records is not one number, whatever interval would hold it.
-pub fn judge_structure(result: &mut MethodResult, grouping: Grouping) {
-    let Some(groups) = &result.impact_groups else {
-        return;
-    };
-    let by = match grouping {
-        Grouping::Bounce => &groups.by_bounce,
-        Grouping::Record => &groups.by_record,
-    };
-    let points: Vec<GroupPoint> = by.iter().map(GroupPoint::of).collect();
-    let values: Vec<f64> = by.iter().map(|g| g.restitution).collect();
-    result.fits = Some(false);
-    // A law over the speed, if there is one, has been named already; it is the same structure.
-    let named = |r: &Remark| matches!(r, Remark::LongContact { .. });
-    if !result.remarks.iter().any(named) {
-        result
-            .remarks
-            .retain(|r| !matches!(r, Remark::RestitutionConstant { .. }));
-        result.remarks.push(match grouping {
-            Grouping::Bounce => Remark::RestitutionByBounce { points },
-            Grouping::Record => Remark::RecordsDiffer { points },
-        });
-    }
-    if let Some(estimate) = &mut result.parameters.restitution {
-        not_one_number(estimate, &values);
-    }
-}
-
 /// Speeds that impacts seem to gain are not those of impacts: they tell no R.
 pub fn judge_gained(result: &mut MethodResult, point: CurvePoint) {
     result.fits = Some(false);
@@ -156,16 +126,6 @@ pub fn judge_gained(result: &mut MethodResult, point: CurvePoint) {
         ratio: point.restitution,
     });
     result.parameters.restitution = Some(not_identifiable(Note::NotOfImpacts));
-}
-
-/// Mark R as not one number, with an interval that holds all of its values.
-fn not_one_number(estimate: &mut Estimate, values: &[f64]) {
-    estimate.status = Status::Weak;
-    estimate.note = Some(Note::NotOneNumber);
-    if let Some([low, high]) = &mut estimate.interval95 {
-        *low = values.iter().copied().fold(*low, f64::min).max(0.0);
-        *high = values.iter().copied().fold(*high, f64::max).min(1.0);
-    }
 }
 
 /// R from the impacts alone that is not one number makes the joint R no better.
@@ -177,7 +137,7 @@ pub fn carry_over(joint: &mut MethodResult, methods: &BTreeMap<Method, MethodRes
     let (Some(impacts), Some(estimate)) = (of_impacts, &mut joint.parameters.restitution) else {
         return;
     };
-    not_one_number(estimate, &impacts.interval95.unwrap_or_default());
+    estimate.is_not_one_number(&impacts.interval95.unwrap_or_default());
 }
 
 /// What a small change of R with the speed leaves open in one R: the standard deviation of values spread evenly
@@ -233,7 +193,7 @@ fn judge_law(result: &mut MethodResult, block: &ImpactBlock, evidence: &Evidence
     });
     let ends = [slower.restitution, faster.restitution];
     if let Some(estimate) = &mut result.parameters.restitution {
-        not_one_number(estimate, &ends);
+        estimate.is_not_one_number(&ends);
     }
 }
 
@@ -388,7 +348,7 @@ mod tests {
     use super::*;
     use crate::identify::estimate::{estimate, estimate_within};
     use crate::identify::messages::PairAgreement;
-    use crate::identify::uncertainty::scatter::Spread;
+    use crate::identify::statistics::scatter::Spread;
 
     /// A joint result with standard errors of R and ln f0.
     fn joint(restitution: f64, frequency: f64) -> MethodResult {

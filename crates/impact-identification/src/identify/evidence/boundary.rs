@@ -1,10 +1,10 @@
 //! Brackets of boundaries against the closed-form s2, s1 and ρ'.
 
 use crate::identify::evidence::jump::Jump;
-use crate::identify::fit::Block;
-use crate::identify::fit::effect::Effect;
-use crate::identify::fit::own::Circumstances;
-use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::parameters::effect::Effect;
+use crate::identify::parameters::own::Circumstances;
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::Block;
 use impact_oscillator::model::boundary::{rho_grazing, s1_of_branch, s2_of_branch};
 use impact_oscillator::model::orbit::Branch;
 use impact_records::event::RigKind;

@@ -1,7 +1,7 @@
 //! What a coordinate of the fit changes in the dimensionless machine, in its setting and in the
 //! units of the channels.
 
-use crate::identify::fit::parameters::Coordinate;
+use crate::identify::parameters::Coordinate;
 use impact_oscillator::model::params::{Machine, Oscillator};
 use impact_oscillator::model::sensitivity::{Change, MassChange};
 

@@ -11,10 +11,10 @@
 use nalgebra::{Matrix4, Vector4};
 
 use crate::identify::evidence::impacts::corners_in;
-use crate::identify::fit::Block;
-use crate::identify::fit::group::Group;
-use crate::identify::fit::own::Circumstances;
-use crate::identify::fit::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
+use crate::identify::parameters::own::Circumstances;
+use crate::identify::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
+use crate::identify::solver::Block;
+use crate::identify::solver::group::Group;
 use impact_oscillator::model::flight::{Drive, State, free_flight};
 use impact_oscillator::model::params::Machine;
 use impact_oscillator::model::variation::free_flow;
@@ -393,8 +393,8 @@ impl Block for FlightBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::fit::Problem;
     use crate::identify::methods::wide_priors;
+    use crate::identify::solver::Problem;
     use impact_oscillator::model::params::Initial;
     use impact_oscillator::model::simulate::simulate;
 

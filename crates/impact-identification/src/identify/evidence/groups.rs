@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::fit::group::Group;
+use crate::identify::solver::group::Group;
 use impact_records::motion::Observation;
 use impact_records::record::Role;
 use impact_records::signal::robust;

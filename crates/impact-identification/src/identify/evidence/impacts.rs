@@ -1,9 +1,9 @@
 //! R from the speeds after over before each impact.
 
 use crate::identify::evidence::pickup::Pickups;
-use crate::identify::fit::Block;
-use crate::identify::fit::effect::Effect;
-use crate::identify::fit::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
+use crate::identify::parameters::effect::Effect;
+use crate::identify::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
+use crate::identify::solver::Block;
 use impact_records::event::{CornerShift, Impact, Lag, RigKind, extrapolation_error};
 use impact_records::motion::Observation;
 use impact_records::record::Role;
@@ -422,7 +422,7 @@ impl Block for ImpactBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::fit::block::difference;
+    use crate::identify::solver::block::difference;
     use impact_records::record::Role;
 
     fn lag(velocity: Role, displacement: Role, accelerations_m_s2: [f64; 2]) -> Option<Lag> {

@@ -5,13 +5,16 @@
 //! that are followed from impact to impact ([`flights`]).
 
 pub mod boundary;
+pub mod contact_law;
 pub mod direction;
 pub mod flights;
 mod groups;
 pub mod high_pass;
 pub mod impacts;
+pub mod influence;
 pub mod jump;
 pub mod nearest_orbit;
+pub mod options;
 pub mod pickup;
 pub mod record_motion;
 pub mod reduced_record;
@@ -27,15 +30,15 @@ mod within_record;
 use crate::identify::evidence::boundary::BoundaryBlock;
 use crate::identify::evidence::flights::FlightBlock;
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
+use crate::identify::evidence::options::UncertaintyOptions;
 use crate::identify::evidence::pickup::Pickups;
 use crate::identify::evidence::resonance::ResonanceBlock;
 use crate::identify::evidence::trajectory::TrajectoryBlock;
-use crate::identify::fit::effect::{Effect, Effects};
-use crate::identify::fit::gap_errors::MOST_GAPS;
-use crate::identify::fit::group::Group;
-use crate::identify::fit::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
-use crate::identify::fit::{Block, Fit, FitProgress, Prior, Problem};
-use crate::identify::uncertainty::options::UncertaintyOptions;
+use crate::identify::parameters::effect::{Effect, Effects};
+use crate::identify::parameters::gap_errors::MOST_GAPS;
+use crate::identify::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
+use crate::identify::solver::group::Group;
+use crate::identify::solver::{Block, Fit, FitProgress, Prior, Problem};
 use impact_records::event::{FlightKind, RigKind};
 use impact_records::motion::{Bracket, Observation};
 use impact_records::signal::robust;

@@ -1,7 +1,7 @@
 //! The model's orbit that a periodic record shows.
 
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
-use crate::identify::fit::parameters::Parameters;
+use crate::identify::parameters::Parameters;
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::params::{Machine, Setting};
 use impact_records::event::RigKind;

@@ -1,7 +1,7 @@
 //! What a motion channel picks up from the drive's generator: a share of its voltage, in phase with it at
 //! every frequency, which no motion of a mass is.
 
-use crate::identify::fit::effect::Effect;
+use crate::identify::parameters::effect::Effect;
 use impact_records::motion::Observation;
 use impact_records::record::Role;
 

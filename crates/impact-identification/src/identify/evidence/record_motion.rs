@@ -13,8 +13,8 @@ use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::waveform::{
     Rates, Terms, Timing, TimingSlope, Vibration, delayed, delayed_slope, velocity, velocity_slope,
 };
-use crate::identify::fit::effect::Effect;
-use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::parameters::effect::Effect;
+use crate::identify::parameters::{Coordinate, Parameters, gain_index};
 use impact_oscillator::model::params::Machine;
 use impact_oscillator::model::path::C64;
 use impact_oscillator::model::sensitivity::{Change, MassMotion, OrbitMotion, Sensitivity};
@@ -589,9 +589,9 @@ pub(super) mod tests {
     use super::*;
     use crate::identify::evidence::trajectory::distinct_phases;
     use crate::identify::evidence::trajectory_record::Perturbation;
-    use crate::identify::fit::effect::Effect;
-    use crate::identify::fit::effect::Effects;
-    use crate::identify::fit::parameters::GAIN_ROLES;
+    use crate::identify::parameters::GAIN_ROLES;
+    use crate::identify::parameters::effect::Effect;
+    use crate::identify::parameters::effect::Effects;
     use impact_records::motion::{Folded, FoldedPoint};
 
     /// Everything in effect that is not a perturbation.

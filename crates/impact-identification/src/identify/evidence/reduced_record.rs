@@ -8,8 +8,8 @@
 
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::evidence::waveform::{ChannelRates, Phases, Rates, Terms, Timing};
-use crate::identify::fit::effect::Effect;
-use crate::identify::fit::rows::Rows;
+use crate::identify::parameters::effect::Effect;
+use crate::identify::solver::rows::Rows;
 use impact_oscillator::model::path::C64;
 use impact_records::signal::columns::subtract;
 
@@ -339,10 +339,10 @@ mod tests {
     use crate::identify::evidence::record_motion::RecordMotion;
     use crate::identify::evidence::record_motion::tests::{parameters, record};
     use crate::identify::evidence::trajectory::TrajectoryBlock;
-    use crate::identify::fit::Block;
-    use crate::identify::fit::effect::Effects;
-    use crate::identify::fit::normal::Normal;
-    use crate::identify::fit::parameters::{Coordinate, Parameters};
+    use crate::identify::parameters::effect::Effects;
+    use crate::identify::parameters::{Coordinate, Parameters};
+    use crate::identify::solver::Block;
+    use crate::identify::solver::normal::Normal;
     use impact_records::event::RigKind;
 
     const RIG: RigKind = RigKind::Double;

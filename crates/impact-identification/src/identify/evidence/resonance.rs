@@ -5,11 +5,11 @@ use nalgebra::Complex;
 use crate::identify::evidence::direction::{change, relative_length};
 use crate::identify::evidence::pickup::Pickups;
 use crate::identify::evidence::shared_error::Whitening;
-use crate::identify::fit::Block;
-use crate::identify::fit::effect::{Effect, EffectKind};
-use crate::identify::fit::group::Group;
-use crate::identify::fit::own::Circumstances;
-use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::parameters::effect::{Effect, EffectKind};
+use crate::identify::parameters::own::Circumstances;
+use crate::identify::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::solver::Block;
+use crate::identify::solver::group::Group;
 use impact_oscillator::model::flight::{Drive, dynamic_stiffness, forced_amplitude};
 use impact_oscillator::model::params::{Machine, Oscillator};
 use impact_oscillator::model::sensitivity::{Change, forced_slope};
@@ -693,8 +693,8 @@ impl Block for ResonanceBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::fit::Problem;
-    use crate::identify::fit::block::difference;
+    use crate::identify::solver::Problem;
+    use crate::identify::solver::block::difference;
     use impact_records::motion::{Amplitude, Motion};
 
     /// Impactless records of two masses (m, k, b, F), by their own transfer functions.

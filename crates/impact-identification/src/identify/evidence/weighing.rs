@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use crate::identify::evidence::Blocks;
 use crate::identify::evidence::trajectory_record::Misfit;
-use crate::identify::fit::mean_squares;
-use crate::identify::fit::parameters::Parameters;
+use crate::identify::parameters::Parameters;
+use crate::identify::solver::mean_squares;
 use impact_records::signal::robust;
 
 impl Blocks {

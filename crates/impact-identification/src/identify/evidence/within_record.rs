@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
-use crate::identify::fit::normal::inverse;
+use crate::identify::solver::normal::inverse;
 use impact_records::signal::robust;
 
 /// Terms of the law over the speed that records may follow.

@@ -1,6 +1,6 @@
 //! Texts on the effects beyond the model.
 
-use crate::identify::fit::effect::Effect;
+use crate::identify::parameters::effect::Effect;
 use impact_records::texts;
 
 /// An effect beyond the model, and what can be done about it, in English and in German; `rises`:

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::uncertainty::quantile::NORMAL_975;
+use crate::identify::statistics::quantile::NORMAL_975;
 use impact_records::message::{Message, Value};
 use impact_records::signal::decay::PartOfDecay;
 

@@ -3,8 +3,8 @@
 use strum::IntoEnumIterator;
 
 use super::*;
-use crate::identify::fit::effect::Effect;
 use crate::identify::method::Method;
+use crate::identify::parameters::effect::Effect;
 use impact_records::message::boxed;
 use impact_records::motion::Undetermined;
 use impact_records::record::FlagCode;

@@ -2,6 +2,7 @@
 //! left out, findings, and the sentences of the verdict; each a variant with its numbers in SI.
 
 mod beyond;
+pub mod cause;
 mod damping;
 mod direction;
 mod finding;
@@ -21,7 +22,7 @@ pub use reason::{Item, LeftOut, Reason};
 pub use remark::{GroupPoint, Remark, SpeedPoint};
 pub use sentence::{Sentence, StatedValue};
 
-use crate::identify::fit::parameters::Coordinate;
+use crate::identify::parameters::Coordinate;
 use impact_records::message::Message;
 
 impl Message for Coordinate {

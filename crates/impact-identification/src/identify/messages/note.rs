@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::fit::FitError;
-use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
+use crate::identify::parameters::Coordinate;
+use crate::identify::solver::FitError;
 use impact_records::message::Value;
 use impact_records::{message_table, messages};
 

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
+use crate::identify::parameters::Coordinate;
 use impact_records::message::{Message, Value};
 
 /// The estimates of a parameter by two methods, compared; as a message, how far they are apart.

@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::{DampingPoint, Item, Note};
-use crate::identify::diagnostics::cause::Cause;
 use crate::identify::evidence::structure::ImpactGroup;
+use crate::identify::messages::cause::Cause;
 use crate::identify::method::Method;
-use crate::identify::uncertainty::quantile::NORMAL_975;
+use crate::identify::statistics::quantile::NORMAL_975;
 use impact_records::message::{Message, Value};
 use impact_records::signal::decay::DampingLaw;
 use impact_records::{message_table, messages};

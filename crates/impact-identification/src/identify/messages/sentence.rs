@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::fit::parameters::Coordinate;
+use crate::identify::parameters::Coordinate;
 use impact_records::message::{Message, Value};
 use impact_records::signal::whole;
 use impact_records::{message_table, messages};

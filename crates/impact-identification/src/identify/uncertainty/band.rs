@@ -1,9 +1,9 @@
 //! How far a curve in the (η, ρ) plane may be off: what the fit leaves open in R and β, on which alone
 //! the boundaries of the symmetric machine depend there.
 
-use crate::identify::fit::Fit;
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::uncertainty::quantile::NORMAL_975;
+use crate::identify::parameters::Coordinate;
+use crate::identify::solver::Fit;
+use crate::identify::statistics::quantile::NORMAL_975;
 use impact_oscillator::model::params::Machine;
 use impact_records::event::RigKind;
 
@@ -59,8 +59,8 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::identify::fit::FitReport;
-    use crate::identify::fit::parameters::Parameters;
+    use crate::identify::parameters::Parameters;
+    use crate::identify::solver::FitReport;
 
     #[test]
     fn valid_the_band_of_r_and_beta_themselves_is_their_interval() {

@@ -10,9 +10,9 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 
 use crate::identify::evidence::{Blocks, Evidence, Nominal};
-use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::joint;
 use crate::identify::method::{Estimator, Method};
+use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::surroundings::Surroundings;
 

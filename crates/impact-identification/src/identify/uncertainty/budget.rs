@@ -9,11 +9,11 @@
 use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::Blocks;
-use crate::identify::fit::Problem;
-use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
 use crate::identify::method_fit::MethodFit;
-use crate::identify::uncertainty::quantile::student_975;
+use crate::identify::parameters::Coordinate;
+use crate::identify::solver::Problem;
+use crate::identify::statistics::quantile::student_975;
 
 /// Where an uncertainty comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::statistics::quantile::NORMAL_975;
 use crate::identify::uncertainty::bound::Bound;
-use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::identify::{Estimator, Method, MethodResult, ParameterSet, Status};
 
 /// How one parameter came out of one method over all campaigns. Errors of R are absolute, those

@@ -7,16 +7,11 @@ pub mod band;
 pub mod bound;
 pub mod budget;
 pub mod coverage;
-pub mod distribution;
-pub mod options;
 pub mod posterior;
 pub mod profile;
 pub mod propagation;
-pub mod quantile;
-pub mod scatter;
 pub mod surroundings;
 
-pub use options::{IntervalMethod, UncertaintyOptions};
 pub use profile::ProfileCurve;
 
 use std::collections::BTreeMap;
@@ -27,14 +22,15 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::identify::fit::normal::{Normal, inverse};
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::fit::{Fit, Problem};
+use crate::identify::evidence::options::{IntervalMethod, UncertaintyOptions};
 use crate::identify::method::Method;
 use crate::identify::method_fit::MethodFit;
+use crate::identify::parameters::Coordinate;
+use crate::identify::solver::normal::{Normal, inverse};
+use crate::identify::solver::{Fit, Problem};
+use crate::identify::statistics::scatter::Scatter;
 use crate::identify::uncertainty::budget::Budget;
 use crate::identify::uncertainty::profile::profile;
-use crate::identify::uncertainty::scatter::Scatter;
 use impact_records::signal::whole;
 
 /// What a bootstrap over records gives for one parameter.

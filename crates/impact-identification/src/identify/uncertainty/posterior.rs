@@ -17,7 +17,8 @@ use rayon::prelude::*;
 
 use crate::identify::evidence::boundary::{BoundaryBlock, predicted_hz};
 use crate::identify::evidence::jump::{Jump, Tilt, density, mills_ratio, normal};
-use crate::identify::fit::parameters::Parameters;
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::Prior;
 use crate::identify::uncertainty::propagation::{Factors, Propagation};
 use crate::identify::uncertainty::surroundings::{Boundary, Surroundings};
 use impact_records::motion::{BoundaryKind, Bracket};
@@ -32,6 +33,14 @@ pub struct Posterior {
     /// Mean distance of the ends of z = 1 from s2, relative to its frequency, where the waveforms show that
     /// they are early.
     pub early: Option<f64>,
+}
+
+impl Posterior {
+    /// The normal distribution of R that stands for the brackets in a joint fit.
+    pub fn as_prior(&self) -> Prior {
+        let (centre, deviation) = self.restitution;
+        Prior::new(Coordinate::Restitution, centre, deviation)
+    }
 }
 
 /// Scales of early jumps that are summed over, relative to the frequency; each as likely before.
@@ -277,9 +286,9 @@ fn mean_distance(block: &BoundaryBlock, parameters: &Parameters) -> Option<f64> 
 mod tests {
     use super::*;
     use crate::identify::evidence::boundary::tests::bracket;
-    use crate::identify::fit::Prior;
-    use crate::identify::fit::effect::Effect;
-    use crate::identify::fit::parameters::Coordinate;
+    use crate::identify::parameters::Coordinate;
+    use crate::identify::parameters::effect::Effect;
+    use crate::identify::solver::Prior;
     use impact_records::event::RigKind;
 
     #[test]

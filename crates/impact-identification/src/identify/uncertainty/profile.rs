@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::fit::least_squares::LeastSquares;
-use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Fit, Precision, Problem};
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::least_squares::LeastSquares;
+use crate::identify::solver::{Fit, Precision, Problem};
 
 /// Likelihood of one parameter with all others fitted again at each of its values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -183,8 +183,8 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
-    use crate::identify::fit::Block;
-    use crate::identify::fit::block::difference;
+    use crate::identify::solver::Block;
+    use crate::identify::solver::block::difference;
 
     /// One measurement of R and one of ln β less a square of R's deviation; counts what is asked for.
     #[derive(Default)]

@@ -5,10 +5,10 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::identify::evidence::boundary::{BoundaryBlock, BoundaryPlace, predicted_hz};
 use crate::identify::evidence::{Blocks, Nominal};
-use crate::identify::fit::effect::Effect;
-use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Block, Prior};
 use crate::identify::method_fit::MethodFit;
+use crate::identify::parameters::effect::Effect;
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::{Block, Prior};
 use impact_records::motion::Bracket;
 
 /// Where a boundary lies, and how far each deviate moves it.

@@ -7,8 +7,8 @@ use crate::figures::correlation::name;
 use crate::kit::richtext::plain;
 use crate::locale::Locale;
 use crate::phrase::Phrase;
-use impact_identification::identify::fit::effect::Effect;
-use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::parameters::Coordinate;
+use impact_identification::identify::parameters::effect::Effect;
 use impact_identification::identify::uncertainty::budget::{
     Budget, Combined, Contribution, Row, Source,
 };

@@ -9,7 +9,7 @@ use crate::locale::Locale;
 use crate::parameters;
 use crate::phrase::Phrase;
 use impact_identification::compare::{AcrossCampaigns, Comparison, Difference};
-use impact_identification::identify::fit::parameters::Coordinate;
+use impact_identification::identify::parameters::Coordinate;
 use impact_records::message::Message;
 
 /// A p-value as printed behind its name.

@@ -3,7 +3,7 @@
 use super::{ChannelMotion, Measured, MotionPoints, RecordMotion, measured};
 use crate::identify::evidence::pickup::Pickups;
 use crate::identify::evidence::trajectory_record::Perturbation;
-use crate::identify::fit::effect::Effect;
+use crate::identify::parameters::effect::Effect;
 use impact_oscillator::model::params::Oscillator;
 use impact_oscillator::model::path::C64;
 use impact_oscillator::model::perturbation::{Grid, PeriodicResponses};

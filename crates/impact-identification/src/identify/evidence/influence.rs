@@ -9,8 +9,8 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
-use crate::identify::fit::normal::{Normal, inverse};
-use crate::identify::fit::placed_rows::PlacedRows;
+use crate::identify::solver::normal::{Normal, inverse};
+use crate::identify::solver::placed_rows::PlacedRows;
 use impact_records::signal::robust;
 
 /// A record's influence on a fit.

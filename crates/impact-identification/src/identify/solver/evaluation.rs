@@ -5,11 +5,11 @@ use std::sync::{Arc, Mutex};
 
 use rayon::prelude::*;
 
-use crate::identify::fit::block::Block;
-use crate::identify::fit::factor::Factor;
-use crate::identify::fit::group::Group;
-use crate::identify::fit::normal::Normal;
-use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::block::Block;
+use crate::identify::solver::factor::Factor;
+use crate::identify::solver::group::Group;
+use crate::identify::solver::normal::Normal;
 
 /// The factors of all groups of some blocks at given parameters.
 pub(super) struct Evaluation {

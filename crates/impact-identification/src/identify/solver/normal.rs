@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::identify::fit::placed_rows::PlacedRows;
+use crate::identify::solver::placed_rows::PlacedRows;
 
 /// Normal equations of some residuals.
 #[derive(Debug, Clone)]

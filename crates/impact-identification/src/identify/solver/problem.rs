@@ -10,16 +10,16 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::identify::fit::block::Block;
-use crate::identify::fit::evaluation::{Evaluation, LastEvaluation, Part, kept};
-use crate::identify::fit::factor::Factor;
-use crate::identify::fit::group::Group;
-use crate::identify::fit::least_squares::{LeastSquares, Limits, Variance, minimise};
-use crate::identify::fit::normal::Normal;
-use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::placed_rows::PlacedRows;
-use crate::identify::fit::rows::Rows;
-use crate::identify::fit::{Fit, FitError, FitProgress};
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::block::Block;
+use crate::identify::solver::evaluation::{Evaluation, LastEvaluation, Part, kept};
+use crate::identify::solver::factor::Factor;
+use crate::identify::solver::group::Group;
+use crate::identify::solver::least_squares::{LeastSquares, Limits, Variance, minimise};
+use crate::identify::solver::normal::Normal;
+use crate::identify::solver::placed_rows::PlacedRows;
+use crate::identify::solver::rows::Rows;
+use crate::identify::solver::{Fit, FitError, FitProgress};
 
 /// Gaussian prior on one coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

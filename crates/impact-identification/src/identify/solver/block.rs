@@ -5,9 +5,9 @@
 
 use rayon::prelude::*;
 
-use crate::identify::fit::group::Group;
-use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::rows::Rows;
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::group::Group;
+use crate::identify::solver::rows::Rows;
 
 /// Weighted residuals of one kind of observation.
 pub trait Block: Sync {

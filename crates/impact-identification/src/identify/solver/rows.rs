@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::identify::fit::normal::Normal;
-use crate::identify::fit::placed_rows::PlacedRows;
-use crate::identify::fit::reflection::NewRows;
+use crate::identify::solver::normal::Normal;
+use crate::identify::solver::placed_rows::PlacedRows;
+use crate::identify::solver::reflection::NewRows;
 use impact_records::signal::columns::{dot, subtract};
 
 /// Rows [J r] of some weighted residuals and their slopes over some unknowns, or fewer rows that have

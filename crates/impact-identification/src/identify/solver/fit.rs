@@ -1,35 +1,11 @@
-//! Least squares: parameters as the coordinates of a fit, blocks of residuals, and the fit that
-//! minimises them.
-
-pub mod block;
-#[cfg(test)]
-mod contact_laws;
-pub mod coordinate;
-pub mod effect;
-mod evaluation;
-pub mod factor;
-pub mod gap_errors;
-pub mod group;
-pub mod least_squares;
-pub mod normal;
-pub mod own;
-pub mod parameters;
-pub mod placed_rows;
-pub mod problem;
-mod progress;
-mod reflection;
-mod report;
-pub mod rows;
+//! A finished fit, and why one could not be made.
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-pub use block::{Block, mean_squares};
-use normal::inverse;
-use parameters::{Coordinate, Parameters};
-pub use problem::{Precision, Prior, Problem};
-pub use progress::FitProgress;
-pub use report::FitReport;
+use super::normal::inverse;
+use super::report::FitReport;
+use crate::identify::parameters::{Coordinate, Parameters};
 
 /// A finished fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -7,8 +7,8 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use crate::identify::fit::reflection::NewRows;
-use crate::identify::fit::rows::{BLOCK, Rows};
+use crate::identify::solver::reflection::NewRows;
+use crate::identify::solver::rows::{BLOCK, Rows};
 use impact_records::signal::columns::dot;
 
 /// Rows with the places of their unknowns among those of a factor.
@@ -215,7 +215,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::identify::fit::normal::Normal;
+    use crate::identify::solver::normal::Normal;
 
     /// Numbers of no pattern.
     fn noise(seed: u64, count: usize) -> Vec<f64> {

@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
-use crate::identify::fit::normal::inverse;
+use crate::identify::solver::normal::inverse;
 use impact_records::signal::whole;
 
 /// How R depends on the closing speed.

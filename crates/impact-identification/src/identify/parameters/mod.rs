@@ -1,10 +1,17 @@
 //! The parameters that are fitted, as physical values and as the coordinates of a solver.
 
+#[cfg(test)]
+mod contact_laws;
+pub mod coordinate;
+pub mod effect;
+pub mod gap_errors;
+pub mod own;
+
 use serde::{Deserialize, Serialize};
 
-pub use super::coordinate::{CHANNELS, Coordinate};
-use super::gap_errors::GapErrors;
-use crate::identify::fit::effect::Effect;
+pub use self::coordinate::{CHANNELS, Coordinate};
+use self::effect::Effect;
+use self::gap_errors::GapErrors;
 use impact_oscillator::model::params::{
     Contact, Flight, Machine, Oscillator, Restitution, Setting,
 };

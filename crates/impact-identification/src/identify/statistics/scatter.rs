@@ -22,11 +22,11 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::identify::fit::group::{Group, PARTITIONS};
-use crate::identify::fit::normal::{Normal, inverse};
-use crate::identify::fit::parameters::Coordinate;
-use crate::identify::fit::{Fit, Problem};
-use crate::identify::uncertainty::quantile::{chi_squared_99, student_975};
+use crate::identify::parameters::Coordinate;
+use crate::identify::solver::group::{Group, PARTITIONS};
+use crate::identify::solver::normal::{Normal, inverse};
+use crate::identify::solver::{Fit, Problem};
+use crate::identify::statistics::quantile::{chi_squared_99, student_975};
 
 /// How much the groups of one partition scatter in one coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -224,8 +224,8 @@ impl Scatter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::fit::parameters::Parameters;
-    use crate::identify::fit::{Block, Prior};
+    use crate::identify::parameters::Parameters;
+    use crate::identify::solver::{Block, Prior};
 
     /// Groups of measurements of R, each with a deviation of its own.
     struct Groups {

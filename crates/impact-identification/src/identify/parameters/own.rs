@@ -1,9 +1,9 @@
 //! A record's own parameters: where drift, the force against frequency, errors of the clearances and the
 //! length of contacts have been applied to those of the campaign.
 
+use super::Parameters;
 use super::coordinate::Coordinate;
 use super::effect::Effect;
-use super::parameters::Parameters;
 
 /// Where and when a record was taken, as far as effects depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -281,7 +281,7 @@ fn bend(place: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::identify::evidence::impacts::PUSH_OF_LAWS;
-    use crate::identify::fit::contact_laws::{Coefficients, Law};
+    use crate::identify::parameters::contact_laws::{Coefficients, Law};
 
     /// R, g and h from an independent program in Python that integrates flights and contact from first touch
     /// to last (Runge–Kutta), t = 0.004 natural radians.

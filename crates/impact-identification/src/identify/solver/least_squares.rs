@@ -8,9 +8,9 @@ use argmin::argmin_error_closure;
 use argmin::core::observers::ObserverMode;
 use argmin::core::{Error, Executor, IterState, KV, Problem, Solver, State, TerminationReason};
 
-use crate::identify::fit::factor::Factor;
-use crate::identify::fit::progress::FitProgress;
-use crate::identify::fit::report::{FitReport, STALLED};
+use crate::identify::solver::factor::Factor;
+use crate::identify::solver::progress::FitProgress;
+use crate::identify::solver::report::{FitReport, STALLED};
 
 /// A sum of squared residuals over some unknowns, which [`minimise`] makes least.
 pub trait LeastSquares {

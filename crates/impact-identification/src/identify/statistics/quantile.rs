@@ -1,6 +1,6 @@
 //! Quantiles of the normal, of Student's and of the χ² distribution.
 
-use crate::identify::uncertainty::distribution::{student_ln_slope, student_tail_at};
+use crate::identify::statistics::distribution::{student_ln_slope, student_tail_at};
 
 /// 97.5 % point of the normal distribution.
 pub const NORMAL_975: f64 = 1.959_963_984_540_054;
@@ -59,7 +59,7 @@ pub fn chi_squared_99(freedom: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::uncertainty::distribution::student_tail;
+    use crate::identify::statistics::distribution::student_tail;
 
     #[test]
     fn valid_quantiles_of_chi_squared() {

@@ -1,0 +1,5 @@
+//! Distributions and their quantiles, and what the scatter between groups of observations adds to an error.
+
+pub mod distribution;
+pub mod quantile;
+pub mod scatter;
