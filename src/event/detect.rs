@@ -126,6 +126,7 @@ pub struct Detection {
 ///         specimen: None,
 ///         excitation: Excitation::Harmonic,
 ///     },
+///     times_error_s: 0.0,
 ///     flags: Vec::new(),
 /// };
 /// let found = detect(&record, RigKind::Single, &DetectSettings::default());
@@ -140,7 +141,7 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
     let rate_hz = kinematics.rate_hz;
     let contact = record.channel(Role::Contact);
     if let Some(channel) = contact.filter(|c| c.dimension == Dimension::Time) {
-        return listed(kinematics, &channel.values);
+        return listed(kinematics, &channel.values, record.times_error_s);
     }
     let closed = contact.map_or_else(Vec::new, |channel| {
         closed_intervals(
@@ -225,8 +226,8 @@ fn freely(record: &Record, kinematics: Kinematics, rig: RigKind, closed: &[Close
 }
 
 /// Impacts that the record states as a list of times.
-fn listed(kinematics: Kinematics, times_s: &[f64]) -> Detection {
-    let impacts = times_s.iter().map(|time_s| Impact::timed(*time_s, 0.0));
+fn listed(kinematics: Kinematics, times_s: &[f64], error_s: f64) -> Detection {
+    let impacts = times_s.iter().map(|time_s| Impact::timed(*time_s, error_s));
     Detection {
         drive: None,
         impacts: impacts.collect(),

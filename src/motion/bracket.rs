@@ -96,6 +96,7 @@ impl Bracket {
 ///             specimen: None,
 ///             excitation: Excitation::Harmonic,
 ///         },
+///         times_error_s: 0.0,
 ///         flags: Vec::new(),
 ///     };
 ///     let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());

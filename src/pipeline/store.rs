@@ -10,9 +10,9 @@ use crate::pipeline::identify::{self, IdentificationFile};
 use crate::pipeline::json::{read_json, store_error, write_json};
 use crate::pipeline::observe::each_record;
 use crate::pipeline::{Observed, PipelineError, Progress, RefusedRecord, gzip_json};
-use crate::record::calibrate::{ChannelKey, ChannelSetup};
+use crate::record::calibrate::{ChannelKey, ChannelSetup, TIMES_ERROR};
 use crate::record::{ContactContent, Flag, Record, Role};
-use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
+use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Value};
 use labfiles::units::{Dimension, Quantity, Unit};
 
 const RESOLVED: &str = "campaign.resolved.json";
@@ -174,8 +174,15 @@ fn table(place: usize, record: &Record) -> RecordTable {
                 ColumnToWrite::numbers(c.role.name(), c.dimension.si_symbol(), c.values.clone())
             })
             .collect(),
-        attributes: vec![("record".to_owned(), record.id.as_str().into())],
+        attributes: table_attributes(record),
     }
+}
+
+fn table_attributes(record: &Record) -> Vec<(String, Value)> {
+    let error =
+        (record.times_error_s > 0.0).then(|| (TIMES_ERROR.to_owned(), record.times_error_s.into()));
+    let named = ("record".to_owned(), record.id.as_str().into());
+    std::iter::once(named).chain(error).collect()
 }
 
 /// Set-ups that read the calibrated channels without conversion.

@@ -71,6 +71,8 @@ flag_codes! {
     Clipped = "clipped", "clipped", "übersteuert",
     /// The rows are changes of the contact, of which those that close it count.
     ContactChanges = "contact_changes", "changes of the contact", "Wechsel des Kontakts",
+    /// The rows are neither impacts nor changes of the contact.
+    ContactUnclear = "contact_unclear", "contact unclear", "Kontakt unklar",
     /// A camera's picture stood still, then jumped.
     FrozenFrames = "frozen_frames", "frozen frames", "stehende Bilder",
     /// Samples are missing.

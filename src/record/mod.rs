@@ -238,6 +238,8 @@ pub struct Record {
     pub channels: Vec<Channel>,
     /// The setting at which it was taken.
     pub setting: Setting,
+    /// Standard error of the times that a contact lists, s; 0 where it has samples.
+    pub times_error_s: f64,
     /// Problems found while it was read.
     pub flags: Vec<Flag>,
 }
@@ -287,6 +289,7 @@ impl Record {
             sample_rate_hz,
             channels: channels.iter().map(channel).collect(),
             setting: Setting::default(),
+            times_error_s: 0.0,
             flags: Vec::new(),
         }
     }
