@@ -20,9 +20,9 @@ pub(crate) struct Header {
 }
 
 /// Units that occur in headers though no channel of the rig is measured in them.
-const FURTHER_UNITS: [&str; 22] = [
+const FURTHER_UNITS: [&str; 25] = [
     "Pa", "kPa", "MPa", "bar", "°C", "C", "degC", "K", "A", "mA", "W", "J", "l", "ml", "Ohm", "Ω",
-    "dB", "m²", "Nm", "-", "counts", "h",
+    "dB", "m²", "Nm", "-", "counts", "h", "px", "pixel", "pixels",
 ];
 
 /// Read the lines before the first row. `lines` are all of them, comments too, blank ones not; `filled` are
@@ -52,7 +52,10 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header
     let vernier = rows
         .first()
         .is_some_and(|row| row[0].starts_with("Vernier Format"));
-    if let Some(names) = names_row(&rows, dialect.columns, vernier) {
+    if let Some(names) = grouped_names(&rows, dialect.columns) {
+        header.names = names;
+        rows.truncate(rows.len() - 2);
+    } else if let Some(names) = names_row(&rows, dialect.columns, vernier) {
         header.names = rows.remove(names);
     } else if let Some(names) = commented_names(&comments, dialect) {
         header.names = names;
@@ -163,6 +166,34 @@ fn names_row(rows: &[Vec<String>], columns: usize, first: bool) -> Option<usize>
     (from..rows.len())
         .filter(|i| fits(&rows[*i], columns))
         .max_by_key(|i| (distinct(&rows[*i]), place(*i)))
+}
+
+/// Names that come again and again below a row with one cell above each of several groups of columns, as a sheet
+/// with runs side by side has them: `t Throw 1`, `y Throw 1`, `t Throw 2` ….
+fn grouped_names(rows: &[Vec<String>], columns: usize) -> Option<Vec<String>> {
+    let [.., groups, names] = rows else {
+        return None;
+    };
+    let filled = |row: &[String]| row.iter().filter(|c| !c.is_empty()).count();
+    let repeated = |row: &[String]| {
+        row.iter()
+            .enumerate()
+            .any(|(i, c)| !c.is_empty() && row[..i].contains(c))
+    };
+    let above =
+        groups.len() <= columns + 1 && filled(groups) > 1 && 2 * filled(groups) <= filled(names);
+    if !fits(names, columns) || !above || repeated(groups) || !repeated(names) {
+        return None;
+    }
+    let mut group = "";
+    let named = names.iter().enumerate().map(|(i, name)| {
+        group = groups.get(i).filter(|g| !g.is_empty()).map_or(group, |g| g);
+        match name.is_empty() {
+            true => String::new(),
+            false => format!("{name} {group}").trim().to_owned(),
+        }
+    });
+    Some(named.collect())
 }
 
 /// The last row, if it holds units under a row of names.
@@ -359,6 +390,27 @@ mod tests {
             header(&["Frame;X1;Y1", "Tracks 1 to 1"]).names,
             ["Frame", "X1", "Y1"]
         );
+    }
+
+    #[test]
+    fn names_below_groups_of_columns_are_told_apart_by_them() {
+        let dialect = Dialect {
+            columns: 5,
+            ..SEMICOLON
+        };
+        let lines: [&[u8]; 2] = [b"Throw 1;;;Throw 2;", b"t [s];y [m];;t [s];y [m]"];
+        let (found, _) = read(&lines, &dialect, 5);
+        assert_eq!(
+            found.names,
+            [
+                "t Throw 1",
+                "y Throw 1",
+                "column_3",
+                "t Throw 2",
+                "y Throw 2"
+            ]
+        );
+        assert_eq!(found.units[4].as_deref(), Some("m"));
     }
 
     #[test]
