@@ -85,6 +85,8 @@ flag_codes! {
     TimeBackward = "time_backward", "time backward", "Zeit läuft zurück",
     /// The time axis is not uniform.
     TimeNotUniform = "time_not_uniform", "time not uniform", "Zeit nicht gleichmäßig",
+    /// The time is printed too coarsely to tell the rate.
+    TimeCoarse = "time_coarse", "time printed coarsely", "Zeit grob gerundet",
     /// The time axis states another unit than campaign.toml does.
     TimeUnitWrong = "time_unit_wrong", "wrong unit of time", "falsche Einheit der Zeit",
     /// The unit of the time axis is not known.

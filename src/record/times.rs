@@ -260,7 +260,15 @@ fn settle_rate(
 ) {
     let measured = times.and_then(|times| time_axis::inspect(times, &mut record.flags));
     let stated = stated_rate(record, dataset, kept);
-    let rate = measured.or(stated).or(setup.sample_rate_hz);
+    let coarse = record.flags.iter().any(|f| f.code == FlagCode::TimeCoarse);
+    let rate = match coarse {
+        // the file's rate is that of the same stamps
+        true => setup.sample_rate_hz,
+        false => measured.or(stated).or(setup.sample_rate_hz),
+    };
+    if rate.is_some() {
+        record.flags.retain(|f| f.code != FlagCode::TimeCoarse);
+    }
     match rate.filter(|r| r.is_finite() && *r > 0.0) {
         Some(rate) => {
             record.sample_rate_hz = rate;
@@ -276,6 +284,7 @@ fn no_rate(record: &mut Record) {
         FlagCode::TimeUnitMissing,
         FlagCode::TimeUnreadable,
         FlagCode::TimeBackward,
+        FlagCode::TimeCoarse,
     ];
     if record.flags.iter().any(|f| why.contains(&f.code)) {
         return;

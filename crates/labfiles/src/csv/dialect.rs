@@ -82,14 +82,15 @@ pub(crate) fn detect(lines: &[&[u8]]) -> Option<Dialect> {
     best.map(|(_, dialect)| dialect)
 }
 
-/// Whether each line has as many tabs, semicolons or bars as the others, and some: blanks are part of its cells then.
+/// Whether nearly all lines have as many tabs, semicolons or bars, and some: blanks are part of their cells then.
 fn is_parted(lines: &[&[u8]]) -> bool {
     [b'\t', b';', b'|'].into_iter().any(|mark| {
-        let mut widths = lines
+        let widths = lines
             .iter()
             .map(|l| Cells::new(l, Separator::Byte(mark)).count());
-        let first = widths.next().unwrap_or(1);
-        first > 1 && widths.all(|w| w == first)
+        let widths: Vec<usize> = widths.collect();
+        let like = |usual: usize| widths.iter().filter(|w| **w == usual).count();
+        usual(&widths).is_some_and(|usual| usual > 1 && 10 * like(usual) >= 9 * widths.len())
     })
 }
 

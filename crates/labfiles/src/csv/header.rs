@@ -63,6 +63,9 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header
     for mut row in rows {
         row.truncate(filled_cells(&row));
         match &row[..] {
+            [key, markers @ ..] if key == MARKERS => {
+                header.attributes.insert(key.clone(), markers.join("\t"));
+            }
             // Sampling rate; 2500; Hz
             [key, number, unit] if number::parse_cell(number.as_bytes(), b'.').is_some() => {
                 remark(&format!("{key}={number} {unit}"), &mut header.attributes);
@@ -117,6 +120,9 @@ fn take_values(
     }
 }
 
+/// The row that names the markers of a table of their positions.
+const MARKERS: &str = "MARKER_NAMES";
+
 /// Tables of marker positions state their rate as FREQUENCY, and have mm.
 fn of_motion_capture(header: &mut Header) {
     if !header.attributes.contains_key("NO_OF_FRAMES") {
@@ -124,6 +130,15 @@ fn of_motion_capture(header: &mut Header) {
     }
     if let Some(rate) = header.attributes.get("FREQUENCY").cloned() {
         header.attributes.insert("sample_rate_hz".to_owned(), rate);
+    }
+    let markers = header.attributes.get(MARKERS).map_or("", String::as_str);
+    let markers: Vec<&str> = markers.split('\t').filter(|m| !m.is_empty()).collect();
+    let unnamed = header.names.iter().all(|name| name.starts_with("column_"));
+    if unnamed && 3 * markers.len() == header.names.len() {
+        let axes = markers
+            .iter()
+            .flat_map(|m| ["X", "Y", "Z"].map(|axis| format!("{m} {axis}")));
+        header.names = axes.collect();
     }
     for (name, unit) in header.names.iter().zip(&mut header.units) {
         let position = [" X", " Y", " Z"].iter().any(|axis| name.ends_with(axis));
@@ -148,7 +163,8 @@ fn cells(line: &[u8], dialect: &Dialect) -> Vec<String> {
 /// Whether a row of cells can head the table: its width, give or take an empty cell at the end.
 fn fits(row: &[String], columns: usize) -> bool {
     let filled = filled_cells(row);
-    filled > 0 && (row.len() == columns || filled == columns || row.len() == columns + 1)
+    let wide = row.len() == columns || row.len() == columns + 1;
+    filled == columns || (wide && (1..columns).contains(&filled))
 }
 
 /// Lines above the table among which its heading is looked for.
@@ -390,6 +406,19 @@ mod tests {
             header(&["Frame;X1;Y1", "Tracks 1 to 1"]).names,
             ["Frame", "X1", "Y1"]
         );
+    }
+
+    #[test]
+    fn a_row_wider_than_the_table_is_not_its_heading() {
+        let lines = ["Segment;Time;Count;Of", "t;x;y"];
+        assert_eq!(header(&lines).names, ["t", "x", "y"]);
+    }
+
+    #[test]
+    fn positions_without_a_heading_have_the_names_of_their_markers() {
+        let found = header(&["NO_OF_FRAMES;100", "FREQUENCY;500", "MARKER_NAMES;cart"]);
+        assert_eq!(found.names, ["cart X", "cart Y", "cart Z"]);
+        assert_eq!(found.units[0].as_deref(), Some("mm"));
     }
 
     #[test]
