@@ -111,7 +111,7 @@ pub(crate) fn decay(id: &str, mass: usize, f0_hz: f64) -> Record {
             excitation: Excitation::FreeDecay,
             ..Setting::default()
         },
-        times_error_s: 0.0,
+        listed: Default::default(),
         flags: Vec::new(),
     }
 }

@@ -96,7 +96,7 @@ impl Bracket {
 ///             specimen: None,
 ///             excitation: Excitation::Harmonic,
 ///         },
-///         times_error_s: 0.0,
+///         listed: Default::default(),
 ///         flags: Vec::new(),
 ///     };
 ///     let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());

@@ -134,7 +134,7 @@ pub(super) fn undetermined(reason: Undetermined, evidence: Evidence) -> Classifi
 ///         specimen: None,
 ///         excitation: Excitation::Harmonic,
 ///     },
-///     times_error_s: 0.0,
+///     listed: Default::default(),
 ///     flags: Vec::new(),
 /// };
 /// let found = detect(&record, RigKind::Double, &DetectSettings::default());

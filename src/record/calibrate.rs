@@ -4,7 +4,7 @@
 use super::bind::flag;
 pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
 use super::times::Clocks;
-use super::{Channel, ContactContent, Flag, FlagCode, Record, Role, Setting};
+use super::{Channel, ContactContent, Flag, FlagCode, ListedTimes, Record, Role, Setting};
 use super::{changes, condition, consistency, events, late};
 use crate::signal::whole;
 use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
@@ -63,7 +63,7 @@ fn empty(id: &str, setting: &Setting) -> Record {
         sample_rate_hz: 0.0,
         channels: Vec::new(),
         setting: setting.clone(),
-        times_error_s: 0.0,
+        listed: Default::default(),
         flags: Vec::new(),
     }
 }
@@ -144,13 +144,7 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
             _ => 0.0,
         };
         events::settle(&mut record, content, closed_s);
-        if let Some(error_s) = dataset
-            .attributes
-            .get(TIMES_ERROR)
-            .and_then(|e| e.parse().ok())
-        {
-            record.times_error_s = error_s;
-        }
+        stated(&mut record.listed, dataset);
         return record;
     }
     condition::inspect(&mut record, &ranges, setup.driven);
@@ -165,6 +159,19 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
 
 /// Attribute of a dataset that lists times: their standard error, s.
 pub const TIMES_ERROR: &str = "times_error_s";
+/// Attribute of a dataset that lists times: how long the contact is closed, s.
+pub const TIMES_CONTACT: &str = "times_contact_s";
+
+/// Take what a dataset of calibrated times states of them.
+fn stated(listed: &mut ListedTimes, dataset: &DatasetInfo) {
+    let number = |key: &str| dataset.attributes.get(key)?.parse().ok();
+    if let Some(error_s) = number(TIMES_ERROR) {
+        *listed = ListedTimes {
+            error_s,
+            contact_s: number(TIMES_CONTACT).unwrap_or(0.0),
+        };
+    }
+}
 
 /// Keep of a list of changes the times at which the contact closes; how long it is closed, s, 0 where no column
 /// tells it.
@@ -182,7 +189,7 @@ fn keep_closings(
     let states = |state: usize| {
         let read = source.read(setup.dataset, &[state]).ok()?.pop()?;
         let read = read.into_real()?;
-        let levels = changes::levels(&channel.values, &read)?;
+        let levels = changes::line_levels(&channel.values, &read)?;
         Some((
             state,
             levels,
@@ -447,7 +454,7 @@ pub(crate) mod tests {
             "the rows are changes of 'Channel 0': the 12 at which it goes to 1 are the impacts"
         );
         // somewhere in a contact of 2 ms
-        assert!((record.times_error_s - 2e-3 / 12f64.sqrt()).abs() < 1e-8);
+        assert!((record.listed.error_s - 2e-3 / 12f64.sqrt()).abs() < 1e-8);
         assert!(!record.excluded());
     }
 

@@ -58,9 +58,15 @@ fn changed(times: &[f64], states: &[f64]) -> (Vec<f64>, Vec<f64>) {
         .unzip()
 }
 
-/// The levels of a column of states beside the times of its changes, if there are two of them. A contact is closed
-/// for a shorter time than a flight lasts. Where the rows are the changes of several lines, those of this one count.
+/// The levels of a column of states beside the times of its changes, if each row differs from the one before and
+/// there are two of them. A contact is closed for a shorter time than a flight lasts.
 pub fn levels(times: &[f64], states: &[f64]) -> Option<Levels> {
+    let changes = states.windows(2).all(|w| w[0] != w[1]);
+    line_levels(times, states).filter(|_| changes)
+}
+
+/// As [`levels`], of a line among several, any of which changes with a row.
+pub(super) fn line_levels(times: &[f64], states: &[f64]) -> Option<Levels> {
     if times.len() != states.len() {
         return None;
     }
@@ -188,7 +194,8 @@ mod tests {
         // rows in which another line changes
         let more = [0.0, 0.5, 0.502, 0.7, 1.0, 1.002, 1.4, 1.402];
         let with = [0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0];
-        assert_eq!(levels(&more, &with).unwrap().closed, 1.0);
+        assert_eq!(levels(&more, &with), None);
+        assert_eq!(line_levels(&more, &with).unwrap().closed, 1.0);
         assert_eq!(
             closings(
                 &more,

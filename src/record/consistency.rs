@@ -323,7 +323,7 @@ mod tests {
             sample_rate_hz: 2000.0,
             channels,
             setting: Setting::default(),
-            times_error_s: 0.0,
+            listed: Default::default(),
             flags: Vec::new(),
         }
     }

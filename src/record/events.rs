@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::changes::{Closings, Listing, listing};
-use super::{Channel, Flag, FlagCode, Record, Role};
+use super::{Channel, Flag, FlagCode, ListedTimes, Record, Role};
 use crate::signal::onsets;
 use labfiles::units::Dimension;
 
@@ -67,7 +67,11 @@ pub(super) fn settle(record: &mut Record, content: ContactContent, closed_s: f64
     let span_s = times_s[times_s.len() - 1] - times_s[0];
     record.sample_rate_hz = (times_s.len() - 1) as f64 / span_s.max(f64::MIN_POSITIVE);
     // where in a step, and where in the contact, the impact was is not known
-    record.times_error_s = step_s.hypot(closed_s.max(lasting_s)) / 12f64.sqrt();
+    let contact_s = closed_s.max(lasting_s);
+    record.listed = ListedTimes {
+        error_s: step_s.hypot(contact_s) / 12f64.sqrt(),
+        contact_s,
+    };
     channel.values = times_s;
     channel.dimension = Dimension::Time;
     channel.threshold = None;
@@ -218,14 +222,14 @@ mod tests {
             let mut list = record(&times);
             settle(&mut list, ContactContent::Times, 0.0);
             assert!(
-                (list.times_error_s - step_s / 12f64.sqrt()).abs() < 1e-15,
+                (list.listed.error_s - step_s / 12f64.sqrt()).abs() < 1e-15,
                 "{times:?}"
             );
         }
         let mut changes = record(&[0.0, 2e-3, 0.5, 0.502, 0.9, 0.902]);
         settle(&mut changes, ContactContent::Times, 0.0);
         assert_eq!(changes.values(Role::Contact).unwrap(), [0.0, 0.5, 0.9]);
-        assert!((changes.times_error_s - 2.236e-3 / 12f64.sqrt()).abs() < 1e-6);
+        assert!((changes.listed.error_s - 2.236e-3 / 12f64.sqrt()).abs() < 1e-6);
         assert_eq!(changes.flags[0].code, FlagCode::ContactChanges);
         assert!(!changes.excluded());
     }

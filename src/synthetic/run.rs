@@ -345,7 +345,7 @@ pub fn calibrated(raw: &RawRecord, truth: &Truth, faults: &Faults) -> Record {
             specimen: None,
             excitation: Default::default(),
         },
-        times_error_s: 0.0,
+        listed: Default::default(),
         flags: Vec::new(),
     }
 }
