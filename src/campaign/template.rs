@@ -87,10 +87,11 @@ fn records(text: &mut String, found: &FolderContents) -> std::fmt::Result {
                 "240 Hz",
                 "the frames per second: the files number the frames",
             ),
-            (_, true) => ("44.1 kHz", "the files state none; R does not depend on it"),
+            (_, true) => ("44.1 kHz", "that of the sound: the files state none"),
             _ => ("2 kHz", "the files state none"),
         };
-        writeln!(text, "sample_rate = \"{rate}\"       # FILL IN: {why}")?;
+        // a rate that nobody has stated must not count
+        writeln!(text, "# sample_rate = \"{rate}\"     # FILL IN: {why}")?;
     }
     let attributes = attributes(found);
     let lacks = |key: &str| !attributes.iter().any(|(k, _)| *k == key);
@@ -131,14 +132,20 @@ fn attributes(found: &FolderContents) -> Vec<(&'static str, String)> {
         ("drive_amplitude", &["amplitude"], ""),
         ("sweep", &["sweep", "direction"], ""),
     ];
+    // its FREQUENCY is that of the frames
+    let motion_capture = found.attributes.contains_key("NO_OF_FRAMES");
+    let driven = found.experiment == Experiment::Driven;
     let find = |stems: &[&str]| {
         found.attributes.keys().find(|name| {
             let lower = name.to_lowercase();
-            let sampling = lower.contains("sampl");
+            let sampling = motion_capture || lower.contains("sampl") || lower.contains("analog");
             !sampling && stems.iter().any(|s| lower.contains(s))
         })
     };
-    KEYS.iter()
+    let asked = KEYS
+        .iter()
+        .filter(|(key, ..)| driven || *key == "clearance");
+    asked
         .filter_map(|(key, stems, usual)| Some((*key, with_unit(find(stems)?, usual))))
         .collect()
 }
@@ -363,7 +370,7 @@ seed = 1
 [report]
 paper = \"a4\"                 # or \"letter\"
 language = \"en\"              # en or de
-decimal_comma = false
+# decimal_comma = true       # numbers with a decimal comma; as the language has it
 formats = [\"pdf\"]            # any of pdf, html, svg, png, figure-pdf, tex; the data of the figures are always written as CSV
 # points = [\"record_12\"]     # records to draw; chosen by the program if not given
 # logo = \"logo.svg\"          # an image for the first page (svg, png or jpg)

@@ -755,6 +755,23 @@ mod tests {
     }
 
     #[test]
+    fn a_rate_that_nobody_states_does_not_count() {
+        let values = |line: &str| format!("{}\n", line.split(',').nth(1).unwrap());
+        let text: String = decay_rows(3.0, 0.02, 1500).lines().map(values).collect();
+        let (_, text) = toml_of(&[("r.csv", format!("v (m/s)\n{text}"))]);
+        assert!(
+            text.contains("\n# sample_rate = \"2 kHz\"     # FILL IN"),
+            "{text}"
+        );
+        let front = "NO_OF_FRAMES\t600\nFREQUENCY\t500\nANALOG_FREQUENCY\t0\nMARKER_NAMES\ta\n";
+        let row = |line: &str| format!("{}\t1.5\t2.5\n", line.split(',').nth(1).unwrap());
+        let rows: String = decay_rows(3.0, 0.02, 600).lines().map(row).collect();
+        let (_, text) = toml_of(&[("r.tsv", format!("{front}{rows}"))]);
+        assert!(!text.contains("drive_frequency = "), "{text}");
+        assert!(text.contains("channel = \"a X\""), "{text}");
+    }
+
+    #[test]
     fn heavy_and_short_decays_are_decays() {
         for (damping, count) in [(0.35, 1500), (0.15, 1500), (0.004, 600)] {
             let text = format!("t (s),v (m/s)\n{}", decay_rows(3.0, damping, count));
