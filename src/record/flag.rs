@@ -115,6 +115,8 @@ flag_codes! {
     DriveNotHarmonic = "drive_not_harmonic", "drive not harmonic", "Erregung nicht harmonisch",
     /// Measured and stated drive frequency differ.
     DriveFrequencyContradicts = "drive_frequency_contradicts", "drive frequency contradicts", "Erregerfrequenz widerspricht",
+    /// A displacement goes beyond the stop without an impact.
+    BeyondStop = "beyond_stop", "beyond the stop", "jenseits des Anschlags",
     /// Jumps of the approach velocity go up.
     JumpsPointTheWrongWay = "jumps_point_the_wrong_way", "jumps point the wrong way", "Sprünge in falscher Richtung",
     /// A channel is positive away from the stop or the other mass; the record was turned around.

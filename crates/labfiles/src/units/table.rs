@@ -35,6 +35,13 @@ impl Dimension {
         self.texts().0
     }
 
+    /// The name with its article: "an angle", "a length".
+    pub fn with_article(self) -> String {
+        let name = self.name();
+        let article = if name.starts_with('a') { "an" } else { "a" };
+        format!("{article} {name}")
+    }
+
     /// The SI unit's symbol.
     pub fn si_symbol(self) -> &'static str {
         self.texts().1
