@@ -10,7 +10,7 @@ use crate::pipeline::identify::{self, IdentificationFile};
 use crate::pipeline::json::{read_json, store_error, write_json};
 use crate::pipeline::observe::each_record;
 use crate::pipeline::{Observed, PipelineError, Progress, RefusedRecord, gzip_json};
-use crate::record::calibrate::{ChannelKey, ChannelSetup, TIMES_ERROR};
+use crate::record::calibrate::{ChannelKey, ChannelSetup, TIMES_CONTACT, TIMES_ERROR};
 use crate::record::{ContactContent, Flag, Record, Role};
 use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Value};
 use labfiles::units::{Dimension, Quantity, Unit};
@@ -179,10 +179,15 @@ fn table(place: usize, record: &Record) -> RecordTable {
 }
 
 fn table_attributes(record: &Record) -> Vec<(String, Value)> {
-    let error =
-        (record.times_error_s > 0.0).then(|| (TIMES_ERROR.to_owned(), record.times_error_s.into()));
+    let listed = record.listed;
+    let known = [
+        (TIMES_ERROR, listed.error_s),
+        (TIMES_CONTACT, listed.contact_s),
+    ];
+    let known = known.into_iter().filter(|(_, value)| *value > 0.0);
+    let known = known.map(|(key, value)| (key.to_owned(), value.into()));
     let named = ("record".to_owned(), record.id.as_str().into());
-    std::iter::once(named).chain(error).collect()
+    std::iter::once(named).chain(known).collect()
 }
 
 /// Set-ups that read the calibrated channels without conversion.
@@ -252,6 +257,38 @@ fn write_observed(observed: &mut Observed, out: &Path) -> Result<(), PipelineErr
     gzip_json::write(&out.join(WAVEFORMS), &waveforms)?;
     observed.drop_waveforms();
     Ok(gzip_json::write(&path, &observed.observations)?)
+}
+
+/// Remove what was kept of an earlier run for its report: it no longer belongs to what is written.
+///
+/// # Errors
+/// If it cannot be removed.
+pub(super) fn forget(out: &Path) -> Result<(), PipelineError> {
+    remove(&out.join(OBSERVATIONS))?;
+    remove(&out.join(WAVEFORMS))?;
+    remove(&out.join(RESIDUALS))
+}
+
+/// Keep what a report needs of a run beside its results: the observations, which have no waveforms any more, and
+/// the residuals.
+///
+/// # Errors
+/// If it cannot be written.
+pub(super) fn keep(
+    observed: &Observed,
+    found: &IdentificationFile,
+    out: &Path,
+) -> Result<(), PipelineError> {
+    gzip_json::write(&out.join(RESIDUALS), &found.identification.residuals)?;
+    Ok(gzip_json::write(
+        &out.join(OBSERVATIONS),
+        &observed.observations,
+    )?)
+}
+
+/// Whether a folder holds the calibrated records of stage 1.
+pub fn is_staged(out: &Path) -> bool {
+    out.join(INGESTED_CAMPAIGN).exists()
 }
 
 /// Remove a file that no longer holds, if it is there.
