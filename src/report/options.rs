@@ -132,7 +132,7 @@ impl Default for ReportOptions {
 }
 
 impl ReportOptions {
-    pub(super) fn locale(&self) -> Locale<'_> {
+    pub(crate) fn locale(&self) -> Locale<'_> {
         Locale {
             decimal_comma: self.decimal_comma,
             catalog: self.catalog.as_ref(),
