@@ -3,7 +3,7 @@
 
 use clap::{Args, ValueEnum};
 
-use super::machine::{MachineArgs, WatchArgs, range, refused};
+use super::machine::{MachineArgs, WatchArgs, at_least, range, refused};
 use super::theory::{OutArgs, study_text};
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_oscillator::atlas::map::{Kernel, MapSettings};
@@ -26,10 +26,10 @@ pub(super) struct Atlas {
           allow_hyphen_values = true)]
     rho: (f64, f64),
     /// Columns (η) of the grid
-    #[arg(long, value_name = "N", default_value_t = 200)]
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = at_least::<2>())]
     columns: usize,
     /// Rows (ρ) of the grid
-    #[arg(long, value_name = "N", default_value_t = 120)]
+    #[arg(long, value_name = "N", default_value_t = 120, value_parser = at_least::<2>())]
     rows: usize,
     /// Greatest number of impacts p per period of the motion
     #[arg(long, value_name = "P", default_value_t = 4)]
@@ -120,8 +120,8 @@ impl Atlas {
             ));
         }
         Ok(RegionsPlan {
-            eta: (self.eta.0, self.eta.1, self.columns.max(2)),
-            rho: (self.rho.0, self.rho.1, self.rows.max(2)),
+            eta: (self.eta.0, self.eta.1, self.columns),
+            rho: (self.rho.0, self.rho.1, self.rows),
             largest_p: self.largest_p,
             largest_n: self.largest_n,
             map: MapSettings {

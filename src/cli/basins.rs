@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::machine::{MachineArgs, WatchArgs, range};
+use super::machine::{MachineArgs, WatchArgs, at_least, range};
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity};
 use impact_oscillator::atlas::basins::{BasinGrid, Starts};
@@ -36,10 +36,10 @@ pub(super) struct Basins {
     #[arg(long, value_name = "LOW..HIGH", value_parser = range, allow_hyphen_values = true)]
     vx: (f64, f64),
     /// Columns: values of X(0)
-    #[arg(long, value_name = "N", default_value_t = 601)]
+    #[arg(long, value_name = "N", default_value_t = 601, value_parser = at_least::<2>())]
     columns: usize,
     /// Rows: values of X'(0)
-    #[arg(long, value_name = "N", default_value_t = 451)]
+    #[arg(long, value_name = "N", default_value_t = 451, value_parser = at_least::<2>())]
     rows: usize,
     /// Start X alone; Y starts at rest at zero (else both masses start alike)
     #[arg(long)]
@@ -73,8 +73,8 @@ impl Basins {
         let plan = BasinPlan {
             setting: Setting::new(self.eta, self.rho).at_phase(self.phase),
             grid: BasinGrid {
-                x: (self.x.0, self.x.1, self.columns.max(2)),
-                vx: (self.vx.0, self.vx.1, self.rows.max(2)),
+                x: (self.x.0, self.x.1, self.columns),
+                vx: (self.vx.0, self.vx.1, self.rows),
                 starts,
             },
             restitution: None,

@@ -8,8 +8,9 @@ use super::failure::print_diagnostics;
 use super::read_log::ReadLog;
 use super::{Exit, Failure, Progress, Verbosity};
 use impact_campaign::campaign::check;
-use impact_campaign::campaign::diagnostic::{Diagnostics, Severity};
+use impact_campaign::campaign::diagnostic::{Code, Diagnostic, Diagnostics, Place, Severity};
 use impact_campaign::campaign::load;
+use impact_records::message::counted;
 
 /// Arguments of `impactid check`.
 #[derive(Debug, Args)]
@@ -39,6 +40,12 @@ impl Check {
             let open = labfiles::open;
             let checked = check::read_all(campaign, &open, &|done| progress.set(done, total));
             outcome.diagnostics.0.extend(checked.diagnostics);
+            if checked.usable == 0
+                && total > 0
+                && outcome.diagnostics.count(Severity::Campaign) == 0
+            {
+                outcome.diagnostics.0.push(self.nothing_usable(total));
+            }
             outcome.diagnostics.sort();
             usable = Some((checked.usable, total));
         }
@@ -49,6 +56,19 @@ impl Check {
             true => Exit::Done,
             false => Exit::BadInput,
         })
+    }
+}
+
+impl Check {
+    fn nothing_usable(&self, records: u64) -> Diagnostic {
+        let place = Place {
+            file: self.campaign.clone(),
+            item: "records".to_owned(),
+            ..Place::default()
+        };
+        let found = format!("none of the {} can be used", counted(records, "record"));
+        let remedy = "fix what is wrong with the records, as listed; `run` stops here";
+        Diagnostic::new((Code::Missing, Severity::Campaign), place, found, remedy)
     }
 }
 

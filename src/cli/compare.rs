@@ -9,10 +9,13 @@ use super::progress::Progress;
 use super::report_args::{paper_parser, quoted};
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity, interrupt};
+use impact_campaign::campaign::resolved::ResolvedCampaign;
 use impact_campaign::pipeline::campaigns;
 use impact_campaign::pipeline::{self, Observed};
 use impact_identification::compare::{self, Campaign, Comparison};
+use impact_records::message::Message;
 use impact_report::catalog::Catalog;
+use impact_report::locale::Locale;
 use impact_report::{CampaignsContent, Format, Paper, ReportOptions};
 
 /// Arguments of `impactid compare`.
@@ -34,16 +37,16 @@ pub(super) struct Compare {
         default_value = "pdf,html"
     )]
     format: Vec<Format>,
-    /// Title of the report
-    #[arg(long, value_name = "TEXT", default_value = "Campaigns compared")]
-    title: String,
+    /// Title of the report [default: "Campaigns compared" in its language]
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
     /// Language of the report
     #[arg(long, value_name = "LANGUAGE", value_enum, default_value = "en")]
     language: Language,
     /// Paper size; us-letter is the same as letter
     #[arg(long, value_name = "PAPER", value_parser = paper_parser())]
     paper: Option<Paper>,
-    /// Print numbers with a decimal comma
+    /// Print numbers with a decimal comma; German always does
     #[arg(long)]
     decimal_comma: bool,
     /// Print JSON instead of a table
@@ -78,11 +81,18 @@ impl Compare {
     /// # Errors
     /// [`Failure`] where a campaign cannot be used, they cannot be compared or an output cannot be written.
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+        // what is wrong with one of them is told before any is identified
+        for number in 0..self.campaigns.len() {
+            self.refuse_twice(number)?;
+        }
+        let given = self.campaigns.iter().enumerate();
+        let given: Vec<Given> = given
+            .map(|(number, path)| Given::at(path, number, verbosity))
+            .collect::<Result<_, _>>()?;
         let _lock = interrupt::lock(&self.out)?;
         let mut all = Vec::new();
-        for (number, path) in self.campaigns.iter().enumerate() {
-            self.refuse_twice(number)?;
-            all.extend(of_path(path, number, verbosity)?);
+        for (number, given) in given.into_iter().enumerate() {
+            all.extend(given.identified(number, verbosity)?);
         }
         let places: Vec<String> = self
             .campaigns
@@ -92,7 +102,7 @@ impl Compare {
         campaigns::tell_apart(&mut all, &places);
         let comparison = compare::compare(&all).map_err(pipeline::PipelineError::from)?;
         let content = CampaignsContent {
-            title: self.title.clone(),
+            title: self.title(),
             comparison,
             command_line: self.typed(),
         };
@@ -102,7 +112,7 @@ impl Compare {
         if self.json {
             print_json(comparison)?;
         } else if !verbosity.is_quiet() {
-            print(&table(comparison))?;
+            print(&table(comparison, self.options().locale()))?;
         }
         for (name, _) in files.iter().filter(|(name, _)| !name.contains('/')) {
             verbosity.info(&format!("Written: {}", self.out.join(name).display()));
@@ -124,14 +134,26 @@ impl Compare {
         Ok(())
     }
 
+    fn is_german(&self) -> bool {
+        self.language == Language::De
+    }
+
+    fn title(&self) -> String {
+        let usual = match self.is_german() {
+            true => "Messreihen im Vergleich",
+            false => "Campaigns compared",
+        };
+        self.title.clone().unwrap_or_else(|| usual.to_owned())
+    }
+
     /// The look of the documents.
     fn options(&self) -> ReportOptions {
-        let german = self.language == Language::De;
+        let german = self.is_german();
         ReportOptions {
             paper: self.paper.unwrap_or_default(),
             language: if german { "de" } else { "en" }.to_owned(),
             catalog: german.then(|| Catalog::german().clone()),
-            decimal_comma: self.decimal_comma,
+            decimal_comma: self.decimal_comma || german,
             ..ReportOptions::default()
         }
     }
@@ -141,12 +163,14 @@ impl Compare {
         let paths: Vec<String> = self.campaigns.iter().map(|p| quoted(p)).collect();
         let formats: Vec<&str> = self.format.iter().map(|f| f.name()).collect();
         let mut text = format!(
-            "impactid compare {} --out {} --format {} --title {}",
+            "impactid compare {} --out {} --format {}",
             paths.join(" "),
             quoted(&self.out),
-            formats.join(","),
-            quoted(Path::new(&self.title))
+            formats.join(",")
         );
+        if let Some(title) = &self.title {
+            text += &format!(" --title {}", quoted(Path::new(title)));
+        }
         if self.language == Language::De {
             text.push_str(" --language de");
         }
@@ -160,67 +184,138 @@ impl Compare {
     }
 }
 
-/// The campaigns at a path: results as they are, a campaign.toml identified.
-fn of_path(path: &Path, number: usize, verbosity: Verbosity) -> Result<Vec<Campaign>, Failure> {
-    if !path.exists() {
-        return Err(Failure::new(
-            format!("{}: there is no such file or folder", path.display()),
-            "give results folders of `impactid run`, or campaign.toml files",
-        ));
+/// What a path on the command line is.
+enum Given {
+    /// Results.
+    Results(Vec<Campaign>),
+    /// A campaign that must be identified first.
+    Described(Box<ResolvedCampaign>),
+}
+
+impl Given {
+    /// Results as they are, or a campaign.toml that is read, not yet identified.
+    fn at(path: &Path, number: usize, verbosity: Verbosity) -> Result<Self, Failure> {
+        if !path.exists() {
+            return Err(Failure::new(
+                format!("{}: there is no such file or folder", path.display()),
+                "give results folders of `impactid run`, or campaign.toml files",
+            ));
+        }
+        let described = path.is_file() && path.extension().is_some_and(|e| e == "toml");
+        if !described {
+            return Ok(Self::Results(campaigns::read(path, number)?));
+        }
+        let campaign = load_campaign(path, verbosity)?;
+        if campaign.published.is_some() {
+            return Err(Failure::new(
+                format!(
+                    "{}: published speeds are no measurement of a rig",
+                    path.display()
+                ),
+                "compare campaigns that have records",
+            ));
+        }
+        Ok(Self::Described(Box::new(campaign)))
     }
-    let described = path.is_file() && path.extension().is_some_and(|e| e == "toml");
-    if !described {
-        return Ok(campaigns::read(path, number)?);
+
+    /// The campaigns: results as they are, a campaign.toml identified.
+    fn identified(self, number: usize, verbosity: Verbosity) -> Result<Vec<Campaign>, Failure> {
+        let campaign = match self {
+            Self::Results(campaigns) => return Ok(campaigns),
+            Self::Described(campaign) => campaign,
+        };
+        let bar = Progress::new(verbosity, "observe", campaign.records.len() as u64);
+        let observed = Observed::of(&campaign, &|s, d, t| bar.step(s, d, t))?;
+        bar.step("identify", 0, 1);
+        let found = pipeline::identify::identify(&campaign, &observed, Some(bar.fits()))?;
+        drop(bar);
+        Ok(campaigns::campaigns(
+            &campaign,
+            found.identification,
+            number,
+        ))
     }
-    let campaign = load_campaign(path, verbosity)?;
-    if campaign.published.is_some() {
-        return Err(Failure::new(
-            format!(
-                "{}: published speeds are no measurement of a rig",
-                path.display()
-            ),
-            "compare campaigns that have records",
-        ));
-    }
-    let bar = Progress::new(verbosity, "observe", campaign.records.len() as u64);
-    let observed = Observed::of(&campaign, &|s, d, t| bar.step(s, d, t))?;
-    bar.step("identify", 0, 1);
-    let found = pipeline::identify::identify(&campaign, &observed, Some(bar.fits()))?;
-    drop(bar);
-    Ok(campaigns::campaigns(
-        &campaign,
-        found.identification,
-        number,
-    ))
 }
 
 /// The least p-value that is printed.
 const LEAST_P: f64 = 1e-4;
 
 /// A p-value to four decimals.
-fn p_value(p: f64) -> String {
+fn p_value(p: f64, locale: Locale<'_>) -> String {
     match p < LEAST_P {
-        true => format!("< {LEAST_P}"),
-        false => format!("{p:.4}"),
+        true => format!("< {}", locale.digits(&LEAST_P.to_string())),
+        false => locale.fixed(p, 4),
     }
 }
 
 /// A p-value behind its name.
-fn p_equals(p: f64) -> String {
+fn p_equals(p: f64, locale: Locale<'_>) -> String {
     let equals = if p < LEAST_P { "" } else { "= " };
-    format!("p {equals}{}", p_value(p))
+    format!("p {equals}{}", p_value(p, locale))
 }
 
+/// What the table is written with in a language.
+struct Words {
+    heads: [&'static str; 6],
+    to: &'static str,
+    corrected: [&'static str; 2],
+    together: &'static str,
+    shared: [&'static str; 2],
+    note: &'static str,
+}
+
+const ENGLISH: Words = Words {
+    heads: [
+        "campaign",
+        "parameter",
+        "difference",
+        "95 % interval",
+        "independent",
+        "p",
+    ],
+    to: "to",
+    corrected: ["corrected for", "differences"],
+    together: "all together",
+    shared: [
+        "Shared errors",
+        "comparison.json names each with its reason",
+    ],
+    note: "note",
+};
+
+const GERMAN: Words = Words {
+    heads: [
+        "Messreihe",
+        "Parameter",
+        "Unterschied",
+        "95-%-Intervall",
+        "unabhängig",
+        "p",
+    ],
+    to: "bis",
+    corrected: ["berichtigt für", "Unterschiede"],
+    together: "alle zusammen",
+    shared: [
+        "Gemeinsame Fehler",
+        "comparison.json nennt jeden mit seinem Grund",
+    ],
+    note: "Hinweis",
+};
+
 /// By which tests the outcome is decided, in parentheses.
-fn decided_by(comparison: &Comparison) -> String {
+fn decided_by(comparison: &Comparison, words: &Words, locale: Locale<'_>) -> String {
     let count = comparison.differences.len();
+    let [corrected, differences] = words.corrected;
     let corrected = comparison.p_value().map(|p| match count {
-        1 => p_equals(p),
-        _ => format!("{}, corrected for {count} differences", p_equals(p)),
+        1 => p_equals(p, locale),
+        _ => format!("{}, {corrected} {count} {differences}", p_equals(p, locale)),
     });
     let together = comparison.unchanged.filter(|_| count > 1).map(|test| {
-        let (f, p) = (test.statistic, p_equals(test.p_value));
-        format!("all together: F = {f:.3}, {p}")
+        let (f, p) = (
+            locale.fixed(test.statistic, 3),
+            p_equals(test.p_value, locale),
+        );
+        format!("{}: F = {f}, {p}", words.together)
     });
     let all: Vec<String> = corrected.into_iter().chain(together).collect();
     match all.is_empty() {
@@ -230,36 +325,46 @@ fn decided_by(comparison: &Comparison) -> String {
 }
 
 /// The differences as lines.
-fn table(comparison: &Comparison) -> String {
+fn table(comparison: &Comparison, locale: Locale<'_>) -> String {
+    let words = match locale.is_english() {
+        true => &ENGLISH,
+        false => &GERMAN,
+    };
+    // a terminal sets no symbols
+    let said = |message: &dyn Message| locale.message(message).replace(['$', '_', '{', '}'], "");
     let mut text = String::new();
     for (i, campaign) in comparison.campaigns.iter().enumerate() {
         text += &format!("{:>3}  {}\n", i + 1, campaign.name);
     }
+    let [campaign, parameter, difference, interval, independent, p] = words.heads;
     text += &format!(
-        "\n{:>8} {:>21} {:>12} {:>27} {:>12} {:>8}\n",
-        "campaign", "parameter", "difference", "95 % interval", "independent", "p"
+        "\n{campaign:>9} {parameter:>21} {difference:>12} {interval:>28} {independent:>12} {p:>8}\n"
     );
     for d in &comparison.differences {
-        let [low, high] = d.interval95;
+        let digits = |text: String| locale.digits(&text).replace('\u{2212}', "-");
+        let number = |value: f64| digits(format!("{value:.4e}"));
+        let [low, high] = d.interval95.map(number);
         let [least, most] = d.independent_interval95;
+        let half = digits(format!("{:.2e}", 0.5 * (most - least)));
         text += &format!(
-            "{:>8} {:>21} {:>12.4e} {:>27} {:>12} {:>8}\n",
+            "{:>9} {:>21} {:>12} {:>28} {:>12} {:>8}\n",
             d.campaign + 1,
             d.parameter.name(),
-            d.value,
-            format!("{low:.4e} to {high:.4e}"),
-            format!("± {:.2e}", 0.5 * (most - least)),
-            p_value(d.p_value)
+            number(d.value),
+            format!("{low} {} {high}", words.to),
+            format!("± {half}"),
+            p_value(d.p_value, locale)
         );
     }
+    let [shared, named] = words.shared;
     text += &format!(
-        "\n{}{}.\nShared errors: {}; comparison.json names each with its reason.\n",
-        comparison.outcome(),
-        decided_by(comparison),
+        "\n{}{}.\n{shared}: {}; {named}.\n",
+        said(&comparison.outcome()),
+        decided_by(comparison, words, locale),
         comparison.shared.len()
     );
     for remark in &comparison.remarks {
-        text += &format!("note: {remark}\n");
+        text += &format!("{}: {}\n", words.note, said(remark));
     }
     text
 }
@@ -270,8 +375,15 @@ mod tests {
 
     #[test]
     fn a_p_value_is_never_printed_as_zero() {
-        assert_eq!(p_value(0.0), "< 0.0001");
-        assert_eq!(p_value(0.000_12), "0.0001");
-        assert_eq!(p_value(0.25), "0.2500");
+        let english = Locale::default();
+        assert_eq!(p_value(0.0, english), "< 0.0001");
+        assert_eq!(p_value(0.000_12, english), "0.0001");
+        assert_eq!(p_value(0.25, english), "0.2500");
+        let german = Locale {
+            decimal_comma: true,
+            catalog: Some(Catalog::german()),
+        };
+        assert_eq!(p_value(0.25, german), "0,2500");
+        assert_eq!(p_equals(0.0, german), "p < 0,0001");
     }
 }

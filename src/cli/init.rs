@@ -48,7 +48,12 @@ impl Init {
             return Err(none_found(&self.folder, &found));
         }
         let text = template::campaign_toml(&name_of(&self.folder), &found);
-        output::write_bytes(&path, text.as_bytes())?;
+        // there is no --out: the description lies beside its records
+        let refused = |error: output::OutputError| {
+            let remedy = "allow writing into the folder, or copy the records into one that you may write into";
+            Failure::new(error.to_string(), remedy)
+        };
+        output::write_bytes(&path, text.as_bytes()).map_err(refused)?;
         print_summary(&path, &found, verbosity);
         Ok(Exit::Done)
     }

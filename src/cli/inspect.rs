@@ -91,9 +91,16 @@ impl Inspect {
             .filter(|&d| datasets[d].name == *name)
             .collect();
         if found.is_empty() {
-            let some: Vec<&str> = datasets.iter().take(8).map(|d| d.name.as_str()).collect();
-            let expected = format!("one of the file's datasets ({}…)", some.join(", "));
-            let remedy = "Run inspect without --dataset to see all names.";
+            let (expected, remedy) = match datasets {
+                [one] if one.name.is_empty() => (
+                    "no name, as the file holds a single dataset without one".to_owned(),
+                    "Leave --dataset out.",
+                ),
+                _ => (
+                    named(datasets),
+                    "Name one of them, or leave --dataset out to see all.",
+                ),
+            };
             return Err(ReadError::new(
                 source.path(),
                 expected,
@@ -153,6 +160,23 @@ impl Inspect {
         }
         Ok(errors)
     }
+}
+
+/// Datasets that a message names.
+const NAMED: usize = 20;
+
+/// That one of the file's datasets is expected, with their names.
+fn named(datasets: &[DatasetInfo]) -> String {
+    let names: Vec<&str> = datasets
+        .iter()
+        .take(NAMED)
+        .map(|d| d.name.as_str())
+        .collect();
+    let more = match datasets.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    format!("one of the file's datasets: {}{more}", names.join(", "))
 }
 
 /// The channels of a dataset: their statistics, their samples, and what cannot be read of them.

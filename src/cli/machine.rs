@@ -165,3 +165,8 @@ pub(super) fn range(text: &str) -> Result<(f64, f64), String> {
         _ => Err(wrong()),
     }
 }
+
+/// A parser of whole numbers from `LEAST` on.
+pub(super) fn at_least<const LEAST: u64>() -> clap::builder::RangedU64ValueParser<usize> {
+    clap::builder::RangedU64ValueParser::new().range(LEAST..)
+}

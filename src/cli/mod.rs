@@ -47,7 +47,7 @@ use std::num::NonZeroUsize;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 
 pub(crate) use exit::Exit;
 pub(crate) use failure::Failure;
@@ -176,6 +176,9 @@ pub(crate) fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             let _ = error.print();
+            if let Some(command) = meant(&error) {
+                eprintln!("did you mean `impactid {command}`?");
+            }
             return if error.use_stderr() {
                 Exit::BadInput
             } else {
@@ -199,6 +202,24 @@ pub(crate) fn main() -> ExitCode {
     exit.into()
 }
 
+/// The command that was probably meant by one that does not exist, and that clap does not name itself.
+fn meant(error: &clap::Error) -> Option<String> {
+    use clap::error::{ContextKind, ContextValue};
+    let typed = match error.get(ContextKind::InvalidSubcommand) {
+        Some(ContextValue::String(typed)) => typed,
+        _ => return None,
+    };
+    if error.get(ContextKind::SuggestedSubcommand).is_some() {
+        return None;
+    }
+    let program = Cli::command();
+    let commands: Vec<&str> = program
+        .get_subcommands()
+        .map(clap::Command::get_name)
+        .collect();
+    impact_campaign::campaign::nearest(typed, &commands).map(str::to_owned)
+}
+
 /// Starts the threads that all work is shared among: as many as stated, else one for each core.
 fn start_threads(stated: Option<NonZeroUsize>) -> Result<(), rayon::ThreadPoolBuildError> {
     /// As much as a main thread has: nested templates take it.
@@ -218,9 +239,19 @@ fn versions() -> String {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
+
+    #[test]
+    fn a_command_that_was_mistyped_is_named() {
+        for (typed, command) in [("rnu", "run"), ("inpsect", "inspect"), ("chekc", "check")] {
+            let error = Cli::try_parse_from(["impactid", typed]).unwrap_err();
+            let told =
+                error.to_string().contains(command) || meant(&error).as_deref() == Some(command);
+            assert!(told, "{error}");
+        }
+        let error = Cli::try_parse_from(["impactid", "xyzzy"]).unwrap_err();
+        assert_eq!(meant(&error), None);
+    }
 
     #[test]
     fn the_command_line_is_consistent_and_every_command_shows_an_example() {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::machine::at_least;
 use super::stdout::print_json;
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
 use impact_campaign::pipeline::plan;
@@ -18,7 +19,7 @@ pub(super) struct Plan {
     #[arg(value_name = "CAMPAIGN.TOML")]
     campaign: PathBuf,
     /// Number of settings to propose
-    #[arg(long, value_name = "N", default_value_t = 6)]
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = at_least::<1>())]
     settings: usize,
     /// Folder for plan.json, plan.csv and the map
     #[arg(long, short, value_name = "DIR")]

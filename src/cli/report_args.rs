@@ -64,6 +64,7 @@ impl ReportArgs {
         if !self.format.is_empty() {
             report.formats.clone_from(&self.format);
         }
+        report.formats = each_once(&report.formats);
         if self.template.is_some() {
             report.template.clone_from(&self.template);
         }
@@ -112,6 +113,38 @@ impl ReportArgs {
     }
 }
 
+/// Formats without those that are there before.
+pub(super) fn each_once(formats: &[Format]) -> Vec<Format> {
+    let mut once: Vec<Format> = Vec::with_capacity(formats.len());
+    for format in formats {
+        if !once.contains(format) {
+            once.push(*format);
+        }
+    }
+    once
+}
+
+/// Refuse formats that stand where campaigns do, as behind a blank, before any campaign is run.
+///
+/// # Errors
+/// [`Failure`] that says how formats are written.
+pub(super) fn refuse_formats(campaigns: &[std::path::PathBuf]) -> Result<(), Failure> {
+    let is_format = |path: &&std::path::PathBuf| {
+        let text = path.to_string_lossy();
+        !path.exists() && text.split(',').all(|part| part.parse::<Format>().is_ok())
+    };
+    let Some(format) = campaigns.iter().find(is_format) else {
+        return Ok(());
+    };
+    Err(Failure::new(
+        format!(
+            "{} is no campaign but a format; nothing was run",
+            format.display()
+        ),
+        "formats are written with commas and no blanks between them: --format pdf,html",
+    ))
+}
+
 /// Print the paths of the report.
 pub(super) fn print_report_paths(campaign: &ResolvedCampaign, out: &Path, verbosity: Verbosity) {
     for format in &campaign.report.formats {
@@ -143,6 +176,16 @@ pub(super) fn quoted(path: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn formats_are_written_once_and_one_that_is_typed_as_a_campaign_is_named() {
+        let twice = [Format::Pdf, Format::Html, Format::Pdf];
+        assert_eq!(each_once(&twice), [Format::Pdf, Format::Html]);
+        let refused = refuse_formats(&["html".into()]).unwrap_err();
+        assert!(refused.problems()[0].1.contains("--format pdf,html"));
+        // a campaign that is not there does not stop the others
+        assert!(refuse_formats(&["none/campaign.toml".into()]).is_ok());
+    }
 
     #[test]
     fn options_are_typed_as_they_were_given() {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::report_args::ReportArgs;
+use super::report_args::{ReportArgs, refuse_formats};
 use super::run_one::RunOptions;
 use super::{Exit, Failure, Verbosity, run_several};
 
@@ -48,6 +48,7 @@ impl Run {
             report: &self.options,
         };
         let campaigns = run_several::expanded(&self.campaigns)?;
+        refuse_formats(&campaigns)?;
         match &campaigns[..] {
             [alone] => {
                 let done = options.run(alone, &self.out, verbosity)?;

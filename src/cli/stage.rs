@@ -11,7 +11,7 @@ use super::left_out::print_left_out;
 use super::load::load_campaign;
 use super::progress::Progress;
 use super::report_args::{ReportArgs, print_report_paths, quoted};
-use super::run_one::print_verdict;
+use super::run_one::{command_line, print_verdict};
 use super::stdout::print;
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_campaign::pipeline::{self, store};
@@ -115,8 +115,8 @@ Example:
   impactid report --list-words > words.toml
   impactid report results/ --words words.toml
 
-It reads the output of `impactid identify` there (not that of `impactid run`) and writes \
-report.pdf and the data of the figures.";
+It reads the output of `impactid identify` or of `impactid run` there and writes the formats asked for \
+and the data of the figures.";
 
 /// The commands that make a report in stages.
 fn commands(campaign: &Path, folder: &Path, options: &ReportArgs) -> String {
@@ -190,7 +190,10 @@ impl Report {
         self.options.apply(&mut campaign.report, verbosity)?;
         let observed = store::read_without_waveforms(&folder)?;
         let found = store::read_identified(&folder)?;
-        let command = commands(&campaign.file, &folder, &self.options);
+        let command = match store::is_staged(&folder) {
+            true => commands(&campaign.file, &folder, &self.options),
+            false => command_line(&campaign.file, &folder, &self.options),
+        };
         let bar = Progress::new(verbosity, "report", 1);
         let report = pipeline::report::files(&campaign, &observed, &found, &command)?;
         pipeline::report::write(&report, &folder)?;

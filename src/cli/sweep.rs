@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::machine::{MachineArgs, StartArgs, WatchArgs, range};
+use super::machine::{MachineArgs, StartArgs, WatchArgs, at_least, range};
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity};
 use impact_workbench::theory::plan::SweepPlan;
@@ -20,7 +20,7 @@ pub(super) struct Sweep {
     #[arg(long, value_name = "FROM..TO|RHO", value_parser = ends, allow_hyphen_values = true)]
     rho: (f64, f64),
     /// Steps from end to end
-    #[arg(long, value_name = "N", default_value_t = 301)]
+    #[arg(long, value_name = "N", default_value_t = 301, value_parser = at_least::<2>())]
     steps: usize,
     #[command(flatten)]
     start: StartArgs,
@@ -53,6 +53,15 @@ impl Sweep {
     /// # Errors
     /// [`Failure`] where a parameter is out of range or a file cannot be written.
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+        if self.eta.0 == self.eta.1 && self.rho.0 == self.rho.1 {
+            return Err(Failure::new(
+                format!(
+                    "η = {} and ρ = {} are one point: nothing is swept",
+                    self.eta.0, self.rho.0
+                ),
+                "give one of them as a range, --eta 0.8..1.4; `impactid simulate` computes one point",
+            ));
+        }
         let mut study = self.machine.study("Quasi-stationary characteristics")?;
         let plan = SweepPlan {
             eta: self.eta,

@@ -1,5 +1,6 @@
 //! What the verbs of the theory share: a study, a folder, progress, an end that can be resumed.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -60,6 +61,7 @@ impl OutArgs {
     ) -> Result<Exit, Failure> {
         let folder = self.folder();
         let _lock = interrupt::lock(folder)?;
+        refuse_other_results(folder, study)?;
         in_folder((folder, key, self.resume), what, verbosity, work)?;
         let copy = folder.join(COPY);
         write_bytes(&copy, study.as_bytes())?;
@@ -70,6 +72,37 @@ impl OutArgs {
         ));
         Ok(Exit::Done)
     }
+}
+
+/// What a study computes: the names of its tables.
+fn works(study: &str) -> BTreeSet<String> {
+    let table: toml::Table = study.parse().unwrap_or_default();
+    let tables = table.into_iter().filter(|(_, value)| value.is_table());
+    tables.map(|(name, _)| name).collect()
+}
+
+/// Refuse a folder that holds results of other work: files of both would lie there, and one study that replays
+/// half of them.
+///
+/// # Errors
+/// [`Failure`] that names the folder.
+fn refuse_other_results(folder: &Path, study: &str) -> Result<(), Failure> {
+    let copy = folder.join(COPY);
+    let other = std::fs::read_to_string(&copy).is_ok_and(|held| works(&held) != works(study));
+    let run = folder.join(impact_campaign::pipeline::identify::FILE);
+    let held = match (other, run.exists()) {
+        (true, _) => copy,
+        (_, true) => run,
+        _ => return Ok(()),
+    };
+    Err(Failure::new(
+        format!(
+            "{} holds results of other work ({})",
+            folder.display(),
+            held.display()
+        ),
+        "name another folder with --out, or remove this one first",
+    ))
 }
 
 /// A study as it is written.

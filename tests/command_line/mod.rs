@@ -109,6 +109,63 @@ fn init_writes_a_campaign_that_check_understands() {
 }
 
 #[test]
+fn check_of_records_that_cannot_be_used_is_an_error() {
+    let lab = Lab::new();
+    // each record has a fault of its own
+    for (name, rows) in [("r1.csv", 300), ("r2.csv", 301), ("r3.csv", 302)] {
+        lab.lines(name, |i, line| (i != rows).then(|| line.to_owned()));
+    }
+    let ran = lab.run(&["check", "campaign.toml"]);
+    assert_eq!(ran.code, 2);
+    for words in ["none of the 3 records can be used", "1 error,"] {
+        assert!(ran.said.contains(words), "{words} is not in {}", ran.said);
+    }
+}
+
+#[test]
+fn german_tables_and_texts_in_utf16_are_read() {
+    let lab = Lab::new();
+    let table = "Datei;Frequenz [Hz];Spalt [mm];Richtung;Bemerkung\r\nr1.csv;11,0;1,0;auf;\r\nr2.csv;12,0;1,0;auf;\r\n\
+                 r3.csv;13,0;1,0;ab;gut\r\n";
+    let unicode = |text: &str| -> Vec<u8> {
+        let marked = format!("\u{feff}{text}");
+        marked.encode_utf16().flat_map(u16::to_le_bytes).collect()
+    };
+    lab.write_bytes("runs.csv", &unicode(table));
+    let campaign = lab.read("campaign.toml");
+    lab.write_bytes("campaign.toml", &unicode(&campaign));
+    let ran = lab.run(&["check", "campaign.toml"]);
+    assert_eq!(ran.code, 0, "{}", ran.said);
+    assert!(
+        ran.said.contains("3 of 3 records can be used"),
+        "{}",
+        ran.said
+    );
+}
+
+#[test]
+fn another_format_after_a_run_needs_no_new_run() {
+    let lab = Lab::new();
+    let ran = lab.run(&[
+        "run",
+        "campaign.toml",
+        "--out",
+        "out",
+        "--format",
+        "csv,csv",
+    ]);
+    assert!(ran.code < 2, "{}", ran.said);
+    assert_eq!(ran.said.matches("Report (csv)").count(), 1, "{}", ran.said);
+    let ran = lab.run(&["report", "out", "--format", "svg"]);
+    assert_eq!(ran.code, 0, "{}", ran.said);
+    let figures = fs::read_dir(lab.path("out/figures")).expect("figures");
+    let svg = figures
+        .filter_map(Result::ok)
+        .filter(|f| f.path().extension().is_some_and(|e| e == "svg"));
+    assert!(svg.count() > 0);
+}
+
+#[test]
 fn init_finds_a_run_table() {
     let lab = Lab::new();
     let ran = lab.run(&["init", ".", "--force"]);

@@ -28,6 +28,24 @@ fn form() -> Vec<Case> {
             ],
         ),
         refused(
+            "campaign.toml in Windows-1252",
+            |lab| lab.write_bytes("campaign.toml", b"[campaign]\nname = \"Pr\xFCfstand\"\n"),
+            &["the text is not in UTF-8", "save it as UTF-8"],
+        ),
+        refused(
+            "a record in place of campaign.toml",
+            |lab| lab.write("campaign.toml", &lab.read("r1.csv")),
+            &[
+                "it is a record (csv), not the description of a campaign",
+                "impactid init",
+            ],
+        ),
+        refused(
+            "a backslash in a pattern of files",
+            |lab| lab.edit("run_table = \"runs.csv\"", "files = \"sub\\*.csv\""),
+            &["campaign.toml:7", "write / between folders"],
+        ),
+        refused(
             "a quote is not closed",
             |lab| lab.edit("\"Test rig\"", "\"Test rig"),
             &["campaign.toml:2", "not valid TOML"],

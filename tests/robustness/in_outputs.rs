@@ -34,6 +34,15 @@ fn commands() -> Vec<Case> {
             &["unrecognized subcommand 'rum'", "run"],
         ),
         case(
+            "a command with two letters exchanged",
+            |_| {},
+            &["rnu"],
+            &[
+                "unrecognized subcommand 'rnu'",
+                "did you mean `impactid run`?",
+            ],
+        ),
+        case(
             "an unknown flag",
             |_| {},
             &["run", "--outt"],
@@ -70,6 +79,53 @@ fn commands() -> Vec<Case> {
                 "impactid init",
                 "summary.csv",
             ],
+        ),
+        case(
+            "a format behind a blank",
+            |_| {},
+            &[
+                "run",
+                "campaign.toml",
+                "--out",
+                "out",
+                "--format",
+                "pdf",
+                "html",
+            ],
+            &[
+                "html is no campaign but a format; nothing was run",
+                "--format pdf,html",
+            ],
+        ),
+        case(
+            "a sweep of one point",
+            |_| {},
+            &["sweep", "--eta", "1", "--rho", "2", "--out", "out"],
+            &["η = 1 and ρ = 2 are one point", "--eta 0.8..1.4"],
+        ),
+        case(
+            "an atlas without columns",
+            |_| {},
+            &["atlas", "--columns", "0", "--out", "out"],
+            &["invalid value '0' for '--columns <N>'"],
+        ),
+        case(
+            "a plan of no setting",
+            |_| {},
+            &["plan", "campaign.toml", "--settings", "0", "--out", "out"],
+            &["invalid value '0' for '--settings <N>'"],
+        ),
+        case(
+            "inspect a document",
+            |lab| lab.write("report.pdf", "%PDF-1.7\n1,2\n3,4\n"),
+            &["inspect", "report.pdf"],
+            &["a PDF document", "export them as CSV"],
+        ),
+        case(
+            "inspect a dataset that is not there",
+            |_| {},
+            &["inspect", "r1.csv", "--dataset", "foo"],
+            &["the file holds a single dataset without one"],
         ),
         case(
             "run on a faulty campaign",
@@ -147,6 +203,18 @@ fn folders() -> Vec<Case> {
             },
             &["run", "campaign.toml", "other.toml", "--out", "out"],
             &["summary.json has layout 0", "into another folder (--out)"],
+        ),
+        case(
+            "a sweep into the folder of an atlas",
+            |lab| {
+                std::fs::create_dir(lab.path("out")).expect("a folder");
+                lab.write("out/study.toml", "title = \"Regions\"\n[regions.atlas]\n");
+            },
+            &["sweep", "--eta", "1..1.1", "--rho", "2", "--out", "out"],
+            &[
+                "out holds results of other work",
+                "name another folder with --out",
+            ],
         ),
         case(
             "watch into results of another version",

@@ -96,6 +96,20 @@ fn rows() -> Vec<Case> {
             ],
         ),
         refused(
+            "a sweep direction that is none, in a table of Windows",
+            |lab| {
+                let text = lab
+                    .read("runs.csv")
+                    .replace("down", "sideways")
+                    .replace('\n', "\r\n");
+                lab.write("runs.csv", &text);
+            },
+            &[
+                "runs.csv:4: sweep",
+                "'sideways' is not one of up, down, unknown",
+            ],
+        ),
+        refused(
             "a row without a file",
             |lab| lab.replace("runs.csv", "r2.csv,", ","),
             &["runs.csv:3: file", "no file is named"],

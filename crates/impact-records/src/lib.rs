@@ -42,6 +42,7 @@
 //!         specimen: None,
 //!         excitation: Excitation::Harmonic,
 //!     },
+//!     listed: Default::default(),
 //!     flags: Vec::new(),
 //! };
 //! let found = detect(&record, RigKind::Double, &DetectSettings::default());

@@ -33,42 +33,75 @@ pub(super) fn tables(document: &Document) -> Vec<(String, Vec<u8>)> {
         .collect()
 }
 
-/// A table as LaTeX.
+/// Letters of usual size in a line of a page.
+const LINE: usize = 70;
+
+/// A table as LaTeX: one that is wider than a line is made smaller, and then comes in parts where it is long.
 fn latex(table: &Table) -> String {
     let rows = table.cells();
-    let long = rows.len() >= LONG;
+    let (long, wide) = (rows.len() >= LONG, width(table, rows) > LINE);
     let columns: String = table.align.iter().map(|a| column(*a)).collect();
-    let caption = rich(&table.caption);
-    let heads = cells(&table.heads);
-    let mut text = format!(
-        "% \\usepackage{{booktabs}}{}\n",
-        if long {
-            " and \\usepackage{longtable}"
-        } else {
-            ""
-        }
-    );
-    let caption = match caption.is_empty() {
-        true => String::new(),
-        false => format!("\\caption{{{caption}}}\n"),
+    let caption = match rich(&table.caption) {
+        empty if empty.is_empty() => empty,
+        caption => format!("\\caption{{{caption}}}\n"),
     };
-    let body: String = rows.iter().map(|row| cells(row) + " \\\\\n").collect();
-    let rules = format!("\\toprule\n{heads} \\\\\n\\midrule\n");
-    text += &match long {
-        true => {
-            let caption = caption.trim_end();
-            let end = if caption.is_empty() { "" } else { " \\\\\n" };
-            format!(
+    let further = match (long, wide) {
+        (_, true) => " and \\usepackage{graphicx}",
+        (true, false) => " and \\usepackage{longtable}",
+        _ => "",
+    };
+    let mut text = format!("% \\usepackage{{booktabs}}{further}\n");
+    let rules = format!("\\toprule\n{} \\\\\n\\midrule\n", cells(&table.heads));
+    let body =
+        |rows: &[Vec<Rich>]| -> String { rows.iter().map(|row| cells(row) + " \\\\\n").collect() };
+    if long && !wide {
+        let caption = caption.trim_end();
+        let end = if caption.is_empty() { "" } else { " \\\\\n" };
+        return text
+            + &format!(
                 "\\begin{{longtable}}{{{columns}}}\n{caption}{end}{rules}\\endhead\n\
-                 \\bottomrule\n\\endfoot\n{body}\\end{{longtable}}\n"
-            )
-        }
-        false => format!(
-            "\\begin{{table}}\n\\centering\n{caption}\\begin{{tabular}}{{{columns}}}\n{rules}{body}\
-             \\bottomrule\n\\end{{tabular}}\n\\end{{table}}\n"
+                 \\bottomrule\n\\endfoot\n{}\\end{{longtable}}\n",
+                body(rows)
+            );
+    }
+    let (open, close) = match wide {
+        true => (
+            "\\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n",
+            "}\n",
         ),
+        false => ("", ""),
     };
+    let parts: Vec<&[Vec<Rich>]> = match rows.is_empty() {
+        true => vec![rows],
+        false => rows.chunks(LONG).collect(),
+    };
+    for (number, rows) in parts.iter().enumerate() {
+        let caption = if number == 0 { caption.as_str() } else { "" };
+        text += &format!(
+            "\\begin{{table}}\n\\centering\n{caption}{open}\\begin{{tabular}}{{{columns}}}\n{rules}{}\
+             \\bottomrule\n\\end{{tabular}}\n{close}\\end{{table}}\n",
+            body(rows)
+        );
+    }
     text
+}
+
+/// Letters in a line of a table: of each column its longest cell, and what is between two.
+fn width(table: &Table, rows: &[Vec<Rich>]) -> usize {
+    let letters = |cell: &Rich| {
+        cell.0
+            .iter()
+            .map(|run| run.text.chars().count())
+            .sum::<usize>()
+    };
+    let of = |column: usize| {
+        let cells = rows.iter().chain(std::iter::once(&table.heads));
+        cells.filter_map(|row| row.get(column)).map(letters).max()
+    };
+    let between = 2;
+    (0..table.align.len())
+        .map(|c| of(c).unwrap_or(0) + between)
+        .sum()
 }
 
 fn column(align: Align) -> char {
@@ -118,8 +151,14 @@ fn escaped(text: &str) -> String {
             '\u{2009}' | '\u{202f}' => all.push_str("\\,"),
             '\u{a0}' => all.push('~'),
             '\u{2212}' => all.push_str("\\ensuremath{-}"),
+            // dashes and quotes that a file in UTF-8 may hold
+            '–' => all.push_str("--"),
+            '—' => all.push_str("---"),
+            '…' => all.push_str("\\ldots{}"),
             other => match symbol(other) {
                 Some(name) => all.push_str(&format!("\\ensuremath{{{name}}}")),
+                // pdflatex stops at what is no letter of a Latin alphabet
+                None if other > '\u{17f}' => all.push_str(&format!("[U+{:04X}]", u32::from(other))),
                 None => all.push(other),
             },
         }
@@ -133,6 +172,8 @@ fn symbol(sign: char) -> Option<&'static str> {
         '±' => "\\pm",
         '·' => "\\cdot",
         '×' => "\\times",
+        '′' => "\\prime",
+        '″' => "\\prime\\prime",
         '∞' => "\\infty",
         '≤' => "\\leq",
         '≥' => "\\geq",
@@ -207,6 +248,34 @@ mod tests {
             escaped("a\\b^c~d"),
             "a\\textbackslash{}b\\textasciicircum{}c\\textasciitilde{}d"
         );
+    }
+
+    #[test]
+    fn a_wide_table_is_made_to_fit_the_line() {
+        let wide = |rows: usize| {
+            let row = vec![Rich::from("a column of many words that takes much room"); 4];
+            Table {
+                heads: row.clone(),
+                align: vec![Align::Left; 4],
+                widths: vec![0; 4],
+                ..Table {
+                    name: "wide",
+                    ..Table::of(vec![row; rows])
+                }
+            }
+        };
+        assert_eq!(latex(&wide(3)).matches("\\resizebox").count(), 1);
+        let long = latex(&wide(2 * LONG + 1));
+        assert_eq!(long.matches("\\begin{table}").count(), 3);
+        assert_eq!(long.matches("\\resizebox").count(), 3);
+        assert!(!long.contains("longtable"));
+        assert_eq!(escaped("ρ′"), "\\ensuremath{\\rho}\\ensuremath{\\prime}");
+    }
+
+    #[test]
+    fn signs_that_pdflatex_does_not_know_are_named() {
+        assert_eq!(escaped("Überlauf 5 – 6 …"), "Überlauf 5 -- 6 \\ldots{}");
+        assert_eq!(escaped("x⊗y"), "x[U+2297]y");
     }
 
     #[test]

@@ -55,7 +55,7 @@ impl Locale<'_> {
     }
 
     /// A message in the reader's language, its symbols between dollars.
-    pub(crate) fn message(self, message: &dyn Message) -> String {
+    pub fn message(self, message: &dyn Message) -> String {
         self.print(message)
     }
 
@@ -74,7 +74,7 @@ impl Locale<'_> {
     }
 
     /// Whether the texts are English.
-    pub(crate) fn is_english(self) -> bool {
+    pub fn is_english(self) -> bool {
         let language = self.catalog.and_then(|c| c.language.as_deref());
         language.is_none_or(|l| l == "en")
     }
@@ -90,7 +90,7 @@ impl Locale<'_> {
     }
 
     /// Digits as Rust writes them, with a true minus and the chosen decimal sign.
-    pub(crate) fn digits(self, text: &str) -> String {
+    pub fn digits(self, text: &str) -> String {
         let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
         let minus = if is_zero { "" } else { "\u{2212}" };
         let text = text.replace('-', minus);

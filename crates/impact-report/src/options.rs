@@ -132,7 +132,8 @@ impl Default for ReportOptions {
 }
 
 impl ReportOptions {
-    pub(super) fn locale(&self) -> Locale<'_> {
+    /// How texts and numbers are printed.
+    pub fn locale(&self) -> Locale<'_> {
         Locale {
             decimal_comma: self.decimal_comma,
             catalog: self.catalog.as_ref(),

@@ -54,7 +54,7 @@ TableCampaigns => "The campaigns: joint estimates with half their 95 % interval.
 TableDifferences => "Differences from campaign 1 with half their 95 % interval; beside it what it would be if the campaigns had no error in common; p-value of no change of this parameter alone, not corrected for the number of differences (the first page says what is left of it once corrected).", "Unterschiede zu Messreihe 1 mit ihrem halben 95-%-Intervall; daneben, wie groß es ohne gemeinsame Fehler wäre; p-Wert dafür, dass sich dieser Parameter allein nicht geändert hat, nicht um die Zahl der Unterschiede berichtigt (was berichtigt davon bleibt, sagt die erste Seite).";
 TableNotShared => "Errors that two campaigns might share, and why they are treated as separate.", "Fehler, die zwei Messreihen gemeinsam haben könnten, und warum sie getrennt behandelt werden.";
 TableShared => "What is one unknown of several campaigns, and why.", "Was eine Unbekannte mehrerer Messreihen ist, und warum.";
-NoChange => "No change: p {p}, corrected for the number of differences ({count}).", "Keine Änderung: p {p}, für die Zahl der Unterschiede ({count}) berichtigt.";
+NoChange => "That nothing has changed: p {p}, corrected for the number of differences ({count}).", "Dass sich nichts geändert hat: p {p}, für die Zahl der Unterschiede ({count}) berichtigt.";
 TestOfNoChange => "All {count} differences together: F = {statistic}, p {p}.", "Alle {count} Unterschiede zusammen: F = {statistic}, p {p}.";
 Trend => "Estimates of the campaigns", "Schätzwerte der Messreihen";
 // Uncertainty

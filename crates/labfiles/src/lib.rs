@@ -60,6 +60,7 @@ mod numbers;
 mod open;
 pub mod output;
 mod parquet;
+mod plain;
 mod rate;
 mod source;
 pub mod summary;
@@ -72,6 +73,7 @@ mod wav;
 
 pub use open::open;
 pub use parquet::guard::is_caught as panic_is_caught;
+pub use plain::read_text;
 pub use source::{ChannelInfo, Clock, DatasetInfo, ReadError, Samples, Source, StoredType};
 
 #[cfg(test)]

@@ -36,6 +36,15 @@ const BY_BYTES: &[(Test, Reader)] = &[
     (excel::recognises, excel::open),
 ];
 
+/// Documents that hold text in lines: their first bytes, and what they are.
+const DOCUMENTS: [(&[u8], &str); 5] = [
+    (b"%PDF-", "a PDF document"),
+    (b"{\\rtf", "a document in rich text"),
+    (b"<!DOCTYPE", "an HTML page"),
+    (b"<html", "an HTML page"),
+    (b"%!PS", "a PostScript document"),
+];
+
 /// Extensions of text tables, whatever their first bytes.
 const TABLES: [&str; 6] = ["csv", "tsv", "txt", "dat", "asc", "prn"];
 
@@ -65,6 +74,11 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     }
     if let Some((_, reader)) = BY_BYTES.iter().find(|(is, _)| is(&front)) {
         return reader(path);
+    }
+    if let Some((_, kind)) = DOCUMENTS.iter().find(|(first, _)| front.starts_with(first)) {
+        let remedy =
+            "Name the file with the numbers that the document shows, or export them as CSV.";
+        return Err(ReadError::new(path, "a record file", *kind, remedy));
     }
     let extension = path.extension().unwrap_or_default();
     match TABLES.iter().any(|t| extension.eq_ignore_ascii_case(t)) || looks_like_text(&front) {
@@ -124,4 +138,26 @@ fn unknown(path: &Path, front: &[u8]) -> ReadError {
         "Convert the file with the program that wrote it, for example to CSV.",
     )
     .at(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn documents_are_no_tables_of_text() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in [
+            ("r.pdf", "%PDF-1.7\n1,2,3\n4,5,6\n"),
+            ("p.csv", "<!DOCTYPE html>\n1,2\n3,4\n"),
+        ] {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).unwrap();
+            let error = open(&path).err().unwrap();
+            assert!(
+                error.found.starts_with("a") && error.remedy.contains("CSV"),
+                "{error}"
+            );
+        }
+    }
 }

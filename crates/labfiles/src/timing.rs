@@ -9,7 +9,15 @@ const FIRST_WORDS: [&str; 9] = [
 ];
 
 /// Words that make a name that of a time axis wherever they stand.
-const WORDS: [&str; 5] = ["time", "zeit", "timestamp", "zeitstempel", "epoch"];
+const WORDS: [&str; 7] = [
+    "time",
+    "zeit",
+    "timestamp",
+    "zeitstempel",
+    "epoch",
+    "unix",
+    "datenum",
+];
 
 /// Words of time stamps that count from 1970.
 const EPOCHS: [&str; 5] = ["timestamp", "zeitstempel", "epoch", "unix", "posix"];
@@ -141,12 +149,15 @@ fn unit_of_text(text: &str) -> Option<Unit> {
     let text = text.trim();
     let known = parse_unit(text).filter(|u| u.dimension == Dimension::Time);
     let lower = text.to_lowercase();
+    // milli sec, milli-seconds
+    let joined: String = lower.chars().filter(|c| c.is_alphabetic()).collect();
     let power = lower
         .replace("10^", "1e")
         .replace("10⁻³", "1e-3")
         .replace("10⁻⁶", "1e-6");
     known
         .or_else(|| in_table(&SPELLED, &lower))
+        .or_else(|| in_table(&SPELLED, &joined).filter(|_| lower.starts_with(char::is_alphabetic)))
         .or_else(|| in_table(&LONG, &lower))
         .or_else(|| unit_of_symbol(&lower))
         .or_else(|| {
@@ -164,9 +175,14 @@ fn unit_in_name(name: &str) -> Option<Unit> {
         return Some(unit);
     }
     let words = words(name);
+    let joined = || {
+        let mut pairs = words.windows(2).map(|w| w.concat());
+        pairs.find_map(|w| in_table(&SPELLED, &w))
+    };
     let spelled = words
         .iter()
-        .find_map(|w| in_table(&SPELLED, w).or_else(|| glued(w)));
+        .find_map(|w| in_table(&SPELLED, w).or_else(|| glued(w)))
+        .or_else(joined);
     let long = || words.iter().find_map(|w| in_table(&LONG, w));
     let last = || {
         words
@@ -216,6 +232,8 @@ pub enum AxisUnit {
     Stated(Unit),
     /// A time stamp that counts from 1970 in this unit.
     Epoch(Unit),
+    /// None is stated: days, as MATLAB's `datenum` and spreadsheets count them.
+    Days,
     /// None is stated: seconds.
     Seconds,
     /// None is stated, and the numbers may be of any: the first and the usual step.
@@ -248,6 +266,7 @@ impl AxisUnit {
             StatedUnit::Other(text) => Self::Other(text),
             StatedUnit::Nothing => match first.and_then(|first| epoch_unit(name, first)) {
                 Some(unit) => Self::Epoch(unit),
+                None if counts_days(values) => Self::Days,
                 None if is_undetermined(values) => Self::Undetermined {
                     first: first.unwrap_or(f64::NAN),
                     step: crate::rate::median_step(values).unwrap_or(f64::NAN),
@@ -262,6 +281,7 @@ impl AxisUnit {
         match self {
             Self::Stated(unit) | Self::Epoch(unit) => Some(unit.to_si),
             Self::Seconds => Some(1.0),
+            Self::Days => Some(86_400.0),
             Self::Undetermined { .. } | Self::Other(_) => None,
         }
     }
@@ -277,6 +297,9 @@ impl AxisUnit {
                 ))
             }
             Self::Seconds => Some(format!("time axis '{name}' has no unit: taken as seconds")),
+            Self::Days => Some(format!(
+                "time axis '{name}' has no unit: taken as days, as MATLAB's datenum and spreadsheets count them"
+            )),
             Self::Undetermined { first, step } => Some(format!(
                 "time axis '{name}' has no unit, and its numbers, {first} and on by steps of {step}, may be s, \
                  ms, µs or counts of samples"
@@ -366,6 +389,18 @@ fn epoch_unit(name: &str, first: f64) -> Option<Unit> {
     let fits = |to_si: &f64| (EPOCH_S[0]..EPOCH_S[1]).contains(&(first * to_si));
     let unit = [1.0, 1e-3, 1e-6, 1e-9].into_iter().find(fits)?;
     (counts || split).then(|| of_time(unit))
+}
+
+/// Days of the years 1950 to 2100 since the year 0, as MATLAB counts, and since 1900, as spreadsheets do.
+const DAYS: [[f64; 2]; 2] = [[712_224.0, 767_376.0], [18_264.0, 73_416.0]];
+/// Steps below this are of no time in s since a start so long ago: 80 kHz and more, after hours or days.
+const LEAST_STEP_S: f64 = 1.25e-5;
+
+/// Whether times without a unit count days from a date of this age, and go on by less than a second.
+fn counts_days(times: &[f64]) -> bool {
+    let first = times.iter().copied().find(|t| t.is_finite());
+    let of_age = first.is_some_and(|t| DAYS.iter().any(|[from, to]| (*from..*to).contains(&t)));
+    of_age && crate::rate::median_step(times).is_some_and(|step| step < LEAST_STEP_S)
 }
 
 /// A time without a unit beyond this is no time in s since the start of a record: 32 years.
@@ -491,6 +526,8 @@ mod tests {
             "Time (1e-3 s)",
             "Time (10^-3 s)",
             "Time{ms}",
+            "Time (milli sec)",
+            "time milli-seconds",
         ] {
             assert_eq!(unit(None, name), Some(1e-3), "{name}");
         }
@@ -532,6 +569,19 @@ mod tests {
         assert_eq!(unit("unix time", 1.7e18), Some(1e-9));
         assert_eq!(unit("time", 1.7e12), None);
         assert_eq!(unit("timestamp", 12_000.0), None);
+    }
+
+    #[test]
+    fn dates_that_are_counted_in_days_are_told_by_their_step() {
+        let unit = |first: f64, step: f64| {
+            let times: Vec<f64> = (0..50).map(|i| first + f64::from(i) * step).collect();
+            AxisUnit::of(None, "time", &times).seconds()
+        };
+        assert_eq!(unit(738_000.5, 1e-3 / 86_400.0), Some(86_400.0));
+        assert_eq!(unit(46_352.5, 1e-3 / 86_400.0), Some(86_400.0));
+        // s since midnight
+        assert_eq!(unit(46_352.5, 1e-3), Some(1.0));
+        assert_eq!(unit(0.5, 1e-6), Some(1.0));
     }
 
     #[test]

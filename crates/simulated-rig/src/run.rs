@@ -345,6 +345,7 @@ pub fn calibrated(raw: &RawRecord, truth: &Truth, faults: &Faults) -> Record {
             specimen: None,
             excitation: Default::default(),
         },
+        listed: Default::default(),
         flags: Vec::new(),
     }
 }

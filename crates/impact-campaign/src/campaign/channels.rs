@@ -308,9 +308,9 @@ fn raw_level(
     match unit {
         Some(unit) if unit.dimension != found.dimension => {
             let what = format!(
-                "it is a {}, the channel's unit a {}",
-                found.dimension.name(),
-                unit.dimension.name()
+                "it is {}, the channel's unit {}",
+                found.dimension.with_article(),
+                unit.dimension.with_article()
             );
             if let Some(placed) = placed {
                 context.fault(

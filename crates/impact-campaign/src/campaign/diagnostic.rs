@@ -336,6 +336,11 @@ impl FaultCollector {
         }
     }
 
+    /// The file.
+    pub(super) fn file(&self) -> &Path {
+        &self.file
+    }
+
     /// Note a problem that stops the campaign.
     pub(super) fn fault(
         &mut self,

@@ -22,4 +22,5 @@ pub mod written;
 
 pub use discovery::{Opener, Taken};
 pub use named_files::NamedFiles;
+pub use read::nearest;
 pub use resolve::{Outcome, load, load_taken};

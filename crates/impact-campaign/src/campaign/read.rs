@@ -40,22 +40,41 @@ impl<'a> Text<'a> {
 
 /// The text of campaign.toml; `None`, and a fault, where it cannot be read.
 pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
-    let error = match std::fs::read_to_string(path) {
+    let error = match labfiles::read_text(path) {
         Ok(text) => return Some(text),
         Err(error) => error,
     };
-    let (message, remedy) = match path.is_dir() {
-        true => (
+    let unreadable = || format!("campaign.toml cannot be read: {error}");
+    let (message, remedy) = match (path.is_dir(), error.kind()) {
+        (true, _) => (
             "it is a folder".to_owned(),
             "name the campaign.toml in it; `impactid init DIR` writes one",
         ),
-        false => (
-            format!("campaign.toml cannot be read: {error}"),
+        (_, std::io::ErrorKind::InvalidData) => match record(path) {
+            Some(format) => (a_record(format), NAME_CAMPAIGN),
+            None => (unreadable(), "save it as UTF-8 in your editor"),
+        },
+        _ => (
+            unreadable(),
             "name the right file; `impactid init DIR` writes one",
         ),
     };
     faults.fault(Code::UnreadableFile, None, "", message, remedy);
     None
+}
+
+/// What to do where a record is named.
+const NAME_CAMPAIGN: &str =
+    "name the campaign.toml that describes it; `impactid init DIR` writes one";
+
+/// The format of a file that is a record.
+fn record(path: &Path) -> Option<&'static str> {
+    let source = labfiles::open(path).ok()?;
+    Some(source.format()).filter(|_| !source.datasets().is_empty())
+}
+
+fn a_record(format: &str) -> String {
+    format!("it is a record ({format}), not the description of a campaign")
 }
 
 /// Read the text; an entry that cannot be read is noted in `faults` and left at its default. `None`,
@@ -64,10 +83,16 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
 pub(super) fn read(text: &str, faults: &mut FaultCollector) -> Option<WrittenCampaign> {
     let places = Text::new(text);
     let (mut document, syntax) = DeTable::parse_recoverable(text);
-    for fault in &syntax {
-        note_syntax(&places, fault, faults);
-    }
     if !syntax.is_empty() {
+        match record(faults.file()) {
+            Some(format) => {
+                let what = a_record(format);
+                faults.fault(Code::UnreadableFile, None, "", what, NAME_CAMPAIGN);
+            }
+            None => syntax
+                .iter()
+                .for_each(|fault| note_syntax(&places, fault, faults)),
+        }
         return None;
     }
     loop {
@@ -87,13 +112,14 @@ pub(super) fn read(text: &str, faults: &mut FaultCollector) -> Option<WrittenCam
 fn note_syntax(places: &Text<'_>, fault: &toml::de::Error, faults: &mut FaultCollector) {
     let line = fault.span().map(|s| places.line(s.start));
     let what = format!("not valid TOML: {}", one_line(fault.message()));
-    faults.fault(
-        Code::Syntax,
-        line,
-        "",
-        what,
-        "fix the line; texts are written in quotes, tables in [brackets]",
-    );
+    let escaped = fault.message().contains("escape");
+    let remedy = match escaped {
+        true => {
+            "write / between folders, \"sub/*.csv\", on Windows too; \\ within \" quotes begins an escape"
+        }
+        false => "fix the line; texts are written in quotes, tables in [brackets]",
+    };
+    faults.fault(Code::Syntax, line, "", what, remedy);
 }
 
 fn note_form(
@@ -140,7 +166,7 @@ fn remedy_for_unknown(name: &str, expected: &[&str]) -> String {
 }
 
 /// The candidate nearest to a name, where one is near enough to be meant.
-pub(super) fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
+pub fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
     let limit = 1 + name.chars().count() / 3;
     let small = name.to_lowercase();
     candidates

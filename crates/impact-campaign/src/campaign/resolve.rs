@@ -198,6 +198,7 @@ fn report(
             }
         }
     }
+    let language = value(&written.language).unwrap_or(Language::En);
     Report {
         title: value(&written.title).unwrap_or_else(|| name.to_owned()),
         points: value(&written.points)
@@ -206,8 +207,8 @@ fn report(
             .filter(|point| all || known(point))
             .collect(),
         paper: value(&written.paper).unwrap_or(Paper::A4),
-        language: value(&written.language).unwrap_or(Language::En),
-        decimal_comma: value(&written.decimal_comma).unwrap_or(false),
+        language,
+        decimal_comma: value(&written.decimal_comma).unwrap_or(language == Language::De),
         formats: value(&written.formats)
             .filter(|formats| !formats.is_empty())
             .unwrap_or_else(|| vec![Format::Pdf]),
@@ -225,7 +226,7 @@ fn words_file(
 ) -> Option<PathBuf> {
     let key = "report.words";
     let path = beside(placed, key, folder, context)?;
-    if let (Some(placed), Ok(text)) = (placed, std::fs::read_to_string(&path))
+    if let (Some(placed), Ok(text)) = (placed, labfiles::read_text(&path))
         && let Err(error) = Catalog::read(&text)
     {
         let what = format!("{}: {error}", path.display());

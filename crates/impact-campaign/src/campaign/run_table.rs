@@ -26,6 +26,67 @@ const COLUMNS: [&str; 9] = [
     "specimen",
 ];
 
+/// Other headings, lower case, and the columns that they are.
+const OTHER_NAMES: [(&str, &str); 22] = [
+    ("datei", "file"),
+    ("dateiname", "file"),
+    ("filename", "file"),
+    ("datensatz", "dataset"),
+    ("blatt", "dataset"),
+    ("sheet", "dataset"),
+    ("frequenz", "drive_frequency"),
+    ("erregerfrequenz", "drive_frequency"),
+    ("anregungsfrequenz", "drive_frequency"),
+    ("frequency", "drive_frequency"),
+    ("spalt", "clearance"),
+    ("spiel", "clearance"),
+    ("abstand", "clearance"),
+    ("gap", "clearance"),
+    ("richtung", "sweep"),
+    ("direction", "sweep"),
+    ("amplitude", "drive_amplitude"),
+    ("erregeramplitude", "drive_amplitude"),
+    ("anregung", "excitation"),
+    ("probe", "specimen"),
+    ("prüfling", "specimen"),
+    ("prüfkörper", "specimen"),
+];
+
+/// German words for directions and excitations, lower case.
+const WORDS: [(&str, &str); 9] = [
+    ("auf", "up"),
+    ("aufwärts", "up"),
+    ("steigend", "up"),
+    ("ab", "down"),
+    ("abwärts", "down"),
+    ("fallend", "down"),
+    ("unbekannt", "unknown"),
+    ("harmonisch", "harmonic"),
+    ("ausschwingen", "free_decay"),
+];
+
+/// Beginnings of the headings of remarks, lower case.
+const REMARKS: [&str; 7] = [
+    "note", "notiz", "remark", "comment", "bemerk", "komment", "anmerk",
+];
+
+/// A word of a cell as this program writes it.
+pub(super) fn in_english(word: &str) -> String {
+    let lower = word.trim().to_lowercase();
+    let known = WORDS.iter().find(|(german, _)| *german == lower);
+    known.map_or(lower, |(_, english)| (*english).to_owned())
+}
+
+/// The column of a heading without its unit.
+fn column_of(bare: &str) -> Option<usize> {
+    let place = |name: &str| COLUMNS.iter().position(|c| *c == name);
+    place(bare).or_else(|| {
+        let lower = bare.to_lowercase();
+        let other = OTHER_NAMES.iter().find(|(name, _)| *name == lower);
+        other.and_then(|(_, column)| place(column))
+    })
+}
+
 /// The columns that hold numbers.
 const NUMBERS: [usize; 3] = [3, 4, 6];
 
@@ -130,7 +191,7 @@ pub(super) fn is_run_table(head: &[u8]) -> bool {
     let text = decode(head);
     let mut reader = reader(&text, separator(&text));
     let names = reader.headers();
-    names.is_ok_and(|names| names.iter().any(|name| name == COLUMNS[0]))
+    names.is_ok_and(|names| names.iter().any(|name| column_of(name) == Some(0)))
 }
 
 fn reader(text: &str, separator: u8) -> csv::Reader<&[u8]> {
@@ -148,7 +209,9 @@ fn decode(bytes: &[u8]) -> String {
         Ok(_) => encoding_rs::UTF_8,
         Err(_) => encoding_rs::WINDOWS_1252,
     };
-    without_mark.decode(bytes).0.into_owned()
+    // the lines' numbers are counted by line feeds
+    let text = without_mark.decode(bytes).0;
+    text.replace("\r\n", "\n").replace('\r', "\n")
 }
 
 /// The separator of the header line: the most frequent of comma, semicolon and tab.
@@ -173,7 +236,7 @@ fn read_header(names: &csv::StringRecord, faults: &mut FaultCollector) -> Header
             true => (name, None),
             false => units::split_unit(name),
         };
-        let Some(column) = COLUMNS.iter().position(|c| *c == bare) else {
+        let Some(column) = column_of(bare) else {
             note_unknown(name, bare, faults);
             continue;
         };
@@ -215,7 +278,8 @@ fn note_unknown(name: &str, bare: &str, faults: &mut FaultCollector) {
             COLUMNS.join(", ")
         ),
     };
-    if !bare.starts_with("note") {
+    let lower = bare.to_lowercase();
+    if !REMARKS.iter().any(|r| lower.starts_with(r)) {
         faults.fault(
             Code::UnknownEntry,
             Some(1),
@@ -387,7 +451,7 @@ impl Cells<'_> {
 
     fn word<T: FromStr>(&self, column: usize, bad: &mut BadCells) -> Option<T> {
         let cell = self.text(column)?;
-        let found = cell.parse().ok();
+        let found = in_english(&cell).parse().ok();
         if found.is_none() {
             bad.0[column].push((self.line(), cell));
         }
@@ -551,5 +615,30 @@ mod tests {
         let one =
             "3: clearance: 'two' is not a number. write a number; the unit belongs in the header";
         assert_eq!(faults, [one]);
+    }
+
+    #[test]
+    fn lines_are_counted_whatever_ends_them() {
+        for end in ["\n", "\r\n", "\r"] {
+            let text = ["file,clearance_mm", "a,1", "b,two", ""].join(end);
+            let (_, faults) = read_text(text.as_bytes());
+            assert!(faults[0].starts_with("3: clearance"), "{end:?}: {faults:?}");
+        }
+    }
+
+    #[test]
+    fn german_headings_and_words_are_read() {
+        let text = "Datei;Frequenz [Hz];Spalt in mm;Richtung;Bemerkung\na.csv;12,5;1,2;auf;gut\nb.csv;12;1,2;Ab;\n";
+        assert!(is_run_table(text.as_bytes()));
+        let (windows, _, _) = encoding_rs::WINDOWS_1252.encode(text);
+        let (rows, faults) = read_text(&windows);
+        assert_eq!(faults, [""; 0]);
+        assert_eq!(rows[0].file, "a.csv");
+        assert_eq!(
+            (rows[0].drive_frequency_hz, rows[0].sweep),
+            (Some(12.5), Some(Sweep::Up))
+        );
+        assert!((rows[1].clearance_m.unwrap() - 1.2e-3).abs() < 1e-15);
+        assert_eq!(rows[1].sweep, Some(Sweep::Down));
     }
 }

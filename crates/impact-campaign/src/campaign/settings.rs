@@ -203,7 +203,7 @@ fn attribute_sweep(
     context: &mut ResolveContext<'_>,
 ) -> Option<Sweep> {
     let text = one.attributes.get(name)?;
-    let found = text.trim().parse().ok();
+    let found = super::run_table::in_english(text).parse().ok();
     if found.is_none() {
         let what = format!("its attribute '{name}' is '{text}', not up, down or unknown");
         context.faults.extend([attribute_fault(one, name, what)]);

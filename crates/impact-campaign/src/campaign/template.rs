@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::infer::{Experiment, FolderContents, InferredChannel};
+use super::diagnostic::first_of;
+use super::infer::{self, Experiment, FolderContents, InferredChannel};
 use impact_records::message::counted;
 use impact_records::record::{ContactContent, Role};
 use labfiles::units::{self, Dimension};
@@ -68,15 +69,29 @@ fn records(text: &mut String, found: &FolderContents) -> std::fmt::Result {
     if found.run_table.is_none() {
         text.write_str(RUN_TABLE)?;
     }
-    if !found.timed && !matches!(found.experiment, Experiment::Events(_)) {
-        let (rate, why) = match found.counts_frames {
-            true => (
+    if !found.others.is_empty() {
+        writeln!(
+            text,
+            "# no records but notes or settings: {}",
+            first_of(&found.others)
+        )?;
+    }
+    let listed = matches!(
+        found.experiment,
+        Experiment::Events(ContactContent::Times | ContactContent::Intervals)
+    );
+    if !found.timed && !listed {
+        let sound = found.experiment == Experiment::Events(ContactContent::Sound);
+        let (rate, why) = match (found.counts_frames, sound) {
+            (true, _) => (
                 "240 Hz",
                 "the frames per second: the files number the frames",
             ),
-            false => ("2 kHz", "the files state none"),
+            (_, true) => ("44.1 kHz", "that of the sound: the files state none"),
+            _ => ("2 kHz", "the files state none"),
         };
-        writeln!(text, "sample_rate = \"{rate}\"       # FILL IN: {why}")?;
+        // a rate that nobody has stated must not count
+        writeln!(text, "# sample_rate = \"{rate}\"     # FILL IN: {why}")?;
     }
     let attributes = attributes(found);
     let lacks = |key: &str| !attributes.iter().any(|(k, _)| *k == key);
@@ -117,14 +132,20 @@ fn attributes(found: &FolderContents) -> Vec<(&'static str, String)> {
         ("drive_amplitude", &["amplitude"], ""),
         ("sweep", &["sweep", "direction"], ""),
     ];
+    // its FREQUENCY is that of the frames
+    let motion_capture = found.attributes.contains_key("NO_OF_FRAMES");
+    let driven = found.experiment == Experiment::Driven;
     let find = |stems: &[&str]| {
         found.attributes.keys().find(|name| {
             let lower = name.to_lowercase();
-            let sampling = lower.contains("sampl");
+            let sampling = motion_capture || lower.contains("sampl") || lower.contains("analog");
             !sampling && stems.iter().any(|s| lower.contains(s))
         })
     };
-    KEYS.iter()
+    let asked = KEYS
+        .iter()
+        .filter(|(key, ..)| driven || *key == "clearance");
+    asked
         .filter_map(|(key, stems, usual)| Some((*key, with_unit(find(stems)?, usual))))
         .collect()
 }
@@ -186,22 +207,25 @@ fn table(
     writeln!(text, "[channels.{}]", role.name())?;
     writeln!(text, "channel = {}", quoted(&channel.name))?;
     let known = channel.unit.as_deref().and_then(units::parse_unit);
-    let unit = units::unit_of(channel.unit.as_deref(), &channel.name);
-    match (known, unit.and_then(units::symbol_of)) {
-        (Some(_), _) => writeln!(text, "# unit = as the file states")?,
-        (None, None) if found.experiment == Experiment::Events(ContactContent::Sound) => {}
-        (None, None) if found.experiment != Experiment::Driven && role.dimension().is_some() => {
-            let symbol = role.dimension().map_or("1", Dimension::si_symbol);
-            let symbol = symbol.replace('²', "2");
-            writeln!(
-                text,
-                "unit = \"{symbol}\"               # CHECK: the file states none"
-            )?;
-        }
-        (None, Some(symbol)) => {
+    let stated = units::unit_of(channel.unit.as_deref(), &channel.name);
+    let turns = (stated.is_none() && infer::is_rate(channel)).then_some("rad/s");
+    let unit = stated.or_else(|| turns.and_then(units::parse_unit));
+    let usual = turns.or_else(|| role.dimension().map(Dimension::si_symbol));
+    match (known, stated.and_then(units::symbol_of), usual) {
+        (Some(_), ..) => writeln!(text, "# unit = as the file states")?,
+        (None, Some(symbol), _) => {
             writeln!(text, "unit = \"{symbol}\"                 # from its name")?;
         }
-        (None, None) => writeln!(
+        (None, None, _) if found.experiment == Experiment::Events(ContactContent::Sound) => {}
+        (None, None, Some(usual)) if turns.is_some() || found.experiment != Experiment::Driven => {
+            let usual = usual.replace('²', "2");
+            let stated = channel.unit.as_deref().unwrap_or("none");
+            writeln!(
+                text,
+                "unit = \"{usual}\"               # CHECK: the file states {stated}"
+            )?;
+        }
+        (None, None, _) => writeln!(
             text,
             "# unit = \"V\"               # FILL IN: the file states none"
         )?,
@@ -239,6 +263,10 @@ fn table(
             }
         }
         (None, Role::Contact) => threshold(text, channel, unit)?,
+        (None, role) if role.is_frame() && volts => writeln!(
+            text,
+            "# scale = \"0.05 m/s per V\"   # FILL IN: what one volt corresponds to"
+        )?,
         _ => {}
     }
     if role.dimension().is_some() {
@@ -342,7 +370,7 @@ seed = 1
 [report]
 paper = \"a4\"                 # or \"letter\"
 language = \"en\"              # en or de
-decimal_comma = false
+# decimal_comma = true       # numbers with a decimal comma; as the language has it
 formats = [\"pdf\"]            # any of pdf, html, svg, png, figure-pdf, tex; the data of the figures are always written as CSV
 # points = [\"record_12\"]     # records to draw; chosen by the program if not given
 # logo = \"logo.svg\"          # an image for the first page (svg, png or jpg)

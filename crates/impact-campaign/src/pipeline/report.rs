@@ -165,7 +165,7 @@ pub fn catalog(stated: &StatedOptions) -> Result<Option<Catalog>, PipelineError>
         path: path.display().to_string(),
         reason,
     };
-    let text = std::fs::read_to_string(path).map_err(|error| unusable(error.to_string()))?;
+    let text = labfiles::read_text(path).map_err(|error| unusable(error.to_string()))?;
     let catalog = Catalog::read(&text).map_err(|error| unusable(error.to_string()))?;
     Ok(Some(catalog))
 }
@@ -176,7 +176,7 @@ fn options(stated: &StatedOptions) -> Result<ReportOptions, PipelineError> {
         reason: error.to_string(),
     };
     let template =
-        |path: &PathBuf| std::fs::read_to_string(path).map_err(|error| unreadable(path, error));
+        |path: &PathBuf| labfiles::read_text(path).map_err(|error| unreadable(path, error));
     let logo = |path: &PathBuf| {
         let bytes = std::fs::read(path).map_err(|error| unreadable(path, error))?;
         let extension = path.extension().unwrap_or_default().to_string_lossy();

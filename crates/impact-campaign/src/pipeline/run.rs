@@ -94,10 +94,12 @@ pub(super) fn complete(
     );
     let (report, tables) = (report?, tables?);
     progress("write", 0, 1);
+    store::forget(out)?;
     store::write_resolved(campaign, out)?;
     tables::write(&tables, out)?;
     identify::write(&found, out)?;
     report::write(&report, out)?;
+    store::keep(&observed, &found, out)?;
     checkpoint::remove(out);
     report::remove_live_state(out);
     Ok(Completed {

@@ -10,9 +10,9 @@ use crate::pipeline::json::{read_json, store_error, write_json};
 use crate::pipeline::observe::each_record;
 use crate::pipeline::{Observed, PipelineError, Progress, RefusedRecord, gzip_json};
 use impact_records::motion::{Folded, Observation, brackets};
-use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
+use impact_records::record::calibrate::{ChannelKey, ChannelSetup, TIMES_CONTACT, TIMES_ERROR};
 use impact_records::record::{ContactContent, Flag, Record, Role};
-use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
+use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Value};
 use labfiles::units::{Dimension, Quantity, Unit};
 
 const RESOLVED: &str = "campaign.resolved.json";
@@ -174,8 +174,20 @@ fn table(place: usize, record: &Record) -> RecordTable {
                 ColumnToWrite::numbers(c.role.name(), c.dimension.si_symbol(), c.values.clone())
             })
             .collect(),
-        attributes: vec![("record".to_owned(), record.id.as_str().into())],
+        attributes: table_attributes(record),
     }
+}
+
+fn table_attributes(record: &Record) -> Vec<(String, Value)> {
+    let listed = record.listed;
+    let known = [
+        (TIMES_ERROR, listed.error_s),
+        (TIMES_CONTACT, listed.contact_s),
+    ];
+    let known = known.into_iter().filter(|(_, value)| *value > 0.0);
+    let known = known.map(|(key, value)| (key.to_owned(), value.into()));
+    let named = ("record".to_owned(), record.id.as_str().into());
+    std::iter::once(named).chain(known).collect()
 }
 
 /// Set-ups that read the calibrated channels without conversion.
@@ -245,6 +257,38 @@ fn write_observed(observed: &mut Observed, out: &Path) -> Result<(), PipelineErr
     gzip_json::write(&out.join(WAVEFORMS), &waveforms)?;
     observed.drop_waveforms();
     Ok(gzip_json::write(&path, &observed.observations)?)
+}
+
+/// Remove what was kept of an earlier run for its report: it no longer belongs to what is written.
+///
+/// # Errors
+/// If it cannot be removed.
+pub(super) fn forget(out: &Path) -> Result<(), PipelineError> {
+    remove(&out.join(OBSERVATIONS))?;
+    remove(&out.join(WAVEFORMS))?;
+    remove(&out.join(RESIDUALS))
+}
+
+/// Keep what a report needs of a run beside its results: the observations, which have no waveforms any more, and
+/// the residuals.
+///
+/// # Errors
+/// If it cannot be written.
+pub(super) fn keep(
+    observed: &Observed,
+    found: &IdentificationFile,
+    out: &Path,
+) -> Result<(), PipelineError> {
+    gzip_json::write(&out.join(RESIDUALS), &found.identification.residuals)?;
+    Ok(gzip_json::write(
+        &out.join(OBSERVATIONS),
+        &observed.observations,
+    )?)
+}
+
+/// Whether a folder holds the calibrated records of stage 1.
+pub fn is_staged(out: &Path) -> bool {
+    out.join(INGESTED_CAMPAIGN).exists()
 }
 
 /// Remove a file that no longer holds, if it is there.

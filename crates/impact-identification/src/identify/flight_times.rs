@@ -87,6 +87,7 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     let groups: Vec<ImpactGroup> = indices.iter().map(|i| all[*i].clone()).collect();
     let rows: Vec<(&Row, Fitted)> = indices.iter().map(|i| fits[*i]).collect();
     let (value, error) = weighted(&groups);
+    let error = error.hypot(error_of_contacts(&rows, &groups, observations));
     let ratios: Vec<GroupedRatio> = rows
         .iter()
         .flat_map(|(row, _)| ratios(row, error_s))
@@ -125,6 +126,34 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         result.judge_structure(grouping);
     }
     Some(result)
+}
+
+/// Standard error of R by the contacts' length, where listed times are those at which contacts close: a flight begins
+/// where the contact opens, if the length is that of the touch, and where it closes, if it is that of a pulse that
+/// an instrument makes longer. R is as likely to be anything between.
+fn error_of_contacts(
+    rows: &[(&Row, Fitted)],
+    groups: &[ImpactGroup],
+    observations: &[Observation],
+) -> f64 {
+    let change = |row: &Row, fit: &Fitted| {
+        let impacts = observations[row.record].impacts.iter();
+        let lasting: Vec<f64> = impacts.filter_map(|i| i.contact_duration_s).collect();
+        let contact_s = robust::median(&lasting)?;
+        let shorter = row.times_s.iter().enumerate();
+        let shorter: Vec<f64> = shorter.map(|(k, t)| t - k as f64 * contact_s).collect();
+        let flies = shorter.windows(2).all(|w| w[1] > w[0]);
+        let other = fitted(&shorter).filter(|_| flies)?;
+        Some(fit.restitution - other.restitution)
+    };
+    let weight = |g: &ImpactGroup| g.standard_error.max(1e-9).powi(-2);
+    let all: f64 = groups.iter().map(weight).sum();
+    let changes = rows.iter().zip(groups);
+    let mean = changes
+        .map(|((row, fit), g)| weight(g) * change(row, fit).unwrap_or(0.0))
+        .sum::<f64>()
+        / all;
+    mean.abs() / 3f64.sqrt()
 }
 
 /// Whether R changes along the bounces, by its logarithm as a line over their number in all records.
@@ -378,6 +407,30 @@ mod tests {
     use impact_records::motion::Motion;
 
     /// A record of impacts at given times, without speeds.
+    #[test]
+    fn valid_the_length_of_contacts_is_part_of_the_interval() {
+        // what lists of closings are: impacts with a pulse of 2 ms behind, or flights from opening to closing
+        for (r, count) in [(0.8_f64, 10), (0.65, 7), (0.92, 12)] {
+            for touch_s in [0.0, 2e-3] {
+                let flights = (0..count).map(|k| 0.5 * r.powi(k) + touch_s);
+                let mut times = vec![0.3];
+                times.extend(flights.scan(0.3, |at, flight| {
+                    *at += flight;
+                    Some(*at)
+                }));
+                let mut listed = timed("a", &times);
+                for impact in &mut listed.impacts {
+                    impact.contact_duration_s = Some(2e-3);
+                }
+                let found = pooled(&[listed]).expect("a result");
+                let estimate = found.parameters.restitution.expect("R");
+                let [low, high] = estimate.interval95.expect("an interval");
+                assert!(low < r && r < high, "{r}, {touch_s}: {low} to {high}");
+                assert!(high - low < 0.02, "{low} to {high}");
+            }
+        }
+    }
+
     fn timed(name: &str, times_s: &[f64]) -> Observation {
         let mut o = Observation::of(name, 1.0, Motion::Impactless);
         o.impacts = times_s

@@ -113,6 +113,7 @@ pub fn decay(id: &str, mass: usize, f0_hz: f64) -> Record {
             excitation: Excitation::FreeDecay,
             ..Setting::default()
         },
+        listed: Default::default(),
         flags: Vec::new(),
     }
 }

@@ -10,7 +10,7 @@ use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
 use crate::event::kinematics::{Kinematics, RigKind, Series};
 use crate::event::refine;
 use crate::event::{drift, free_flight, impact_speeds, integrated};
-use crate::record::{Flag, FlagCode, Record, Role};
+use crate::record::{Flag, FlagCode, ListedTimes, Record, Role};
 use crate::signal::local_fit::LocalFit;
 use crate::signal::whole;
 use labfiles::units::Dimension;
@@ -126,6 +126,7 @@ pub struct Detection {
 ///         specimen: None,
 ///         excitation: Excitation::Harmonic,
 ///     },
+///     listed: Default::default(),
 ///     flags: Vec::new(),
 /// };
 /// let found = detect(&record, RigKind::Single, &DetectSettings::default());
@@ -140,7 +141,7 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
     let rate_hz = kinematics.rate_hz;
     let contact = record.channel(Role::Contact);
     if let Some(channel) = contact.filter(|c| c.dimension == Dimension::Time) {
-        return listed(kinematics, &channel.values);
+        return listed(kinematics, &channel.values, record.listed);
     }
     let closed = contact.map_or_else(Vec::new, |channel| {
         closed_intervals(
@@ -225,8 +226,11 @@ fn freely(record: &Record, kinematics: Kinematics, rig: RigKind, closed: &[Close
 }
 
 /// Impacts that the record states as a list of times.
-fn listed(kinematics: Kinematics, times_s: &[f64]) -> Detection {
-    let impacts = times_s.iter().map(|time_s| Impact::timed(*time_s, 0.0));
+fn listed(kinematics: Kinematics, times_s: &[f64], known: ListedTimes) -> Detection {
+    let impacts = times_s.iter().map(|time_s| Impact {
+        contact_duration_s: Some(known.contact_s).filter(|s| *s > 0.0),
+        ..Impact::timed(*time_s, known.error_s)
+    });
     Detection {
         drive: None,
         impacts: impacts.collect(),

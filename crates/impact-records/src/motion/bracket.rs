@@ -96,6 +96,7 @@ impl Bracket {
 ///             specimen: None,
 ///             excitation: Excitation::Harmonic,
 ///         },
+///         listed: Default::default(),
 ///         flags: Vec::new(),
 ///     };
 ///     let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());

@@ -16,6 +16,7 @@ use crate::motion::response::{Response, responses};
 use crate::motion::undetermined::Undetermined;
 use crate::record::{Excitation, Flag, FlagCode, Record, Role, Setting};
 use crate::signal::decay::{self, Decay};
+use crate::signal::robust;
 
 /// Greatest and least value of a motion channel, SI, about its mean.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -215,6 +216,9 @@ pub fn observe(
         classification,
         ..undriven(record)
     };
+    if observation.has_no_impact() && detecting.flight == FlightKind::Harmonic {
+        observation.flags.extend(beyond_stop(record, rig));
+    }
     if let Some(tone) = observation.tone().filter(|_| observation.has_no_impact()) {
         // within less than a period a tone is hardly told from a line
         if record.duration_s() * tone.frequency_hz >= 1.0 {
@@ -224,6 +228,36 @@ pub fn observe(
         observation.folded = Some(Arc::new(fold((record, rig), &detection, &drive, n)));
     }
     observation
+}
+
+/// By how much a displacement goes farther than the clearance lets it before that is a contradiction: gains,
+/// drift and noise do a little.
+const BEYOND: f64 = 1.1;
+
+/// A motion that shows no impact although its displacement, about its middle, goes farther than the stop or the
+/// other mass lets it.
+fn beyond_stop(record: &Record, rig: RigKind) -> Option<Flag> {
+    let clearance_m = record.setting.clearance_m.filter(|c| *c > 0.0)?;
+    let x = record.channel(Role::DisplacementX)?;
+    let together: Vec<f64> = match rig {
+        RigKind::Single => x.values.clone(),
+        RigKind::Double => {
+            let y = record.values(Role::DisplacementY)?;
+            x.values.iter().zip(y).map(|(x, y)| 0.5 * (x + y)).collect()
+        }
+    };
+    let (low, high) = robust::range(together)?;
+    let reached_m = 0.5 * (high - low);
+    (reached_m > BEYOND * clearance_m).then(|| {
+        let found = format!(
+            "the displacement goes {:.4} mm toward the {} without an impact, and the clearance is stated as {:.4} mm",
+            1e3 * reached_m,
+            if rig == RigKind::Single { "stop" } else { "other mass" },
+            1e3 * clearance_m
+        );
+        let remedy = "correct the stated clearance (of two masses half the gap), or unit and scale of the displacement";
+        Flag::new(FlagCode::BeyondStop, Some(&x.name), found, remedy).excluding(false)
+    })
 }
 
 /// Observe free decays: no drive, no impacts, a fit after each blow or release.
@@ -415,6 +449,36 @@ mod shared {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_displacement_beyond_the_stop_is_named() {
+        let wave = |amplitude: f64| -> Vec<f64> {
+            (0..2000)
+                .map(|i| 0.5e-3 + amplitude * (f64::from(i) * 0.04).sin())
+                .collect()
+        };
+        let flag = |amplitude: f64, rig: RigKind| {
+            let (x, drive) = (wave(amplitude), wave(1.0));
+            let channels: &[(Role, &[f64])] = &[
+                (Role::Drive, &drive),
+                (Role::DisplacementX, &x),
+                (Role::DisplacementY, &x),
+            ];
+            let mut record = Record::of(2000.0, channels);
+            record.setting.clearance_m = Some(1e-3);
+            beyond_stop(&record, rig)
+        };
+        for rig in [RigKind::Single, RigKind::Double] {
+            assert_eq!(flag(1.05e-3, rig), None);
+            let found = flag(1.5e-3, rig).unwrap();
+            assert!(
+                found.message.contains("1.5000 mm toward the"),
+                "{}",
+                found.message
+            );
+            assert!(!found.excludes);
+        }
+    }
 
     #[test]
     fn drive_amplitudes_are_relative_to_the_median_of_their_specimen() {

@@ -317,12 +317,16 @@ fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -
             "channel '{}' of the role {} comes out as {}, not as {expected}",
             info.name,
             role.name(),
-            turning.map_or_else(
-                || format!("a {}", found.name()),
-                |(what, _)| what.to_owned()
-            )
+            turning.map_or_else(|| found.with_article(), |(what, _)| what.to_owned())
         );
-        let correct = || format!("correct unit and scale in [channels.{}]", role.name());
+        let correct = || match (role.dimension(), found) {
+            (Some(wanted), Dimension::Voltage) => format!(
+                "correct unit and scale in [channels.{}], what one volt corresponds to: scale = \"0.05 {} per V\"",
+                role.name(),
+                wanted.si_symbol().replace('²', "2")
+            ),
+            _ => format!("correct unit and scale in [channels.{}]", role.name()),
+        };
         let arm = |(_, scale): (&str, &str)| {
             format!(
                 "state the arm at which the mass touches, or 1 m, in [channels.{}]: scale = \"{scale}\"",
@@ -336,14 +340,14 @@ fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -
     match role.dimension() {
         None if list && found != Dimension::Time => return wrong("a time, as of impacts"),
         None if list => return Ok(()),
-        Some(expected) if found != expected => return wrong(&format!("a {}", expected.name())),
+        Some(expected) if found != expected => return wrong(&expected.with_article()),
         None if !serves(role, found) => return wrong("a quantity that serves there"),
         _ => {}
     }
     match setup.threshold {
         Some(level) if level.dimension != found => wrong(&format!(
-            "a {} as its threshold does",
-            level.dimension.name()
+            "{} as its threshold does",
+            level.dimension.with_article()
         )),
         _ => Ok(()),
     }
@@ -403,6 +407,26 @@ mod tests {
         );
         assert!(
             flag.remedy.ends_with("scale = \"0.15 m/s per rad/s\""),
+            "{}",
+            flag.remedy
+        );
+        let volts = DatasetInfo {
+            channels: vec![ChannelInfo {
+                unit: Some("V".into()),
+                ..dataset.channels[0].clone()
+            }],
+            ..DatasetInfo::default()
+        };
+        let wanted = ChannelSetup::plain(Role::AccelerationX, ChannelKey::Name("gyro".into()));
+        let flag = bind(&wanted, &volts).unwrap_err();
+        assert!(
+            flag.message
+                .ends_with("as a voltage, not as an acceleration"),
+            "{}",
+            flag.message
+        );
+        assert!(
+            flag.remedy.ends_with("scale = \"0.05 m/s2 per V\""),
             "{}",
             flag.remedy
         );

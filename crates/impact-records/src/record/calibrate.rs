@@ -4,7 +4,7 @@
 use super::bind::flag;
 pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
 use super::times::Clocks;
-use super::{Channel, ContactContent, Flag, FlagCode, Record, Role, Setting};
+use super::{Channel, ContactContent, Flag, FlagCode, ListedTimes, Record, Role, Setting};
 use super::{changes, condition, consistency, events, late};
 use crate::signal::whole;
 use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
@@ -63,6 +63,7 @@ fn empty(id: &str, setting: &Setting) -> Record {
         sample_rate_hz: 0.0,
         channels: Vec::new(),
         setting: setting.clone(),
+        listed: Default::default(),
         flags: Vec::new(),
     }
 }
@@ -137,11 +138,13 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
     if !content.is_list() {
         clocks.settle(&mut record, setup, dataset, (&kept, axes));
     }
-    if content == ContactContent::Times {
-        keep_closings(source, setup, dataset, (&mut record, &kept));
-    }
     if content != ContactContent::Signal {
-        events::settle(&mut record, content);
+        let closed_s = match content {
+            ContactContent::Times => keep_closings(source, setup, dataset, (&mut record, &kept)),
+            _ => 0.0,
+        };
+        events::settle(&mut record, content, closed_s);
+        stated(&mut record.listed, dataset);
         return record;
     }
     condition::inspect(&mut record, &ranges, setup.driven);
@@ -154,38 +157,57 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
     record
 }
 
-/// Keep of a list of changes the times at which the contact closes.
+/// Attribute of a dataset that lists times: their standard error, s.
+pub const TIMES_ERROR: &str = "times_error_s";
+/// Attribute of a dataset that lists times: how long the contact is closed, s.
+pub const TIMES_CONTACT: &str = "times_contact_s";
+
+/// Take what a dataset of calibrated times states of them.
+fn stated(listed: &mut ListedTimes, dataset: &DatasetInfo) {
+    let number = |key: &str| dataset.attributes.get(key)?.parse().ok();
+    if let Some(error_s) = number(TIMES_ERROR) {
+        *listed = ListedTimes {
+            error_s,
+            contact_s: number(TIMES_CONTACT).unwrap_or(0.0),
+        };
+    }
+}
+
+/// Keep of a list of changes the times at which the contact closes; how long it is closed, s, 0 where no column
+/// tells it.
 fn keep_closings(
     source: &dyn Source,
     setup: &RecordSetup<'_>,
     dataset: &DatasetInfo,
     (record, kept): (&mut Record, &[usize]),
-) {
-    let Some((channel, &index)) = record
-        .channels
-        .iter_mut()
-        .zip(kept)
-        .find(|(c, _)| c.role == Role::Contact)
-    else {
-        return;
+) -> f64 {
+    let contact = record.channels.iter_mut().zip(kept);
+    let mut contact = contact.filter(|(c, _)| c.role == Role::Contact);
+    let Some((channel, &index)) = contact.next() else {
+        return 0.0;
     };
-    let states = changes::candidates(dataset, index).find_map(|state| {
-        let read = source
-            .read(setup.dataset, &[state])
-            .ok()?
-            .pop()?
-            .into_real()?;
-        Some((state, changes::levels(&channel.values, &read)?, read))
-    });
-    let Some((state, levels, states)) = states else {
-        return;
+    let states = |state: usize| {
+        let read = source.read(setup.dataset, &[state]).ok()?.pop()?;
+        let read = read.into_real()?;
+        let levels = changes::line_levels(&channel.values, &read)?;
+        Some((
+            state,
+            levels,
+            changes::closings(&channel.values, &read, levels),
+        ))
     };
-    let closings = channel
-        .values
-        .iter()
-        .zip(states)
-        .filter(|(_, s)| *s == levels.closed);
-    channel.values = closings.map(|(time, _)| *time).collect();
+    let mut lines: Vec<_> = changes::candidates(dataset, index)
+        .filter_map(states)
+        .collect();
+    if let [(first, ..), (second, ..), ..] = lines[..] {
+        let names = [first, second].map(|i| dataset.channels[i].name.as_str());
+        record.flags.push(two_lines(names));
+        return 0.0;
+    }
+    let Some((state, levels, closings)) = lines.pop() else {
+        return 0.0;
+    };
+    channel.values = closings.times_s;
     let name = &dataset.channels[state].name;
     let found = format!(
         "the rows are changes of '{name}': the {} at which it goes to {} are the impacts",
@@ -196,6 +218,14 @@ fn keep_closings(
     record
         .flags
         .push(Flag::new(FlagCode::ContactChanges, Some(name), found, remedy).excluding(false));
+    closings.closed_s
+}
+
+fn two_lines([first, second]: [&str; 2]) -> Flag {
+    let found =
+        format!("the rows are changes of '{first}' and of '{second}': either may be the contact");
+    let remedy = "export the line of the contact alone beside its times";
+    Flag::new(FlagCode::ContactUnclear, Some(second), found, remedy)
 }
 
 /// What the channel of the contact contains.
@@ -351,15 +381,16 @@ mod tests {
         text
     }
 
-    #[test]
-    fn of_a_list_of_changes_those_that_close_the_contact_are_impacts() {
+    fn of_list(text: &str, channel: &str, content: ContactContent) -> Record {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("digital.csv");
-        std::fs::write(&path, list_of_changes()).unwrap();
+        std::fs::write(&path, text).unwrap();
         let source = labfiles::open(&path).unwrap();
         let contact = ChannelSetup {
-            content: ContactContent::Times,
-            ..ChannelSetup::plain(Role::Contact, ChannelKey::Name("Time".into()))
+            content,
+            ignore_file_unit: true,
+            unit: labfiles::units::parse_unit(if channel == "Time" { "s" } else { "V" }),
+            ..ChannelSetup::plain(Role::Contact, ChannelKey::Name(channel.into()))
         };
         let setup = RecordSetup {
             id: "digital",
@@ -372,7 +403,45 @@ mod tests {
             driven: false,
             skip_s: 0.0,
         };
-        let record = calibrate(source.as_ref(), &setup);
+        calibrate(source.as_ref(), &setup)
+    }
+
+    #[test]
+    fn a_contact_whose_rows_are_its_changes_is_told_to_be_one_of_times() {
+        let record = of_list(&list_of_changes(), "Channel 0", ContactContent::Signal);
+        let flags: Vec<&Flag> = record.flags.iter().filter(|f| f.excludes).collect();
+        assert_eq!(flags.len(), 1, "{flags:?}");
+        assert_eq!(flags[0].code, FlagCode::TimeNotUniform);
+        assert!(
+            flags[0]
+                .remedy
+                .contains("channel = \"Time\" and content = \"times\""),
+            "{flags:?}"
+        );
+    }
+
+    #[test]
+    fn rows_of_two_lines_are_left_open() {
+        let mut text = String::from("Time [s],A,B\n");
+        for k in 0..12 {
+            let at = 0.5 * f64::from(k);
+            let row = |after: f64, a: u8, b: u8| format!("{:.6},{a},{b}\n", at + after);
+            text += &[
+                row(0.0, 1, 0),
+                row(0.001, 0, 0),
+                row(0.2, 0, 1),
+                row(0.201, 0, 0),
+            ]
+            .concat();
+        }
+        let record = of_list(&text, "Time", ContactContent::Times);
+        assert_eq!(record.flags[0].code, FlagCode::ContactUnclear);
+        assert!(record.excluded());
+    }
+
+    #[test]
+    fn of_a_list_of_changes_those_that_close_the_contact_are_impacts() {
+        let record = of_list(&list_of_changes(), "Time", ContactContent::Times);
         let times = record.values(Role::Contact).unwrap();
         assert_eq!(times.len(), 12);
         let flights: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
@@ -384,6 +453,8 @@ mod tests {
             record.flags[0].message,
             "the rows are changes of 'Channel 0': the 12 at which it goes to 1 are the impacts"
         );
+        // somewhere in a contact of 2 ms
+        assert!((record.listed.error_s - 2e-3 / 12f64.sqrt()).abs() < 1e-8);
         assert!(!record.excluded());
     }
 

@@ -1,13 +1,25 @@
 //! A list of changes, as logic analysers write it: a row wherever a line goes from one of its two levels to the
-//! other.
+//! other; with the column of the line's state, or of the times alone.
 
 use labfiles::DatasetInfo;
+
+use crate::signal::robust;
 
 /// Fewest rows of a list of changes.
 const FEWEST_ROWS: usize = 6;
 
 /// How much longer one level must last than the other to be told by it which is which.
 const LONGER: f64 = 2.0;
+
+/// How much longer each flight must be than each contact where no state tells them apart.
+const APART: f64 = 1.5;
+/// Longest time that a contact takes, s.
+const LONGEST_CONTACT_S: f64 = 0.1;
+/// Fewest contacts by which a list of changes is recognised without a state.
+const FEWEST_CONTACTS: usize = 3;
+/// Share of the intervals that may be longer than the one before where a mass bounces: once a throw, or where an
+/// impact was missed.
+const MOST_RISE: f64 = 0.4;
 
 /// The two levels of a column that changes with each row.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,21 +30,57 @@ pub struct Levels {
     pub closed: f64,
 }
 
+/// The contacts of a list of changes.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Closings {
+    /// When each closes, s.
+    pub(super) times_s: Vec<f64>,
+    /// How long they are usually closed, s.
+    pub(super) closed_s: f64,
+}
+
+/// What a list of times holds.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Listing {
+    /// The impacts.
+    Impacts,
+    /// The changes of a contact: closed, open, closed ….
+    Changes(Closings),
+    /// Neither: of so many intervals so many are longer than the one before.
+    Unclear(usize, usize),
+}
+
+/// The rows in which a state differs from that of the row before.
+fn changed(times: &[f64], states: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let rows = times.iter().copied().zip(states.iter().copied());
+    let mut before = None;
+    rows.filter(|(_, state)| before.replace(*state) != Some(*state))
+        .unzip()
+}
+
 /// The levels of a column of states beside the times of its changes, if each row differs from the one before and
 /// there are two of them. A contact is closed for a shorter time than a flight lasts.
 pub fn levels(times: &[f64], states: &[f64]) -> Option<Levels> {
-    let first = *states.first()?;
-    let other = *states.iter().find(|s| **s != first)?;
-    let two = states.iter().all(|s| *s == first || *s == other);
     let changes = states.windows(2).all(|w| w[0] != w[1]);
-    if !two || !changes || states.len() < FEWEST_ROWS || times.len() != states.len() {
+    line_levels(times, states).filter(|_| changes)
+}
+
+/// As [`levels`], of a line among several, any of which changes with a row.
+pub(super) fn line_levels(times: &[f64], states: &[f64]) -> Option<Levels> {
+    if times.len() != states.len() {
+        return None;
+    }
+    let (times, states) = changed(times, states);
+    let first = *states.first()?;
+    let other = *states.get(1)?;
+    let two = states.iter().all(|s| *s == first || *s == other);
+    if !two || states.len() < FEWEST_ROWS {
         return None;
     }
     let usual = |level: f64| {
-        let lasting = times.windows(2).zip(states).filter(|(_, s)| **s == level);
-        let mut lasting: Vec<f64> = lasting.map(|(t, _)| t[1] - t[0]).collect();
-        lasting.sort_by(f64::total_cmp);
-        lasting.get(lasting.len() / 2).copied()
+        let lasting = times.windows(2).zip(&states).filter(|(_, s)| **s == level);
+        let lasting: Vec<f64> = lasting.map(|(t, _)| t[1] - t[0]).collect();
+        robust::median(&lasting)
     };
     let (high, low) = (first.max(other), first.min(other));
     let closed = match (usual(high)?, usual(low)?) {
@@ -44,6 +92,79 @@ pub fn levels(times: &[f64], states: &[f64]) -> Option<Levels> {
     Some(Levels {
         open: high + low - closed,
         closed,
+    })
+}
+
+/// The contacts of a line whose levels are known.
+pub(super) fn closings(times: &[f64], states: &[f64], levels: Levels) -> Closings {
+    let (times, states) = changed(times, states);
+    let closing = |(_, s): &(&f64, &f64)| **s == levels.closed;
+    let lasting = times
+        .windows(2)
+        .zip(&states)
+        .filter(|(_, s)| **s == levels.closed);
+    let lasting: Vec<f64> = lasting.map(|(t, _)| t[1] - t[0]).collect();
+    Closings {
+        times_s: times
+            .iter()
+            .zip(&states)
+            .filter(closing)
+            .map(|(t, _)| *t)
+            .collect(),
+        closed_s: robust::median(&lasting).unwrap_or(0.0),
+    }
+}
+
+/// What rising times are, s, by themselves: times that come in groups, each short beside the flights between them,
+/// are the changes of a contact, or its bounces, and the first of each group is the impact.
+pub(super) fn listing(times: &[f64]) -> Listing {
+    let found = match groups(times) {
+        Some(found) => Listing::Changes(found),
+        None => Listing::Impacts,
+    };
+    let impacts = match &found {
+        Listing::Changes(closings) => &closings.times_s,
+        _ => times,
+    };
+    let gaps: Vec<f64> = impacts.windows(2).map(|w| w[1] - w[0]).collect();
+    let rise = gaps.windows(2).filter(|w| w[1] > 1.05 * w[0]).count();
+    let long = match &found {
+        Listing::Changes(closings) => closings.closed_s > LONGEST_CONTACT_S,
+        _ => false,
+    };
+    match long || (rise > 1 && rise as f64 > MOST_RISE * (gaps.len() - 1) as f64) {
+        true => Listing::Unclear(gaps.len(), rise),
+        false => found,
+    }
+}
+
+/// The groups of times: the intervals are of two kinds, and none of the long ones follows another but at the ends.
+fn groups(times: &[f64]) -> Option<Closings> {
+    let gaps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    let mut sorted = gaps.clone();
+    sorted.sort_by(f64::total_cmp);
+    let steps = sorted.windows(2).filter(|w| w[1] > APART * w[0]);
+    let limits = steps.map(|w| (w[1] / w[0], (w[0] * w[1]).sqrt()));
+    let grouped = limits.filter_map(|(ratio, limit)| Some((ratio, grouped(times, limit)?)));
+    let best = grouped.max_by(|a, b| a.0.total_cmp(&b.0));
+    best.map(|(_, closings)| closings)
+}
+
+/// The groups of times that are no longer apart than a limit, if all have several but perhaps the first, where the
+/// list begins with the state at its start, and the last.
+fn grouped(times: &[f64], limit: f64) -> Option<Closings> {
+    let mut all: Vec<&[f64]> = times.chunk_by(|a, b| b - a <= limit).collect();
+    if all.first()?.len() == 1 {
+        all.remove(0);
+    }
+    let inner = &all[..all.len().saturating_sub(1)];
+    if all.len() < FEWEST_CONTACTS || inner.iter().any(|g| g.len() < 2) {
+        return None;
+    }
+    let lasting: Vec<f64> = inner.iter().map(|g| g[g.len() - 1] - g[0]).collect();
+    Some(Closings {
+        times_s: all.iter().map(|g| g[0]).collect(),
+        closed_s: robust::median(&lasting)?,
     })
 }
 
@@ -70,7 +191,75 @@ mod tests {
         assert_eq!(levels(&times, &inverted).unwrap().closed, 0.0);
         let gates = [0.0, 0.5, 0.9, 1.4, 1.8, 2.3, 2.7];
         assert_eq!(levels(&gates, &states), None);
-        assert_eq!(levels(&times, &[0.0, 1.0, 1.0, 0.0, 1.0, 0.0, 1.0]), None);
+        // rows in which another line changes
+        let more = [0.0, 0.5, 0.502, 0.7, 1.0, 1.002, 1.4, 1.402];
+        let with = [0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0];
+        assert_eq!(levels(&more, &with), None);
+        assert_eq!(line_levels(&more, &with).unwrap().closed, 1.0);
+        assert_eq!(
+            closings(
+                &more,
+                &with,
+                Levels {
+                    open: 0.0,
+                    closed: 1.0
+                }
+            )
+            .times_s,
+            [0.5, 1.0, 1.4]
+        );
         assert_eq!(levels(&times, &[0.0, 1.0, 2.0, 0.0, 1.0, 0.0, 1.0]), None);
+    }
+    /// Times of `count` bounces, each flight `r` times the one before.
+    fn bounces(first_s: f64, r: f64, count: i32) -> Vec<f64> {
+        let flights = (0..count - 1).scan(first_s, |at, k| {
+            *at += 0.5 * r.powi(k);
+            Some(*at)
+        });
+        std::iter::once(first_s).chain(flights).collect()
+    }
+
+    #[test]
+    fn prop_changes_without_a_state_are_told_from_impacts() {
+        for r in [0.3, 0.5, 0.65, 0.8, 0.95] {
+            let impacts = bounces(0.5, r, 5);
+            assert_eq!(listing(&impacts), Listing::Impacts, "{r}");
+            let changes: Vec<f64> = impacts.iter().flat_map(|t| [*t, t + 1.5e-3]).collect();
+            let found = |times: &[f64]| match listing(times) {
+                Listing::Changes(found) => found,
+                other => panic!("{r}: {other:?}"),
+            };
+            assert_eq!(found(&changes).times_s, impacts);
+            assert!((found(&changes).closed_s - 1.5e-3).abs() < 1e-9);
+            // the state at the start, a cut at the end, a contact that bounces
+            assert_eq!(found(&[&[0.0], &changes[..]].concat()).times_s, impacts);
+            assert_eq!(found(&changes[..changes.len() - 1]).times_s, impacts);
+            let bouncing = impacts
+                .iter()
+                .flat_map(|t| [*t, t + 2e-4, t + 3e-4, t + 2e-3]);
+            assert_eq!(found(&bouncing.collect::<Vec<_>>()).times_s, impacts);
+        }
+    }
+
+    #[test]
+    fn lists_that_are_neither_impacts_nor_changes_are_unclear() {
+        // two throws in one list are impacts
+        let throws = [bounces(0.5, 0.8, 5), bounces(9.0, 0.8, 5)].concat();
+        assert_eq!(listing(&throws), Listing::Impacts);
+        // passages of a gate, far longer than a contact
+        let gate: Vec<f64> = bounces(0.5, 0.8, 6)
+            .iter()
+            .flat_map(|t| [*t, t + 0.12])
+            .collect();
+        assert!(matches!(listing(&gate), Listing::Unclear(..)));
+        // where flights become as short as the contacts, the list ends
+        let late: Vec<f64> = bounces(0.5, 0.5, 10)
+            .iter()
+            .flat_map(|t| [*t, t + 2e-3])
+            .collect();
+        match listing(&late) {
+            Listing::Changes(found) => assert_eq!(found.times_s, bounces(0.5, 0.5, 8)),
+            other => panic!("{other:?}"),
+        }
     }
 }

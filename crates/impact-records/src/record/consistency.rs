@@ -323,6 +323,7 @@ mod tests {
             sample_rate_hz: 2000.0,
             channels,
             setting: Setting::default(),
+            listed: Default::default(),
             flags: Vec::new(),
         }
     }

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Channel, Flag, FlagCode, Record, Role};
+use super::changes::{Closings, Listing, listing};
+use super::{Channel, Flag, FlagCode, ListedTimes, Record, Role};
 use crate::signal::onsets;
 use labfiles::units::Dimension;
 
@@ -32,35 +33,79 @@ impl ContactContent {
 const FEWEST: usize = 3;
 
 /// Turn a contact that is stated as events into the times of its impacts, s. The record then has the
-/// mean rate of its impacts as its rate.
-pub(super) fn settle(record: &mut Record, content: ContactContent) {
+/// mean rate of its impacts as its rate. `closed_s` is how long a contact lasts, if the rows have told it.
+pub(super) fn settle(record: &mut Record, content: ContactContent, closed_s: f64) {
     let rate_hz = record.sample_rate_hz;
     let Some(channel) = record.channels.iter_mut().find(|c| c.role == Role::Contact) else {
         return;
     };
-    let times = match content {
+    let found = match content {
         ContactContent::Signal => return,
-        ContactContent::Times => times(&channel.values),
+        ContactContent::Times => times(&channel.values).map_err(|row| not_rising(channel, row)),
         ContactContent::Intervals => Ok(added_up(&channel.values)),
         ContactContent::Sound => {
             let found = onsets::find(&channel.values, rate_hz);
             Ok(found.iter().map(|i| i / rate_hz).collect())
         }
     };
-    let flag = match times {
-        Ok(times) if times.len() >= FEWEST => {
-            let span_s = times[times.len() - 1] - times[0];
-            record.sample_rate_hz = (times.len() - 1) as f64 / span_s.max(f64::MIN_POSITIVE);
-            channel.values = times;
-            channel.dimension = Dimension::Time;
-            channel.threshold = None;
-            record.channels.retain(|c| c.role == Role::Contact);
-            return;
-        }
-        Ok(times) => too_few(channel, times.len(), content),
-        Err(row) => not_rising(channel, row),
+    let step_s = match content {
+        ContactContent::Sound => rate_hz.recip(),
+        _ => printed_step_s(&channel.values),
     };
-    record.flags.push(flag);
+    let found = found.and_then(|times| match content {
+        ContactContent::Sound => Ok((times, 0.0, None)),
+        _ => impacts(times, channel),
+    });
+    let (times_s, lasting_s, note) = match found {
+        Ok((times, ..)) if times.len() < FEWEST => {
+            let flag = too_few(channel, times.len(), content);
+            return record.flags.push(flag);
+        }
+        Ok(found) => found,
+        Err(flag) => return record.flags.push(flag),
+    };
+    let span_s = times_s[times_s.len() - 1] - times_s[0];
+    record.sample_rate_hz = (times_s.len() - 1) as f64 / span_s.max(f64::MIN_POSITIVE);
+    // where in a step, and where in the contact, the impact was is not known
+    let contact_s = closed_s.max(lasting_s);
+    record.listed = ListedTimes {
+        error_s: step_s.hypot(contact_s) / 12f64.sqrt(),
+        contact_s,
+    };
+    channel.values = times_s;
+    channel.dimension = Dimension::Time;
+    channel.threshold = None;
+    record.flags.extend(note);
+    record.channels.retain(|c| c.role == Role::Contact);
+}
+
+/// The impacts among listed times, how long each contact lasts, where the list tells it, and a note on that.
+fn impacts(times: Vec<f64>, channel: &Channel) -> Result<(Vec<f64>, f64, Option<Flag>), Flag> {
+    match listing(&times) {
+        Listing::Impacts => Ok((times, 0.0, None)),
+        Listing::Changes(Closings { times_s, closed_s }) => {
+            let note = alternating(channel, times_s.len(), closed_s);
+            Ok((times_s, closed_s, Some(note)))
+        }
+        Listing::Unclear(intervals, longer) => Err(unclear(channel, intervals, longer)),
+    }
+}
+
+/// Most digits after the point that times in s are printed with.
+const MOST_DIGITS: i32 = 12;
+
+/// The step of the last digit with which times are printed, s; 0 where they are not rounded.
+fn printed_step_s(times: &[f64]) -> f64 {
+    let finite = || times.iter().filter(|t| t.is_finite());
+    let whole = |digits: &i32| {
+        finite().all(|t| {
+            let steps = t * 10f64.powi(*digits);
+            // beyond, a number of 53 bits is near a whole one by itself
+            steps.abs() < 1e12 && (steps - steps.round()).abs() < 1e-3
+        })
+    };
+    let digits = (0..=MOST_DIGITS).find(whole);
+    digits.map_or(0.0, |digits| 10f64.powi(-digits))
 }
 
 /// The stated times without empty rows at their end; the first row that does not rise as the error.
@@ -96,6 +141,32 @@ fn too_few(channel: &Channel, found: usize, content: ContactContent) -> Flag {
     )
 }
 
+fn alternating(channel: &Channel, impacts: usize, closed_s: f64) -> Flag {
+    Flag::new(
+        FlagCode::ContactChanges,
+        Some(&channel.name),
+        format!(
+            "the rows come in groups, {:.3} ms long: the contact closes and opens in each, and the {impacts} first \
+             rows of the groups are the impacts",
+            1e3 * closed_s
+        ),
+        "nothing, if the short intervals are those in which the contact is closed; else list the impacts alone",
+    )
+    .excluding(false)
+}
+
+fn unclear(channel: &Channel, intervals: usize, longer: usize) -> Flag {
+    Flag::new(
+        FlagCode::ContactUnclear,
+        Some(&channel.name),
+        format!(
+            "{longer} of {intervals} intervals are longer than the one before: the rows are not the impacts of a mass \
+             that bounces, nor closed, open, closed … of a contact in turn"
+        ),
+        "list the times of the impacts alone, one a row, or the state of the contact in a column beside its changes",
+    )
+}
+
 fn not_rising(channel: &Channel, row: usize) -> Flag {
     Flag::new(
         FlagCode::TimeBackward,
@@ -118,7 +189,7 @@ mod tests {
     #[test]
     fn intervals_add_up_to_times_until_one_is_zero() {
         let mut list = record(&[0.5, 0.4, 0.32, 0.0]);
-        settle(&mut list, ContactContent::Intervals);
+        settle(&mut list, ContactContent::Intervals, 0.0);
         let times = list.values(Role::Contact).unwrap();
         assert_eq!(times.len(), 4);
         assert!((times[3] - 1.22).abs() < 1e-12);
@@ -129,14 +200,37 @@ mod tests {
     #[test]
     fn lists_that_are_none_are_refused_with_the_row() {
         let mut back = record(&[1.0, 2.0, 1.5, 3.0]);
-        settle(&mut back, ContactContent::Times);
+        settle(&mut back, ContactContent::Times, 0.0);
         assert!(
             back.flags[0].message.contains("impact 3"),
             "{:?}",
             back.flags
         );
         let mut short = record(&[1.0, 2.0, f64::NAN]);
-        settle(&mut short, ContactContent::Times);
+        settle(&mut short, ContactContent::Times, 0.0);
         assert_eq!(short.flags[0].code, FlagCode::NoImpact);
+    }
+
+    #[test]
+    fn the_error_of_times_is_that_of_their_last_digit_and_of_the_contact() {
+        for (times, step_s) in [
+            (vec![0.519_275, 1.030_116, 1.438_788], 1e-6),
+            (vec![0.5, 1.03, 1.4], 1e-2),
+            (vec![1.0, 5.0, 8.0], 1.0),
+            (vec![0.5_f64.sqrt(), 1.1_f64.sqrt(), 1.4_f64.sqrt()], 0.0),
+        ] {
+            let mut list = record(&times);
+            settle(&mut list, ContactContent::Times, 0.0);
+            assert!(
+                (list.listed.error_s - step_s / 12f64.sqrt()).abs() < 1e-15,
+                "{times:?}"
+            );
+        }
+        let mut changes = record(&[0.0, 2e-3, 0.5, 0.502, 0.9, 0.902]);
+        settle(&mut changes, ContactContent::Times, 0.0);
+        assert_eq!(changes.values(Role::Contact).unwrap(), [0.0, 0.5, 0.9]);
+        assert!((changes.listed.error_s - 2.236e-3 / 12f64.sqrt()).abs() < 1e-6);
+        assert_eq!(changes.flags[0].code, FlagCode::ContactChanges);
+        assert!(!changes.excluded());
     }
 }

@@ -71,6 +71,8 @@ flag_codes! {
     Clipped = "clipped", "clipped", "übersteuert",
     /// The rows are changes of the contact, of which those that close it count.
     ContactChanges = "contact_changes", "changes of the contact", "Wechsel des Kontakts",
+    /// The rows are neither impacts nor changes of the contact.
+    ContactUnclear = "contact_unclear", "contact unclear", "Kontakt unklar",
     /// A camera's picture stood still, then jumped.
     FrozenFrames = "frozen_frames", "frozen frames", "stehende Bilder",
     /// Samples are missing.
@@ -83,6 +85,8 @@ flag_codes! {
     TimeBackward = "time_backward", "time backward", "Zeit läuft zurück",
     /// The time axis is not uniform.
     TimeNotUniform = "time_not_uniform", "time not uniform", "Zeit nicht gleichmäßig",
+    /// The time is printed too coarsely to tell the rate.
+    TimeCoarse = "time_coarse", "time printed coarsely", "Zeit grob gerundet",
     /// The time axis states another unit than campaign.toml does.
     TimeUnitWrong = "time_unit_wrong", "wrong unit of time", "falsche Einheit der Zeit",
     /// The unit of the time axis is not known.
@@ -111,6 +115,8 @@ flag_codes! {
     DriveNotHarmonic = "drive_not_harmonic", "drive not harmonic", "Erregung nicht harmonisch",
     /// Measured and stated drive frequency differ.
     DriveFrequencyContradicts = "drive_frequency_contradicts", "drive frequency contradicts", "Erregerfrequenz widerspricht",
+    /// A displacement goes beyond the stop without an impact.
+    BeyondStop = "beyond_stop", "beyond the stop", "jenseits des Anschlags",
     /// Jumps of the approach velocity go up.
     JumpsPointTheWrongWay = "jumps_point_the_wrong_way", "jumps point the wrong way", "Sprünge in falscher Richtung",
     /// A channel is positive away from the stop or the other mass; the record was turned around.

@@ -227,6 +227,16 @@ impl Default for Setting {
     }
 }
 
+/// How well a contact that lists the times of impacts states them.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ListedTimes {
+    /// Standard error of each, s: that of the last digit, and of where in the contact the impact is.
+    pub error_s: f64,
+    /// How long the contact is usually closed, s; 0 where that is not known. It is part of the intervals from one
+    /// closing to the next.
+    pub contact_s: f64,
+}
+
 /// A record: channels of one acquisition on one uniform time axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
@@ -238,6 +248,8 @@ pub struct Record {
     pub channels: Vec<Channel>,
     /// The setting at which it was taken.
     pub setting: Setting,
+    /// What is known of the times that a contact lists; nothing where it has samples.
+    pub listed: ListedTimes,
     /// Problems found while it was read.
     pub flags: Vec<Flag>,
 }
@@ -287,6 +299,7 @@ impl Record {
             sample_rate_hz,
             channels: channels.iter().map(channel).collect(),
             setting: Setting::default(),
+            listed: Default::default(),
             flags: Vec::new(),
         }
     }

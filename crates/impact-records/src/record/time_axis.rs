@@ -89,7 +89,17 @@ pub fn inspect(times: &[f64], flags: &mut Vec<Flag>) -> Option<f64> {
         // steps that scatter: rounded stamps of a uniform axis, or no uniform axis
         let printed = steps.iter().copied().find(|s| *s > 0.0).filter(|_| shared);
         let rounding = spread.max(mean).max(printed.unwrap_or(0.0));
-        let line = nearest_step(times);
+        let line = match shared {
+            true => shared_step(times),
+            false => Ok(nearest_step(times)),
+        };
+        let line = match line {
+            Ok(line) => line,
+            Err(stamps) => {
+                flags.push(too_coarse(times.len(), stamps));
+                return None;
+            }
+        };
         if strays(times, line) > 1.05 * rounding {
             let what = match printed {
                 Some(printed) => format!(
@@ -132,6 +142,43 @@ fn nearest_step(times: &[f64]) -> f64 {
         sums = (sums.0 + x * (t - times[0]), sums.1 + x * x);
     }
     sums.0 / sums.1
+}
+
+/// Relative error of a rate that rounding of the stamps may leave.
+const COARSE: f64 = 1e-4;
+
+/// The step of samples of which many share a stamp, s: that of the line through the samples at which the stamp
+/// changes, as each of them lies within one step of it; the number of stamps where those are too few to tell it.
+fn shared_step(times: &[f64]) -> Result<f64, usize> {
+    let changes: Vec<(f64, f64)> = (1..times.len())
+        .filter(|i| times[*i] > times[i - 1])
+        .map(|i| (i as f64, times[i]))
+        .collect();
+    let (Some(first), Some(last)) = (changes.first(), changes.last()) else {
+        return Err(1);
+    };
+    let between = (last.0 - first.0) * (changes.len() as f64).sqrt();
+    if between * COARSE < 1.0 {
+        return Err(changes.len() + 1);
+    }
+    let count = changes.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| changes.iter().map(of).sum::<f64>() / count;
+    let (at, time) = (mean(|c| c.0), mean(|c| c.1));
+    let (mut both, mut own) = (0.0, 0.0);
+    for change in &changes {
+        both += (change.0 - at) * (change.1 - time);
+        own += (change.0 - at).powi(2);
+    }
+    Ok(both / own)
+}
+
+fn too_coarse(samples: usize, stamps: usize) -> Flag {
+    let found = format!(
+        "the time is printed too coarsely: {samples} samples share {stamps} stamps, which do not tell the rate"
+    );
+    let remedy =
+        "export the time with more digits, or write sample_rate in [records], which then counts";
+    Flag::new(FlagCode::TimeCoarse, None, found, remedy)
 }
 
 /// How far times are at most from a straight line through the first, s.
@@ -242,6 +289,11 @@ mod tests {
             lost.drain(9_000..9_100);
             assert_eq!(codes(&inspected(&lost)), ["time_not_uniform"]);
         }
+        // 2 s at 1 kHz printed to the second
+        let printed: Vec<f64> = uniform(2_000, 1e-3).iter().map(|t| t.floor()).collect();
+        assert_eq!(codes(&inspected(&printed)), ["time_coarse"]);
+        let printed: Vec<f64> = uniform(30_000, 1e-3).iter().map(|t| t.floor()).collect();
+        assert!((inspected(&printed).0.unwrap() / 1000.0 - 1.0).abs() < 5e-5);
     }
 
     #[test]

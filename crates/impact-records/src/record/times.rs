@@ -2,8 +2,8 @@
 
 use super::alignment::{self, Timing};
 use super::calibrate::{BoundRole, RecordSetup};
-use super::{Flag, FlagCode, Record};
-use super::{condition, time_axis};
+use super::{Flag, FlagCode, Record, Role};
+use super::{changes, condition, time_axis};
 use labfiles::timing::AxisUnit;
 use labfiles::{Clock, DatasetInfo, Samples, StoredType};
 
@@ -101,6 +101,9 @@ impl Clocks {
         condition::equal_lengths(record, times.as_mut());
         condition::trim_missing(record, times.as_mut());
         settle_rate(record, setup, dataset, (kept, times.as_deref()));
+        if let (Some(times), Some(&axis)) = (times, self.axes.first()) {
+            advise_times(record, &times, &dataset.channels[axis].name);
+        }
     }
 
     /// Put channels with clocks of their own on one axis.
@@ -137,6 +140,35 @@ impl Clocks {
         }
         record.sample_rate_hz = alignment::align(record, &timings).unwrap_or(0.0);
     }
+}
+
+/// Say of a contact whose rows are its changes, not samples, what to write instead.
+fn advise_times(record: &mut Record, times: &[f64], axis: &str) {
+    let uneven = |f: &Flag| {
+        use FlagCode::{DroppedSamples, RepeatedSamples, TimeNotUniform};
+        matches!(f.code, TimeNotUniform | DroppedSamples | RepeatedSamples)
+    };
+    let contact = record.channel(Role::Contact);
+    let changes = contact.filter(|c| changes::levels(times, &c.values).is_some());
+    let Some(name) = changes.map(|c| c.name.clone()) else {
+        return;
+    };
+    if !record.flags.iter().any(uneven) {
+        return;
+    }
+    record.flags.retain(|f| !uneven(f));
+    let found =
+        format!("the rows are the changes of '{name}', not samples: nothing is known between them");
+    let remedy = format!(
+        "name the times as the contact: channel = \"{axis}\" and content = \"times\" in [channels.contact], without \
+         threshold"
+    );
+    record.flags.push(Flag::new(
+        FlagCode::TimeNotUniform,
+        Some(&name),
+        found,
+        remedy,
+    ));
 }
 
 /// A time axis in s; `None` if it holds no real numbers, or in no unit that is known.
@@ -228,7 +260,15 @@ fn settle_rate(
 ) {
     let measured = times.and_then(|times| time_axis::inspect(times, &mut record.flags));
     let stated = stated_rate(record, dataset, kept);
-    let rate = measured.or(stated).or(setup.sample_rate_hz);
+    let coarse = record.flags.iter().any(|f| f.code == FlagCode::TimeCoarse);
+    let rate = match coarse {
+        // the file's rate is that of the same stamps
+        true => setup.sample_rate_hz,
+        false => measured.or(stated).or(setup.sample_rate_hz),
+    };
+    if rate.is_some() {
+        record.flags.retain(|f| f.code != FlagCode::TimeCoarse);
+    }
     match rate.filter(|r| r.is_finite() && *r > 0.0) {
         Some(rate) => {
             record.sample_rate_hz = rate;
@@ -244,6 +284,7 @@ fn no_rate(record: &mut Record) {
         FlagCode::TimeUnitMissing,
         FlagCode::TimeUnreadable,
         FlagCode::TimeBackward,
+        FlagCode::TimeCoarse,
     ];
     if record.flags.iter().any(|f| why.contains(&f.code)) {
         return;

@@ -55,7 +55,11 @@ const CANDIDATES: [(Separator, u8); 9] = [
 pub(crate) fn detect(lines: &[&[u8]]) -> Option<Dialect> {
     let judged = judged(lines);
     let mut best: Option<(f64, Dialect)> = None;
-    for (separator, decimal) in CANDIDATES {
+    let parted = is_parted(judged);
+    let candidates = CANDIDATES
+        .iter()
+        .filter(|(s, _)| !(parted && *s == Separator::Blanks));
+    for &(separator, decimal) in candidates {
         let notation = notation(judged, separator, decimal);
         let Some((score, columns)) = score(judged, separator, notation) else {
             continue;
@@ -76,6 +80,18 @@ pub(crate) fn detect(lines: &[&[u8]]) -> Option<Dialect> {
         }
     }
     best.map(|(_, dialect)| dialect)
+}
+
+/// Whether nearly all lines have as many tabs, semicolons or bars, and some: blanks are part of their cells then.
+fn is_parted(lines: &[&[u8]]) -> bool {
+    [b'\t', b';', b'|'].into_iter().any(|mark| {
+        let widths = lines
+            .iter()
+            .map(|l| Cells::new(l, Separator::Byte(mark)).count());
+        let widths: Vec<usize> = widths.collect();
+        let like = |usual: usize| widths.iter().filter(|w| **w == usual).count();
+        usual(&widths).is_some_and(|usual| usual > 1 && 10 * like(usual) >= 9 * widths.len())
+    })
 }
 
 /// The lines by which a table is judged. A preamble in a short file must not outvote the table:
@@ -232,6 +248,8 @@ mod tests {
         is("a;b\n1,5;2\n2,5;3", Separator::Byte(b';'), b',', 2);
         is("1,5\t2\n2,5\t3", tab, b',', 2);
         is("1.5\t2\n2.5\t3", tab, b'.', 2);
+        // cells with blanks
+        is("run 1\t8.25\tup\nrun 2\t8.5\tup", tab, b'.', 3);
         is(" 1.5   2\n 12.5  3", Separator::Blanks, b'.', 2);
         is("1, 2, 3\n4, 5, 6", Separator::Byte(b','), b'.', 3);
         is("1\n2\n3", tab, b'.', 1);

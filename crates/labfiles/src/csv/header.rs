@@ -20,9 +20,9 @@ pub(crate) struct Header {
 }
 
 /// Units that occur in headers though no channel of the rig is measured in them.
-const FURTHER_UNITS: [&str; 22] = [
+const FURTHER_UNITS: [&str; 25] = [
     "Pa", "kPa", "MPa", "bar", "°C", "C", "degC", "K", "A", "mA", "W", "J", "l", "ml", "Ohm", "Ω",
-    "dB", "m²", "Nm", "-", "counts", "h",
+    "dB", "m²", "Nm", "-", "counts", "h", "px", "pixel", "pixels",
 ];
 
 /// Read the lines before the first row. `lines` are all of them, comments too, blank ones not; `filled` are
@@ -52,7 +52,10 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header
     let vernier = rows
         .first()
         .is_some_and(|row| row[0].starts_with("Vernier Format"));
-    if let Some(names) = names_row(&rows, dialect.columns, vernier) {
+    if let Some(names) = grouped_names(&rows, dialect.columns) {
+        header.names = names;
+        rows.truncate(rows.len() - 2);
+    } else if let Some(names) = names_row(&rows, dialect.columns, vernier) {
         header.names = rows.remove(names);
     } else if let Some(names) = commented_names(&comments, dialect) {
         header.names = names;
@@ -60,6 +63,9 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header
     for mut row in rows {
         row.truncate(filled_cells(&row));
         match &row[..] {
+            [key, markers @ ..] if key == MARKERS => {
+                header.attributes.insert(key.clone(), markers.join("\t"));
+            }
             // Sampling rate; 2500; Hz
             [key, number, unit] if number::parse_cell(number.as_bytes(), b'.').is_some() => {
                 remark(&format!("{key}={number} {unit}"), &mut header.attributes);
@@ -114,6 +120,9 @@ fn take_values(
     }
 }
 
+/// The row that names the markers of a table of their positions.
+const MARKERS: &str = "MARKER_NAMES";
+
 /// Tables of marker positions state their rate as FREQUENCY, and have mm.
 fn of_motion_capture(header: &mut Header) {
     if !header.attributes.contains_key("NO_OF_FRAMES") {
@@ -121,6 +130,15 @@ fn of_motion_capture(header: &mut Header) {
     }
     if let Some(rate) = header.attributes.get("FREQUENCY").cloned() {
         header.attributes.insert("sample_rate_hz".to_owned(), rate);
+    }
+    let markers = header.attributes.get(MARKERS).map_or("", String::as_str);
+    let markers: Vec<&str> = markers.split('\t').filter(|m| !m.is_empty()).collect();
+    let unnamed = header.names.iter().all(|name| name.starts_with("column_"));
+    if unnamed && 3 * markers.len() == header.names.len() {
+        let axes = markers
+            .iter()
+            .flat_map(|m| ["X", "Y", "Z"].map(|axis| format!("{m} {axis}")));
+        header.names = axes.collect();
     }
     for (name, unit) in header.names.iter().zip(&mut header.units) {
         let position = [" X", " Y", " Z"].iter().any(|axis| name.ends_with(axis));
@@ -145,7 +163,8 @@ fn cells(line: &[u8], dialect: &Dialect) -> Vec<String> {
 /// Whether a row of cells can head the table: its width, give or take an empty cell at the end.
 fn fits(row: &[String], columns: usize) -> bool {
     let filled = filled_cells(row);
-    filled > 0 && (row.len() == columns || filled == columns || row.len() == columns + 1)
+    let wide = row.len() == columns || row.len() == columns + 1;
+    filled == columns || (wide && (1..columns).contains(&filled))
 }
 
 /// Lines above the table among which its heading is looked for.
@@ -163,6 +182,34 @@ fn names_row(rows: &[Vec<String>], columns: usize, first: bool) -> Option<usize>
     (from..rows.len())
         .filter(|i| fits(&rows[*i], columns))
         .max_by_key(|i| (distinct(&rows[*i]), place(*i)))
+}
+
+/// Names that come again and again below a row with one cell above each of several groups of columns, as a sheet
+/// with runs side by side has them: `t Throw 1`, `y Throw 1`, `t Throw 2` ….
+fn grouped_names(rows: &[Vec<String>], columns: usize) -> Option<Vec<String>> {
+    let [.., groups, names] = rows else {
+        return None;
+    };
+    let filled = |row: &[String]| row.iter().filter(|c| !c.is_empty()).count();
+    let repeated = |row: &[String]| {
+        row.iter()
+            .enumerate()
+            .any(|(i, c)| !c.is_empty() && row[..i].contains(c))
+    };
+    let above =
+        groups.len() <= columns + 1 && filled(groups) > 1 && 2 * filled(groups) <= filled(names);
+    if !fits(names, columns) || !above || repeated(groups) || !repeated(names) {
+        return None;
+    }
+    let mut group = "";
+    let named = names.iter().enumerate().map(|(i, name)| {
+        group = groups.get(i).filter(|g| !g.is_empty()).map_or(group, |g| g);
+        match name.is_empty() {
+            true => String::new(),
+            false => format!("{name} {group}").trim().to_owned(),
+        }
+    });
+    Some(named.collect())
 }
 
 /// The last row, if it holds units under a row of names.
@@ -359,6 +406,40 @@ mod tests {
             header(&["Frame;X1;Y1", "Tracks 1 to 1"]).names,
             ["Frame", "X1", "Y1"]
         );
+    }
+
+    #[test]
+    fn a_row_wider_than_the_table_is_not_its_heading() {
+        let lines = ["Segment;Time;Count;Of", "t;x;y"];
+        assert_eq!(header(&lines).names, ["t", "x", "y"]);
+    }
+
+    #[test]
+    fn positions_without_a_heading_have_the_names_of_their_markers() {
+        let found = header(&["NO_OF_FRAMES;100", "FREQUENCY;500", "MARKER_NAMES;cart"]);
+        assert_eq!(found.names, ["cart X", "cart Y", "cart Z"]);
+        assert_eq!(found.units[0].as_deref(), Some("mm"));
+    }
+
+    #[test]
+    fn names_below_groups_of_columns_are_told_apart_by_them() {
+        let dialect = Dialect {
+            columns: 5,
+            ..SEMICOLON
+        };
+        let lines: [&[u8]; 2] = [b"Throw 1;;;Throw 2;", b"t [s];y [m];;t [s];y [m]"];
+        let (found, _) = read(&lines, &dialect, 5);
+        assert_eq!(
+            found.names,
+            [
+                "t Throw 1",
+                "y Throw 1",
+                "column_3",
+                "t Throw 2",
+                "y Throw 2"
+            ]
+        );
+        assert_eq!(found.units[4].as_deref(), Some("m"));
     }
 
     #[test]

@@ -126,10 +126,21 @@ pub(crate) struct Tree {
 }
 
 impl Tree {
-    /// What of the file is not read.
+    /// What of the file is not read, kind by kind.
     pub(crate) fn left_out(&self) -> impl Iterator<Item = String> {
-        let refused = self.refused.iter();
-        refused.map(|(name, kind)| format!("{kind} '{name}' not read: {}", remedy(kind)))
+        let kinds = self.kinds_refused().into_iter();
+        kinds.map(|kind| format!("{} not read: {}", self.named(kind), remedy(kind)))
+    }
+
+    /// The kinds of variables that are not read, as they come first.
+    fn kinds_refused(&self) -> Vec<&str> {
+        let mut kinds: Vec<&str> = Vec::new();
+        for (_, kind) in &self.refused {
+            if !kinds.contains(&kind.as_str()) {
+                kinds.push(kind);
+            }
+        }
+        kinds
     }
 
     /// What a file holds of which nothing is read, and what to save instead; `None` where something is read.
@@ -137,12 +148,7 @@ impl Tree {
         if self.refused.is_empty() || !self.leaves.is_empty() {
             return None;
         }
-        let mut kinds: Vec<&str> = Vec::new();
-        for (_, kind) in &self.refused {
-            if !kinds.contains(&kind.as_str()) {
-                kinds.push(kind);
-            }
-        }
+        let mut kinds = self.kinds_refused();
         kinds.sort_by_key(|kind| remedy(kind) == OF_OBJECTS);
         let named: Vec<String> = kinds.iter().map(|kind| self.named(kind)).collect();
         let found = named.join(", ");
@@ -190,5 +196,30 @@ fn remedy(kind: &str) -> &'static str {
         "string" => "of a string s char(s)",
         "timeseries" => "of a timeseries s s.Time and s.Data",
         _ => OF_OBJECTS,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variables_of_a_kind_that_is_not_read_are_one_note() {
+        let kinds = ["sparse", "table", "sparse", "sparse", "sparse"];
+        let refused = kinds.iter().enumerate();
+        let tree = Tree {
+            refused: refused
+                .map(|(i, kind)| (format!("v{i}"), (*kind).to_owned()))
+                .collect(),
+            ..Tree::default()
+        };
+        let notes: Vec<String> = tree.left_out().collect();
+        assert_eq!(
+            notes,
+            [
+                "sparse 'v0' 'v2' 'v3' and 1 more not read: of a sparse matrix S full(S)",
+                "table 'v1' not read: of a table T table2struct(T, 'ToScalar', true)",
+            ]
+        );
     }
 }

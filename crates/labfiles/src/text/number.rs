@@ -193,6 +193,9 @@ const MISSING: [&str; 14] = [
     "", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---", "?", "*", "1.#qnan", "1.#ind",
 ];
 
+/// The sign of minus, which some programs write for a hyphen.
+const MINUS: &str = "\u{2212}";
+
 /// The longest word for a number, bytes.
 const LONGEST_WORD: usize = 10;
 
@@ -204,6 +207,14 @@ pub(crate) fn parse_cell(cell: &[u8], decimal: u8) -> Option<f64> {
         && end == cell.len()
     {
         return Some(value);
+    }
+    if let Some(rest) = cell.strip_prefix(MINUS.as_bytes()) {
+        let unsigned = rest
+            .first()
+            .is_some_and(|b| b.is_ascii_digit() || *b == decimal);
+        return parse_cell(rest, decimal)
+            .filter(|_| unsigned)
+            .map(|value| -value);
     }
     if cell.len() > LONGEST_WORD {
         return None;
@@ -268,6 +279,8 @@ mod tests {
         }
         assert!(parse_cell(b"NaN", b'.').unwrap().is_nan());
         assert_eq!(parse_cell(b"1.5 V", b'.'), None);
+        assert_eq!(parse_cell("\u{2212}1,5e-3".as_bytes(), b','), Some(-1.5e-3));
+        assert_eq!(parse_cell("\u{2212}\u{2212}1".as_bytes(), b','), None);
     }
 
     /// A decimal number as no instrument prints it: sign, zeros, up to thirty digits on either

@@ -35,6 +35,13 @@ impl Dimension {
         self.texts().0
     }
 
+    /// The name with its article: "an angle", "a length".
+    pub fn with_article(self) -> String {
+        let name = self.name();
+        let article = if name.starts_with('a') { "an" } else { "a" };
+        format!("{article} {name}")
+    }
+
     /// The SI unit's symbol.
     pub fn si_symbol(self) -> &'static str {
         self.texts().1
@@ -105,6 +112,9 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("mHz", Dimension::Frequency, 1e-3),
     ("kHz", Dimension::Frequency, 1e3),
     ("rad/s", Dimension::Frequency, 1.0 / std::f64::consts::TAU),
+    ("deg/s", Dimension::Frequency, 1.0 / 360.0),
+    ("°/s", Dimension::Frequency, 1.0 / 360.0),
+    ("dps", Dimension::Frequency, 1.0 / 360.0),
     ("rpm", Dimension::Frequency, 1.0 / 60.0),
     ("s", Dimension::Time, 1.0),
     ("ms", Dimension::Time, 1e-3),

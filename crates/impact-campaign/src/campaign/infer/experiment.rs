@@ -31,6 +31,9 @@ const MOST_EVENTS: u64 = 400;
 const DECAY_LEAVES: f64 = 0.45;
 /// Fewest periods of a decay.
 const DECAY_PERIODS: f64 = 5.0;
+/// Part of a signal that the fit of a decay of few periods may leave, and those periods.
+const CLEAR_LEAVES: f64 = 0.15;
+const CLEAR_PERIODS: f64 = 1.5;
 /// Fewest sounds that are bounces.
 const FEWEST_SOUNDS: usize = 4;
 
@@ -74,12 +77,9 @@ pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
     let some = spread(places, MOST_RECORDS);
     let moving = |c: &InferredChannel| c.role.is_some_and(Role::is_motion);
     if !found.channels.iter().any(moving) {
-        let heard = || some.iter().filter(|place| sounds(**place)).count();
-        if first.source.format() == "wav" && 2 * heard() > some.len() {
+        if let Some(index) = microphone(&some, &found.channels) {
             found.experiment = Experiment::Events(ContactContent::Sound);
-            if let Some(channel) = found.channels.first_mut() {
-                channel.role = Some(Role::Contact);
-            }
+            found.channels[index].role = Some(Role::Contact);
         } else if let Some(index) = unnamed_decay(&some, &found.channels) {
             found.experiment = Experiment::FreeDecay;
             found.channels[index].role = Some(Role::VelocityX);
@@ -174,12 +174,31 @@ fn events(channels: &mut [InferredChannel]) -> ContactContent {
     content
 }
 
+/// Samples a second by which sounds are looked for where the files state none: R does not depend on it.
+const USUAL_SOUND_HZ: f64 = 44_100.0;
+/// Fewest samples of a sound.
+const FEWEST_SAMPLES: u64 = 4_000;
+
+/// The channel in which bounces are heard in most records: the first of a sound file, or the only one of a table.
+fn microphone(some: &[Place<'_>], channels: &[InferredChannel]) -> Option<usize> {
+    let first = some.first()?;
+    let mut signals = channels.iter().enumerate().filter(|(_, c)| !c.is_time);
+    let (index, channel) = signals.next()?;
+    let alone = signals.next().is_none() && channel.unit.is_none();
+    let long = channel.samples >= FEWEST_SAMPLES;
+    if first.source.format() != "wav"
+        && !(alone && long && channels.iter().all(|c| c.role.is_none()))
+    {
+        return None;
+    }
+    let heard = some.iter().filter(|place| sounds(**place, index)).count();
+    (2 * heard > some.len()).then_some(index)
+}
+
 /// Whether a sound is one of bounces: each follows the one before sooner.
-fn sounds(place: Place<'_>) -> bool {
-    let Some(rate_hz) = place.set().sample_rate_hz() else {
-        return false;
-    };
-    let values = place.numbers(0);
+fn sounds(place: Place<'_>, channel: usize) -> bool {
+    let rate_hz = place.set().sample_rate_hz().unwrap_or(USUAL_SOUND_HZ);
+    let values = place.numbers(channel);
     let found = onsets::find(&values, rate_hz);
     let flights: Vec<f64> = found.windows(2).map(|w| w[1] - w[0]).collect();
     let shorter = flights.windows(2).filter(|w| w[1] < w[0]).count();
@@ -208,13 +227,17 @@ fn read(place: Place<'_>, channels: &[InferredChannel]) -> Record {
         channels: &setups,
         time: None,
         time_unit_s: None,
-        sample_rate_hz: None,
+        // of a camera: neither decays nor flights depend on it
+        sample_rate_hz: Some(USUAL_FRAMES_HZ),
         setting: &Setting::default(),
         driven: false,
         skip_s: 0.0,
     };
     calibrate(place.source, &setup)
 }
+
+/// Pictures a second by which records are looked at that number them, and state no rate.
+const USUAL_FRAMES_HZ: f64 = 240.0;
 
 fn decays(record: &Record) -> bool {
     let channels: Vec<&[f64]> = record
@@ -230,7 +253,9 @@ fn decays(record: &Record) -> bool {
         .first()
         .is_some_and(|d| {
             let periods = d.samples as f64 / record.sample_rate_hz * d.natural_frequency_hz;
-            d.residual_ratio < DECAY_LEAVES && periods > DECAY_PERIODS && d.damping_ratio < 0.5
+            let long = d.residual_ratio < DECAY_LEAVES && periods > DECAY_PERIODS;
+            let clear = d.residual_ratio < CLEAR_LEAVES && periods > CLEAR_PERIODS;
+            (long || clear) && d.damping_ratio < 0.5
         })
 }
 
@@ -292,10 +317,12 @@ fn without_acceleration(channels: &mut [InferredChannel]) {
         return;
     }
     for channel in channels {
-        if matches!(
+        let drifts = matches!(
             channel.role,
-            Some(Role::AccelerationX | Role::AccelerationY | Role::Contact)
-        ) {
+            Some(Role::AccelerationX | Role::AccelerationY)
+        );
+        let unclear = channel.role == Some(Role::Contact) && channel.levels.is_none();
+        if drifts || unclear {
             channel.role = None;
         }
     }

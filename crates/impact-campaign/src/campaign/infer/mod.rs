@@ -1,9 +1,10 @@
 //! The records in a folder of files, and the role that each channel probably has.
 
 mod experiment;
+mod globs;
 mod roles;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, HashSet};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -15,6 +16,7 @@ use impact_records::signal::robust;
 use labfiles::{ChannelInfo, Clock, DatasetInfo, Samples, Source};
 
 pub use experiment::Experiment;
+pub use roles::is_rate;
 
 /// Depth of the search below the folder.
 const DEPTH: usize = 4;
@@ -48,6 +50,8 @@ pub struct FolderContents {
     pub counts_frames: bool,
     /// Number of records in all files.
     pub records: usize,
+    /// Tables that are no records, as those of settings and notes: files, or sheets of them.
+    pub others: Vec<String>,
     /// What was probably measured.
     pub experiment: Experiment,
 }
@@ -65,7 +69,7 @@ pub struct InferredChannel {
     pub samples: u64,
     /// Least and greatest value in the records looked at.
     pub range: Option<[f64; 2]>,
-    /// Whether it holds the time.
+    /// Whether it holds the time, or counts the rows.
     pub is_time: bool,
     /// The role inferred.
     pub role: Option<Role>,
@@ -78,28 +82,48 @@ pub struct InferredChannel {
 /// Read the headers of all files below a folder, and infer the channels' roles.
 pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
     let mut paths = Vec::new();
-    collect(folder, DEPTH, &mut paths);
+    collect(folder, DEPTH, &mut HashSet::new(), &mut paths);
     paths.sort();
     let mut found = FolderContents::default();
-    let mut records = Vec::new();
-    for path in paths {
-        let relative = path.strip_prefix(folder).unwrap_or(&path).to_path_buf();
-        if found.run_table.is_none() && is_run_table(&path) {
+    let mut opened = Vec::new();
+    for path in &paths {
+        let relative = path.strip_prefix(folder).unwrap_or(path).to_path_buf();
+        if found.run_table.is_none() && is_run_table(path) {
             found.run_table = Some(slashed(&relative));
             continue;
         }
-        match open(&path) {
-            Ok(source) if holds_record(source.as_ref()) => records.push((relative, source)),
-            Ok(_) => {}
+        match open(path) {
+            Ok(source) if holds_record(source.as_ref()) => opened.push((relative, source)),
+            Ok(_) => found.others.push(slashed(&relative)),
             Err(error) => found.refused.push((slashed(&relative), error.found)),
         }
     }
-    found.files = records.len();
-    found.globs = globs(&records.iter().map(|(p, _)| p.clone()).collect::<Vec<_>>());
-    let places: Vec<Place<'_>> = records
+    let all = opened.iter().flat_map(|(_, s)| records_in(s.as_ref()));
+    let places = without_notes(all.collect());
+    let of = |source: &dyn Source| {
+        let held = places
+            .iter()
+            .filter(|p| std::ptr::addr_eq(p.source, source));
+        held.map(|p| p.dataset).collect::<Vec<_>>()
+    };
+    let (records, noted): (Vec<_>, Vec<_>) = opened
         .iter()
-        .flat_map(|(_, s)| records_in(s.as_ref()))
-        .collect();
+        .partition(|(_, source)| !of(source.as_ref()).is_empty());
+    found
+        .others
+        .extend(noted.iter().map(|(path, _)| slashed(path)));
+    for (path, source) in &records {
+        let used = of(source.as_ref());
+        let sets = source.datasets().iter().enumerate();
+        let others = sets.filter(|(i, _)| !used.contains(i));
+        let named = others.map(|(_, set)| format!("{}: {}", slashed(path), set.name));
+        found.others.extend(named);
+    }
+    found.files = records.len();
+    let named: Vec<&Path> = records.iter().map(|(path, _)| path.as_path()).collect();
+    let relative = |path: &PathBuf| path.strip_prefix(folder).unwrap_or(path).to_path_buf();
+    let rest: Vec<PathBuf> = paths.iter().map(relative).collect();
+    found.globs = globs::of(&named, &rest);
     found.records = places.len();
     if let (Some((path, _)), Some(first)) = (records.first(), places.first()) {
         found.example = slashed(path);
@@ -131,6 +155,34 @@ impl<'a> Place<'a> {
     }
 }
 
+/// The records among tables. Those without times beside others with times are notes or settings; where none has
+/// times, the records are those that have channels of the longest.
+fn without_notes(mut places: Vec<Place<'_>>) -> Vec<Place<'_>> {
+    let timed = |place: &Place<'_>| {
+        let set = place.set();
+        let counts = || (0..set.channels.len()).any(|i| time_axis::counts_frames(set, i));
+        is_timed(set) || experiment::is_event_list(set) || counts()
+    };
+    if places.iter().any(timed) {
+        places.retain(timed);
+        return places;
+    }
+    let rows = |place: &Place<'_>| place.set().channels.iter().map(|c| c.samples).max();
+    let Some(longest) = places.iter().copied().max_by_key(rows) else {
+        return places;
+    };
+    places.retain(|place| {
+        let mut channels = place.set().channels.iter();
+        channels.any(|c| longest.set().channel_index(&c.name).is_some())
+    });
+    places
+}
+
+/// Whether a file states when the samples of a dataset were taken.
+fn is_timed(set: &DatasetInfo) -> bool {
+    set.time_axis.is_some() || set.channels.iter().any(|c| c.sample_rate_hz.is_some())
+}
+
 /// The records of a file.
 fn records_in(source: &dyn Source) -> impl Iterator<Item = Place<'_>> {
     let sets = source.datasets().iter().enumerate();
@@ -151,20 +203,32 @@ fn slashed(path: &Path) -> String {
         .join("/")
 }
 
-fn collect(folder: &Path, depth: usize, paths: &mut Vec<PathBuf>) {
-    let Ok(entries) = std::fs::read_dir(folder) else {
+/// The files below a folder, also through links, each folder once; folders of results are left out.
+fn collect(folder: &Path, depth: usize, seen: &mut HashSet<PathBuf>, paths: &mut Vec<PathBuf>) {
+    let real = folder.canonicalize();
+    let new = real.is_ok_and(|real| seen.insert(real));
+    let entries = std::fs::read_dir(folder);
+    let (Ok(entries), true) = (entries, new && !folder.join(RESULTS).exists()) else {
         return;
     };
-    for entry in entries.filter_map(Result::ok) {
+    let mut entries: Vec<_> = entries.filter_map(Result::ok).collect();
+    // a folder before the links to it
+    entries.sort_by_key(|e| (e.path().is_symlink(), e.path()));
+    for entry in entries {
         let hidden = entry.file_name().to_string_lossy().starts_with('.');
         let path = entry.path();
-        match entry.file_type() {
-            Ok(kind) if kind.is_dir() && !hidden && depth > 0 => collect(&path, depth - 1, paths),
+        match path.metadata() {
+            Ok(kind) if kind.is_dir() && !hidden && depth > 0 => {
+                collect(&path, depth - 1, seen, paths);
+            }
             Ok(kind) if kind.is_file() && !hidden && !is_other(&path) => paths.push(path),
             _ => {}
         }
     }
 }
+
+/// A file that a folder of results has.
+const RESULTS: &str = "campaign.resolved.json";
 
 /// Files that hold no records by their ending.
 fn is_other(path: &Path) -> bool {
@@ -201,31 +265,12 @@ fn is_record(set: &DatasetInfo) -> bool {
     set.channels.iter().any(|c| c.samples >= FEWEST_SAMPLES) || experiment::is_event_list(set)
 }
 
-/// One glob per folder and extension; `**` for files in many folders.
-fn globs(paths: &[PathBuf]) -> Vec<String> {
-    let ending = |p: &PathBuf| {
-        p.extension()
-            .map(|e| format!("*.{}", e.to_string_lossy()))
-            .unwrap_or_default()
-    };
-    let in_folder = |p: &PathBuf| match p.parent().map(slashed).filter(|f| !f.is_empty()) {
-        Some(folder) => format!("{folder}/{}", ending(p)),
-        None => ending(p),
-    };
-    let mut all: BTreeSet<String> = paths.iter().map(in_folder).collect();
-    if all.len() > 4 {
-        all = paths.iter().map(|p| format!("**/{}", ending(p))).collect();
-    }
-    all.into_iter().collect()
-}
-
 fn describe(first: Place<'_>, found: &mut FolderContents) {
     let set = first.set();
     found.format = first.source.format();
     found.datasets = first.source.datasets().len();
     found.attributes = set.attributes.clone();
-    found.timed =
-        set.time_axis.is_some() || set.channels.iter().any(|c| c.sample_rate_hz.is_some());
+    found.timed = is_timed(set);
     let frames = |i| time_axis::counts_frames(set, i);
     found.counts_frames = !found.timed && (0..set.channels.len()).any(frames);
     found.channels = channels(first);
@@ -243,13 +288,20 @@ fn channels(first: Place<'_>) -> Vec<InferredChannel> {
             range: range(&values),
             is_time: set.time_axis == Some(i)
                 || time_axis::counts_frames(set, i)
-                || is_clock(set, i),
+                || is_clock(set, i)
+                || counts_rows(&values),
             role: None,
             levels: two_levels(&values),
             sign: 1,
         }
     };
     set.channels.iter().enumerate().map(seen).collect()
+}
+
+/// Whether values are the numbers of their rows.
+fn counts_rows(values: &[f64]) -> bool {
+    let whole = values.first().is_some_and(|first| first.fract() == 0.0);
+    whole && values.len() as u64 >= FEWEST_SAMPLES && values.windows(2).all(|w| w[1] - w[0] == 1.0)
 }
 
 /// Whether a channel holds the times of others.
@@ -603,5 +655,154 @@ mod tests {
         let sine: Vec<f64> = (0..500).map(|i| (f64::from(i) * 0.1).sin()).collect();
         assert!(two_levels(&contact).is_some());
         assert!(two_levels(&sine).is_none());
+    }
+
+    /// Rows of a decay at 500 Hz, a time and its values.
+    fn decay_rows(frequency_hz: f64, damping: f64, count: i32) -> String {
+        let row = |i: i32| {
+            let t = f64::from(i) / 500.0;
+            let w = std::f64::consts::TAU * frequency_hz;
+            format!("{t:.4},{:.6}\n", (-damping * w * t).exp() * (w * t).cos())
+        };
+        (0..count).map(row).collect()
+    }
+
+    fn toml_of(files: &[(&str, String)]) -> (FolderContents, String) {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in files {
+            std::fs::write(folder.path().join(name), text).unwrap();
+        }
+        let found = inspect_folder(folder.path(), &labfiles::open);
+        let text = super::super::template::campaign_toml("folder", &found);
+        (found, text)
+    }
+
+    #[test]
+    fn laboratory_books_and_sheets_of_settings_are_no_records() {
+        let record = |k: i32| {
+            format!(
+                "t [s],v [m/s]\n{}",
+                decay_rows(5.0 + f64::from(k), 0.02, 600)
+            )
+        };
+        let rows: String = (0..40)
+            .map(|k| format!("{k},{},1.0\n", 8.0 + f64::from(k)))
+            .collect();
+        let book = format!("run,frequency [Hz],gap [mm]\n{rows}");
+        let files = [
+            ("a book.csv", book),
+            ("run01.csv", record(1)),
+            ("run02.csv", record(2)),
+        ];
+        let (found, text) = toml_of(&files);
+        assert_eq!((found.files, found.records), (2, 2));
+        assert!(text.contains("files = \"run*.csv\""), "{text}");
+        assert!(text.contains("notes or settings: a book.csv"), "{text}");
+        assert!(
+            text.contains("[channels.velocity_x]\nchannel = \"v\""),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn single_numbers_beside_signals_are_no_channels() {
+        let matrix = |name: &str, column: usize| {
+            let rows = decay_rows(5.0, 0.02, 600);
+            let cells: String = rows
+                .lines()
+                .map(|l| format!(" {}\n", l.split(',').nth(column).unwrap()))
+                .collect();
+            format!("# name: {name}\n# type: matrix\n# rows: 600\n# columns: 1\n{cells}\n\n")
+        };
+        let scalar = "# name: gap_mm\n# type: scalar\n20\n\n\n";
+        let text = format!(
+            "# Created by Octave 8.4.0\n{scalar}{}{}",
+            matrix("t", 0),
+            matrix("vx", 1)
+        );
+        let (found, text) = toml_of(&[("run.txt", text)]);
+        let gap = found.channels.iter().find(|c| c.name == "gap_mm");
+        assert_eq!(gap.and_then(|c| c.role), None);
+        assert!(text.contains("clearance = \"gap_mm\""), "{text}");
+        assert!(
+            text.contains("[channels.velocity_x]\nchannel = \"vx\""),
+            "{text}"
+        );
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn links_are_followed_once() {
+        let store = tempfile::tempdir().unwrap();
+        let text = format!("t [s],v [m/s]\n{}", decay_rows(5.0, 0.02, 600));
+        std::fs::write(store.path().join("run.csv"), text).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let link = |to: &Path, name: &str| std::os::unix::fs::symlink(to, folder.path().join(name));
+        link(&store.path().join("run.csv"), "first.csv").unwrap();
+        link(store.path(), "store").unwrap();
+        link(folder.path(), "itself").unwrap();
+        let found = inspect_folder(folder.path(), &labfiles::open);
+        assert_eq!(found.globs, ["*.csv", "store/*.csv"]);
+        assert_eq!(found.files, 2);
+    }
+
+    #[test]
+    fn angular_rates_have_their_unit_and_an_arm() {
+        for (heading, unit) in [
+            ("angular_velocity", "unit = \"rad/s\""),
+            ("gyro_z", "unit = \"rad/s\""),
+            ("omega (deg/s)", "# unit = as the file states"),
+        ] {
+            let text = format!("time (s),{heading}\n{}", decay_rows(2.4, 0.015, 1000));
+            let (found, text) = toml_of(&[("wheel.csv", text)]);
+            assert_eq!(found.experiment, Experiment::FreeDecay, "{heading}");
+            let channel = heading.split(' ').next().unwrap();
+            let table = format!("[channels.velocity_x]\nchannel = \"{channel}\"\n{unit}");
+            assert!(text.contains(&table), "{text}");
+            assert!(text.contains("\nscale = \"1 m/s per rad/s\""), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_rate_that_nobody_states_does_not_count() {
+        let values = |line: &str| format!("{}\n", line.split(',').nth(1).unwrap());
+        let text: String = decay_rows(3.0, 0.02, 1500).lines().map(values).collect();
+        let (_, text) = toml_of(&[("r.csv", format!("v (m/s)\n{text}"))]);
+        assert!(
+            text.contains("\n# sample_rate = \"2 kHz\"     # FILL IN"),
+            "{text}"
+        );
+        let front = "NO_OF_FRAMES\t600\nFREQUENCY\t500\nANALOG_FREQUENCY\t0\nMARKER_NAMES\ta\n";
+        let row = |line: &str| format!("{}\t1.5\t2.5\n", line.split(',').nth(1).unwrap());
+        let rows: String = decay_rows(3.0, 0.02, 600).lines().map(row).collect();
+        let (_, text) = toml_of(&[("r.tsv", format!("{front}{rows}"))]);
+        assert!(!text.contains("drive_frequency = "), "{text}");
+        assert!(text.contains("channel = \"a X\""), "{text}");
+    }
+
+    #[test]
+    fn heavy_and_short_decays_are_decays() {
+        for (damping, count) in [(0.35, 1500), (0.15, 1500), (0.004, 600)] {
+            let text = format!("t (s),v (m/s)\n{}", decay_rows(3.0, damping, count));
+            let (found, _) = toml_of(&[("r.csv", text)]);
+            assert_eq!(found.experiment, Experiment::FreeDecay, "{damping}");
+        }
+    }
+
+    #[test]
+    fn one_coordinate_that_is_called_y_is_that_of_one_mass() {
+        assert_eq!(roles_of(&[("y", "m", 1.0)]), [Some(Role::DisplacementX)]);
+        assert_eq!(
+            roles_of(&[("ax", "m/s^2", 0.1), ("ay", "m/s^2", 9.0)]),
+            [None, Some(Role::AccelerationX)]
+        );
+        assert_eq!(
+            roles_of(&[("x", "", 1.0), ("y", "px", 800.0)]),
+            [None, Some(Role::DisplacementX)]
+        );
+        assert_eq!(
+            roles_of(&[("vx", "m/s", 0.5), ("vy", "m/s", 0.4)]),
+            [Some(Role::VelocityX), Some(Role::VelocityY)]
+        );
     }
 }

@@ -8,19 +8,30 @@ use labfiles::units::{self, Dimension};
 pub(super) fn assign(channels: &mut [InferredChannel]) {
     let axes = Axes::of(channels);
     let groups = Groups::of(channels);
-    let y_first = axes.has_second(channels) || groups.second.is_some();
+    let second = axes.has_second(channels) || groups.second.is_some();
+    // what is measured of one mass alone is that of mass x, whatever it is called
+    let alone = !second || !axes.has_first(channels, &groups);
+    let place = |i: usize, c: &InferredChannel| match alone {
+        true => (false, None),
+        false => (true, axes.side(i, c)),
+    };
     for &role in Role::ALL {
         let best = channels
             .iter()
             .enumerate()
-            .filter(|(i, c)| c.role.is_none() && !c.is_time && !axes.others.contains(i))
-            .map(|(i, c)| (score(c, role, (y_first, axes.side(i, c)), &groups), i))
+            .filter(|(i, c)| c.role.is_none() && is_signal(c) && !axes.others.contains(i))
+            .map(|(i, c)| (score(c, role, place(i, c), &groups), i))
             .filter(|(s, _)| *s > 0)
             .max_by_key(|(s, i)| (*s, std::cmp::Reverse(*i)));
         if let Some((_, index)) = best {
             channels[index].role = Some(role);
         }
     }
+}
+
+/// Whether a channel may be a signal: neither the time nor a single number, which is an attribute of its record.
+fn is_signal(channel: &InferredChannel) -> bool {
+    !channel.is_time && channel.samples > 1
 }
 
 /// Axes of one sensor, or coordinates of one point: two of them are not two masses.
@@ -33,8 +44,8 @@ struct Axes {
 }
 
 impl Axes {
-    /// There are three of one name, or two whose names are bare (`x`, `y`) or those of a phone, and neither a
-    /// drive nor a contact.
+    /// There are three of one name, or two beside neither a drive nor a contact whose names are bare (`x`, `y`) or
+    /// those of a phone, that are of an accelerometer, or of which one moves far less.
     fn of(channels: &[InferredChannel]) -> Self {
         let rig = channels
             .iter()
@@ -51,11 +62,14 @@ impl Axes {
             let Some(y) = same('y') else { continue };
             let z = same('z');
             let phone = base.iter().any(|w| PHONES.contains(&w.as_str()));
-            if z.is_none() && (rig || !(base.is_empty() || phone)) {
-                continue;
-            }
             let all: Vec<usize> = [Some(i), Some(y), z].into_iter().flatten().collect();
             let span = |i: usize| channels[i].range.map_or(0.0, |[low, high]| high - low);
+            let sensor = kind(&channels[i]) == Kind::Acceleration;
+            let unlike = span(i).max(span(y)) > UNLIKE * span(i).min(span(y));
+            let one = base.is_empty() || phone || sensor || unlike;
+            if z.is_none() && (rig || !one) {
+                continue;
+            }
             let most = all
                 .iter()
                 .copied()
@@ -76,13 +90,33 @@ impl Axes {
         }
     }
 
+    /// The channels of a motion that are not left out.
+    fn moving<'a>(
+        &'a self,
+        channels: &'a [InferredChannel],
+    ) -> impl Iterator<Item = (usize, &'a InferredChannel)> {
+        let all = channels.iter().enumerate();
+        let used = all.filter(|(i, c)| is_signal(c) && !self.others.contains(i));
+        used.filter(|(_, c)| kind(c).is_motion() || kind(c) == Kind::Frame)
+    }
+
     /// Whether any name refers to the second mass.
     fn has_second(&self, channels: &[InferredChannel]) -> bool {
-        let all = channels.iter().enumerate();
-        let mut used = all.filter(|(i, _)| !self.others.contains(i));
-        used.any(|(i, c)| self.side(i, c) == Some('y'))
+        self.moving(channels)
+            .any(|(i, c)| self.side(i, c) == Some('y'))
+    }
+
+    /// Whether a motion is measured of a mass that is not the second.
+    fn has_first(&self, channels: &[InferredChannel], groups: &Groups) -> bool {
+        groups.second.is_some()
+            || self
+                .moving(channels)
+                .any(|(i, c)| self.side(i, c) != Some('y'))
     }
 }
+
+/// How many times farther one of two masses moves at most.
+const UNLIKE: f64 = 4.0;
 
 /// Words by which phones name their sensors.
 const PHONES: [&str; 4] = ["linear", "gyroscope", "accelerometer", "magnetometer"];
@@ -90,14 +124,18 @@ const PHONES: [&str; 4] = ["linear", "gyroscope", "accelerometer", "magnetometer
 /// A name as the words that say what was measured, and the letter of an axis at its end.
 fn axis(channel: &InferredChannel) -> Option<(Vec<String>, char)> {
     let own = Role::ALL.iter().any(|role| role.name() == channel.name);
-    let mut words = words(&channel.name);
+    let mut words = words(shown(channel));
     let last = words.pop().filter(|_| !own)?;
-    match last.as_str() {
-        "x" => Some((words, 'x')),
-        "y" => Some((words, 'y')),
-        "z" => Some((words, 'z')),
-        _ => None,
+    let letter = last.chars().last().filter(|c| "xyz".contains(*c))?;
+    let quantity = &last[..last.len() - 1];
+    if !quantity.is_empty() {
+        // ax, vy, accz
+        ["a", "v", "w", "acc", "accel", "gyr", "gyro"]
+            .contains(&quantity)
+            .then_some(())?;
+        words.push(quantity.to_owned());
     }
+    Some((words, letter))
 }
 
 fn words(name: &str) -> Vec<String> {
@@ -161,12 +199,21 @@ fn score(
     }
 }
 
-/// Whether a channel's unit is that of an angular rate.
-fn is_rate(channel: &InferredChannel) -> bool {
-    channel
-        .unit
-        .as_deref()
-        .is_some_and(|unit| unit.trim() == "rad/s")
+/// Symbols of units of angular rates.
+const RATES: [&str; 6] = ["rad/s", "rad_s", "deg/s", "deg_s", "°/s", "dps"];
+
+/// Whether a channel is an angular rate: by its unit, or without one by its name.
+pub fn is_rate(channel: &InferredChannel) -> bool {
+    let words = words(shown(channel));
+    let any = |stems: &[&str]| words.iter().any(|w| stems.iter().any(|s| w.starts_with(s)));
+    let (_, in_name) = units::split_unit(&channel.name);
+    match channel.unit.as_deref().or(in_name) {
+        Some(unit) => RATES.contains(&unit.trim()),
+        None => {
+            any(&["gyro", "omega", "angularvel", "winkelgeschw", "drehrate"])
+                || (any(&["angular"]) && any(&["vel", "rate", "speed"]))
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -178,6 +225,15 @@ enum Kind {
     Acceleration,
     Frame,
     Unknown,
+}
+
+impl Kind {
+    fn is_motion(self) -> bool {
+        matches!(
+            self,
+            Self::Velocity | Self::Displacement | Self::Acceleration
+        )
+    }
 }
 
 /// Quantity of a channel, from its name, unit and shape.
@@ -197,7 +253,7 @@ fn kind(channel: &InferredChannel) -> Kind {
         Some(Dimension::Acceleration) => return Kind::Acceleration,
         // of a rig that turns
         Some(Dimension::Angle) => return Kind::Displacement,
-        Some(Dimension::Frequency) if is_rate(channel) => return Kind::Velocity,
+        _ if is_rate(channel) => return Kind::Velocity,
         Some(Dimension::Force) => return Kind::Drive,
         _ => {}
     }
@@ -207,11 +263,24 @@ fn kind(channel: &InferredChannel) -> Kind {
     match () {
         () if has(&DRIVES) => Kind::Drive,
         () if has(&["vel", "speed", "laser", "ldv", "vib", "vx", "vy"]) => Kind::Velocity,
-        () if has(&["disp", "pos", "dx", "dy"]) => Kind::Displacement,
+        () if has(&["disp", "pos", "dx", "dy", "angle", "winkel"]) => Kind::Displacement,
         () if has(&["acc"]) => Kind::Acceleration,
         () if channel.levels.is_some() => Kind::Contact,
+        // a coordinate, in pixels too
+        () if unit.is_none() && is_coordinate(channel, &words) => Kind::Displacement,
         () => Kind::Unknown,
     }
+}
+
+/// Whether a channel is called `x`, `y`, `x1` …, without a unit or in pixels.
+fn is_coordinate(channel: &InferredChannel, words: &[String]) -> bool {
+    let pixels = channel
+        .unit
+        .as_deref()
+        .is_none_or(|u| ["px", "pixel", "pixels"].contains(&u));
+    let [word] = words else { return false };
+    let letter = word.trim_end_matches(|c: char| c.is_ascii_digit());
+    pixels && ["x", "y", "z"].contains(&letter)
 }
 
 /// Channels named alike but for what they measure: "Blue Position", "Blue Velocity", "Red Position" ….
