@@ -72,10 +72,14 @@ fn in_pool<T: Send>(pool: &Option<ThreadPool>, work: impl FnOnce() -> T + Send) 
     }
 }
 
-/// Motions as cells: each motion that occurs once, and its number in each cell.
+/// Cell of a start that is beyond the contact.
+pub(super) const BEYOND: u16 = u16::MAX;
+
+/// Motions as cells: each motion that occurs once, and its number in each cell. There are at most as many
+/// motions as cells, and no strip has as many cells as 16 bits have numbers.
 pub(super) fn cells<'a>(
     motions: impl Iterator<Item = &'a SettledMotion>,
-) -> (Vec<MotionStyle>, Vec<u8>) {
+) -> (Vec<MotionStyle>, Vec<u16>) {
     let mut known: Vec<SettledMotion> = Vec::new();
     let index = |motion: &SettledMotion| {
         let found = known.iter().position(|m| m == motion);
@@ -83,8 +87,7 @@ pub(super) fn cells<'a>(
             known.push(*motion);
             known.len() - 1
         });
-        // more motions than that cannot be told apart by eye
-        u8::try_from(index).unwrap_or(254).min(254)
+        u16::try_from(index).unwrap_or(BEYOND - 1)
     };
     let cells = motions.map(index).collect();
     let style = |m: &SettledMotion| MotionStyle::of(&Motion::from(*m));

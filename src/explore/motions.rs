@@ -7,7 +7,7 @@ use serde_json::json;
 use super::answer::Stop;
 use super::frame::Frame;
 use super::jobs::Job;
-use super::maps::cells;
+use super::maps::{BEYOND, cells};
 use super::state::Cursor;
 use super::{ExploreError, State};
 use crate::motion::Motion;
@@ -283,9 +283,6 @@ pub(super) fn line(state: &State, job: &Job) -> Result<(), Stop> {
     }
     Ok(())
 }
-
-/// Cell of a start that is beyond the contact.
-const BEYOND: u8 = 255;
 
 /// Columns and rows of the first basins, and of the starts of coexisting motions.
 const COARSE_STARTS: usize = 24;

@@ -13,7 +13,7 @@ fn a_frame_is_its_header_then_numbers_then_cells() {
     let frame = Frame::new("map", 7)
         .with("level", 1)
         .column("x", [1.5, f64::NAN])
-        .cells(vec![3, 4, 5]);
+        .cells(vec![3, 4, 500]);
     let bytes = frame.bytes();
     let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;
     assert_eq!((4 + length) % 4, 0);
@@ -25,7 +25,7 @@ fn a_frame_is_its_header_then_numbers_then_cells() {
         f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap())
     };
     assert!(number(0) == 1.5 && number(1).is_nan());
-    assert_eq!(&bytes[4 + length + 8..], [3, 4, 5]);
+    assert_eq!(&bytes[4 + length + 8..], [3, 0, 4, 0, 244, 1]);
 }
 
 fn on_line(line: Line) -> State {

@@ -1,6 +1,7 @@
 //! The explorer: its protocol, its defences, its campaign, and the page in a browser.
 
 mod browser;
+mod browser_maps;
 mod campaign;
 pub(crate) mod chromium;
 mod defences;

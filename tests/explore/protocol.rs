@@ -25,7 +25,7 @@ fn labels(page: &mut Page, state: &Value, level: u64) -> Vec<String> {
         let columns = size[0].as_u64().expect("columns");
         assert_eq!(frame.header["first_row"], all.len() as u64 / columns);
         let motions = frame.header["motions"].as_array().expect("motions");
-        let label = |cell: &u8| motions[*cell as usize]["label"].as_str().expect("a label");
+        let label = |cell: &u16| motions[*cell as usize]["label"].as_str().expect("a label");
         all.extend(frame.cells.iter().map(|c| label(c).to_owned()));
         if all.len() as u64 == columns * size[1].as_u64().expect("rows") {
             return all;

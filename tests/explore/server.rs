@@ -115,7 +115,7 @@ impl Drop for Explorer {
 pub(crate) struct Frame {
     pub(crate) header: Value,
     pub(crate) columns: Vec<(String, Vec<f32>)>,
-    pub(crate) cells: Vec<u8>,
+    pub(crate) cells: Vec<u16>,
 }
 
 impl Frame {
@@ -133,11 +133,12 @@ impl Frame {
             columns.push((column[0].as_str().expect("a name").to_owned(), values));
             rest = after;
         }
-        assert_eq!(header["cells"].as_u64(), Some(rest.len() as u64));
+        assert_eq!(header["cells"].as_u64(), Some(rest.len() as u64 / 2));
+        let cell = |b: &[u8]| u16::from_le_bytes(b.try_into().expect("two bytes"));
         Self {
             header,
             columns,
-            cells: rest.to_vec(),
+            cells: rest.chunks_exact(2).map(cell).collect(),
         }
     }
 

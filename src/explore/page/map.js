@@ -8,6 +8,9 @@ const KINDS = {
   sticking: { text: "stay together *ρ*ₚ", colour: "quiet", width: 2 },
 };
 
+/** A cell that is not computed yet. */
+const EMPTY = 0xffffffff;
+
 /** The map's canvases, from below: only that which changes is drawn again. */
 const LAYERS = { tiles: "map-tiles", lines: "map", cursor: "map-cursor" };
 
@@ -16,7 +19,7 @@ export class MapView {
     this.layers = Object.fromEntries(Object.entries(LAYERS).map(([name, id]) => [name, document.getElementById(id)]));
     this.canvas = this.layers.lines;
     this.app = app;
-    this.tiles = [];        // { level, eta, rho, size, image, styles, cells, id }
+    this.tiles = [];        // { level, eta, rho, size, image, styles, known, cells, id }
     this.curves = {};       // "s2:1" → { eta, rho, exists }
     this.styles = new Map(); // label → style, of what is in view
     this.due = new Set();    // layers to be drawn
@@ -45,15 +48,14 @@ export class MapView {
       const [columns, rows] = frame.size;
       const canvas = document.createElement("canvas");
       canvas.width = columns; canvas.height = rows;
-      tile = { id: frame.id, level: frame.level, eta: frame.eta, rho: frame.rho, size: frame.size, canvas, styles: [], cells: new Uint8Array(columns * rows).fill(255), filled: 0 };
+      tile = { id: frame.id, level: frame.level, eta: frame.eta, rho: frame.rho, size: frame.size, canvas, styles: [], known: new Map(), cells: new Uint32Array(columns * rows).fill(EMPTY), filled: 0 };
       // what is older stays below until the first strip of the new one is there
       this.tiles = this.tiles.filter((t) => t.id === frame.id || t.level <= 1).slice(-3);
       this.tiles.push(tile);
     }
     const index = frame.motions.map((style) => {
-      let at = tile.styles.findIndex((s) => s.label === style.label);
-      if (at < 0) { tile.styles.push(style); at = tile.styles.length - 1; }
-      return at;
+      if (!tile.known.has(style.label)) tile.known.set(style.label, tile.styles.push(style) - 1);
+      return tile.known.get(style.label);
     });
     const first = frame.first_row * tile.size[0];
     for (let i = 0; i < frame.cell.length; i++) tile.cells[first + i] = index[frame.cell[i]];
@@ -79,7 +81,7 @@ export class MapView {
       for (let i = 0; i < columns; i++) {
         const cell = tile.cells[(firstRow + k) * columns + i];
         const at = 4 * ((count - 1 - k) * columns + i);
-        if (cell === 255) continue;
+        if (cell === EMPTY) continue;
         const [r, g, b] = tints[cell];
         image.data[at] = r; image.data[at + 1] = g; image.data[at + 2] = b; image.data[at + 3] = 255;
       }
@@ -303,7 +305,7 @@ const ticksOf = (range, count) => { const t = ticks(range[0], range[1], count); 
 
 /** The motions that take most of a tile. */
 function commonest(tile) {
-  const counts = new Uint32Array(256);
+  const counts = new Uint32Array(tile.styles.length);
   for (const cell of tile.cells) counts[cell]++;
   const order = tile.styles.map((_, i) => i).sort((a, b) => counts[b] - counts[a]);
   return order.slice(0, 9).filter((i) => counts[i] > 2e-4 * tile.cells.length).map((i) => tile.styles[i]);

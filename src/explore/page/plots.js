@@ -2,6 +2,8 @@
 import { Frame, around, colour, fit, markColour, number, tint, FONT } from "./draw.js";
 
 const element = (id) => document.getElementById(id);
+/** Cell of a start that is beyond the contact. */
+const BEYOND = 0xffff;
 
 /** The motion at the cursor: series, phase portrait, Poincaré map, autocorrelation, numbers. */
 export class MotionPanel {
@@ -336,7 +338,7 @@ export class BasinsPanel {
     const image = t.canvas.getContext("2d").createImageData(w, rows), tints = frame.motions.map(tint);
     for (let k = 0; k < rows; k++) for (let i = 0; i < w; i++) {
       const cell = frame.cell[k * w + i], at = 4 * ((rows - 1 - k) * w + i);
-      if (cell === 255) continue;
+      if (cell === BEYOND) continue;
       const style = frame.motions[cell], seen = t.counts.get(style.label) ?? { style, count: 0 };
       seen.count++; t.total++; t.counts.set(style.label, seen);
       image.data.set([...tints[cell], 255], at);

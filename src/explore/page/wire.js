@@ -1,7 +1,7 @@
 // One WebSocket for everything: requests as JSON, answers as frames of a JSON header, columns of
 // 32-bit numbers and cells.
 
-/** Decode a frame: its header, with `column` (name → Float32Array) and `cell` (Uint8Array). */
+/** Decode a frame: its header, with `column` (name → Float32Array) and `cell` (Uint16Array). */
 export function decode(buffer) {
   const length = new DataView(buffer).getUint32(0, true);
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
@@ -11,12 +11,12 @@ export function decode(buffer) {
     header.column[name] = new Float32Array(buffer, offset, count);
     offset += 4 * count;
   }
-  header.cell = new Uint8Array(buffer, offset, header.cells);
+  header.cell = new Uint16Array(buffer, offset, header.cells);
   return header;
 }
 
 export class Wire {
-  /** `receive(frame)` is called with every frame that answers the newest request of its slot. */
+  /** `receive(frame, since, state)` is called with every frame that answers the newest request of its slot. */
   constructor(token, receive, closed) {
     this.receive = receive;
     this.next = 1;
