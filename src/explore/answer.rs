@@ -5,7 +5,7 @@ use serde_json::json;
 use super::frame::Frame;
 use super::jobs::{Job, Stale, refusal};
 use super::wire::{Ask, Request};
-use super::{ExploreError, Session, State, demo, evidence, export, maps, motions};
+use super::{ExploreError, Session, demo, evidence, export, limits, maps, motions};
 
 /// Why an answer ends early.
 #[derive(Debug)]
@@ -44,7 +44,7 @@ fn ask(session: &Session, request: &Request, job: &Job) -> Result<(), Stop> {
         Ask::Boundaries { points, .. } => maps::boundaries(state, *points, job),
         Ask::Ahead { points } => Ok(job.send(maps::bare(state, *points, job.id)?)?),
         Ask::Motion { carried_from } => motions::motion(state, *carried_from, job),
-        Ask::Run { periods } => motions::run(state, *periods, job),
+        Ask::Run { periods, facts } => motions::run(state, *periods, *facts, job),
         Ask::Line {} => motions::line(state, job),
         Ask::Basins {} => motions::basins(state, job),
         Ask::Coexisting {} => motions::coexisting(state, job),
@@ -70,8 +70,9 @@ fn hello(session: &Session, job: &Job) -> Result<(), Stop> {
         .frame("hello")
         .with("program", env!("CARGO_PKG_VERSION"))
         .with("state", session.state())
-        .with("first", State::default())
+        .with("limits", limits::all())
         .with("demos", demo::list())
+        .with("title", session.title())
         .with("campaign", session.campaign().ok().map(|c| c.facts()))
         .with("demo", session.demo())
         .with("notes", session.notes());

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::ExploreError;
+use super::limits::{DEFLECTION, ETA, FREQUENCY, RHO};
 use super::state::{Cursor, Panel, RigScale, State, Window};
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::compare::{self, Input, Placed};
@@ -166,19 +167,21 @@ impl Campaign {
                     .collect(),
             )
         };
+        let frequency = fit
+            .map(|p| p.natural_frequency_hz)
+            .or(value(&joint.natural_frequency_hz))
+            .or(self.resolved.rig.natural_frequency_hz)
+            .or_else(frequencies)
+            .unwrap_or(1.0);
+        let deflection = fit
+            .map(|p| p.static_deflection_m)
+            .or(value(&joint.static_deflection_m))
+            .or(self.resolved.rig.static_deflection_m)
+            .or_else(gaps)
+            .unwrap_or(1e-3);
         RigScale {
-            natural_frequency_hz: fit
-                .map(|p| p.natural_frequency_hz)
-                .or(value(&joint.natural_frequency_hz))
-                .or(self.resolved.rig.natural_frequency_hz)
-                .or_else(frequencies)
-                .unwrap_or(1.0),
-            static_deflection_m: fit
-                .map(|p| p.static_deflection_m)
-                .or(value(&joint.static_deflection_m))
-                .or(self.resolved.rig.static_deflection_m)
-                .or_else(gaps)
-                .unwrap_or(1e-3),
+            natural_frequency_hz: FREQUENCY.nearest(frequency),
+            static_deflection_m: DEFLECTION.nearest(deflection),
         }
     }
 
@@ -238,8 +241,8 @@ impl Campaign {
         let middle = |r: (f64, f64)| 0.5 * (r.0 + r.1);
         let (eta, rho) = place.unwrap_or((middle(view.eta), middle(view.rho)));
         Cursor {
-            eta,
-            rho,
+            eta: ETA.nearest(eta),
+            rho: RHO.nearest(rho),
             ..State::default().cursor
         }
     }
@@ -258,9 +261,10 @@ impl Campaign {
         let (Some(eta), Some(rho)) = (range(|p| p.0), range(|p| p.1)) else {
             return first.view;
         };
+        let high = (eta.1.clamp(0.2, ETA.high), rho.1.clamp(0.2, 20.0));
         Window {
-            eta: (eta.0.max(0.05), eta.1),
-            rho: (rho.0.max(0.0).min(rho.1 - 0.1), rho.1.min(20.0)),
+            eta: (eta.0.clamp(0.05, high.0 - 0.1), high.0),
+            rho: (rho.0.clamp(0.0, high.1 - 0.1), high.1),
         }
     }
 

@@ -15,6 +15,7 @@ mod export;
 mod first_tiles;
 mod frame;
 mod jobs;
+mod limits;
 mod maps;
 mod motions;
 mod server;

@@ -16,10 +16,13 @@ use crate::signal::whole;
 use impact_oscillator::atlas::BasinGrid;
 use impact_oscillator::atlas::basins::basin_rows;
 use impact_oscillator::atlas::map::{UnitMass, even};
-use impact_oscillator::atlas::portrait::{Portrait, portrait};
+use impact_oscillator::atlas::portrait::{LONGEST_LAG, Portrait, PortraitPlan, portrait};
 use impact_oscillator::atlas::sweep::{Carried, SweepPoint, impactless};
 use impact_oscillator::model::range;
-use impact_oscillator::{Machine, MapSettings, Setting, SettledMotion, Simulator, Trajectory};
+use impact_oscillator::model::simulate::Snapshot;
+use impact_oscillator::{
+    Machine, MapSettings, Setting, SettledMotion, Simulator, Trajectory, Watch,
+};
 
 /// Time after which steps of a sweep are sent together.
 const BATCH: Duration = Duration::from_millis(40);
@@ -98,19 +101,24 @@ pub(super) fn motion(
         point,
         portrait,
     } = seen(state, carried_from)?;
-    let free = impactless(&state.machine(), cursor.eta);
     let frame = job
         .frame("motion")
         .with("cursor", cursor)
+        .with("gap", portrait.gap)
+        .with("two_masses", portrait.two_masses);
+    let frame = with_facts(frame, &state.machine(), &point);
+    Ok(job.send(with_portrait(frame, &portrait))?)
+}
+
+/// With the motion and its characteristics.
+fn with_facts(frame: Frame, machine: &Machine, point: &SweepPoint) -> Frame {
+    let free = impactless(machine, point.eta);
+    frame
         .with("motion", MotionStyle::of(&Motion::from(point.motion)))
         .with("x_max", point.x_max)
         .with("lyapunov", point.lyapunov)
         .with("approach_speeds", &point.approach_speeds)
-        .with("autocorrelation", &point.autocorrelation)
         .with("impactless", json!({"x": free.x, "y": free.y}))
-        .with("gap", portrait.gap)
-        .with("two_masses", portrait.two_masses);
-    Ok(job.send(with_portrait(frame, &portrait))?)
 }
 
 fn with_portrait(frame: Frame, p: &Portrait) -> Frame {
@@ -139,8 +147,45 @@ const MOST_RUN: f64 = 50.0;
 /// Samples of a running motion in a drive period.
 const RUN_SAMPLES: f64 = 80.0;
 
+/// Drive periods that a running motion is looked at to say what it is now.
+const NOW_PERIODS: f64 = 24.0;
+
+/// What a running motion is now: its coming periods, without settling.
+fn now(
+    state: &State,
+    machine: &Machine,
+    from: &Snapshot,
+    frame: Frame,
+) -> Result<Frame, ExploreError> {
+    let cursor = &state.cursor;
+    let watch = Watch {
+        settle_periods: 0.0,
+        watch_periods: NOW_PERIODS,
+        ..state.watch
+    };
+    let mut motion = Carried::resume(machine, from, watch)?;
+    let (start, phase) = motion.place();
+    let point = motion.step((cursor.eta, cursor.rho))?;
+    let plan = PortraitPlan {
+        setting: Setting::new(cursor.eta, cursor.rho).at_phase(phase),
+        start,
+        periods: NOW_PERIODS,
+        poincare_periods: 2 * LONGEST_LAG,
+        ..state.portrait()
+    };
+    let seen = portrait(machine, &plan)?;
+    let mut style = MotionStyle::of(&Motion::from(point.motion));
+    if !point.motion.is_periodic() {
+        style.label = "not periodic".into();
+    }
+    Ok(with_facts(frame, machine, &point)
+        .with("motion", style)
+        .column("lag", seen.autocorrelation.iter().map(|a| a.0))
+        .column("autocorrelation", seen.autocorrelation.iter().map(|a| a.1)))
+}
+
 /// The next stretch of the motion at the cursor, and where it is then.
-pub(super) fn run(state: &State, periods: f64, job: &Job) -> Result<(), Stop> {
+pub(super) fn run(state: &State, periods: f64, facts: bool, job: &Job) -> Result<(), Stop> {
     let some = periods > 0.0 && periods <= MOST_RUN;
     range("periods", periods, some, "above 0, at most 50")?;
     let machine = state.machine();
@@ -153,8 +198,7 @@ pub(super) fn run(state: &State, periods: f64, job: &Job) -> Result<(), Stop> {
     let steps = whole::index((periods * RUN_SAMPLES).ceil());
     let taus = even((0.0, periods * period, steps + 1));
     let states = stretch.sample(taus.iter().copied());
-    let place = Carried::resume(&machine, &simulator.snapshot(), state.watch)?.place();
-    let (start, phase) = place;
+    let (start, phase) = (simulator.state().into(), simulator.phase());
     let cursor = Cursor {
         start,
         phase,
@@ -169,8 +213,13 @@ pub(super) fn run(state: &State, periods: f64, job: &Job) -> Result<(), Stop> {
     let frame = job
         .frame("run")
         .with("cursor", cursor)
-        .with("eta", state.cursor.eta)
         .with("gap", machine.gap(state.cursor.rho))
+        .with("two_masses", machine.y.is_some());
+    let frame = match facts {
+        true => now(state, &machine, &simulator.snapshot(), frame)?,
+        false => frame,
+    };
+    let frame = frame
         .column("periods", taus.iter().map(|t| t / period))
         .column("x", states.iter().map(|s| s.x))
         .column("vx", states.iter().map(|s| s.vx))

@@ -41,7 +41,7 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; f
      frame-ancestors 'none'";
 
 /// The page's files: path, type, content.
-const FILES: [(&str, &str, &str); 12] = [
+const FILES: [(&str, &str, &str); 15] = [
     ("/", HTML, include_str!("page/index.html")),
     ("/style.css", CSS, include_str!("page/style.css")),
     ("/uplot.css", CSS, include_str!("page/uplot.css")),
@@ -54,6 +54,9 @@ const FILES: [(&str, &str, &str); 12] = [
     ("/campaign.js", SCRIPT, include_str!("page/campaign.js")),
     ("/keys.js", SCRIPT, include_str!("page/keys.js")),
     ("/dialogs.js", SCRIPT, include_str!("page/dialogs.js")),
+    ("/fields.js", SCRIPT, include_str!("page/fields.js")),
+    ("/demos.js", SCRIPT, include_str!("page/demos.js")),
+    ("/exports.js", SCRIPT, include_str!("page/exports.js")),
 ];
 
 const HTML: &str = "text/html; charset=utf-8";
@@ -282,7 +285,8 @@ async fn page(socket: WebSocket, session: Arc<Session>) {
         match request {
             Ok(request) => jobs.take(request).await,
             Err((id, error)) => {
-                if outbox.send(refusal(id, &error)).await.is_err() {
+                let untaken = refusal(id, &error).with("taken", false);
+                if outbox.send(untaken).await.is_err() {
                     break;
                 }
             }

@@ -58,6 +58,9 @@ pub(super) enum Ask {
     Run {
         /// Its length in drive periods.
         periods: f64,
+        /// Whether the motion at its end is to be classified.
+        #[serde(default)]
+        facts: bool,
     },
     /// Characteristics along the line.
     Line {},

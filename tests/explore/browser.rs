@@ -251,7 +251,7 @@ fn browser_trajectories_are_set_into_the_characteristics() {
     let mut browser = Chromium::open(&explorer.url(), SIZE);
     browser.until(QUIET);
     let shares = "document.getElementById('numbers').textContent";
-    browser.until(&format!("/of all starts\\s*z = 1 100 %/.test({shares})"));
+    browser.until(&format!("/of all starts\\s*z = 1: 100 %/.test({shares})"));
     browser.key("h", 0);
     browser.until("impactid.line.done === true");
     let there = "[...impactid.line.trajectories.values()].filter((t) => t).length";

@@ -1,7 +1,7 @@
 //! The map in a browser, pixel by pixel.
 
 use super::chromium::Chromium;
-use super::server::{Explorer, QUIET};
+use super::server::{Explorer, QUIET, STUDIES};
 
 const SIZE: (u32, u32) = (1280, 800);
 
@@ -14,7 +14,7 @@ const NOTED: &str = "(() => { window.sent = new Map(); const of = impactid.map.t
 
 /// What is wrong with the finest tile and its legend: cells whose pixel is not the tint of the motion that was
 /// sent; `null` where nothing is.
-const WRONG: &str = "(async () => { const { tint } = await import('/draw.js'); \
+const WRONG: &str = "(async () => { const { tint, named } = await import('/draw.js'); \
      const tile = impactid.map.tiles.at(-1), styles = sent.get(tile), [w, h] = tile.size; \
      const { data } = tile.canvas.getContext('2d').getImageData(0, 0, w, h); \
      let wrong = 0; const counts = new Map(), tints = new Map(); \
@@ -27,7 +27,7 @@ const WRONG: &str = "(async () => { const { tint } = await import('/draw.js'); \
      const most = [...counts].sort((a, b) => b[1] - a[1])[0][0]; \
      const legend = document.getElementById('legend').textContent; \
      window.greatest = Math.max(window.greatest ?? 0, counts.size); \
-     return wrong === 0 && legend.includes(`z = ${most}`) ? null : \
+     return wrong === 0 && legend.includes(named({ label: most })) ? null : \
        `${wrong} of ${w * h} cells, ${counts.size} motions, most z = ${most}: ${legend}`; })()";
 
 /// The states of all demos that have maps of their own.
@@ -58,4 +58,24 @@ fn browser_every_cell_of_the_demos_maps_is_the_motion_that_was_sent() {
     let greatest = browser.evaluate("greatest").as_u64().unwrap();
     assert!(greatest > 500, "{greatest} motions at most");
     assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_a_study_opens_under_its_title_with_every_cell_right() {
+    let study = format!("{STUDIES}/fig8-regions.toml");
+    let explorer = Explorer::start(&[&study], &std::env::temp_dir());
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    let title = browser.evaluate("document.getElementById('title').textContent + document.title");
+    assert_eq!(
+        title.as_str().unwrap().matches("Figs. 8").count(),
+        2,
+        "{title}"
+    );
+    browser.evaluate(NOTED);
+    browser.evaluate("impactid.refresh(['map'])");
+    browser.until(QUIET);
+    let wrong = browser.evaluate(WRONG);
+    assert!(wrong.is_null(), "{wrong}");
 }

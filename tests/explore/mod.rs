@@ -2,6 +2,8 @@
 
 mod browser;
 mod browser_maps;
+mod browser_run;
+mod browser_values;
 mod campaign;
 pub(crate) mod chromium;
 mod defences;

@@ -15,6 +15,9 @@ use tungstenite::{Message, WebSocket};
 pub(crate) const QUIET: &str = "Object.values(impactid.wire.busy).every((b) => !b) \
      && impactid.map.finished === impactid.wire.newest.map";
 
+/// The studies that come with the program.
+pub(crate) const STUDIES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data-samples/studies");
+
 /// `impactid explore --no-browser`, ended when it goes out of scope.
 pub(crate) struct Explorer {
     child: Child,

@@ -1,12 +1,7 @@
 // Dialogs: initial conditions, parameters, R(v), exports, demos, keys.
 import { KEYS } from "./keys.js";
-
-const make = (name, text, className) => {
-  const e = document.createElement(name);
-  if (text !== undefined) e.textContent = text;
-  if (className) e.className = className;
-  return e;
-};
+import { copyAddress, exportFiles, png } from "./exports.js";
+import { make, numberField } from "./fields.js";
 
 export class Dialogs {
   constructor(app) {
@@ -28,52 +23,50 @@ export class Dialogs {
     this.box.querySelector("input, select, textarea, #dialog-body button, button")?.focus();
   }
 
-  /** Fields [name, value, apply(number)]; what is typed counts at once. */
+  /** Fields [name, limit, get, put]; what is typed counts at once. */
   fields(title, rows, note) {
     const grid = make("div", undefined, "fields");
-    for (const [name, value, apply] of rows) {
-      const label = make("label", name), input = make("input");
-      input.type = "text"; input.inputMode = "decimal"; input.value = String(value);
-      input.addEventListener("change", () => {
-        const v = Number(input.value.replace(",", ".").replace("−", "-"));
-        const good = input.value.trim() !== "" && Number.isFinite(v);
-        input.setAttribute("aria-invalid", String(!good));
-        if (good) apply(v);
-      });
-      label.append(input); label.style.display = "contents"; grid.append(label);
+    for (const [name, limit, get, put] of rows) {
+      const label = make("label", name), { input, fault } = numberField(name, this.app.limits[limit], get, put);
+      label.append(input); label.style.display = "contents"; grid.append(label, fault);
     }
     this.open(title, ...(note ? [make("p", note, "note")] : []), grid);
   }
 
   initial() {
     const { app } = this, c = () => app.state.cursor;
-    const start = (key) => (v) => app.start({ ...c().start, [key]: v });
-    const rows = [["X(0)", c().start.x, start("x")], ["X′(0)", c().start.vx, start("vx")], ["Y(0)", c().start.y, start("y")], ["Y′(0)", c().start.vy, start("vy")], ["phase φ, rad", c().phase, (v) => app.start(c().start, v)]];
+    const start = (name, key) => [name, "start", () => c().start[key], (v) => app.start({ ...c().start, [key]: v })];
+    const rows = [start("X(0)", "x"), start("X′(0)", "vx"), start("Y(0)", "y"), start("Y′(0)", "vy"), ["phase φ, rad", "phase", () => c().phase, (v) => app.start(c().start, v)]];
     this.fields("Initial conditions (A)", rows, "The motion is shown from this start, not settled. Q starts it from rest.");
   }
 
   system() {
-    const { app } = this, s = app.state, change = (part) => app.parameters(part);
-    const rows = [["R", typeof s.restitution === "number" ? s.restitution : "R(v)", (v) => change({ restitution: v })], ["β", s.damping_ratio, (v) => change({ damping_ratio: v })]];
+    const { app } = this, s = () => app.state, change = (part) => { app.parameters(part); };
+    const rows = [["R", "restitution", () => (typeof s().restitution === "number" ? s().restitution : null), (v) => change({ restitution: v })], ["β", "damping_ratio", () => s().damping_ratio, (v) => change({ damping_ratio: v })]];
     for (const [key, name] of [["drive_amplitude", "drive of Y over X"], ["stiffness", "stiffness of Y over X"], ["mass", "mass of Y over X"]]) {
-      rows.push([name, s.asymmetry[key], (v) => change({ asymmetry: { ...app.state.asymmetry, [key]: v } })]);
+      rows.push([name, key, () => s().asymmetry[key], (v) => change({ asymmetry: { ...s().asymmetry, [key]: v } })]);
     }
-    rows.push(["masses (1 or 2)", s.single ? 1 : 2, (v) => change({ single: v === 1 })]);
+    rows.push(["masses (1 or 2)", "masses", () => (s().single ? 1 : 2), (v) => (Number.isInteger(v) ? change({ single: v === 1 }) : "1 or 2")]);
     this.fields("Parameters of the system (B)", rows);
   }
 
   picture() {
     const { app } = this, v = () => app.state.view;
-    const end = (key, i) => (x) => { const r = [...v()[key]]; r[i] = x; app.look(...(key === "eta" ? [r, v().rho] : [v().eta, r])); };
-    this.fields("Parameters of the picture (C)", [["η from", v().eta[0], end("eta", 0)], ["η to", v().eta[1], end("eta", 1)], ["ρ from", v().rho[0], end("rho", 0)], ["ρ to", v().rho[1], end("rho", 1)], ["drive periods of the series", app.state.periods, (x) => app.set({ periods: x }, ["motion"])]]);
+    const end = (name, key, i) => [name, key, () => v()[key][i], (x) => {
+      const r = [...v()[key]]; r[i] = x;
+      if (!(r[1] > r[0])) return i ? `above ${r[0]}` : `below ${r[1]}`;
+      app.look(...(key === "eta" ? [r, v().rho] : [v().eta, r]));
+    }];
+    this.fields("Parameters of the picture (C)", [end("η from", "eta", 0), end("η to", "eta", 1), end("ρ from", "rho", 0), end("ρ to", "rho", 1), ["drive periods of the series", "periods", () => app.state.periods, (x) => { app.set({ periods: x }, ["motion"]); }]]);
   }
 
   simulation() {
-    const { app } = this, w = app.state.watch;
-    const watch = (key) => (v) => app.set({ watch: { ...app.state.watch, [key]: v } }, ["motion", "panel"]);
-    const line = (v) => app.state.line && app.set({ line: { ...app.state.line, steps: Math.round(v) } }, ["panel"]);
-    const cells = (v) => { const b = app.state.basins ?? app.ownBasins(); app.set({ basins: { ...b, cells: [Math.round(v), Math.round(v)] } }, ["panel"]); };
-    this.fields("Parameters of the simulation (D)", [["periods to settle", w.settle_periods, watch("settle_periods")], ["periods watched", w.watch_periods, watch("watch_periods")], ["tolerance of recurrence", w.tolerance, watch("tolerance")], ["Poincaré phase, rad", app.state.poincare_phase, (v) => app.set({ poincare_phase: v }, ["motion"])], ["steps of characteristics", app.state.line?.steps ?? 200, line], ["starts of basins, each way", app.state.basins?.cells[0] ?? 101, cells]]);
+    const { app } = this, s = () => app.state;
+    const watch = (name, key) => [name, key, () => s().watch[key], (v) => { app.set({ watch: { ...s().watch, [key]: v } }, ["motion", "panel"]); }];
+    const line = (v) => { app.set({ line: { ...(s().line ?? app.ownLine("eta")), steps: Math.round(v) } }, ["panel"]); };
+    const basins = () => s().basins ?? app.ownBasins();
+    const cells = (v) => { app.set({ basins: { ...basins(), cells: [Math.round(v), Math.round(v)] } }, ["panel"]); };
+    this.fields("Parameters of the simulation (D)", [watch("periods to settle", "settle_periods"), watch("periods watched", "watch_periods"), watch("tolerance of recurrence", "tolerance"), ["Poincaré phase, rad", "phase", () => s().poincare_phase, (v) => { app.set({ poincare_phase: v }, ["motion"]); }], ["steps of characteristics", "steps", () => s().line?.steps ?? 200, line], ["starts of basins, each way", "cells", () => basins().cells[0], cells]]);
   }
 
   law() {
@@ -121,16 +114,16 @@ export class Dialogs {
   exports() {
     const { app } = this;
     this.choices("Export what is shown (X)", [
-      ["PNG: the pictures as they are on this page", () => app.png()],
-      ["SVG: the figures in the report's style", () => app.exportFiles("svg")],
-      ["CSV: the numbers of the map and of the panel", () => app.exportFiles("csv")],
-      ["TOML: the study that reproduces them under `impactid study`", () => app.exportFiles("study")],
-      ["Address: copy it; it restores this page", () => app.copyAddress()],
+      ["PNG: the pictures as they are on this page", () => png()],
+      ["SVG: the figures in the report's style", () => exportFiles(app, "svg")],
+      ["CSV: the numbers of the map and of the panel", () => exportFiles(app, "csv")],
+      ["TOML: the study that reproduces them under `impactid study`", () => exportFiles(app, "study")],
+      ["Address: copy it; it restores this page", () => copyAddress(app)],
     ], "Files go where your browser saves downloads.");
   }
 
   demos() {
-    this.choices("Demos (F)", this.app.demos.map((name) => [name, () => this.app.demo(name)]), "A key ends a demo; the number alone shows its first picture.");
+    this.choices("Demos (F)", this.app.demos.map((name) => [name, () => this.app.player.start(name)]), "Esc ends a demo; the number alone shows its first picture.");
   }
 
   help() {

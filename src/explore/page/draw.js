@@ -67,6 +67,9 @@ export function number(v, digits = 4) {
   return text.replace("-", "−");
 }
 
+/** A motion by name: z = p/n, or the word for it. */
+export const named = ({ label }) => (/^\d/.test(label) ? `z = ${label}` : label);
+
 export const FONT = '"Libertinus Serif", Georgia, serif';
 
 /** A frame with axes; maps values to pixels. */

@@ -17,8 +17,8 @@ export const KEYS = [
   ["s", "basins of attraction at the cursor", (app) => app.panel("basins")],
   ["m", "the motion at the cursor", (app) => app.panel("motion")],
   ["f", "demos of the program", (app) => app.dialogs.demos()],
-  ["k", "record a demo; again: save it", (app) => app.record()],
-  ["j", "replay the recorded demo, or one from a file", (app) => app.replay()],
+  ["k", "record a demo; again: save it", (app) => app.player.record()],
+  ["j", "replay the recorded demo, or one from a file", (app) => app.player.replay()],
   ["arrows", "move η and ρ, the motion carried along; Shift: ten steps; Ctrl: a tenth", null],
   ["+ −", "zoom; wheel: zoom at the pointer; Shift and drag: move the picture", null],
   ["Home", "all of the plane, or all records", (app) => app.home()],
@@ -44,7 +44,7 @@ const SPECIAL = {
 
 /** Do what a key means; whether it means anything. */
 export function press(app, key, event) {
-  if (/^[0-9]$/.test(key)) { app.picture(Number(key)); return true; }
+  if (/^[0-9]$/.test(key)) { app.player.picture(Number(key)); return true; }
   const lower = key.length === 1 ? key.toLowerCase() : key;
   const action = SPECIAL[lower] ?? KEYS.find(([k]) => k === lower)?.[2];
   if (!action) return false;

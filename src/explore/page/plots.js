@@ -1,5 +1,5 @@
 // Beside the map: the motion, characteristics, basins.
-import { Frame, around, colour, fit, markColour, number, tint, FONT } from "./draw.js";
+import { Frame, around, colour, fit, markColour, named, number, tint, FONT } from "./draw.js";
 
 const element = (id) => document.getElementById(id);
 /** Cell of a start that is beyond the contact. */
@@ -32,26 +32,31 @@ export class MotionPanel {
     if (!this.coexisting) return "…";
     const { motions, counts } = this.coexisting, all = counts.reduce((sum, n) => sum + n, 0);
     const sorted = motions.map((m, i) => [m.label, counts[i]]).sort((a, b) => b[1] - a[1]);
-    const named = sorted.slice(0, 5).map(([label, n]) => `z = ${label} ${Math.round(100 * n / all)} %`);
-    return named.join(", ") + (sorted.length > 5 ? ", …" : "");
+    const most = sorted.slice(0, 5).map(([label, n]) => `${named({ label })}: ${Math.round(100 * n / all)} %`);
+    return most.join(", ") + (sorted.length > 5 ? ", …" : "");
   }
 
   /** The next stretch of the running motion joins what is shown. */
   run(frame) {
     const span = this.app.state.periods;
-    const old = this.live ?? { t: [], x: [], vx: [], y: [], vy: [], gap: [], px: [], pv: [], end: 0 };
+    const old = this.live ?? { t: [], x: [], vx: [], y: [], vy: [], gap: [], px: [], pv: [], pt: [], end: 0, moved: 0 };
+    const { damping_ratio, restitution, asymmetry } = this.app.state;
+    const at = JSON.stringify([frame.cursor.eta, frame.cursor.rho, damping_ratio, restitution, asymmetry]);
+    if (old.at && old.at !== at) old.moved = old.end;
+    old.at = at;
+    if (frame.motion) this.frame = { ...this.frame, ...frame, column: { ...this.frame?.column, lag: frame.column.lag, autocorrelation: frame.column.autocorrelation } };
     const c = frame.column, n = c.periods.length, jumps = withJumps(c);
     old.jumps = (old.jumps ?? []).concat(jumps.map((p) => [old.end + p[0], p[1], p[2]]));
     for (let i = old.t.length ? 1 : 0; i < n; i++) {
       old.t.push(old.end + c.periods[i]); old.x.push(c.x[i]); old.vx.push(c.vx[i]);
       old.y.push(c.y[i]); old.vy.push(c.vy[i]); old.gap.push(frame.gap);
     }
-    old.px.push(...c.poincare_x); old.pv.push(...c.poincare_vx);
+    old.px.push(...c.poincare_x); old.pv.push(...c.poincare_vx); old.pt.push(...Array(c.poincare_x.length).fill(old.end));
     old.end += c.periods[n - 1];
     const first = old.t.findIndex((t) => t >= old.end - span);
     if (first > 0) for (const key of ["t", "x", "vx", "y", "vy", "gap"]) old[key].splice(0, first);
     old.jumps = old.jumps.filter((p) => p[0] >= old.end - span);
-    if (old.px.length > 500) { old.px.splice(0, old.px.length - 500); old.pv.splice(0, old.pv.length - 500); }
+    for (const key of ["px", "pv", "pt"]) old[key].splice(0, Math.max(0, old[key].length - 500));
     this.live = old;
     this.draw();
   }
@@ -124,7 +129,9 @@ export class MotionPanel {
     const wall = this.frame ? this.frame.gap / (this.frame.two_masses ? 2 : 1) : null;
     f.clip(() => {
       if (wall !== null) f.curve([wall, wall], f.y, { colour: colour("quiet"), dash: [3, 3], width: 1 });
-      f.curve(xs, vs, { colour: colour("blue"), width: 1.3 });
+      const before = l ? path.findLastIndex((p) => p[0] < l.moved) + 1 : 0;
+      f.curve(xs.slice(0, before + 1), vs.slice(0, before + 1), { colour: colour("quiet"), width: 1, alpha: 0.35 });
+      f.curve(xs.slice(before), vs.slice(before), { colour: colour("blue"), width: 1.3 });
       if (!l) f.dots(c.impact_x, c.impact_vx_before, 2, colour("ink"));
     });
   }
@@ -133,8 +140,12 @@ export class MotionPanel {
     const l = this.live, c = this.frame?.column;
     const xs = l ? l.px : c.poincare_x, vs = l ? l.pv : c.poincare_vx;
     const grown = (list) => { const [a, b] = around([list], 0.1), m = 0.05; return b - a < 2 * m ? [(a + b) / 2 - m, (a + b) / 2 + m] : [a, b]; };
-    const f = new Frame(element("poincare"), grown(xs), grown(vs), ["*X* once a drive period", "*X*′"]).axes();
-    f.clip(() => f.dots(xs, vs, xs.length > 50 ? 1.2 : 2.5, colour("vermilion")));
+    const before = l ? l.pt.findLastIndex((t) => t < l.moved) + 1 : 0, size = xs.length > 50 ? 1.2 : 2.5;
+    const f = new Frame(element("poincare"), grown(xs), grown(vs), [`*X* once a drive period${before ? "; grey: before the move" : ""}`, "*X*′"]).axes();
+    f.clip(() => {
+      f.dots(xs.slice(0, before), vs.slice(0, before), size, colour("band"));
+      f.dots(xs.slice(before), vs.slice(before), size, colour("vermilion"));
+    });
   }
 
   correlation() {
@@ -147,9 +158,9 @@ export class MotionPanel {
   numbers() {
     const f = this.frame, s = this.app.state, w = f.approach_speeds;
     const speeds = w.length === 0 ? "none" : w.length <= 4 ? w.map((v) => number(v, 6)).join(", ") : `${number(Math.min(...w), 5)} to ${number(Math.max(...w), 5)}`;
-    const start = f.cursor.start;
+    const { start, phase } = s.cursor;
     const rows = [
-      ["settles on", `z = ${f.motion.label}`],
+      [this.live ? "now" : "settles on", named(f.motion)],
       ["of all starts", this.shares()],
       ["approach speed", speeds],
       ["X greatest", number(f.x_max, 6)],
@@ -158,7 +169,7 @@ export class MotionPanel {
       ["start X, X′", `${number(start.x, 5)}, ${number(start.vx, 5)}`],
     ];
     if (f.two_masses && (start.x !== start.y || start.vx !== start.vy)) rows.push(["start Y, Y′", `${number(start.y, 5)}, ${number(start.vy, 5)}`]);
-    rows.push(["phase φ", `${number(f.cursor.phase, 5)} rad`], ["Poincaré at", `${number(s.poincare_phase, 4)} rad`]);
+    rows.push(["phase φ", `${number(phase, 5)} rad`], ["Poincaré at", `${number(s.poincare_phase, 4)} rad`]);
     element("numbers").replaceChildren(...facts(rows));
   }
 }
@@ -260,7 +271,7 @@ export class LinePanel {
       Object.assign(small, { x: around([xs]), y: around([vs]), box: { left, top: top + 13, width, height: height - 14 } });
       small.clip(() => small.curve(xs, vs, { colour: colour("blue"), width: 1 }));
       c.font = `12px ${FONT}`; c.textAlign = "center"; c.textBaseline = "top"; c.fillStyle = markColour(t.motion);
-      c.fillText(`z = ${t.motion.label}`, left + width / 2, top + 1);
+      c.fillText(named(t.motion), left + width / 2, top + 1);
     });
   }
 
@@ -359,7 +370,7 @@ export class BasinsPanel {
     });
     f.axes();
     const shares = [...t.counts.values()].sort((a, b) => b.count - a.count).slice(0, 8);
-    element("basin-shares").replaceChildren(...shares.map(({ style, count }) => swatch(style, `z = ${style.label}: ${(100 * count / t.total).toFixed(1)} %`)));
+    element("basin-shares").replaceChildren(...shares.map(({ style, count }) => swatch(style, `${named(style)}: ${(100 * count / t.total).toFixed(1)} %`)));
   }
 }
 

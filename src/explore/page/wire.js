@@ -26,6 +26,7 @@ export class Wire {
     this.waiting = {};     // slot → request to be sent then
     this.promises = {};    // id → [resolve, reject]
     this.sent = {};        // id → time it was asked for, ms
+    this.states = {};      // id → the state for which
     this.keyAt = 0;        // time of the last key, ms
     document.addEventListener("keydown", (event) => { this.keyAt = event.timeStamp; }, true);
     const protocols = ["impactid.1", "token." + token];
@@ -47,6 +48,7 @@ export class Wire {
     this.newest[slot] = id;
     this.slots[id] = slot;
     this.sent[id] = since ?? this.clock();
+    this.states[id] = state;
     if (this.socket.readyState === 1) this.socket.send(JSON.stringify({ id, ask, state }));
     return id;
   }
@@ -79,10 +81,10 @@ export class Wire {
       if (frame.kind === "refused") promise[1](frame); else promise[0](frame);
       return;
     }
-    const since = this.sent[frame.id];
+    const since = this.sent[frame.id], state = this.states[frame.id];
     if (this.busy[slot] === frame.id) this.busy[slot] = 0;
     if (frame.kind === "refused" || this.newest[slot] === frame.id || frame.id === 0) {
-      this.receive(frame, slot, since);
+      this.receive(frame, since, state);
     }
     if (!this.busy[slot] && this.waiting[slot]) {
       const [make, asked] = this.waiting[slot];
@@ -90,7 +92,7 @@ export class Wire {
       this.busy[slot] = this.send(slot, ...make(), asked);
     }
     for (const id of Object.keys(this.slots)) {
-      if (this.newest[this.slots[id]] !== Number(id)) { delete this.slots[id]; delete this.sent[id]; }
+      if (this.newest[this.slots[id]] !== Number(id)) { delete this.slots[id]; delete this.sent[id]; delete this.states[id]; }
     }
   }
 }
