@@ -1,5 +1,7 @@
 //! Each request with what answers it.
 
+use std::time::Duration;
+
 use serde_json::json;
 
 use super::frame::Frame;
@@ -28,9 +30,22 @@ impl<E: Into<ExploreError>> From<E> for Stop {
     }
 }
 
+/// Longest time that one motion may take.
+const LONGEST: Duration = Duration::from_secs(20);
+
 /// Answer a request.
 pub(super) fn answer(session: &Session, request: &Request, job: &Job) {
-    if let Err(Stop::Refused(error)) = ask(session, request, job) {
+    let longest = request.ask.is_single().then_some(LONGEST);
+    let found = match request.ask.is_given_up() {
+        true => job.patience(longest).work(|| ask(session, request, job)),
+        false => Ok(ask(session, request, job)),
+    };
+    let stop = match found {
+        Ok(answered) => answered,
+        Err(_) if job.is_stale() => Err(Stop::Stale),
+        Err(_) => Err(Stop::Refused(ExploreError::TooLong)),
+    };
+    if let Err(Stop::Refused(error)) = stop {
         // a page that is gone needs no refusal
         let _ = job.send(refusal(job.id, &error));
     }

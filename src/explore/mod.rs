@@ -18,6 +18,7 @@ mod jobs;
 mod limits;
 mod maps;
 mod motions;
+mod pools;
 mod server;
 mod session;
 mod state;

@@ -20,6 +20,7 @@ use impact_oscillator::atlas::portrait::{LONGEST_LAG, Portrait, PortraitPlan, po
 use impact_oscillator::atlas::sweep::{Carried, SweepPoint, impactless};
 use impact_oscillator::model::range;
 use impact_oscillator::model::simulate::Snapshot;
+use impact_oscillator::patience::carry;
 use impact_oscillator::{
     Machine, MapSettings, Setting, SettledMotion, Simulator, Trajectory, Watch,
 };
@@ -319,7 +320,8 @@ pub(super) fn line(state: &State, job: &Job) -> Result<(), Stop> {
     let mut down = Way::new("down", &machine, state, (down, line.start))?;
     let mut since = Instant::now();
     for step in 1..=line.steps {
-        let (a, b) = rayon::join(|| up.step(), || down.step());
+        let (a, b) = (carry(|| up.step()), carry(|| down.step()));
+        let (a, b) = job.pools.work(|| rayon::join(a, b));
         a.and(b)?;
         if job.is_stale() {
             return Err(Stop::Stale);
@@ -365,10 +367,8 @@ fn settled_starts(
             return Err(Stop::Stale);
         }
         let last = (first + rows).min(grid.rows());
-        each(
-            first,
-            &basin_rows(&machine, setting, grid, &settings, first..last)?,
-        )?;
+        let rows = || basin_rows(&machine, setting, grid, &settings, first..last);
+        each(first, &job.pools.work(rows)?)?;
         first = last;
     }
     Ok(())

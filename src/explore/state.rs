@@ -182,6 +182,8 @@ pub struct RigScale {
 
 /// Columns and rows of the map that an exported study computes.
 pub(super) const MAP_CELLS: (usize, usize) = (128, 96);
+/// Most natural periods of a motion.
+const MOST_NATURAL_PERIODS: f64 = 160_000.0;
 /// Most trajectories in the picture of the characteristics.
 const MOST_INSETS: usize = 12;
 
@@ -260,6 +262,7 @@ impl State {
             .iter()
             .try_for_each(|inset| check_cursor("insets", inset))?;
         self.check_basins()?;
+        self.check_effort()?;
         if let Some(rig) = &self.rig {
             limits::FREQUENCY.check("rig.natural_frequency_hz", rig.natural_frequency_hz)?;
             limits::DEFLECTION.check("rig.static_deflection_m", rig.static_deflection_m)?;
@@ -302,6 +305,25 @@ impl State {
         rising("basins.vx", basins.vx, &limits::START)?;
         limits::CELLS.check("basins.cells", basins.cells.0 as f64)?;
         limits::CELLS.check("basins.cells", basins.cells.1 as f64)
+    }
+
+    /// That no motion goes through more natural periods than can be computed while somebody waits.
+    fn check_effort(&self) -> Result<(), ExploreError> {
+        let machine = self.machine();
+        let natural = machine
+            .y
+            .map_or(1.0, |y| y.natural_frequency_ratio.max(1.0));
+        let total = |watch: &Watch| watch.settle_periods + watch.watch_periods;
+        let line = self.line.iter().flat_map(|l| [l.eta.0, l.eta.1]);
+        let insets = self.insets.iter().map(|i| i.eta);
+        let watched = std::iter::once(self.cursor.eta).chain(line).chain(insets);
+        let slowest = watched.fold(f64::INFINITY, f64::min);
+        let of_map = total(&Watch::default()) / self.view.eta.0;
+        let most = (total(&self.watch) / slowest).max(of_map) * natural;
+        if most > MOST_NATURAL_PERIODS {
+            return Err(ExploreError::TooLong);
+        }
+        Ok(())
     }
 
     /// The machine.

@@ -7,5 +7,6 @@ mod browser_values;
 mod campaign;
 pub(crate) mod chromium;
 mod defences;
+mod patience;
 mod protocol;
 pub(crate) mod server;

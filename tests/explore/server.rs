@@ -54,6 +54,11 @@ impl Explorer {
         Self::start(&[], &std::env::temp_dir())
     }
 
+    /// The server's process.
+    pub(crate) fn process(&self) -> u32 {
+        self.child.id()
+    }
+
     /// The page's address.
     pub(crate) fn url(&self) -> String {
         format!("http://127.0.0.1:{}/#t={}", self.port, self.token)

@@ -15,7 +15,7 @@ use crate::model::{
     Flight, Impact, Initial, Machine, ModelError, Oscillator, Setting, SettledMotion, Simulator,
     Watch,
 };
-use crate::parallel;
+use crate::{parallel, patience};
 
 /// The grid: cell (i, k) lies at (`eta[i]`, `rho[k]`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -176,7 +176,7 @@ pub struct End {
 /// March cells, each from its own start, in the fast kernel where machine and starts allow.
 ///
 /// # Errors
-/// [`ModelError`] where a parameter is out of range.
+/// [`ModelError`] where a parameter is out of range, or nobody wants the cells any longer.
 pub fn march_from(
     machine: &Machine,
     starts: &[Start],
@@ -188,7 +188,10 @@ pub fn march_from(
             let cells: Vec<Cell> = starts.iter().map(|s| unit.cell(s)).collect();
             let mut outcomes = march_all(&unit.course(settings), &cells, settings.kernel);
             watch_again(&unit, &mut outcomes, settings);
-            Ok(outcomes.iter().map(|o| unit.end(o)).collect())
+            match patience::is_over() {
+                true => Err(ModelError::GivenUp),
+                false => Ok(outcomes.iter().map(|o| unit.end(o)).collect()),
+            }
         }
         _ => parallel::map(starts, |s| exact_cell(machine, s, settings))
             .into_iter()
@@ -330,9 +333,12 @@ pub(super) struct Shared<'a> {
 const BLOCK: usize = 8;
 
 impl Shared<'_> {
-    /// A cell that no thread has taken.
+    /// A cell that no thread has taken; none once nobody wants them.
     pub(super) fn take(&mut self) -> Option<(usize, Cell)> {
         if self.block.is_empty() {
+            if patience::is_over() {
+                return None;
+            }
             let first = self.next.fetch_add(BLOCK, Ordering::Relaxed);
             self.block = first..(first + BLOCK).min(self.cells.len());
         }

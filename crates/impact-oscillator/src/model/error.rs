@@ -23,6 +23,9 @@ pub enum ModelError {
         /// How far beyond the contact.
         depth: f64,
     },
+    /// The work was given up before its end: nobody waits for it.
+    #[error("the simulation was given up before its end")]
+    GivenUp,
     /// The request has no meaning for this machine.
     #[error("{0}")]
     Unsupported(&'static str),
