@@ -3,6 +3,7 @@
 mod browser;
 mod browser_maps;
 mod browser_run;
+mod browser_sizes;
 mod browser_values;
 mod campaign;
 pub(crate) mod chromium;

@@ -10,6 +10,7 @@ export class Dialogs {
     this.before = null;
     // the focus goes back at once, so that the next key counts
     this.box.addEventListener("close", () => {
+      if (this.box.open) return; // another one is open by now
       const back = this.before?.isConnected && this.before !== document.body ? this.before : document.getElementById("map");
       document.activeElement?.blur();
       back.focus({ preventScroll: true });

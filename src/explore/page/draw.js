@@ -111,7 +111,7 @@ export class Frame {
     c.font = `14px ${FONT}`; c.textAlign = "center"; c.textBaseline = "alphabetic";
     rich(c, this.titles[0], b.left + b.width / 2, this.height - 5);
     c.save(); c.translate(12, b.top + b.height / 2); c.rotate(-Math.PI / 2);
-    rich(c, this.titles[1], 0, 0); c.restore();
+    rich(c, this.titles[1], 0, 0, b.height + 24); c.restore();
     return this;
   }
   curve(xs, ys, style = {}) {
@@ -139,17 +139,18 @@ export class Frame {
   }
 }
 
-/** Text in which *symbols* are slanted. */
-export function rich(c, text, x, y) {
-  const size = c.font.match(/(\d+(\.\d+)?)px/)[1];
-  const parts = text.split("*").map((t, i) => [t, `${i % 2 ? "italic " : ""}${size}px ${FONT}`]);
-  let width = 0;
-  for (const [t, font] of parts) { c.font = font; width += c.measureText(t).width; }
+/** Text in which *symbols* are slanted, smaller where it has no room. */
+export function rich(c, text, x, y, room = Infinity) {
+  const wanted = Number(c.font.match(/(\d+(\.\d+)?)px/)[1]);
+  const styled = (size) => text.split("*").map((t, i) => [t, `${i % 2 ? "italic " : ""}${size}px ${FONT}`]);
+  const long = (parts) => parts.reduce((sum, [t, font]) => { c.font = font; return sum + c.measureText(t).width; }, 0);
+  const size = Math.max(9, wanted * Math.min(1, room / long(styled(wanted))));
+  const parts = styled(size), width = long(parts);
   const align = c.textAlign;
   let at = align === "center" ? x - width / 2 : align === "right" ? x - width : x;
   c.textAlign = "left";
   for (const [t, font] of parts) { c.font = font; c.fillText(t, at, y); at += c.measureText(t).width; }
-  c.textAlign = align; c.font = `${size}px ${FONT}`;
+  c.textAlign = align; c.font = `${wanted}px ${FONT}`;
 }
 
 /** The range of values with a margin. */

@@ -30,7 +30,7 @@ export function numberField(name, range, get, put) {
   const show = () => {
     if (document.activeElement === input && input.value !== input.defaultValue) return;
     const v = get();
-    input.defaultValue = input.value = v === null ? "R(v)" : String(Number(v.toPrecision(10)));
+    input.defaultValue = input.value = v === null ? "R(v)" : String(Number(v.toPrecision(7)));
     say("");
   };
   input.addEventListener("change", () => {

@@ -2,6 +2,8 @@
 import { Frame, around, colour, fit, markColour, named, number, tint, FONT } from "./draw.js";
 
 const element = (id) => document.getElementById(id);
+/** Height of the key below the series, px. */
+const LEGEND = 28;
 /** Cell of a start that is beyond the contact. */
 const BEYOND = 0xffff;
 
@@ -79,7 +81,7 @@ export class MotionPanel {
     const other = l ? l.y.map((y, i) => l.gap[i] - y) : Float32Array.from(c.y, (y) => this.frame.gap - y);
     const data = [t, x, other];
     const theme = document.documentElement.dataset.theme;
-    const size = { width: Math.max(50, box.clientWidth), height: Math.max(60, box.clientHeight - 24) };
+    const size = { width: Math.max(50, box.clientWidth), height: Math.max(60, box.clientHeight - LEGEND) };
     if (this.plot && this.theme === theme && this.two === two) {
       if (this.plot.width !== size.width || this.plot.height !== size.height) this.plot.setSize(size);
       this.plot.setData(data);
