@@ -41,11 +41,10 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; f
      frame-ancestors 'none'";
 
 /// The page's files: path, type, content.
-const FILES: [(&str, &str, &str); 15] = [
+const FILES: [(&str, &str, &str); 14] = [
     ("/", HTML, include_str!("page/index.html")),
     ("/style.css", CSS, include_str!("page/style.css")),
-    ("/uplot.css", CSS, include_str!("page/uplot.css")),
-    ("/uplot.js", SCRIPT, include_str!("page/uplot.js")),
+    ("/svg.js", SCRIPT, include_str!("page/svg.js")),
     ("/main.js", SCRIPT, include_str!("page/main.js")),
     ("/wire.js", SCRIPT, include_str!("page/wire.js")),
     ("/map.js", SCRIPT, include_str!("page/map.js")),
@@ -156,13 +155,7 @@ fn router(app: App) -> Router {
         let content = font(face).unwrap_or_default();
         router = router.route(path, get(move || async move { file("font/otf", content) }));
     }
-    let licence = include_str!("page/uplot-LICENSE");
-    let text = "text/plain; charset=utf-8";
     router
-        .route(
-            "/uplot-LICENSE",
-            get(move || async move { file(text, licence) }),
-        )
         .fallback(|| async { (StatusCode::NOT_FOUND, "no such page\n") })
         .layer(middleware::from_fn(guarded))
         .with_state(app)

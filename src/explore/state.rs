@@ -426,6 +426,7 @@ impl State {
                 };
                 study.basins.insert("basins".into(), plan);
             }
+            (Panel::Record, _) => {}
             _ => {
                 study.time_series.insert("motion".into(), self.portrait());
             }

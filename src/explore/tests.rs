@@ -6,7 +6,7 @@ use super::demo::{self, Demo};
 use super::frame::Frame;
 use super::state::{Line, Panel, State};
 use super::{ExploreError, Session, export};
-use crate::pipeline::theory::{Pictures, Study};
+use crate::pipeline::theory::Study;
 
 #[test]
 fn a_frame_is_its_header_then_numbers_then_cells() {
@@ -139,7 +139,7 @@ fn the_exported_study_opens_as_the_same_state() {
     assert_eq!(opened.state().line, state.line);
     assert_eq!(opened.state().view, state.view);
     assert_eq!(opened.state().panel, Panel::Line);
-    let files = export::files(&state, Pictures::None).unwrap();
+    let files = export::files(&state).unwrap();
     let names: Vec<&str> = files.iter().map(|f| f.0.as_str()).collect();
     assert!(
         names.contains(&"map.csv") && names.contains(&"characteristics.csv"),

@@ -108,8 +108,6 @@ pub(super) enum ExportFile {
     Study,
     /// Its tables.
     Csv,
-    /// Its figures as SVG.
-    Svg,
 }
 
 impl Kind {

@@ -57,7 +57,7 @@ fn browser_a_run_that_is_stopped_leaves_the_settled_motion_whole() {
         browser.until(QUIET);
         std::thread::sleep(Duration::from_millis(60));
         browser.until(QUIET);
-        let whole = "[impactid.motion.live === null, impactid.motion.plot.data[0].at(-1), \
+        let whole = "[impactid.motion.live === null, Math.round(impactid.motion.span[1]), \
              impactid.motion.frame.column.poincare_x.length]";
         assert_eq!(browser.evaluate(whole), json!([true, 8, 300]), "{trial}");
     }

@@ -25,7 +25,7 @@ const FAULTS: &str = "(() => { const faults = [], box = (e) => e.getBoundingClie
      const name = (e) => e.id || e.className || e.textContent || e.tagName; \
      const all = (query) => [...document.querySelectorAll(query)].filter(shown); \
      if (document.documentElement.scrollWidth > innerWidth) faults.push('the page is wider than its window'); \
-     for (const e of all('#legend, #readout, .legend, #residuals, #sliders, .u-legend')) \
+     for (const e of all('#legend, #readout, .legend, #residuals, #sliders')) \
        if (e.scrollHeight > e.clientHeight + 1 || e.scrollWidth > e.clientWidth + 1) faults.push(`${name(e)} is cut`); \
      for (const e of all('button, input, select, canvas, dt, dd, h1, #legend > span')) \
        if (box(e).left < -1 || box(e).right > innerWidth + 1) faults.push(`${name(e)} leaves the window`); \
@@ -78,7 +78,7 @@ fn browser_nothing_is_cut_or_covered_at_any_size() {
 #[ignore = "needs chromium"]
 fn browser_no_picture_grows_while_the_motion_moves() {
     let explorer = Explorer::theory();
-    let heights = "[...document.querySelectorAll('canvas, #series, #panel')].map((e) => e.getBoundingClientRect().height)";
+    let heights = "[...document.querySelectorAll('canvas, #panel')].map((e) => e.getBoundingClientRect().height)";
     for size in SIZES {
         let mut browser = Chromium::open(&explorer.url(), size);
         browser.until(QUIET);

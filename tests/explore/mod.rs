@@ -1,6 +1,7 @@
 //! The explorer: its protocol, its defences, its campaign, and the page in a browser.
 
 mod browser;
+mod browser_files;
 mod browser_maps;
 mod browser_run;
 mod browser_sizes;

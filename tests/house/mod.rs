@@ -212,10 +212,8 @@ fn sockets_are_opened_on_loopback_alone_and_only_by_the_explorer() {
             .into_owned();
         let text = fs::read_to_string(&path).expect("text");
         let foreign = |scheme: &str| text.matches(scheme).count();
-        // uPlot's first line names its repository
-        let allowed = usize::from(name == "uplot.js");
         let all = foreign("https://") + foreign("http://");
-        assert!(all <= allowed, "{name} names another address");
+        assert!(all == 0, "{name} names another address");
     }
 }
 

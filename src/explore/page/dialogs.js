@@ -1,6 +1,6 @@
 // Dialogs: initial conditions, parameters, R(v), exports, demos, keys.
 import { KEYS } from "./keys.js";
-import { copyAddress, exportFiles, png } from "./exports.js";
+import { copyAddress, exportFiles, png, svg } from "./exports.js";
 import { make, numberField } from "./fields.js";
 
 export class Dialogs {
@@ -115,9 +115,9 @@ export class Dialogs {
   exports() {
     const { app } = this;
     this.choices("Export what is shown (X)", [
-      ["PNG: the pictures as they are on this page", () => png()],
-      ["SVG: the figures in the report's style", () => exportFiles(app, "svg")],
-      ["CSV: the numbers of the map and of the panel", () => exportFiles(app, "csv")],
+      ["PNG: the pictures of this page with their keys and numbers", () => png()],
+      ["SVG: the same, drawn as lines", () => svg(app)],
+      ["CSV: the numbers of the map and of the panel; with a record, its traces and its simulation", () => exportFiles(app, "csv")],
       ["TOML: the study that reproduces them under `impactid study`", () => exportFiles(app, "study")],
       ["Address: copy it; it restores this page", () => copyAddress(app)],
     ], "Files go where your browser saves downloads.");

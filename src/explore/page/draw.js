@@ -33,8 +33,23 @@ export function tint(style) {
   });
 }
 
+/** A context in which nothing is drawn. */
+const NOWHERE = document.createElement("canvas").getContext("2d");
+/** Where a canvas is drawn instead, for files. */
+let instead = null;
+
+/** Draw one canvas into another context; `paint` draws them all. */
+export function drawnInto(context, canvas, paint) {
+  instead = { context, canvas };
+  try { paint(); } finally { instead = null; }
+}
+
 /** Fit a canvas to its box; returns its context in CSS pixels and its size. */
 export function fit(canvas) {
+  if (instead) {
+    const { width, height } = canvas.getBoundingClientRect();
+    return { context: instead.canvas === canvas ? instead.context : NOWHERE, width: Math.max(1, width), height: Math.max(1, height) };
+  }
   const ratio = window.devicePixelRatio || 1;
   const box = canvas.getBoundingClientRect();
   const [width, height] = [Math.max(1, box.width), Math.max(1, box.height)];
@@ -114,6 +129,17 @@ export class Frame {
     rich(c, this.titles[1], 0, 0, b.height + 24); c.restore();
     return this;
   }
+  /** Names of what is drawn, [text, colour], in a row above the box. */
+  key(entries) {
+    const { context: c, box: b } = this;
+    let at = b.left;
+    c.textAlign = "left"; c.textBaseline = "alphabetic"; c.font = `14px ${FONT}`;
+    for (const [text, paint] of entries) {
+      if (paint) { c.beginPath(); c.moveTo(at, b.top - 10); c.lineTo(at + 18, b.top - 10); c.strokeStyle = paint; c.lineWidth = 2; c.stroke(); at += 23; }
+      c.fillStyle = colour("ink");
+      at += rich(c, text, at, b.top - 6) + 16;
+    }
+  }
   curve(xs, ys, style = {}) {
     const { context: c } = this;
     c.beginPath();
@@ -151,6 +177,7 @@ export function rich(c, text, x, y, room = Infinity) {
   c.textAlign = "left";
   for (const [t, font] of parts) { c.font = font; c.fillText(t, at, y); at += c.measureText(t).width; }
   c.textAlign = align; c.font = `${wanted}px ${FONT}`;
+  return width;
 }
 
 /** The range of values with a margin. */

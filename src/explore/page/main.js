@@ -124,7 +124,7 @@ class App {
   refresh(what) {
     const s = () => this.state;
     for (const kind of what) {
-      if (kind === "map") this.wire.ask("map", { kind: "map" }, s());
+      if (kind === "map") { this.wire.ask("map", { kind: "map" }, s()); this.map.asked(); }
       else if (kind === "boundaries") this.boundaries();
       else if (kind === "motion") this.wire.askAfter("motion", () => [{ kind: "motion", carried_from: null }, s()]);
       else if (kind === "carried") this.wire.askAfter("motion", () => [{ kind: "motion", carried_from: this.from() }, s()]);
@@ -439,6 +439,11 @@ class App {
     } catch (error) { this.message(error.message, error.remedy); }
   }
 
+  /** Draw every picture now. */
+  paint() {
+    this.map.redrawNow(); this.motion.paint(); this.line.paint(); this.basins.draw(); this.campaign?.traces();
+  }
+
   // ---- looks ---------------------------------------------------------------------
   theme() {
     const root = document.documentElement;
@@ -453,7 +458,7 @@ class App {
     const items = [...styles].sort((a, b) => place(a) - place(b)).map((s) => swatch(s, named(s)));
     for (const kind of this.map.kinds()) {
       const span = document.createElement("span"), canvas = document.createElement("span");
-      canvas.style.cssText = `width:1.6rem;border-top:${kind.width}px ${kind.dash ? "dashed" : "solid"} ${colour(kind.colour)}`;
+      canvas.className = "sample"; canvas.style.cssText = `width:1.6rem;border-top:${kind.width}px ${kind.dash ? "dashed" : "solid"} ${colour(kind.colour)}`;
       const text = document.createElement("span");
       kind.text.split("*").forEach((t, i) => { const e = document.createElement(i % 2 ? "i" : "span"); e.textContent = t; text.append(e); });
       text.style.gap = "0"; span.append(canvas, text); items.push(span);

@@ -8,6 +8,10 @@ const KINDS = {
   sticking: { text: "stay together *ρ*ₚ", colour: "quiet", width: 2 },
 };
 
+/** Time within which a map comes at once, ms. */
+const AT_ONCE = 150;
+/** Opacity of a map that another one is replacing. */
+const FAINT = 0.2;
 /** A cell that is not computed yet. */
 const EMPTY = 0xffffffff;
 
@@ -26,6 +30,7 @@ export class MapView {
     this.drawn = false;      // whether something was, for the next picture of the screen
     this.labels = [];
     this.finished = 0;       // id of the newest request whose map came to its end
+    this.late = false;       // whether what is wanted has not come yet: what is older is faint
     this.theme = "";
     this.pointer();
     new ResizeObserver(() => this.redraw()).observe(this.canvas);
@@ -39,6 +44,26 @@ export class MapView {
     this.drawn = true;
     this.draw();
     requestAnimationFrame(() => { this.drawn = false; this.draw(); });
+  }
+
+  /** Draw all layers at once. */
+  redrawNow() {
+    for (const layer of Object.keys(LAYERS)) this.due.add(layer);
+    this.draw();
+  }
+
+  /** Another map was asked for: what is shown is that of another machine or view, and faint unless it comes at once. */
+  asked() {
+    clearTimeout(this.waiting);
+    if (!this.late) this.waiting = setTimeout(() => this.fade(true), AT_ONCE);
+  }
+
+  fade(late) {
+    clearTimeout(this.waiting);
+    if (this.late === late) return;
+    this.late = late;
+    document.getElementById("legend").classList.toggle("late", late);
+    this.redraw("tiles", "lines");
   }
 
   /** A strip of a tile. */
@@ -62,6 +87,8 @@ export class MapView {
     this.paint(tile, frame.first_row, frame.cell.length / tile.size[0]);
     tile.filled += frame.cell.length;
     tile.complete = tile.filled >= tile.cells.length;
+    // never the cells of two machines side by side
+    this.fade(!tile.complete && this.tiles.some((t) => t.id !== tile.id));
     if (tile.complete) {
       this.tiles = this.tiles.filter((t) => t === tile || (t.id === tile.id && t.level > tile.level));
       if (tile.level === 1) this.labels = placeLabels(tile);
@@ -128,12 +155,16 @@ export class MapView {
     return new Frame(canvas, state.view.eta, state.view.rho, titles, margin);
   }
 
+  /** Whether a tile is of another map than the one that is late. */
+  isOld(tile) { return this.late && tile.id !== this.app.wire.newest.map; }
+
   tilesLayer(f) {
     f.clip((c) => {
       c.imageSmoothingEnabled = false;
       for (const t of this.tiles) {
         const dx = (t.eta[1] - t.eta[0]) / (t.size[0] - 1) / 2, dy = (t.rho[1] - t.rho[0]) / (t.size[1] - 1) / 2;
         const [x0, x1] = [f.px(t.eta[0] - dx), f.px(t.eta[1] + dx)], [y0, y1] = [f.py(t.rho[1] + dy), f.py(t.rho[0] - dy)];
+        c.globalAlpha = this.isOld(t) ? FAINT : 1;
         c.drawImage(t.canvas, x0, y0, x1 - x0, y1 - y0);
       }
     });
@@ -145,7 +176,7 @@ export class MapView {
     f.clip((c) => {
       this.bands(f, c);
       this.boundaries(f);
-      this.regionLabels(f, c);
+      if (!this.late) this.regionLabels(f, c);
       if (app.campaign) app.campaign.draw(f, c);
     });
     f.axes();

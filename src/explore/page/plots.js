@@ -2,8 +2,6 @@
 import { Frame, around, colour, fit, markColour, named, number, tint, FONT } from "./draw.js";
 
 const element = (id) => document.getElementById(id);
-/** Height of the key below the series, px. */
-const LEGEND = 28;
 /** Cell of a start that is beyond the contact. */
 const BEYOND = 0xffff;
 
@@ -12,7 +10,10 @@ export class MotionPanel {
   constructor(app) {
     this.app = app;
     this.frame = null;
-    this.plot = null;
+    this.hover = null; // where the pointer is over the series, px
+    const series = element("series");
+    series.addEventListener("pointermove", (event) => { this.hover = this.timeFrame?.holds(event.offsetX, event.offsetY) ? event.offsetX : null; this.draw(); });
+    series.addEventListener("pointerleave", () => { this.hover = null; this.draw(); });
     for (const id of ["series", "phase", "poincare", "autocorrelation"]) new ResizeObserver(() => this.draw()).observe(element(id));
   }
 
@@ -68,57 +69,41 @@ export class MotionPanel {
     this.pending = true;
     requestAnimationFrame(() => {
       this.pending = false;
-      if (element("panel-motion").hidden || (!this.frame && !this.live)) return;
-      this.series(); this.phase(); this.poincare();
-      if (this.frame) { this.correlation(); this.numbers(); }
+      this.paint();
     });
   }
 
+  paint() {
+    if (element("panel-motion").hidden || !this.frame) return;
+    this.series(); this.phase(); this.poincare(); this.correlation(); this.numbers();
+  }
+
   series() {
-    const box = element("series"), l = this.live, c = this.frame?.column;
-    const two = this.frame?.two_masses ?? true;
+    const l = this.live, c = this.frame?.column, two = this.frame?.two_masses ?? true;
     const t = l ? l.t : c.periods, x = l ? l.x : c.x;
     const other = l ? l.y.map((y, i) => l.gap[i] - y) : Float32Array.from(c.y, (y) => this.frame.gap - y);
-    const data = [t, x, other];
-    const theme = document.documentElement.dataset.theme;
-    const size = { width: Math.max(50, box.clientWidth), height: Math.max(60, box.clientHeight - LEGEND) };
-    if (this.plot && this.theme === theme && this.two === two) {
-      if (this.plot.width !== size.width || this.plot.height !== size.height) this.plot.setSize(size);
-      this.plot.setData(data);
-      return;
-    }
-    this.plot?.destroy();
-    this.theme = theme; this.two = two;
-    const axis = (label) => ({ label, labelFont: `14px ${FONT}`, font: `13px ${FONT}`, stroke: colour("ink"), grid: { show: false }, ticks: { stroke: colour("frame"), size: 4 }, labelSize: 18, labelGap: 0 });
-    this.plot = new uPlot({
-      ...size,
-      pxAlign: 0,
-      scales: { x: { time: false }, y: { range: (u, lo, hi) => around([[lo, hi]]) } },
-      cursor: { y: false, drag: { setScale: false } },
-      legend: { live: true },
-      padding: [8, 10, 0, 0],
-      series: [
-        { label: "τ/T", value: (u, v) => number(v, 5) },
-        { label: "X", stroke: colour("blue"), width: 1.5, points: { show: false }, value: (u, v) => number(v, 5) },
-        { label: two ? "2ρ − Y" : "stop", stroke: two ? colour("vermilion") : colour("ink"), width: 1.5, points: { show: false }, value: (u, v) => number(v, 5) },
-      ],
-      axes: [{ ...axis("time τ/T"), size: 36 }, { ...axis("displacement"), size: 46 }],
-      hooks: { drawAxes: [(u) => this.together(u)] },
-    }, data, box);
+    this.span = [t[0], Math.max(t[t.length - 1], t[0] + 0.1)];
+    const f = this.timeFrame = new Frame(element("series"), this.span, around([x, other]), ["time *τ*/*T*", "displacement"], { top: 24 });
+    const curves = [["*X*", x, colour("blue")], [two ? "2*ρ* − *Y*" : "stop", other, two ? colour("vermilion") : colour("ink")]];
+    f.clip(() => {
+      if (!l && c.sticking) this.together(f, c);
+      for (const [, values, paint] of curves) f.curve(t, values, { colour: paint, width: 1.5 });
+    });
+    f.axes();
+    const at = this.hover === null ? -1 : t.findIndex((v) => v >= f.ux(this.hover));
+    if (at >= 0) f.clip(() => f.curve([t[at], t[at]], f.y, { colour: colour("quiet"), dash: [3, 3], width: 1 }));
+    f.key([...(at >= 0 ? [[`*τ*/*T* = ${number(t[at], 5)}`, null]] : []), ...curves.map(([name, values, paint]) => [name + (at >= 0 ? ` = ${number(values[at], 5)}` : ""), paint])]);
   }
 
   /** Grey where the masses stick together. */
-  together(u) {
-    const c = this.frame?.column;
-    if (!c || this.live || !c.sticking) return;
-    u.ctx.fillStyle = colour("together");
-    let from = -1;
-    for (let i = 0; i <= c.sticking.length; i++) {
-      const on = i < c.sticking.length && c.sticking[i] > 0;
+  together(f, { sticking, periods }) {
+    f.context.fillStyle = colour("together");
+    for (let i = 0, from = -1; i <= sticking.length; i++) {
+      const on = i < sticking.length && sticking[i] > 0;
       if (on && from < 0) from = i;
       if (!on && from >= 0) {
-        const a = u.valToPos(c.periods[from], "x", true), b = u.valToPos(c.periods[i - 1], "x", true);
-        u.ctx.fillRect(a, u.bbox.top, Math.max(1, b - a), u.bbox.height);
+        const left = f.px(periods[from]);
+        f.context.fillRect(left, f.box.top, Math.max(1, f.px(periods[i - 1]) - left), f.box.height);
         from = -1;
       }
     }
@@ -282,10 +267,13 @@ export class LinePanel {
     this.pending = true;
     requestAnimationFrame(() => {
       this.pending = false;
-      const line = this.app.state?.line;
-      if (element("panel-line").hidden || !line) return;
-      this.pictures(line);
+      this.paint();
     });
+  }
+
+  paint() {
+    const line = this.app.state?.line;
+    if (!element("panel-line").hidden && line) this.pictures(line);
   }
 
   pictures(line) {
