@@ -114,8 +114,13 @@ pub(super) fn motion(
 /// With the motion and its characteristics.
 fn with_facts(frame: Frame, machine: &Machine, point: &SweepPoint) -> Frame {
     let free = impactless(machine, point.eta);
+    let mut style = MotionStyle::of(&Motion::from(point.motion));
+    if point.motion == SettledMotion::Chaotic && point.lyapunov < Some(0.0) {
+        style.label = "not settled".into();
+    }
     frame
-        .with("motion", MotionStyle::of(&Motion::from(point.motion)))
+        .with("motion", style)
+        .with("lyapunov_error", point.lyapunov_error)
         .with("x_max", point.x_max)
         .with("lyapunov", point.lyapunov)
         .with("approach_speeds", &point.approach_speeds)
@@ -290,6 +295,10 @@ impl<'a> Way<'a> {
             .column(
                 "lyapunov",
                 points.iter().map(|p| p.lyapunov.unwrap_or(f64::NAN)),
+            )
+            .column(
+                "lyapunov_error",
+                points.iter().map(|p| p.lyapunov_error.unwrap_or(0.0)),
             )
             .column("impactless", points.iter().map(|p| free(p).x.0))
             .column("impactless_phase", points.iter().map(|p| free(p).x.1))

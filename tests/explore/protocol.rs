@@ -322,6 +322,10 @@ fn demos_show_the_motions_that_they_state() {
     let said =
         String::from_utf8_lossy(&done.stderr).into_owned() + &String::from_utf8_lossy(&done.stdout);
     assert!(done.status.success(), "{said}");
+    assert!(
+        !said.contains(", 0 motions"),
+        "a demo expects nothing:\n{said}"
+    );
     for figure in [
         "Fig. 2",
         "Fig. 4",

@@ -9,11 +9,10 @@ use serde::{Deserialize, Serialize};
 
 pub use super::kernel::Kernel;
 use super::kernel::{Cell, Course, Feed, Outcome, run};
+use super::settling::settle_on;
 use super::watched::watch_again;
-use crate::model::recurrence::observe;
 use crate::model::{
-    Flight, Impact, Initial, Machine, ModelError, Oscillator, Setting, SettledMotion, Simulator,
-    Watch,
+    Flight, Initial, Machine, ModelError, Oscillator, Setting, SettledMotion, Simulator, Watch,
 };
 use crate::{parallel, patience};
 
@@ -228,9 +227,7 @@ fn exact_cell(machine: &Machine, s: &Start, settings: &MapSettings) -> Result<En
     let (eta, rho) = s.at;
     let setting = Setting::new(eta, rho).at_phase(s.phase);
     let mut simulator = Simulator::new(machine, setting, clear_of(machine, rho, s.initial))?;
-    let settle = settings.watch.settle_periods * setting.period();
-    simulator.advance(settle, &mut |_: &Impact| {});
-    let motion = observe(&mut simulator, setting, &settings.watch).0;
+    let motion = settle_on(machine, &mut simulator, setting, &settings.watch).motion;
     Ok(End {
         motion,
         initial: simulator.state().into(),
