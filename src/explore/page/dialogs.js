@@ -1,7 +1,18 @@
 // Dialogs: initial conditions, parameters, R(v), exports, demos, keys.
 import { KEYS } from "./keys.js";
 import { copyAddress, exportFiles, png, svg } from "./exports.js";
-import { make, numberField } from "./fields.js";
+import { make, numberField, typed } from "./fields.js";
+import { tableOf } from "./formula.js";
+
+/** The law R(v) that a text states in one of the forms; throws where it states none. */
+function lawOf(form, text) {
+  if (form === "formula") return { table: tableOf(text) };
+  const lines = text.trim().split(/\n+/).map((l) => l.trim().split(/[\s;]+/).map(typed));
+  if (lines.flat().includes(null)) throw new Error("Numbers alone are understood here");
+  const [a, b, c] = lines[0];
+  if (form === "constant" && !(a >= 0 && a <= 1)) throw new Error("R is between 0 and 1");
+  return { constant: a, table: { table: lines }, power_law: { power_law: { coefficient: a, exponent: b, floor: c } }, exponential: { exponential: { slow: a, fast: b, speed: c } } }[form];
+}
 
 export class Dialogs {
   constructor(app) {
@@ -65,9 +76,21 @@ export class Dialogs {
     const { app } = this, s = () => app.state;
     const watch = (name, key) => [name, key, () => s().watch[key], (v) => { app.set({ watch: { ...s().watch, [key]: v } }, ["motion", "panel"]); }];
     const line = (v) => { app.set({ line: { ...(s().line ?? app.ownLine("eta")), steps: Math.round(v) } }, ["panel"]); };
-    const basins = () => s().basins ?? app.ownBasins();
-    const cells = (v) => { app.set({ basins: { ...basins(), cells: [Math.round(v), Math.round(v)] } }, ["panel"]); };
-    this.fields("Parameters of the simulation (D)", [watch("periods to settle", "settle_periods"), watch("periods watched", "watch_periods"), watch("tolerance of recurrence", "tolerance"), ["Poincaré phase, rad", "phase", () => s().poincare_phase, (v) => { app.set({ poincare_phase: v }, ["motion"]); }], ["steps of characteristics", "steps", () => s().line?.steps ?? 200, line], ["starts of basins, each way", "cells", () => basins().cells[0], cells]]);
+    this.fields("Parameters of the simulation (D)", [watch("periods to settle", "settle_periods"), watch("periods watched", "watch_periods"), watch("tolerance of recurrence", "tolerance"), ["Poincaré phase, rad", "phase", () => s().poincare_phase, (v) => { app.set({ poincare_phase: v }, ["motion"]); }], ["steps of characteristics", "steps", () => s().line?.steps ?? 200, line]]);
+  }
+
+  /** Where the starts of the basins lie, and which masses take them. */
+  starts() {
+    const { app } = this, b = () => app.state.basins ?? app.ownBasins();
+    const change = (part) => { app.set({ basins: { ...b(), ...part }, panel: "basins" }, ["panel"]); app.restorePanel(); };
+    const end = (name, key, i) => [name, "start", () => b()[key][i], (x) => {
+      const r = [...b()[key]]; r[i] = x;
+      if (!(r[1] > r[0])) return i ? `above ${r[0]}` : `below ${r[1]}`;
+      change({ [key]: r });
+    }];
+    const masses = ["masses that take the start (1: X alone, 2)", "masses", () => (b().starts === "one_mass" ? 1 : 2), (v) => (Number.isInteger(v) ? change({ starts: v === 1 ? "one_mass" : "both_masses" }) : "1 or 2")];
+    const size = (name, i) => [name, "cells", () => b().cells[i], (v) => { const cells = [...b().cells]; cells[i] = Math.round(v); change({ cells }); }];
+    this.fields("Starts of the basins (N)", [end("X(0) from", "x", 0), end("X(0) to", "x", 1), end("X′(0) from", "vx", 0), end("X′(0) to", "vx", 1), size("columns", 0), size("rows", 1), masses]);
   }
 
   law() {
@@ -77,25 +100,22 @@ export class Dialogs {
     const forms = {
       constant: ["0.9", "R at every speed."],
       table: ["0 0.95\n6 0.85", "One pair a line: approach speed, R; linear between, constant beyond. Speeds rise."],
+      formula: ["0.95 - 0.05*v^0.4", "R as a formula in the approach speed v: + − * / ^ ( ) exp log sqrt abs min max tanh. It becomes a table of 121 speeds up to 30."],
       power_law: ["0.05 0.4 0", "coefficient, exponent, floor: R = max(floor, 1 − coefficient·v^exponent)."],
       exponential: ["0.95 0.8 3", "slow, fast, speed: R = fast + (slow − fast)·exp(−v/speed)."],
     };
-    for (const [name, label] of [["constant", "constant"], ["table", "table"], ["power_law", "power law"], ["exponential", "exponential"]]) {
+    for (const [name, label] of [["constant", "constant"], ["table", "table"], ["formula", "formula"], ["power_law", "power law"], ["exponential", "exponential"]]) {
       const o = make("option", label); o.value = name; select.append(o);
     }
     const fill = (name) => {
       const now = name === kind ? { constant: () => String(r), table: () => r.table.map((p) => p.join(" ")).join("\n"), power_law: () => [r.power_law.coefficient, r.power_law.exponent, r.power_law.floor].join(" "), exponential: () => [r.exponential.slow, r.exponential.fast, r.exponential.speed].join(" ") }[name]() : forms[name][0];
-      text.value = now; note.textContent = forms[name][1];
+      text.value = now; note.textContent = forms[name][1]; note.className = "note";
     };
     select.value = kind; fill(kind);
     select.addEventListener("change", () => fill(select.value));
     const apply = make("button", "Apply"); apply.type = "button";
     apply.addEventListener("click", () => {
-      const lines = text.value.trim().split(/\n+/).map((l) => l.trim().split(/[\s;]+/).map((v) => Number(v.replace(",", "."))));
-      const [a, b, c] = lines[0];
-      const law = { constant: a, table: { table: lines.map(([v, w]) => [v, w]) }, power_law: { power_law: { coefficient: a, exponent: b, floor: c } }, exponential: { exponential: { slow: a, fast: b, speed: c } } }[select.value];
-      if (lines.flat().some((v) => !Number.isFinite(v))) { note.textContent = `Numbers alone, please. ${forms[select.value][1]}`; return; }
-      app.parameters({ restitution: law });
+      try { app.parameters({ restitution: lawOf(select.value, text.value) }); this.box.close(); } catch (error) { note.textContent = `${error.message}. ${forms[select.value][1]}`; note.className = "fault"; }
     });
     const label = make("label", "R(v) as a "), area = make("label", "Numbers");
     label.append(select); area.append(text);
@@ -127,12 +147,14 @@ export class Dialogs {
     this.choices("Demos (F)", this.app.demos.map((name) => [name, () => this.app.player.start(name)]), "Esc ends a demo; the number alone shows its first picture.");
   }
 
+  /** Every key with what it does: a button where it does something at once. */
   help() {
     const list = make("div", undefined, "keys");
-    for (const [key, text] of KEYS) {
-      const row = make("div"), k = make("kbd", key.length === 1 ? key.toUpperCase() : key);
+    for (const [key, text, action] of KEYS) {
+      const row = make(action ? "button" : "div"), k = make("kbd", key.length === 1 ? key.toUpperCase() : key);
+      if (action) { row.type = "button"; row.addEventListener("click", () => { this.box.close(); action(this.app); }); }
       row.append(k, make("span", text)); list.append(row);
     }
-    this.open("Keys (?)", make("p", "Drag on the map: the motion is carried along. Click a record: measured beside simulated. Tab reaches everything.", "note"), list);
+    this.open("Menu: everything, with its key (?)", make("p", "Drag on the map: the motion is carried along. Click a record: measured beside simulated. Tab reaches everything.", "note"), list);
   }
 }

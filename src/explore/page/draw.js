@@ -82,6 +82,13 @@ export function number(v, digits = 4) {
   return text.replace("-", "−");
 }
 
+/** A number with its 95 % half width, both to two digits of the latter. */
+export function plusMinus(v, half) {
+  if (!(half > 1e-7)) return number(v, 4);
+  const digits = Math.min(8, Math.max(0, 1 - Math.floor(Math.log10(half))));
+  return `${v.toFixed(digits)} ± ${half.toFixed(digits)}`.replace("-", "−");
+}
+
 /** A motion by name: z = p/n, or the word for it. */
 export const named = ({ label }) => (/^\d/.test(label) ? `z = ${label}` : label);
 
@@ -154,6 +161,16 @@ export class Frame {
     c.strokeStyle = style.colour ?? colour("ink"); c.lineWidth = style.width ?? 1.4;
     c.setLineDash(style.dash ?? []); c.globalAlpha = style.alpha ?? 1; c.lineJoin = "round";
     c.stroke(); c.setLineDash([]); c.globalAlpha = 1;
+  }
+  /** Half widths as thin bars. */
+  bars(xs, ys, halves, paint) {
+    const { context: c } = this;
+    c.beginPath(); c.strokeStyle = paint; c.lineWidth = 0.7; c.globalAlpha = 0.5;
+    for (let i = 0; i < xs.length; i++) {
+      if (!Number.isFinite(ys[i]) || !(halves[i] > 0)) continue;
+      c.moveTo(this.px(xs[i]), this.py(ys[i] - halves[i])); c.lineTo(this.px(xs[i]), this.py(ys[i] + halves[i]));
+    }
+    c.stroke(); c.globalAlpha = 1;
   }
   dots(xs, ys, radius, fill) {
     const { context: c } = this;

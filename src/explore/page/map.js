@@ -232,7 +232,7 @@ export class MapView {
     c.beginPath(); c.moveTo(...ends[0]); c.lineTo(...ends[1]);
     c.lineWidth = 2.2; c.strokeStyle = colour("green"); c.stroke();
     c.fillStyle = colour("green"); c.font = `bold 15px ${FONT}`;
-    ends.forEach(([x, y], i) => { c.beginPath(); c.arc(x, y, 4, 0, 7); c.fill(); c.fillText("ab"[i], x + (x > f.width - f.box.left ? -16 : 9), y - 8 < f.box.top + 12 ? y + 18 : y - 8); });
+    ends.forEach(([x, y], i) => { c.beginPath(); c.arc(x, y, 4, 0, 7); c.fill(); c.fillText("ab"[i], x + (x > f.box.left + f.box.width - 20 ? -16 : 9), y - 8 < f.box.top + 12 ? y + 18 : y - 8); });
   }
 
   cursor(f, c) {

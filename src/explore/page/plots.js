@@ -1,5 +1,5 @@
 // Beside the map: the motion, characteristics, basins.
-import { Frame, around, colour, fit, markColour, named, number, tint, FONT } from "./draw.js";
+import { Frame, around, colour, fit, markColour, named, number, plusMinus, tint, FONT } from "./draw.js";
 
 const element = (id) => document.getElementById(id);
 /** Cell of a start that is beyond the contact. */
@@ -151,7 +151,7 @@ export class MotionPanel {
       ["of all starts", this.shares()],
       ["approach speed", speeds],
       ["X greatest", number(f.x_max, 6)],
-      ["Lyapunov", f.lyapunov === null ? "−∞ (a dead zone)" : number(f.lyapunov, 4)],
+      ["Lyapunov, per τ", f.lyapunov === null ? "−∞ (a dead zone)" : plusMinus(f.lyapunov, 1.96 * f.lyapunov_error)],
       ["without impacts", `${number(f.impactless.x[0], 5)}, ${number(f.impactless.x[1] * 180 / Math.PI, 4)}° behind`],
       ["start X, X′", `${number(start.x, 5)}, ${number(start.vx, 5)}`],
     ];
@@ -185,7 +185,7 @@ export function facts(rows) {
 
 /** What the lowest picture of the characteristics can show: its name, axis, and how it is drawn. */
 export const CHARACTERISTICS = {
-  lyapunov: { text: "Lyapunov exponent", axis: "Lyapunov exponent", zero: true, of: (d) => d.lyapunov },
+  lyapunov: { text: "Lyapunov exponent", axis: "Lyapunov exponent per *τ*", zero: true, of: (d) => d.lyapunov, error: (d) => d.lyapunov_error },
   autocorrelation: { text: "autocorrelation at one drive period", axis: "autocorrelation", range: [-1.05, 1.05], zero: true, of: (d) => d.correlation },
   approach_of_x: { text: "X′ before impacts", axis: "*X*′ before impacts", dots: (d, key) => d.step.map((s) => d[key][s]), of: (d) => d.xSpeed },
   impactless_phase: { text: "phase without impacts", axis: "phase lag, °", range: [0, 180], of: (d) => d.phase },
@@ -207,9 +207,9 @@ export class LinePanel {
   add(frame) {
     if (frame.id !== this.id) this.clear(frame.id);
     this.all = frame.all;
-    const way = this.ways[frame.way] ??= { eta: [], rho: [], x_max: [], lyapunov: [], impactless: [], phase: [], correlation: [], step: [], speed: [], xSpeed: [] };
+    const way = this.ways[frame.way] ??= { eta: [], rho: [], x_max: [], lyapunov: [], lyapunov_error: [], impactless: [], phase: [], correlation: [], step: [], speed: [], xSpeed: [] };
     const c = frame.column;
-    for (const key of ["eta", "rho", "x_max", "lyapunov", "impactless", "correlation"]) way[key].push(...c[key]);
+    for (const key of ["eta", "rho", "x_max", "lyapunov", "lyapunov_error", "impactless", "correlation"]) way[key].push(...c[key]);
     way.phase.push(...c.impactless_phase.map((p) => p * 180 / Math.PI));
     way.step.push(...c.impact_step); way.speed.push(...c.impact_speed); way.xSpeed.push(...c.impact_x_speed);
     this.draw();
@@ -306,6 +306,7 @@ export class LinePanel {
     const values = ways.map(([, d]) => shown.of(d));
     panel("line-l", shown.range ?? around([...values, [0]]), shown.axis, (f, d, ink) => {
       if (shown.zero) f.curve(range, [0, 0], { colour: colour("quiet"), width: 1 });
+      if (shown.error) f.bars(d[key], shown.of(d), shown.error(d).map((e) => 1.96 * e), ink);
       if (shown.dots) f.dots(shown.dots(d, key), shown.of(d), 1, ink);
       else f.curve(d[key], shown.of(d), { colour: ink, width: 1.1 });
     });
@@ -324,8 +325,22 @@ export class BasinsPanel {
     element("basins").addEventListener("click", (event) => {
       const box = event.target.getBoundingClientRect(), f = this.frame;
       const [p, q] = [event.clientX - box.left, event.clientY - box.top];
-      if (f?.holds(p, q)) app.start({ x: f.ux(p), vx: f.uy(q), y: f.ux(p), vy: f.uy(q) });
+      if (f?.holds(p, q)) this.choose(f.ux(p), f.uy(q));
     });
+  }
+
+  /** Move the start that is chosen by a fiftieth of the picture. */
+  nudge(dx, dv, event) {
+    if (!this.tile) return;
+    const { x, vx } = this.tile, { start } = this.app.state.cursor, by = event.shiftKey ? 0.2 : 0.02;
+    const move = (v, d, [low, high]) => Math.min(high, Math.max(low, v + d * by * (high - low)));
+    this.choose(move(start.x, dx, x), move(start.vx, dv, vx));
+  }
+
+  /** Start the motion there, both masses or one as the basins have it. */
+  choose(x, vx) {
+    const one = this.app.state.basins?.starts === "one_mass";
+    this.app.start({ x, vx, y: one ? 0 : x, vy: one ? 0 : vx });
   }
 
   add(frame) {
@@ -351,7 +366,7 @@ export class BasinsPanel {
 
   draw() {
     if (!this.tile || element("panel-basins").hidden) return;
-    const t = this.tile, f = this.frame = new Frame(element("basins"), t.x, t.vx, ["start *X*(0) of both masses", "start *X*′(0)"]);
+    const t = this.tile, f = this.frame = new Frame(element("basins"), t.x, t.vx, [`start *X*(0)${this.app.state.single ? "" : this.app.state.basins?.starts === "one_mass" ? " of X alone" : " of both masses"}`, "start *X*′(0)"]);
     f.clip((c) => {
       c.imageSmoothingEnabled = false;
       for (const tile of [this.below, t]) if (tile) c.drawImage(tile.canvas, f.box.left, f.box.top, f.box.width, f.box.height);
