@@ -73,7 +73,7 @@ fn browser_the_keyboard_alone_reaches_everything() {
         ("e", "R(v)"),
         ("f", "Demos"),
         ("x", "Export"),
-        ("?", "Keys"),
+        ("?", "Menu"),
     ] {
         browser.key(key, 0);
         browser.until("document.getElementById('dialog').open");

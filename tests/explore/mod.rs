@@ -2,7 +2,9 @@
 
 mod browser;
 mod browser_files;
+mod browser_life;
 mod browser_maps;
+mod browser_menu;
 mod browser_run;
 mod browser_sizes;
 mod browser_values;

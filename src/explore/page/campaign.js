@@ -27,6 +27,7 @@ export class CampaignView {
     this.proposals = [];
     this.fit = facts.fit;
     this.head();
+    element("residuals").hidden = !this.fit; // its place, before there is anything in it
     new ResizeObserver(() => this.traces()).observe(element("traces"));
   }
 

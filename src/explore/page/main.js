@@ -4,7 +4,8 @@ import { MapView } from "./map.js";
 import { BasinsPanel, CHARACTERISTICS, LinePanel, MotionPanel, swatch } from "./plots.js";
 import { CampaignView } from "./campaign.js";
 import { Dialogs } from "./dialogs.js";
-import { listen } from "./keys.js";
+import { listen, press } from "./keys.js";
+import { enter, lost } from "./door.js";
 import { Demos } from "./demos.js";
 import { Sliders } from "./fields.js";
 import { number, named, colour, markColour } from "./draw.js";
@@ -46,9 +47,8 @@ class App {
   // ---- start ---------------------------------------------------------------
   async open() {
     const saved = new URLSearchParams(location.hash.slice(1));
-    this.token = saved.get("t") ?? "";
-    if (!/^[0-9a-f]{32}$/.test(this.token)) { this.message("This address has no token: use the one that `impactid explore` prints.", "", true); return; }
-    this.wire = new Wire(this.token, (...of) => this.receive(...of), () => this.message("The server is gone.", "Start `impactid explore` again and open the address that it prints.", true));
+    this.token = await enter(this, saved.get("t") ?? "");
+    this.wire = new Wire(this.token, (...of) => this.receive(...of), () => lost(this));
     await this.wire.opened;
     const written = this.written(saved.get("s"));
     const { hello, restored } = await this.hello(written);
@@ -126,7 +126,7 @@ class App {
     for (const kind of what) {
       if (kind === "map") { this.wire.ask("map", { kind: "map" }, s()); this.map.asked(); }
       else if (kind === "boundaries") this.boundaries();
-      else if (kind === "motion") this.wire.askAfter("motion", () => [{ kind: "motion", carried_from: null }, s()]);
+      else if (kind === "motion") this.wire.askAfter("motion", () => { this.chosen = false; return [{ kind: "motion", carried_from: null }, s()]; });
       else if (kind === "carried") this.wire.askAfter("motion", () => [{ kind: "motion", carried_from: this.from() }, s()]);
       else if (kind === "residuals" && this.campaign) this.wire.askAfter("residuals", () => [{ kind: "residuals" }, s()]);
       else if (kind === "panel") this.refreshPanel();
@@ -203,7 +203,7 @@ class App {
   carriedTo(frame) {
     const { cursor } = this.state;
     this.at = [frame.cursor.eta, frame.cursor.rho];
-    this.state = { ...this.state, cursor: { ...cursor, start: frame.cursor.start, phase: frame.cursor.phase } };
+    if (!this.chosen) this.state = { ...this.state, cursor: { ...cursor, start: frame.cursor.start, phase: frame.cursor.phase } };
     if (frame.motion) this.shown = frame;
     this.save();
     this.note();
@@ -254,6 +254,7 @@ class App {
   start(start, phase) {
     const { cursor } = this.state;
     this.at = null;
+    this.chosen = true; // answers under way are of the start before
     this.set({ cursor: { ...cursor, start, phase: phase ?? cursor.phase } }, ["motion"]);
     if (this.state.panel === "basins") this.basins.draw();
   }
@@ -379,7 +380,8 @@ class App {
     this.player.stop();
     element("map").focus({ preventScroll: true });
     this.map.drawing = false;
-    element("caption").hidden = true; element("message").hidden = true;
+    element("caption").hidden = true;
+    if (element("message").dataset.fixed !== "yes") element("message").hidden = true;
   }
 
   // ---- campaign ----------------------------------------------------------------
@@ -463,7 +465,9 @@ class App {
       kind.text.split("*").forEach((t, i) => { const e = document.createElement(i % 2 ? "i" : "span"); e.textContent = t; text.append(e); });
       text.style.gap = "0"; span.append(canvas, text); items.push(span);
     }
-    element("legend").replaceChildren(...items);
+    const { vx } = this.state.map_start, from = document.createElement("span");
+    from.textContent = vx === 0 ? "cells: from rest" : `cells: from X′ = Y′ = ${number(vx)}`;
+    element("legend").replaceChildren(...items, from);
   }
 
   said(text, ms = 4000) {
@@ -486,8 +490,7 @@ class App {
 
   // ---- buttons ---------------------------------------------------------------------
   buttons() {
-    const act = { g: () => this.running(), f: () => this.dialogs.demos(), k: () => this.player.record(), j: () => this.player.replay(), x: () => this.dialogs.exports(), t: () => this.theme(), "?": () => this.dialogs.help() };
-    for (const b of document.querySelectorAll("nav button")) b.addEventListener("click", () => act[b.dataset.key]());
+    for (const b of document.querySelectorAll("button[data-key]")) b.addEventListener("click", () => press(this, b.dataset.key));
     element("inset").addEventListener("click", () => this.inset());
     element("characteristic").append(...Object.entries(CHARACTERISTICS).map(([value, c]) => new Option(c.text, value)));
     element("characteristic").addEventListener("change", (e) => this.otherCharacteristic(e.target.value));
@@ -510,3 +513,5 @@ document.documentElement.dataset.theme = theme ?? (matchMedia("(prefers-color-sc
 const app = new App();
 window.impactid = app;
 app.open();
+// another address in the same tab is another page
+addEventListener("hashchange", () => location.reload());

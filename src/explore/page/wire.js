@@ -15,6 +15,9 @@ export function decode(buffer) {
   return header;
 }
 
+/** What is asked of a server that is gone. */
+const GONE = { message: "The server is gone.", remedy: "Start `impactid explore` again." };
+
 export class Wire {
   /** `receive(frame, since, state)` is called with every frame that answers the newest request of its slot. */
   constructor(token, receive, closed) {
@@ -34,7 +37,7 @@ export class Wire {
     this.socket.binaryType = "arraybuffer";
     this.opened = new Promise((resolve) => { this.socket.onopen = resolve; });
     this.socket.onmessage = (event) => this.take(decode(event.data));
-    this.socket.onclose = closed;
+    this.socket.onclose = () => { for (const [, refuse] of Object.values(this.promises)) refuse(GONE); closed(); };
   }
 
   /** Now, or the key that led here. */
@@ -69,6 +72,7 @@ export class Wire {
 
   /** Ask for what is answered once. */
   once(ask, state) {
+    if (this.socket.readyState > 1) return Promise.reject(GONE);
     const id = this.send("once" + this.next, ask, state);
     return new Promise((resolve, reject) => { this.promises[id] = [resolve, reject]; });
   }
