@@ -51,7 +51,8 @@ Example:
   impactid explore data-samples/studies/fig5-basins.toml
   impactid explore --port 8080 --no-browser        for a tunnel: ssh -L 8080:127.0.0.1:8080 HOST
 
-The page is served on 127.0.0.1 alone, to whoever has the token in its address. Press ? there \
+The page is served on 127.0.0.1 alone, to whoever has the token in its address. An address of \
+an explorer that has ended asks for the new one and keeps what it showed. Press ? there \
 for its keys. Ctrl-C ends it. Nothing is written but the files that you export.";
 
 impl From<ExploreError> for Failure {
@@ -137,6 +138,10 @@ fn open(path: &Path, verbosity: Verbosity) -> Result<Session, Failure> {
     let bar = || Progress::new(verbosity, "observe", 0);
     if path.is_dir() {
         let bar = bar();
+        let path = &fs::canonicalize(path).map_err(|e| Failure::io(path, &e))?;
+        if let Some(base) = Campaign::base(path)? {
+            std::env::set_current_dir(&base).map_err(|e| Failure::io(&base, &e))?;
+        }
         let (campaign, notes) = Campaign::read(path, &|s, d, t| bar.step(s, d, t))?;
         return Ok(Session::of_campaign(campaign, notes));
     }

@@ -329,3 +329,13 @@ fn a_free_decay_is_shown_with_its_fit_and_a_record_with_nothing_says_why() {
             .is_empty()
     );
 }
+
+#[test]
+fn results_are_opened_from_any_directory_with_their_inputs() {
+    let results = concat!(env!("CARGO_MANIFEST_DIR"), "/reports/example");
+    let elsewhere = tempfile::tempdir().expect("a folder");
+    let explorer = Explorer::start(&[results], elsewhere.path());
+    let hello = explorer.page().hello();
+    let notes = hello.header["notes"].to_string();
+    assert!(!notes.contains("is gone"), "{notes}");
+}

@@ -1,5 +1,9 @@
 //! Foreign hosts, origins and tokens, oversized and random frames, pages that go away.
 
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
@@ -10,13 +14,7 @@ use super::server::Explorer;
 #[test]
 fn the_page_and_its_files_come_with_a_strict_policy() {
     let explorer = Explorer::theory();
-    for path in [
-        "/",
-        "/main.js",
-        "/style.css",
-        "/regular.otf",
-        "/uplot-LICENSE",
-    ] {
+    for path in ["/", "/main.js", "/style.css", "/regular.otf"] {
         let answer = explorer.get(path).to_lowercase();
         assert!(answer.starts_with("http/1.1 200"), "{path}: {answer}");
         assert!(answer.contains("content-security-policy: default-src 'none'"));
@@ -146,4 +144,26 @@ fn a_page_that_goes_away_in_mid_stream_leaves_the_server_alive() {
     }
     let frame = explorer.page().answer(&json!({"kind": "map"}), &state);
     assert_eq!(frame.kind(), "map");
+}
+
+#[test]
+fn a_request_that_is_not_finished_is_closed_within_seconds() {
+    let explorer = Explorer::theory();
+    let half: Vec<TcpStream> = (0..40)
+        .map(|_| {
+            let mut stream = TcpStream::connect(("127.0.0.1", explorer.port)).expect("it listens");
+            stream
+                .write_all(b"GET / HTTP/1.1\r\nHost: 127")
+                .expect("it reads");
+            stream
+        })
+        .collect();
+    for mut stream in half {
+        let wait = Some(Duration::from_secs(60));
+        stream.set_read_timeout(wait).expect("a limit");
+        // the server closes: the end comes, not the limit
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).expect("the end");
+    }
+    assert_eq!(explorer.page().hello().kind(), "hello");
 }

@@ -15,6 +15,9 @@ use tungstenite::{Message, WebSocket};
 pub(crate) const QUIET: &str = "Object.values(impactid.wire.busy).every((b) => !b) \
      && impactid.map.finished === impactid.wire.newest.map";
 
+/// The studies that come with the program.
+pub(crate) const STUDIES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data-samples/studies");
+
 /// `impactid explore --no-browser`, ended when it goes out of scope.
 pub(crate) struct Explorer {
     child: Child,
@@ -49,6 +52,11 @@ impl Explorer {
     /// The theory, in a folder that holds nothing.
     pub(crate) fn theory() -> Self {
         Self::start(&[], &std::env::temp_dir())
+    }
+
+    /// The server's process.
+    pub(crate) fn process(&self) -> u32 {
+        self.child.id()
     }
 
     /// The page's address.
@@ -115,7 +123,7 @@ impl Drop for Explorer {
 pub(crate) struct Frame {
     pub(crate) header: Value,
     pub(crate) columns: Vec<(String, Vec<f32>)>,
-    pub(crate) cells: Vec<u8>,
+    pub(crate) cells: Vec<u16>,
 }
 
 impl Frame {
@@ -133,11 +141,12 @@ impl Frame {
             columns.push((column[0].as_str().expect("a name").to_owned(), values));
             rest = after;
         }
-        assert_eq!(header["cells"].as_u64(), Some(rest.len() as u64));
+        assert_eq!(header["cells"].as_u64(), Some(rest.len() as u64 / 2));
+        let cell = |b: &[u8]| u16::from_le_bytes(b.try_into().expect("two bytes"));
         Self {
             header,
             columns,
-            cells: rest.to_vec(),
+            cells: rest.chunks_exact(2).map(cell).collect(),
         }
     }
 

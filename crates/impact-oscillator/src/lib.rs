@@ -52,10 +52,13 @@
 pub mod atlas;
 pub mod model;
 mod parallel;
+pub mod patience;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+pub use patience::Patience;
 
 pub use atlas::{MapGrid, MapSettings, region_map};
 pub use model::{

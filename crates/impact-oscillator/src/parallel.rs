@@ -5,7 +5,9 @@
 #[cfg(feature = "rayon")]
 pub(crate) fn map<T: Sync, U: Send>(items: &[T], f: impl Fn(&T) -> U + Send + Sync) -> Vec<U> {
     use rayon::prelude::*;
-    items.par_iter().map(f).collect()
+    let now = crate::patience::current();
+    let one = |item| crate::patience::within(now.clone(), || f(item));
+    items.par_iter().map(one).collect()
 }
 
 /// Apply a function to every item.

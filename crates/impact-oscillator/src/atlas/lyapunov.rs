@@ -1,6 +1,8 @@
 //! Largest Lyapunov exponent of a simulated motion: a variation mapped exactly through flights
 //! and, by saltation matrices, through impacts and into dead zones.
 
+use std::f64::consts::TAU;
+
 use nalgebra::{Matrix4, Vector4};
 
 use crate::model::contact::free_accelerations;
@@ -8,6 +10,9 @@ use crate::model::flight::{Drive, State};
 use crate::model::simulate::{Arc, Sink};
 use crate::model::variation::{free_flow, saltation};
 use crate::model::{Impact, ImpactKind, Machine, Restitution};
+
+/// Stretches from whose scatter an exponent's error is taken.
+const STRETCHES: usize = 20;
 
 /// Follows a variation along a simulation; pass it to [`Simulator::advance`].
 ///
@@ -37,6 +42,8 @@ pub struct Lyapunov<'a> {
     variation: Vector4<f64>,
     growth: f64,
     time: f64,
+    /// Time and growth at the end of each drive period.
+    periods: Vec<(f64, f64)>,
     before: State,
 }
 
@@ -51,6 +58,7 @@ impl<'a> Lyapunov<'a> {
             variation,
             growth: 0.0,
             time: 0.0,
+            periods: Vec::new(),
             before: State::default(),
         }
     }
@@ -62,6 +70,28 @@ impl<'a> Lyapunov<'a> {
         } else {
             0.0
         }
+    }
+
+    /// Whether variations decay, beyond the exponent's error.
+    pub(super) fn decays(&self) -> bool {
+        let error = self.standard_error().unwrap_or(f64::INFINITY);
+        self.exponent() + 2.0 * error < 0.0
+    }
+
+    /// Standard error of [`Lyapunov::exponent`]: from the scatter of its mean over stretches of some drive periods;
+    /// `None` where fewer than two stretches were followed.
+    pub fn standard_error(&self) -> Option<f64> {
+        let length = self.periods.len() / STRETCHES;
+        let ends = std::iter::once(&(0.0, 0.0)).chain(&self.periods);
+        let ends: Vec<&(f64, f64)> = ends.step_by(length.max(1)).collect();
+        let rates: Vec<f64> = ends
+            .windows(2)
+            .map(|w| (w[1].1 - w[0].1) / (w[1].0 - w[0].0))
+            .collect();
+        let count = rates.len() as f64;
+        let mean = rates.iter().sum::<f64>() / count;
+        let squares: f64 = rates.iter().map(|r| (r - mean).powi(2)).sum();
+        (rates.len() > 1).then(|| (squares / (count * (count - 1.0))).sqrt())
     }
 
     fn apply(&mut self, map: &Matrix4<f64>) {
@@ -103,6 +133,9 @@ impl<'a> Lyapunov<'a> {
 
 impl Sink for Lyapunov<'_> {
     fn arc(&mut self, arc: &Arc) {
+        if self.time * self.eta >= TAU * (self.periods.len() + 1) as f64 {
+            self.periods.push((self.time, self.growth));
+        }
         self.time += arc.duration;
         self.before = arc.paths.at(arc.duration);
         if !arc.sticking {

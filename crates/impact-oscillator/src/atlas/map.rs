@@ -9,13 +9,12 @@ use serde::{Deserialize, Serialize};
 
 pub use super::kernel::Kernel;
 use super::kernel::{Cell, Course, Feed, Outcome, run};
+use super::settling::settle_on;
 use super::watched::watch_again;
-use crate::model::recurrence::observe;
 use crate::model::{
-    Flight, Impact, Initial, Machine, ModelError, Oscillator, Setting, SettledMotion, Simulator,
-    Watch,
+    Flight, Initial, Machine, ModelError, Oscillator, Setting, SettledMotion, Simulator, Watch,
 };
-use crate::parallel;
+use crate::{parallel, patience};
 
 /// The grid: cell (i, k) lies at (`eta[i]`, `rho[k]`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -176,7 +175,7 @@ pub struct End {
 /// March cells, each from its own start, in the fast kernel where machine and starts allow.
 ///
 /// # Errors
-/// [`ModelError`] where a parameter is out of range.
+/// [`ModelError`] where a parameter is out of range, or nobody wants the cells any longer.
 pub fn march_from(
     machine: &Machine,
     starts: &[Start],
@@ -188,7 +187,10 @@ pub fn march_from(
             let cells: Vec<Cell> = starts.iter().map(|s| unit.cell(s)).collect();
             let mut outcomes = march_all(&unit.course(settings), &cells, settings.kernel);
             watch_again(&unit, &mut outcomes, settings);
-            Ok(outcomes.iter().map(|o| unit.end(o)).collect())
+            match patience::is_over() {
+                true => Err(ModelError::GivenUp),
+                false => Ok(outcomes.iter().map(|o| unit.end(o)).collect()),
+            }
         }
         _ => parallel::map(starts, |s| exact_cell(machine, s, settings))
             .into_iter()
@@ -225,9 +227,7 @@ fn exact_cell(machine: &Machine, s: &Start, settings: &MapSettings) -> Result<En
     let (eta, rho) = s.at;
     let setting = Setting::new(eta, rho).at_phase(s.phase);
     let mut simulator = Simulator::new(machine, setting, clear_of(machine, rho, s.initial))?;
-    let settle = settings.watch.settle_periods * setting.period();
-    simulator.advance(settle, &mut |_: &Impact| {});
-    let motion = observe(&mut simulator, setting, &settings.watch).0;
+    let motion = settle_on(machine, &mut simulator, setting, &settings.watch).motion;
     Ok(End {
         motion,
         initial: simulator.state().into(),
@@ -330,9 +330,12 @@ pub(super) struct Shared<'a> {
 const BLOCK: usize = 8;
 
 impl Shared<'_> {
-    /// A cell that no thread has taken.
+    /// A cell that no thread has taken; none once nobody wants them.
     pub(super) fn take(&mut self) -> Option<(usize, Cell)> {
         if self.block.is_empty() {
+            if patience::is_over() {
+                return None;
+            }
             let first = self.next.fetch_add(BLOCK, Ordering::Relaxed);
             self.block = first..(first + BLOCK).min(self.cells.len());
         }

@@ -17,6 +17,7 @@ pub mod regions;
 mod release;
 mod resting;
 mod settings;
+mod settling;
 pub mod shard;
 pub mod sweep;
 mod watched;

@@ -122,7 +122,7 @@ pub struct Portrait {
 /// Samples of X per drive period in its autocorrelation.
 const CORRELATED: usize = 24;
 /// Longest lag of the autocorrelation, drive periods.
-const LONGEST_LAG: usize = 20;
+pub const LONGEST_LAG: usize = 20;
 
 /// Simulate a motion and sample it.
 ///

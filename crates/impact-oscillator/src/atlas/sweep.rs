@@ -4,10 +4,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::lyapunov::Lyapunov;
+use super::settling::{Settled, settle_on};
 use crate::model::flight::{Drive, FlightPaths, forced_amplitude};
 use crate::model::motion::count;
 use crate::model::path::Path;
-use crate::model::recurrence::observe;
 use crate::model::simulate::Snapshot;
 use crate::model::{
     Impact, Initial, Machine, ModelError, Oscillator, Setting, SettledMotion, Simulator,
@@ -49,6 +49,9 @@ pub struct SweepPoint {
     pub phases: Vec<f64>,
     /// Largest Lyapunov exponent per unit of τ; `None` where a dead zone wipes it out.
     pub lyapunov: Option<f64>,
+    /// Its standard error, by the scatter between stretches of the motion.
+    #[serde(default)]
+    pub lyapunov_error: Option<f64>,
     /// Autocorrelation of X at lags of 1, 2, … drive periods; empty where X is at rest.
     pub autocorrelation: Vec<f64>,
 }
@@ -71,6 +74,8 @@ fn maximum(path: &Path, duration: f64) -> f64 {
     best
 }
 
+/// Drive periods that the exponent of a chaotic motion is followed.
+const CHAOTIC_PERIODS: f64 = 1000.0;
 /// Greatest number of impacts reported of a motion without a period.
 const MOST_IMPACTS: usize = 64;
 
@@ -180,17 +185,23 @@ impl<'a> Carried<'a> {
         setting.check()?;
         self.simulator.set(eta, rho);
         let (period, watch) = (setting.period(), self.watch);
-        let simulator = &mut self.simulator;
-        simulator.advance(watch.settle_periods * period, &mut |_: &Impact| {});
-        let mut follower = simulator.clone();
-        let (motion, impacts) = observe(simulator, setting, &watch);
+        let Settled {
+            begin: mut follower,
+            motion,
+            impacts,
+        } = settle_on(self.machine, &mut self.simulator, setting, &watch);
         let mut watched = Trajectory::default();
         let begin = follower.tau();
         follower
             .clone()
             .advance(watch.watch_periods * period, &mut watched);
+        let followed = match motion {
+            SettledMotion::Chaotic => watch.watch_periods.max(CHAOTIC_PERIODS),
+            _ => watch.watch_periods,
+        };
         let mut lyapunov = Lyapunov::new(self.machine, setting.frequency_ratio);
-        follower.advance(watch.watch_periods * period, &mut lyapunov);
+        follower.advance(followed * period, &mut lyapunov);
+        let exponent = Some(lyapunov.exponent()).filter(|l| l.is_finite());
         let greatest = |of: fn(&FlightPaths) -> &Path| {
             let arcs = watched.arcs.iter();
             arcs.map(|arc| maximum(of(&arc.paths), arc.duration))
@@ -217,7 +228,8 @@ impl<'a> Carried<'a> {
             approach_speeds: of(|i| i.approach_speed),
             x_speeds: of(|i| i.vx_before),
             phases: of(|i| i.phase),
-            lyapunov: Some(lyapunov.exponent()).filter(|l| l.is_finite()),
+            lyapunov: exponent,
+            lyapunov_error: exponent.and_then(|_| lyapunov.standard_error()),
             autocorrelation: autocorrelation(&x, lags),
         })
     }

@@ -7,13 +7,14 @@ use super::line::Slice;
 use super::map::{Kernel, even};
 use super::regions::slices_at;
 use super::shard::{AtlasPart, AtlasRequest, MergeError, merge, part};
-use super::sweep::{Sweep, SweepPoint, sweep};
+use super::sweep::{Carried, Sweep, SweepPoint, sweep};
 use super::*;
 
 use crate::model::orbit::stable_orbit;
+use crate::model::params::Asymmetry;
 use crate::model::{
-    Initial, Machine, Restitution, Setting, SettledMotion, Simulator, Watch, eta_s2, rho_grazing,
-    rho_s1, rho_s2,
+    Impact, Initial, Machine, Restitution, Setting, SettledMotion, Simulator, Watch, eta_s2,
+    rho_grazing, rho_s1, rho_s2,
 };
 
 const KERNELS: [Kernel; 3] = [Kernel::Scalar, Kernel::Avx2, Kernel::Avx512];
@@ -212,6 +213,52 @@ fn sweeps_show_hysteresis_between_grazing_and_s2() {
         (rho_grazing(&machine, first.eta) - 2.0).abs() < 0.1,
         "{}",
         first.eta
+    );
+}
+
+/// An asymmetry of 5 % at β = 0.002: z = 1 is reached after some 600 periods, as eq. (15)'s figures 6(e), (f) have it.
+#[test]
+fn valid_a_motion_that_converges_slowly_is_periodic_and_not_chaotic() {
+    let unlike = Asymmetry {
+        stiffness: 0.95,
+        ..Asymmetry::default()
+    };
+    let machine = Machine::asymmetric(0.002, 0.0, unlike);
+    let mut carried =
+        Carried::start(&machine, (1.1, 3.0), Initial::rest(), Watch::default()).expect("a motion");
+    let point = carried.step((1.1, 3.0)).expect("a motion");
+    assert_eq!(point.motion.label(), "1");
+    assert!(point.lyapunov < Some(0.0));
+    let grid = MapGrid::even((1.1, 1.1, 1), (2.5, 3.0, 2));
+    let map = region_map(&machine, &grid, &MapSettings::default()).expect("a map");
+    assert_eq!(map.at(0, 1).label(), "1");
+}
+
+/// Windows of a chaotic motion scatter as the error of each says.
+#[test]
+fn valid_the_error_of_a_lyapunov_exponent_is_its_scatter() {
+    let machine = Machine::single(0.07, 0.9);
+    let grid = MapGrid::even((0.55, 0.9, 15), (0.5, 1.5, 11));
+    let map = region_map(&machine, &grid, &MapSettings::default()).expect("a map");
+    let mut chaotic = (0..grid.len()).filter(|i| map.cells[*i] == SettledMotion::Chaotic);
+    let (eta, rho) = grid.at(chaotic.next().expect("chaos"));
+    let setting = Setting::new(eta, rho);
+    let mut simulator = Simulator::new(&machine, setting, Initial::rest()).expect("a simulator");
+    simulator.advance(200.0 * setting.period(), &mut |_: &Impact| ());
+    let windows: Vec<(f64, f64)> = (0..24)
+        .map(|_| {
+            let mut window = Lyapunov::new(&machine, setting.frequency_ratio);
+            simulator.advance(400.0 * setting.period(), &mut window);
+            let error = window.standard_error().expect("an error");
+            (window.exponent(), error)
+        })
+        .collect();
+    let mean = windows.iter().map(|w| w.0).sum::<f64>() / 24.0;
+    let scatter = (windows.iter().map(|w| (w.0 - mean).powi(2)).sum::<f64>() / 23.0).sqrt();
+    let stated = windows.iter().map(|w| w.1).sum::<f64>() / 24.0;
+    assert!(
+        mean > 0.0 && (0.6..2.5).contains(&(stated / scatter)),
+        "{mean} {scatter} {stated}"
     );
 }
 

@@ -5,16 +5,24 @@
 //! The first root of the right side is a safe step, eq. (3); the steps converge to the zero from below.
 
 use super::path::{Jet, Path};
+use crate::patience;
+
+/// Steps between two looks at whether the zero is still wanted.
+const BETWEEN_LOOKS: u64 = 4096;
 
 /// First time in [0, `t_max`] at which the path falls to zero, starting from f(0) ≥ 0 (or below
 /// by rounding). A start at f = 0 that moves away is not a zero; one that moves on below zero
-/// is a zero at once; touching zero within rounding without passing it is not counted.
+/// is a zero at once; touching zero within rounding without passing it is not counted. None either where nobody
+/// wants it any longer.
 pub(super) fn first_zero(path: &Path, t_max: f64) -> Option<f64> {
     let tolerance = 4e-15 * path.size();
     let longest = 1.6 / path.rate();
     let mut hm = longest;
     let (mut t, mut before) = (0.0, 0.0);
-    loop {
+    for step in 1_u64.. {
+        if step.is_multiple_of(BETWEEN_LOOKS) && patience::is_over() {
+            break;
+        }
         let jet = path.jet(t);
         let (g, v) = (jet.value, -jet.d1);
         if never_again(path, &jet) {
@@ -36,6 +44,7 @@ pub(super) fn first_zero(path: &Path, t_max: f64) -> Option<f64> {
         t = if t + h > t { t + h } else { t.next_up() };
         hm = (1.5 * h).clamp(1e-3 * longest, longest);
     }
+    None
 }
 
 /// Exact exit: what is left above zero exceeds all amplitudes, which only decay.

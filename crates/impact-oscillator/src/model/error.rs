@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ModelError {
     /// A parameter is outside its admissible range.
-    #[error("{name} = {value} is out of range: {expected}")]
+    #[error("{name} = {} is out of range: {expected}", short(*value))]
     OutOfRange {
         /// The parameter's name.
         name: &'static str,
@@ -23,9 +23,22 @@ pub enum ModelError {
         /// How far beyond the contact.
         depth: f64,
     },
+    /// The work was given up before its end: nobody waits for it.
+    #[error("the simulation was given up before its end")]
+    GivenUp,
     /// The request has no meaning for this machine.
     #[error("{0}")]
     Unsupported(&'static str),
+}
+
+/// A value as text, without hundreds of digits.
+fn short(value: f64) -> String {
+    let plain = value == 0.0 || (1e-6..1e15).contains(&value.abs());
+    if plain {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
 }
 
 /// A finite value that meets a condition.

@@ -6,6 +6,10 @@ use super::contact::{self, Impact, ImpactKind};
 use super::crossing::first_zero;
 use super::flight::{Drive, FlightPaths, State, free_flight, press, sticking_flight};
 use super::params::{Initial, Machine, ModelError, Setting};
+use crate::patience;
+
+/// Pieces of motion between two looks at whether it is still wanted.
+const BETWEEN_LOOKS: u32 = 256;
 
 /// A piece of the motion between two events.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -152,10 +156,17 @@ impl Simulator {
         self.settle();
     }
 
-    /// Continue for a time in units of τ; the sink receives arcs and impacts in the order of time.
+    /// Continue for a time in units of τ; the sink receives arcs and impacts in the order of time. Under a
+    /// [`Patience`](crate::Patience) that is over it stops where it is.
     pub fn advance(&mut self, duration: f64, sink: &mut impl Sink) {
         let end = self.now.tau + duration;
+        let mut pieces = 0_u32;
         while self.now.tau < end {
+            if pieces.is_multiple_of(BETWEEN_LOOKS) && patience::is_over() {
+                self.now.tau = end;
+                return;
+            }
+            pieces = pieces.wrapping_add(1);
             if self.now.sticking {
                 self.stay(end, sink);
             } else {

@@ -1,11 +1,13 @@
 //! Each request with what answers it.
 
+use std::time::Duration;
+
 use serde_json::json;
 
 use super::frame::Frame;
 use super::jobs::{Job, Stale, refusal};
 use super::wire::{Ask, Request};
-use super::{ExploreError, Session, State, demo, evidence, export, maps, motions};
+use super::{ExploreError, Session, demo, evidence, export, limits, maps, motions};
 
 /// Why an answer ends early.
 #[derive(Debug)]
@@ -28,9 +30,22 @@ impl<E: Into<ExploreError>> From<E> for Stop {
     }
 }
 
+/// Longest time that one motion may take.
+const LONGEST: Duration = Duration::from_secs(20);
+
 /// Answer a request.
 pub(super) fn answer(session: &Session, request: &Request, job: &Job) {
-    if let Err(Stop::Refused(error)) = ask(session, request, job) {
+    let longest = request.ask.is_single().then_some(LONGEST);
+    let found = match request.ask.is_given_up() {
+        true => job.patience(longest).work(|| ask(session, request, job)),
+        false => Ok(ask(session, request, job)),
+    };
+    let stop = match found {
+        Ok(answered) => answered,
+        Err(_) if job.is_stale() => Err(Stop::Stale),
+        Err(_) => Err(Stop::Refused(ExploreError::TooLong)),
+    };
+    if let Err(Stop::Refused(error)) = stop {
         // a page that is gone needs no refusal
         let _ = job.send(refusal(job.id, &error));
     }
@@ -44,7 +59,7 @@ fn ask(session: &Session, request: &Request, job: &Job) -> Result<(), Stop> {
         Ask::Boundaries { points, .. } => maps::boundaries(state, *points, job),
         Ask::Ahead { points } => Ok(job.send(maps::bare(state, *points, job.id)?)?),
         Ask::Motion { carried_from } => motions::motion(state, *carried_from, job),
-        Ask::Run { periods } => motions::run(state, *periods, job),
+        Ask::Run { periods, facts } => motions::run(state, *periods, *facts, job),
         Ask::Line {} => motions::line(state, job),
         Ask::Basins {} => motions::basins(state, job),
         Ask::Coexisting {} => motions::coexisting(state, job),
@@ -70,8 +85,9 @@ fn hello(session: &Session, job: &Job) -> Result<(), Stop> {
         .frame("hello")
         .with("program", env!("CARGO_PKG_VERSION"))
         .with("state", session.state())
-        .with("first", State::default())
+        .with("limits", limits::all())
         .with("demos", demo::list())
+        .with("title", session.title())
         .with("campaign", session.campaign().ok().map(|c| c.facts()))
         .with("demo", session.demo())
         .with("notes", session.notes());

@@ -1,10 +1,11 @@
 //! A campaign as the page shows it: records, brackets, the fit with its bands.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
 use super::ExploreError;
+use super::limits::{DEFLECTION, ETA, FREQUENCY, RHO};
 use super::state::{Cursor, Panel, RigScale, State, Window};
 use crate::theory::plan::Law;
 use impact_campaign::campaign::resolved::ResolvedCampaign;
@@ -81,6 +82,22 @@ impl Campaign {
             }));
         }
         Ok((Self::with(resolved, observed, found.identification), notes))
+    }
+
+    /// The folder from which the paths in a folder of results lead to their inputs, where that is not the working
+    /// directory: the nearest one above the results.
+    ///
+    /// # Errors
+    /// [`ExploreError`] where the results cannot be read.
+    pub fn base(folder: &Path) -> Result<Option<PathBuf>, ExploreError> {
+        let file = store::read_resolved(folder)?.file;
+        if file.exists() {
+            return Ok(None);
+        }
+        let above = folder.ancestors().skip(1);
+        Ok(above
+            .map(Path::to_owned)
+            .find(|base| base.join(&file).exists()))
     }
 
     fn with(
@@ -168,19 +185,21 @@ impl Campaign {
                     .collect(),
             )
         };
+        let frequency = fit
+            .map(|p| p.natural_frequency_hz)
+            .or(value(&joint.natural_frequency_hz))
+            .or(self.resolved.rig.natural_frequency_hz)
+            .or_else(frequencies)
+            .unwrap_or(1.0);
+        let deflection = fit
+            .map(|p| p.static_deflection_m)
+            .or(value(&joint.static_deflection_m))
+            .or(self.resolved.rig.static_deflection_m)
+            .or_else(gaps)
+            .unwrap_or(1e-3);
         RigScale {
-            natural_frequency_hz: fit
-                .map(|p| p.natural_frequency_hz)
-                .or(value(&joint.natural_frequency_hz))
-                .or(self.resolved.rig.natural_frequency_hz)
-                .or_else(frequencies)
-                .unwrap_or(1.0),
-            static_deflection_m: fit
-                .map(|p| p.static_deflection_m)
-                .or(value(&joint.static_deflection_m))
-                .or(self.resolved.rig.static_deflection_m)
-                .or_else(gaps)
-                .unwrap_or(1e-3),
+            natural_frequency_hz: FREQUENCY.nearest(frequency),
+            static_deflection_m: DEFLECTION.nearest(deflection),
         }
     }
 
@@ -240,8 +259,8 @@ impl Campaign {
         let middle = |r: (f64, f64)| 0.5 * (r.0 + r.1);
         let (eta, rho) = place.unwrap_or((middle(view.eta), middle(view.rho)));
         Cursor {
-            eta,
-            rho,
+            eta: ETA.nearest(eta),
+            rho: RHO.nearest(rho),
             ..State::default().cursor
         }
     }
@@ -260,9 +279,10 @@ impl Campaign {
         let (Some(eta), Some(rho)) = (range(|p| p.0), range(|p| p.1)) else {
             return first.view;
         };
+        let high = (eta.1.clamp(0.2, ETA.high), rho.1.clamp(0.2, 20.0));
         Window {
-            eta: (eta.0.max(0.05), eta.1),
-            rho: (rho.0.max(0.0).min(rho.1 - 0.1), rho.1.min(20.0)),
+            eta: (eta.0.clamp(0.05, high.0 - 0.1), high.0),
+            rho: (rho.0.clamp(0.0, high.1 - 0.1), high.1),
         }
     }
 

@@ -24,6 +24,9 @@ pub enum ExploreError {
     /// A value is outside its range, or the model refuses it.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// A motion takes too long.
+    #[error("this motion takes too long to compute")]
+    TooLong,
     /// A record has no place here, or no such thing exists.
     #[error("{0}")]
     Absent(String),
@@ -66,6 +69,7 @@ impl ExploreError {
             Self::Model(_) => {
                 "give a value within the range that the message names"
             }
+            Self::TooLong => "let it settle for fewer periods, or choose a greater η",
             Self::Absent(_) => "choose one that the page lists",
             Self::Port { .. } => {
                 "another program listens there, perhaps another explorer: choose another --port, or \

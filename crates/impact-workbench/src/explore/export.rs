@@ -12,11 +12,8 @@ use super::wire::ExportFile;
 use crate::theory::{Pictures, StudyContext, run};
 use impact_campaign::pipeline::block_cache::BlockCache;
 
-/// The files that `impactid study` would write of the state's study.
-pub(super) fn files(
-    state: &State,
-    pictures: Pictures,
-) -> Result<Vec<(String, String)>, ExploreError> {
+/// The tables that `impactid study` would write of the state's study.
+pub(super) fn files(state: &State) -> Result<Vec<(String, String)>, ExploreError> {
     let written = Mutex::new(Vec::new());
     run(
         &state.study(),
@@ -28,7 +25,7 @@ pub(super) fn files(
                 }
                 Ok(())
             },
-            pictures,
+            pictures: Pictures::None,
             blocks: &BlockCache::none(),
             progress: &|_, _| {},
             inform: &|_| {},
@@ -44,18 +41,13 @@ pub(super) fn study_text(state: &State) -> Result<String, ExploreError> {
 
 /// Send the files that the page asks for.
 pub(super) fn export(state: &State, file: ExportFile, job: &Job) -> Result<(), Stop> {
-    let (ending, pictures) = match file {
-        ExportFile::Study => {
-            let text = study_text(state)?;
-            let files = json!([{"name": "study.toml", "text": text}]);
-            return Ok(job.send(job.frame("files").with("files", files))?);
-        }
-        ExportFile::Csv => (".csv", Pictures::None),
-        ExportFile::Svg => (".svg", Pictures::Svg),
+    let all = match file {
+        ExportFile::Study => vec![("study.toml".to_owned(), study_text(state)?)],
+        ExportFile::Csv => files(state)?,
     };
-    let all = files(state, pictures)?;
-    let of_kind = all.into_iter().filter(|(name, _)| name.ends_with(ending));
-    let files: Vec<_> = of_kind
+    let files: Vec<_> = all
+        .into_iter()
+        .filter(|(name, _)| !name.ends_with(".parquet"))
         .map(|(name, text)| json!({"name": name, "text": text}))
         .collect();
     Ok(job.send(job.frame("files").with("files", files))?)

@@ -2,7 +2,7 @@
 //!
 //! A frame is the header's length in bytes (32 bits, little endian), the header, padded with spaces
 //! so that the numbers begin at a multiple of four, the columns (32-bit floats, little endian), and the
-//! cells (one byte each). The header's `columns` lists names and lengths, its `cells` their number.
+//! cells (16-bit numbers, little endian). The header's `columns` lists names and lengths, its `cells` their number.
 
 use serde_json::{Map, Value, json};
 
@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 pub(super) struct Frame {
     header: Map<String, Value>,
     columns: Vec<(String, Vec<f32>)>,
-    cells: Vec<u8>,
+    cells: Vec<u16>,
 }
 
 impl Frame {
@@ -47,7 +47,7 @@ impl Frame {
     }
 
     /// With cells.
-    pub(super) fn cells(mut self, cells: Vec<u8>) -> Self {
+    pub(super) fn cells(mut self, cells: Vec<u16>) -> Self {
         self.cells = cells;
         self
     }
@@ -60,14 +60,14 @@ impl Frame {
         self.header.insert("cells".into(), self.cells.len().into());
         let mut header = Value::Object(self.header).to_string().into_bytes();
         header.resize(header.len().next_multiple_of(4), b' ');
-        let mut bytes = Vec::with_capacity(4 + header.len() + self.cells.len());
+        let mut bytes = Vec::with_capacity(4 + header.len());
         let length = u32::try_from(header.len()).unwrap_or(u32::MAX);
         bytes.extend(length.to_le_bytes());
         bytes.append(&mut header);
         for (_, values) in &self.columns {
             bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
         }
-        bytes.append(&mut self.cells);
+        bytes.extend(self.cells.iter().flat_map(|c| c.to_le_bytes()));
         bytes
     }
 }

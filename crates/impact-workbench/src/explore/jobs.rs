@@ -3,12 +3,15 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
+use impact_oscillator::Patience;
 use tokio::sync::{mpsc, watch};
 
 use super::answer::answer;
 use super::first_tiles::{FirstTiles, Underway};
 use super::frame::Frame;
+use super::pools::Pools;
 use super::wire::{Ask, Kind, Request};
 use super::{ExploreError, Session, maps};
 
@@ -27,9 +30,25 @@ pub(super) struct Jobs {
 pub(super) struct Job {
     /// The request's number.
     pub id: u32,
+    /// The threads of its page.
+    pub pools: Arc<Pools>,
+    audience: Audience,
+    first_tiles: Arc<FirstTiles>,
+}
+
+/// Who waits for what a job finds.
+#[derive(Clone)]
+struct Audience {
     newest: Option<watch::Receiver<Option<Request>>>,
     outbox: mpsc::Sender<Frame>,
-    first_tiles: Arc<FirstTiles>,
+}
+
+impl Audience {
+    /// Whether the page is gone or has asked for something newer.
+    fn is_gone(&self) -> bool {
+        let replaced = |newest: &watch::Receiver<_>| newest.has_changed().unwrap_or(true);
+        self.outbox.is_closed() || self.newest.as_ref().is_some_and(replaced)
+    }
 }
 
 /// The page is gone, or asked for something newer: the job stops.
@@ -37,14 +56,11 @@ pub(super) struct Job {
 pub(super) struct Stale;
 
 impl Job {
-    /// A job that nothing replaces, with its outbox.
-    pub(super) fn alone(id: u32, outbox: mpsc::Sender<Frame>) -> Self {
-        Self {
-            id,
-            newest: None,
-            outbox,
-            first_tiles: Arc::default(),
-        }
+    /// Simulations go on as long as somebody waits for them, and a single motion no longer than a limit.
+    pub(super) fn patience(&self, longest: Option<Duration>) -> Patience {
+        let (audience, begin) = (self.audience.clone(), Instant::now());
+        let in_time = move || longest.is_none_or(|longest| begin.elapsed() < longest);
+        Patience::new(move || in_time() && !audience.is_gone())
     }
 
     /// This map's first tiles begin.
@@ -59,13 +75,12 @@ impl Job {
 
     /// Whether the page is gone or has asked for something newer.
     pub(super) fn is_stale(&self) -> bool {
-        let replaced = |newest: &watch::Receiver<_>| newest.has_changed().unwrap_or(true);
-        self.outbox.is_closed() || self.newest.as_ref().is_some_and(replaced)
+        self.audience.is_gone()
     }
 
     /// Send a frame.
     pub(super) fn send(&self, frame: Frame) -> Result<(), Stale> {
-        self.outbox.blocking_send(frame).map_err(|_| Stale)
+        self.audience.outbox.blocking_send(frame).map_err(|_| Stale)
     }
 
     /// A frame in answer to this request.
@@ -85,15 +100,20 @@ impl Jobs {
     /// Start the slots of a page; frames go to the outbox.
     pub(super) fn start(session: &Arc<Session>, outbox: &mpsc::Sender<Frame>) -> Self {
         let first_tiles = Arc::<FirstTiles>::default();
+        let shared = Shared {
+            session: Arc::clone(session),
+            outbox: outbox.clone(),
+            pools: Arc::default(),
+            first_tiles: Arc::clone(&first_tiles),
+        };
         let mut newest = BTreeMap::new();
         for slot in Kind::NEWEST {
             let (sender, receiver) = watch::channel(None);
             newest.insert(slot, sender);
-            let shared = (outbox.clone(), Arc::clone(&first_tiles));
-            tokio::spawn(newest_of(Arc::clone(session), receiver, shared));
+            tokio::spawn(newest_of(shared.clone(), receiver));
         }
         let (queue, waiting) = mpsc::channel(QUEUE);
-        tokio::spawn(one_by_one(Arc::clone(session), waiting, outbox.clone()));
+        tokio::spawn(one_by_one(shared, waiting));
         Self {
             newest,
             queue,
@@ -135,43 +155,48 @@ impl Jobs {
     }
 }
 
-async fn newest_of(
+/// What the jobs of a page share.
+#[derive(Clone)]
+struct Shared {
     session: Arc<Session>,
-    mut newest: watch::Receiver<Option<Request>>,
-    (outbox, first_tiles): (mpsc::Sender<Frame>, Arc<FirstTiles>),
-) {
+    outbox: mpsc::Sender<Frame>,
+    pools: Arc<Pools>,
+    first_tiles: Arc<FirstTiles>,
+}
+
+async fn newest_of(shared: Shared, mut newest: watch::Receiver<Option<Request>>) {
     while newest.changed().await.is_ok() {
         let Some(request) = newest.borrow_and_update().clone() else {
             continue;
         };
+        shared.work(request, Some(newest.clone())).await;
+    }
+}
+
+async fn one_by_one(shared: Shared, mut waiting: mpsc::Receiver<Request>) {
+    while let Some(request) = waiting.recv().await {
+        shared.work(request, None).await;
+    }
+}
+
+impl Shared {
+    /// Do a job on a thread of its own, until its slot has something newer; one that panics is refused, the page
+    /// lives on.
+    async fn work(&self, request: Request, newest: Option<watch::Receiver<Option<Request>>>) {
         let job = Job {
             id: request.id,
-            newest: Some(newest.clone()),
-            outbox: outbox.clone(),
-            first_tiles: Arc::clone(&first_tiles),
+            pools: Arc::clone(&self.pools),
+            audience: Audience {
+                newest,
+                outbox: self.outbox.clone(),
+            },
+            first_tiles: Arc::clone(&self.first_tiles),
         };
-        work(&session, request, job).await;
-    }
-}
-
-async fn one_by_one(
-    session: Arc<Session>,
-    mut waiting: mpsc::Receiver<Request>,
-    outbox: mpsc::Sender<Frame>,
-) {
-    while let Some(request) = waiting.recv().await {
-        let job = Job::alone(request.id, outbox.clone());
-        work(&session, request, job).await;
-    }
-}
-
-/// Do a job on a thread of its own; one that panics is refused, the page lives on.
-async fn work(session: &Arc<Session>, request: Request, job: Job) {
-    let (id, outbox) = (job.id, job.outbox.clone());
-    let session = Arc::clone(session);
-    let done = tokio::task::spawn_blocking(move || answer(&session, &request, &job)).await;
-    if done.is_err() {
-        let _ = outbox.send(refusal(id, &failed())).await;
+        let (id, session) = (job.id, Arc::clone(&self.session));
+        let done = tokio::task::spawn_blocking(move || answer(&session, &request, &job)).await;
+        if done.is_err() {
+            let _ = self.outbox.send(refusal(id, &failed())).await;
+        }
     }
 }
 

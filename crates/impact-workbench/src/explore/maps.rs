@@ -1,9 +1,6 @@
 //! The map's tiles, coarse first, and the boundaries, bare first.
 
-use std::sync::LazyLock;
-
 use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::answer::Stop;
 use super::frame::Frame;
@@ -14,6 +11,7 @@ use impact_oscillator::atlas::map::{UnitMass, even};
 use impact_oscillator::model::boundary::{rho_sticking, s1_of_branch, s2_of_branch};
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::range;
+use impact_oscillator::patience::carry;
 use impact_oscillator::{
     BoundaryPoint, Machine, MapGrid, SettledMotion, region_map, rho_grazing, rho_s1, rho_s2,
 };
@@ -33,49 +31,14 @@ const MOST_PERIODS: u32 = 5;
 /// Most points of a boundary that a page may ask for.
 const MOST_POINTS: usize = 2000;
 
-/// The threads that march the map and look where boundaries exist: where they cannot give way to the browser
-/// one fewer than there are. `None` where the system gives none.
-static POOL: LazyLock<Option<ThreadPool>> = LazyLock::new(|| {
-    let spared = if cfg!(target_os = "linux") { 0 } else { 1 };
-    let threads = rayon::current_num_threads().saturating_sub(spared);
-    pool(threads.max(1))
-});
+/// Cell of a start that is beyond the contact.
+pub(super) const BEYOND: u16 = u16::MAX;
 
-/// The thread of the first tiles: one, so that the browser, which is most often on the same machine, draws one
-/// while the next is computed.
-static FIRST_POOL: LazyLock<Option<ThreadPool>> = LazyLock::new(|| pool(1));
-
-fn pool(threads: usize) -> Option<ThreadPool> {
-    let builder = ThreadPoolBuilder::new().num_threads(threads);
-    builder.start_handler(|_| give_way()).build().ok()
-}
-
-/// Nice value of the map's threads.
-#[cfg(target_os = "linux")]
-const GIVES_WAY: i32 = 10;
-
-/// Let other threads go before this one. Linux has a priority of each thread; where it may not be changed, the
-/// map is as quick, and the browser waits for it.
-#[cfg(target_os = "linux")]
-fn give_way() {
-    let _ = rustix::process::setpriority_process(None, GIVES_WAY);
-}
-
-#[cfg(not(target_os = "linux"))]
-fn give_way() {}
-
-/// Work on the threads of a pool, in the order in which it comes.
-fn in_pool<T: Send>(pool: &Option<ThreadPool>, work: impl FnOnce() -> T + Send) -> T {
-    match pool {
-        Some(pool) => pool.install(work),
-        None => work(),
-    }
-}
-
-/// Motions as cells: each motion that occurs once, and its number in each cell.
+/// Motions as cells: each motion that occurs once, and its number in each cell. There are at most as many
+/// motions as cells, and no strip has as many cells as 16 bits have numbers.
 pub(super) fn cells<'a>(
     motions: impl Iterator<Item = &'a SettledMotion>,
-) -> (Vec<MotionStyle>, Vec<u8>) {
+) -> (Vec<MotionStyle>, Vec<u16>) {
     let mut known: Vec<SettledMotion> = Vec::new();
     let index = |motion: &SettledMotion| {
         let found = known.iter().position(|m| m == motion);
@@ -83,8 +46,7 @@ pub(super) fn cells<'a>(
             known.push(*motion);
             known.len() - 1
         });
-        // more motions than that cannot be told apart by eye
-        u8::try_from(index).unwrap_or(254).min(254)
+        u16::try_from(index).unwrap_or(BEYOND - 1)
     };
     let cells = motions.map(index).collect();
     let style = |m: &SettledMotion| MotionStyle::of(&Motion::from(*m));
@@ -108,7 +70,7 @@ pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
         size,
         strip_cells,
         finest: level == finest,
-        pool: if level < first { &FIRST_POOL } else { &POOL },
+        is_first: level < first,
     });
     let send = |tile: Tile| tile.send(state, &machine, job);
     tiles.clone().take(first).try_for_each(send)?;
@@ -125,8 +87,8 @@ struct Tile {
     strip_cells: usize,
     /// Whether no finer level follows.
     finest: bool,
-    /// The threads that march it.
-    pool: &'static Option<ThreadPool>,
+    /// Whether it is one of the first tiles.
+    is_first: bool,
 }
 
 impl Tile {
@@ -144,7 +106,11 @@ impl Tile {
                 eta: eta.clone(),
                 rho: strip.to_vec(),
             };
-            let map = in_pool(self.pool, || region_map(machine, &grid, &plan.map))?;
+            let march = || region_map(machine, &grid, &plan.map);
+            let map = match self.is_first {
+                true => job.pools.first_tiles(march),
+                false => job.pools.work(march),
+            }?;
             let (motions, cells) = cells(map.cells.iter());
             let frame = job
                 .frame("map")
@@ -193,13 +159,12 @@ pub(super) fn boundaries(state: &State, points: usize, job: &Job) -> Result<(), 
     let etas = boundary_etas(state, points)?;
     let both = |n| [("s2", n, rho_s2 as Boundary), ("s1", n, rho_s1)];
     let curves: Vec<_> = (1..=MOST_PERIODS).flat_map(both).collect();
-    let curve = |c: &(&str, u32, Boundary)| match job.is_stale() {
-        true => Err(Stop::Stale),
-        false => Ok(curve(&machine, &etas, *c, job)),
-    };
+    let curve = &|c: &(&str, u32, Boundary)| curve(&machine, &etas, *c, job);
     job.wait_for_first_tiles();
-    let frames: Vec<Frame> = in_pool(&POOL, || {
-        curves.par_iter().map(curve).collect::<Result<_, Stop>>()
+    let tasks: Vec<_> = curves.iter().map(|c| carry(move || curve(c))).collect();
+    let frames: Vec<Frame> = job.pools.work(|| {
+        let found = tasks.into_par_iter().map(|task| task());
+        found.collect::<Result<_, Stop>>()
     })?;
     Ok(frames.into_iter().try_for_each(|frame| job.send(frame))?)
 }
@@ -210,16 +175,21 @@ fn curve(
     etas: &[f64],
     (kind, n, of): (&str, u32, Boundary),
     job: &Job,
-) -> Frame {
-    let found: Vec<Option<BoundaryPoint>> = etas.iter().map(|e| of(machine, *e, n)).collect();
+) -> Result<Frame, Stop> {
+    let point = |eta: &f64| match job.is_stale() {
+        true => Err(Stop::Stale),
+        false => Ok(of(machine, *eta, n)),
+    };
+    let found: Vec<Option<BoundaryPoint>> = etas.iter().map(point).collect::<Result<_, _>>()?;
     let rho = |p: &Option<BoundaryPoint>| p.map_or(f64::NAN, |p| p.rho);
     let valid = |p: &Option<BoundaryPoint>| f64::from(p.is_some_and(|p| p.is_valid()));
-    job.frame("boundary")
+    Ok(job
+        .frame("boundary")
         .with("name", format!("{kind}:{n}"))
         .with("last", n == MOST_PERIODS && kind == "s1")
         .column("eta", etas.iter().copied())
         .column("rho", found.iter().map(rho))
-        .column("exists", found.iter().map(valid))
+        .column("exists", found.iter().map(valid)))
 }
 
 /// ρ at s2 without a check of existence; none where R depends on the speed.

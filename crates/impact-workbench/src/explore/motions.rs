@@ -7,16 +7,20 @@ use serde_json::json;
 use super::answer::Stop;
 use super::frame::Frame;
 use super::jobs::Job;
-use super::maps::cells;
+use super::maps::{BEYOND, cells};
 use super::state::Cursor;
 use super::{ExploreError, State};
 use impact_oscillator::atlas::BasinGrid;
 use impact_oscillator::atlas::basins::basin_rows;
 use impact_oscillator::atlas::map::{UnitMass, even};
-use impact_oscillator::atlas::portrait::{Portrait, portrait};
+use impact_oscillator::atlas::portrait::{LONGEST_LAG, Portrait, PortraitPlan, portrait};
 use impact_oscillator::atlas::sweep::{Carried, SweepPoint, impactless};
 use impact_oscillator::model::range;
-use impact_oscillator::{Machine, MapSettings, Setting, SettledMotion, Simulator, Trajectory};
+use impact_oscillator::model::simulate::Snapshot;
+use impact_oscillator::patience::carry;
+use impact_oscillator::{
+    Machine, MapSettings, Setting, SettledMotion, Simulator, Trajectory, Watch,
+};
 use impact_records::motion::Motion;
 use impact_records::signal::whole;
 use impact_report::style::MotionStyle;
@@ -98,19 +102,29 @@ pub(super) fn motion(
         point,
         portrait,
     } = seen(state, carried_from)?;
-    let free = impactless(&state.machine(), cursor.eta);
     let frame = job
         .frame("motion")
         .with("cursor", cursor)
-        .with("motion", MotionStyle::of(&Motion::from(point.motion)))
+        .with("gap", portrait.gap)
+        .with("two_masses", portrait.two_masses);
+    let frame = with_facts(frame, &state.machine(), &point);
+    Ok(job.send(with_portrait(frame, &portrait))?)
+}
+
+/// With the motion and its characteristics.
+fn with_facts(frame: Frame, machine: &Machine, point: &SweepPoint) -> Frame {
+    let free = impactless(machine, point.eta);
+    let mut style = MotionStyle::of(&Motion::from(point.motion));
+    if point.motion == SettledMotion::Chaotic && point.lyapunov < Some(0.0) {
+        style.label = "not settled".into();
+    }
+    frame
+        .with("motion", style)
+        .with("lyapunov_error", point.lyapunov_error)
         .with("x_max", point.x_max)
         .with("lyapunov", point.lyapunov)
         .with("approach_speeds", &point.approach_speeds)
-        .with("autocorrelation", &point.autocorrelation)
         .with("impactless", json!({"x": free.x, "y": free.y}))
-        .with("gap", portrait.gap)
-        .with("two_masses", portrait.two_masses);
-    Ok(job.send(with_portrait(frame, &portrait))?)
 }
 
 fn with_portrait(frame: Frame, p: &Portrait) -> Frame {
@@ -139,8 +153,45 @@ const MOST_RUN: f64 = 50.0;
 /// Samples of a running motion in a drive period.
 const RUN_SAMPLES: f64 = 80.0;
 
+/// Drive periods that a running motion is looked at to say what it is now.
+const NOW_PERIODS: f64 = 24.0;
+
+/// What a running motion is now: its coming periods, without settling.
+fn now(
+    state: &State,
+    machine: &Machine,
+    from: &Snapshot,
+    frame: Frame,
+) -> Result<Frame, ExploreError> {
+    let cursor = &state.cursor;
+    let watch = Watch {
+        settle_periods: 0.0,
+        watch_periods: NOW_PERIODS,
+        ..state.watch
+    };
+    let mut motion = Carried::resume(machine, from, watch)?;
+    let (start, phase) = motion.place();
+    let point = motion.step((cursor.eta, cursor.rho))?;
+    let plan = PortraitPlan {
+        setting: Setting::new(cursor.eta, cursor.rho).at_phase(phase),
+        start,
+        periods: NOW_PERIODS,
+        poincare_periods: 2 * LONGEST_LAG,
+        ..state.portrait()
+    };
+    let seen = portrait(machine, &plan)?;
+    let mut style = MotionStyle::of(&Motion::from(point.motion));
+    if !point.motion.is_periodic() {
+        style.label = "not periodic".into();
+    }
+    Ok(with_facts(frame, machine, &point)
+        .with("motion", style)
+        .column("lag", seen.autocorrelation.iter().map(|a| a.0))
+        .column("autocorrelation", seen.autocorrelation.iter().map(|a| a.1)))
+}
+
 /// The next stretch of the motion at the cursor, and where it is then.
-pub(super) fn run(state: &State, periods: f64, job: &Job) -> Result<(), Stop> {
+pub(super) fn run(state: &State, periods: f64, facts: bool, job: &Job) -> Result<(), Stop> {
     let some = periods > 0.0 && periods <= MOST_RUN;
     range("periods", periods, some, "above 0, at most 50")?;
     let machine = state.machine();
@@ -153,8 +204,7 @@ pub(super) fn run(state: &State, periods: f64, job: &Job) -> Result<(), Stop> {
     let steps = whole::index((periods * RUN_SAMPLES).ceil());
     let taus = even((0.0, periods * period, steps + 1));
     let states = stretch.sample(taus.iter().copied());
-    let place = Carried::resume(&machine, &simulator.snapshot(), state.watch)?.place();
-    let (start, phase) = place;
+    let (start, phase) = (simulator.state().into(), simulator.phase());
     let cursor = Cursor {
         start,
         phase,
@@ -169,8 +219,13 @@ pub(super) fn run(state: &State, periods: f64, job: &Job) -> Result<(), Stop> {
     let frame = job
         .frame("run")
         .with("cursor", cursor)
-        .with("eta", state.cursor.eta)
         .with("gap", machine.gap(state.cursor.rho))
+        .with("two_masses", machine.y.is_some());
+    let frame = match facts {
+        true => now(state, &machine, &simulator.snapshot(), frame)?,
+        false => frame,
+    };
+    let frame = frame
         .column("periods", taus.iter().map(|t| t / period))
         .column("x", states.iter().map(|s| s.x))
         .column("vx", states.iter().map(|s| s.vx))
@@ -241,6 +296,10 @@ impl<'a> Way<'a> {
                 "lyapunov",
                 points.iter().map(|p| p.lyapunov.unwrap_or(f64::NAN)),
             )
+            .column(
+                "lyapunov_error",
+                points.iter().map(|p| p.lyapunov_error.unwrap_or(0.0)),
+            )
             .column("impactless", points.iter().map(|p| free(p).x.0))
             .column("impactless_phase", points.iter().map(|p| free(p).x.1))
             .column(
@@ -270,7 +329,8 @@ pub(super) fn line(state: &State, job: &Job) -> Result<(), Stop> {
     let mut down = Way::new("down", &machine, state, (down, line.start))?;
     let mut since = Instant::now();
     for step in 1..=line.steps {
-        let (a, b) = rayon::join(|| up.step(), || down.step());
+        let (a, b) = (carry(|| up.step()), carry(|| down.step()));
+        let (a, b) = job.pools.work(|| rayon::join(a, b));
         a.and(b)?;
         if job.is_stale() {
             return Err(Stop::Stale);
@@ -283,9 +343,6 @@ pub(super) fn line(state: &State, job: &Job) -> Result<(), Stop> {
     }
     Ok(())
 }
-
-/// Cell of a start that is beyond the contact.
-const BEYOND: u8 = 255;
 
 /// Columns and rows of the first basins, and of the starts of coexisting motions.
 const COARSE_STARTS: usize = 24;
@@ -319,10 +376,8 @@ fn settled_starts(
             return Err(Stop::Stale);
         }
         let last = (first + rows).min(grid.rows());
-        each(
-            first,
-            &basin_rows(&machine, setting, grid, &settings, first..last)?,
-        )?;
+        let rows = || basin_rows(&machine, setting, grid, &settings, first..last);
+        each(first, &job.pools.work(rows)?)?;
         first = last;
     }
     Ok(())

@@ -6,6 +6,7 @@
 
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::Router;
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
@@ -14,8 +15,11 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
-use axum::serve::ListenerExt;
 use futures_util::{SinkExt, StreamExt};
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
+use tokio::net::TcpStream;
 use tokio::sync::{Semaphore, mpsc};
 
 use super::answer::campaign_now;
@@ -35,17 +39,21 @@ const PROTOCOL: &str = "impactid.1";
 /// Before the token in the list of protocols that the page offers.
 const TOKEN_PREFIX: &str = "token.";
 
+/// The header with which a page asks at the door.
+const TOKEN_HEADER: &str = "x-token";
+/// Longest time until a connection has sent a request.
+const PATIENCE: Duration = Duration::from_secs(5);
+
 /// What the page may do: scripts, styles, fonts and the WebSocket of this server, nothing else.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; font-src 'self'; \
      img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; \
      frame-ancestors 'none'";
 
 /// The page's files: path, type, content.
-const FILES: [(&str, &str, &str); 12] = [
+const FILES: [(&str, &str, &str); 16] = [
     ("/", HTML, include_str!("page/index.html")),
     ("/style.css", CSS, include_str!("page/style.css")),
-    ("/uplot.css", CSS, include_str!("page/uplot.css")),
-    ("/uplot.js", SCRIPT, include_str!("page/uplot.js")),
+    ("/svg.js", SCRIPT, include_str!("page/svg.js")),
     ("/main.js", SCRIPT, include_str!("page/main.js")),
     ("/wire.js", SCRIPT, include_str!("page/wire.js")),
     ("/map.js", SCRIPT, include_str!("page/map.js")),
@@ -54,6 +62,11 @@ const FILES: [(&str, &str, &str); 12] = [
     ("/campaign.js", SCRIPT, include_str!("page/campaign.js")),
     ("/keys.js", SCRIPT, include_str!("page/keys.js")),
     ("/dialogs.js", SCRIPT, include_str!("page/dialogs.js")),
+    ("/door.js", SCRIPT, include_str!("page/door.js")),
+    ("/formula.js", SCRIPT, include_str!("page/formula.js")),
+    ("/fields.js", SCRIPT, include_str!("page/fields.js")),
+    ("/demos.js", SCRIPT, include_str!("page/demos.js")),
+    ("/exports.js", SCRIPT, include_str!("page/exports.js")),
 ];
 
 const HTML: &str = "text/html; charset=utf-8";
@@ -129,23 +142,37 @@ impl Server {
             .map_err(stopped)?;
         runtime.block_on(async move {
             let listener = tokio::net::TcpListener::from_std(self.listener).map_err(stopped)?;
-            let listener = listener.tap_io(|stream| {
-                // without it the frames are only slower
-                let _ = stream.set_nodelay(true);
-            });
             let app = App {
                 session: self.session,
                 token: self.token,
                 pages: Arc::new(Semaphore::new(MOST_PAGES)),
             };
-            axum::serve(listener, router(app)).await.map_err(stopped)
+            let router = router(app);
+            loop {
+                let (stream, _) = listener.accept().await.map_err(stopped)?;
+                tokio::spawn(serve(stream, router.clone()));
+            }
         })
     }
 }
 
+/// Serve a connection; one that does not send a request within seconds is closed.
+async fn serve(stream: TcpStream, router: Router) {
+    // without it the frames are only slower
+    let _ = stream.set_nodelay(true);
+    let connection = http1::Builder::new()
+        .timer(TokioTimer::new())
+        .header_read_timeout(PATIENCE)
+        .serve_connection(TokioIo::new(stream), TowerToHyperService::new(router))
+        .with_upgrades();
+    // a connection that breaks is the browser's to open again
+    let _ = connection.await;
+}
+
 fn router(app: App) -> Router {
     let app = Arc::new(app);
-    let mut router = Router::new().route("/ws", get(upgrade));
+    let door = Router::new().route("/door", get(door));
+    let mut router = door.route("/ws", get(upgrade));
     for (path, kind, content) in FILES {
         router = router.route(path, get(move || async move { file(kind, content) }));
     }
@@ -153,13 +180,7 @@ fn router(app: App) -> Router {
         let content = font(face).unwrap_or_default();
         router = router.route(path, get(move || async move { file("font/otf", content) }));
     }
-    let licence = include_str!("page/uplot-LICENSE");
-    let text = "text/plain; charset=utf-8";
     router
-        .route(
-            "/uplot-LICENSE",
-            get(move || async move { file(text, licence) }),
-        )
         .fallback(|| async { (StatusCode::NOT_FOUND, "no such page\n") })
         .layer(middleware::from_fn(guarded))
         .with_state(app)
@@ -214,6 +235,18 @@ fn is_loopback(host: &str) -> bool {
     let bare = |name: &str| ["127.0.0.1", "localhost", "[::1]"].contains(&name);
     let port = |port: &str| port.parse::<u16>().is_ok();
     bare(host) || matches!(host.rsplit_once(':'), Some((name, p)) if bare(name) && port(p))
+}
+
+/// Whether a token opens a WebSocket: the browser does not tell a page why one was refused.
+async fn door(Shared(app): Shared<Arc<App>>, headers: HeaderMap) -> StatusCode {
+    let token = headers.get(TOKEN_HEADER).and_then(|v| v.to_str().ok());
+    if !token.is_some_and(|token| same(token, &app.token)) {
+        StatusCode::FORBIDDEN
+    } else if app.pages.available_permits() == 0 {
+        StatusCode::SERVICE_UNAVAILABLE
+    } else {
+        StatusCode::NO_CONTENT
+    }
 }
 
 /// Open a WebSocket for a page that has the token.
@@ -282,7 +315,8 @@ async fn page(socket: WebSocket, session: Arc<Session>) {
         match request {
             Ok(request) => jobs.take(request).await,
             Err((id, error)) => {
-                if outbox.send(refusal(id, &error)).await.is_err() {
+                let untaken = refusal(id, &error).with("taken", false);
+                if outbox.send(untaken).await.is_err() {
                     break;
                 }
             }

@@ -14,6 +14,7 @@ pub struct Session {
     opened: RwLock<Opened>,
     /// How often the campaign was replaced.
     changes: watch::Sender<u64>,
+    title: Option<String>,
     notes: Vec<String>,
     demo: Option<String>,
 }
@@ -32,6 +33,7 @@ impl Session {
                 campaign: campaign.map(Arc::new),
             }),
             changes: watch::Sender::new(0),
+            title: None,
             notes,
             demo: None,
         }
@@ -119,13 +121,21 @@ impl Session {
             state.poincare_phase = plan.poincare_phase;
         }
         state.check()?;
-        Ok(Self::new(state, None, Vec::new()))
+        Ok(Self {
+            title: Some(study.title.clone()),
+            ..Self::new(state, None, Vec::new())
+        })
     }
 
     /// The state that a page without one starts from.
     pub fn state(&self) -> State {
         let opened = self.opened.read().unwrap_or_else(PoisonError::into_inner);
         opened.state.clone()
+    }
+
+    /// The title of the study that is open.
+    pub(super) fn title(&self) -> Option<&str> {
+        self.title.as_deref()
     }
 
     /// With a demo that the page plays when it opens.

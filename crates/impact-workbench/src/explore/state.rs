@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::ExploreError;
+use super::limits::{self, Limit};
 use crate::theory::Study;
 use crate::theory::plan::{BasinPlan, Law, MapPlan, SweepPlan};
 use impact_oscillator::atlas::portrait::PortraitPlan;
@@ -181,10 +182,10 @@ pub struct RigScale {
 
 /// Columns and rows of the map that an exported study computes.
 pub(super) const MAP_CELLS: (usize, usize) = (128, 96);
+/// Most natural periods of a motion.
+const MOST_NATURAL_PERIODS: f64 = 160_000.0;
 /// Most trajectories in the picture of the characteristics.
 const MOST_INSETS: usize = 12;
-/// Most drive periods that a request may settle or watch.
-const MOST_PERIODS: f64 = 20_000.0;
 
 impl Default for State {
     fn default() -> Self {
@@ -243,88 +244,84 @@ impl State {
     /// # Errors
     /// [`ExploreError`] with the first value that is out of range.
     pub fn check(&self) -> Result<(), ExploreError> {
-        self.machine().check()?;
-        self.cursor.setting().check()?;
-        self.cursor.start.check()?;
-        self.map_start.check()?;
-        let Window { eta, rho } = self.view;
-        range("view.eta", eta.0, eta.0 > 0.0, "positive")?;
-        rising("view.eta", eta)?;
-        rising("view.rho", rho)?;
-        range(
-            "periods",
-            self.periods,
-            (0.1..=400.0).contains(&self.periods),
-            "0.1 to 400",
-        )?;
-        let Watch {
-            settle_periods,
-            watch_periods,
-            tolerance,
-        } = self.watch;
-        let some = |n: f64, least: f64| (least..=MOST_PERIODS).contains(&n);
-        range(
-            "watch.settle_periods",
-            settle_periods,
-            some(settle_periods, 0.0),
-            "0 to 20000",
-        )?;
-        range(
-            "watch.watch_periods",
-            watch_periods,
-            some(watch_periods, 1.0),
-            "1 to 20000",
-        )?;
-        range("watch.tolerance", tolerance, tolerance > 0.0, "positive")?;
+        self.check_machine()?;
+        check_cursor("cursor", &self.cursor)?;
+        check_start("map_start", &self.map_start)?;
+        rising("view.eta", self.view.eta, &limits::ETA)?;
+        rising("view.rho", self.view.rho, &limits::RHO)?;
+        limits::PERIODS.check("periods", self.periods)?;
+        limits::PHASE.check("poincare_phase", self.poincare_phase)?;
+        let watch = &self.watch;
+        limits::SETTLE_PERIODS.check("watch.settle_periods", watch.settle_periods)?;
+        limits::WATCH_PERIODS.check("watch.watch_periods", watch.watch_periods)?;
+        limits::TOLERANCE.check("watch.tolerance", watch.tolerance)?;
         self.check_line()?;
-        self.check_insets()?;
+        let count = self.insets.len();
+        range("insets", count as f64, count <= MOST_INSETS, "at most 12")?;
+        self.insets
+            .iter()
+            .try_for_each(|inset| check_cursor("insets", inset))?;
         self.check_basins()?;
-        let scales = self
-            .rig
-            .map(|r| [r.natural_frequency_hz, r.static_deflection_m]);
-        let positive = |v: &f64| range("rig", *v, *v > 0.0, "positive");
-        Ok(scales.iter().flatten().try_for_each(positive)?)
-    }
-
-    fn check_line(&self) -> Result<(), ExploreError> {
-        let Some(line) = &self.line else {
-            return Ok(());
-        };
-        let steps = line.steps as f64;
-        let expected = "2 to 2001";
-        range(
-            "line.steps",
-            steps,
-            (2.0..=2001.0).contains(&steps),
-            expected,
-        )?;
-        line.start.check()?;
-        let ends = [(line.eta.0, line.rho.0), (line.eta.1, line.rho.1)];
-        for (eta, rho) in ends {
-            Setting::new(eta, rho).check()?;
+        self.check_effort()?;
+        if let Some(rig) = &self.rig {
+            limits::FREQUENCY.check("rig.natural_frequency_hz", rig.natural_frequency_hz)?;
+            limits::DEFLECTION.check("rig.static_deflection_m", rig.static_deflection_m)?;
         }
         Ok(())
     }
 
-    fn check_insets(&self) -> Result<(), ExploreError> {
-        let count = self.insets.len();
-        range("insets", count as f64, count <= MOST_INSETS, "at most 12")?;
-        self.insets.iter().try_for_each(|inset| {
-            inset.setting().check()?;
-            Ok(inset.start.check()?)
-        })
+    fn check_machine(&self) -> Result<(), ModelError> {
+        if let Law::Constant(r) = self.restitution {
+            limits::RESTITUTION.check("restitution", r)?;
+        }
+        limits::DAMPING_RATIO.check("damping_ratio", self.damping_ratio)?;
+        let unlike = &self.asymmetry;
+        limits::DRIVE_AMPLITUDE.check("asymmetry.drive_amplitude", unlike.drive_amplitude)?;
+        limits::STIFFNESS.check("asymmetry.stiffness", unlike.stiffness)?;
+        limits::MASS.check("asymmetry.mass", unlike.mass)?;
+        self.machine().check()
     }
 
-    fn check_basins(&self) -> Result<(), ExploreError> {
+    fn check_line(&self) -> Result<(), ModelError> {
+        let Some(line) = &self.line else {
+            return Ok(());
+        };
+        limits::STEPS.check("line.steps", line.steps as f64)?;
+        check_start("line.start", &line.start)?;
+        for end in [line.eta.0, line.eta.1] {
+            limits::ETA.check("line.eta", end)?;
+        }
+        for end in [line.rho.0, line.rho.1] {
+            limits::RHO.check("line.rho", end)?;
+        }
+        Ok(())
+    }
+
+    fn check_basins(&self) -> Result<(), ModelError> {
         let Some(basins) = &self.basins else {
             return Ok(());
         };
-        rising("basins.x", basins.x)?;
-        rising("basins.vx", basins.vx)?;
-        for cells in [basins.cells.0, basins.cells.1] {
-            let expected = "2 to 600";
-            let some = (2..=600).contains(&cells);
-            range("basins.cells", cells as f64, some, expected)?;
+        rising("basins.x", basins.x, &limits::START)?;
+        rising("basins.vx", basins.vx, &limits::START)?;
+        limits::CELLS.check("basins.cells", basins.cells.0 as f64)?;
+        limits::CELLS.check("basins.cells", basins.cells.1 as f64)
+    }
+
+    /// That no motion goes through more natural periods than can be computed while somebody waits.
+    fn check_effort(&self) -> Result<(), ExploreError> {
+        let machine = self.machine();
+        let natural = machine
+            .y
+            .map_or(1.0, |y| y.natural_frequency_ratio.max(1.0));
+        let total = |watch: &Watch| watch.settle_periods + watch.watch_periods;
+        let line = self.line.iter().flat_map(|l| [l.eta.0, l.eta.1]);
+        let insets = self.insets.iter().map(|i| i.eta);
+        let watched = std::iter::once(self.cursor.eta).chain(line).chain(insets);
+        let slowest = watched.fold(f64::INFINITY, f64::min);
+        let of_map = total(&Watch::default()) / self.view.eta.0;
+        let most = (total(&self.watch) / slowest).max(of_map) * natural;
+        if most > MOST_NATURAL_PERIODS {
+            return Err(ExploreError::TooLong);
         }
         Ok(())
     }
@@ -429,6 +426,7 @@ impl State {
                 };
                 study.basins.insert("basins".into(), plan);
             }
+            (Panel::Record, _) => {}
             _ => {
                 study.time_series.insert("motion".into(), self.portrait());
             }
@@ -437,8 +435,20 @@ impl State {
     }
 }
 
-fn rising(name: &'static str, (low, high): (f64, f64)) -> Result<(), ModelError> {
-    range(name, low, low.abs() < 1e6, "finite and moderate")?;
-    range(name, high, high.abs() < 1e6, "finite and moderate")?;
-    range(name, high, high > low, "above the range's lower end")
+fn check_cursor(name: &'static str, cursor: &Cursor) -> Result<(), ModelError> {
+    limits::ETA.check(name, cursor.eta)?;
+    limits::RHO.check(name, cursor.rho)?;
+    limits::PHASE.check(name, cursor.phase)?;
+    check_start(name, &cursor.start)
+}
+
+fn check_start(name: &'static str, start: &Initial) -> Result<(), ModelError> {
+    let all = [start.x, start.vx, start.y, start.vy];
+    all.iter().try_for_each(|v| limits::START.check(name, *v))
+}
+
+fn rising(name: &'static str, ends: (f64, f64), limit: &Limit) -> Result<(), ModelError> {
+    limit.check(name, ends.0)?;
+    limit.check(name, ends.1)?;
+    range(name, ends.1, ends.1 > ends.0, "above the range's lower end")
 }

@@ -6,14 +6,14 @@ use super::demo::{self, Demo};
 use super::frame::Frame;
 use super::state::{Line, Panel, State};
 use super::{ExploreError, Session, export};
-use crate::theory::{Pictures, Study};
+use crate::theory::Study;
 
 #[test]
 fn a_frame_is_its_header_then_numbers_then_cells() {
     let frame = Frame::new("map", 7)
         .with("level", 1)
         .column("x", [1.5, f64::NAN])
-        .cells(vec![3, 4, 5]);
+        .cells(vec![3, 4, 500]);
     let bytes = frame.bytes();
     let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;
     assert_eq!((4 + length) % 4, 0);
@@ -25,7 +25,7 @@ fn a_frame_is_its_header_then_numbers_then_cells() {
         f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap())
     };
     assert!(number(0) == 1.5 && number(1).is_nan());
-    assert_eq!(&bytes[4 + length + 8..], [3, 4, 5]);
+    assert_eq!(&bytes[4 + length + 8..], [3, 0, 4, 0, 244, 1]);
 }
 
 fn on_line(line: Line) -> State {
@@ -139,7 +139,7 @@ fn the_exported_study_opens_as_the_same_state() {
     assert_eq!(opened.state().line, state.line);
     assert_eq!(opened.state().view, state.view);
     assert_eq!(opened.state().panel, Panel::Line);
-    let files = export::files(&state, Pictures::None).unwrap();
+    let files = export::files(&state).unwrap();
     let names: Vec<&str> = files.iter().map(|f| f.0.as_str()).collect();
     assert!(
         names.contains(&"map.csv") && names.contains(&"characteristics.csv"),

@@ -58,6 +58,9 @@ pub(super) enum Ask {
     Run {
         /// Its length in drive periods.
         periods: f64,
+        /// Whether the motion at its end is to be classified.
+        #[serde(default)]
+        facts: bool,
     },
     /// Characteristics along the line.
     Line {},
@@ -105,8 +108,6 @@ pub(super) enum ExportFile {
     Study,
     /// Its tables.
     Csv,
-    /// Its figures as SVG.
-    Svg,
 }
 
 impl Kind {
@@ -124,6 +125,28 @@ impl Kind {
 }
 
 impl Ask {
+    /// Whether it asks for one motion, which is answered at once or not at all.
+    pub(super) fn is_single(&self) -> bool {
+        matches!(
+            self,
+            Self::Motion { .. } | Self::Run { .. } | Self::Inset {}
+        )
+    }
+
+    /// Whether its simulations are given up in their middle once nobody waits for them. All of them are on the
+    /// job's own thread or on those of its page.
+    pub(super) fn is_given_up(&self) -> bool {
+        let streams = matches!(
+            self,
+            Self::Map {}
+                | Self::Boundaries { .. }
+                | Self::Line {}
+                | Self::Basins {}
+                | Self::Coexisting {}
+        );
+        streams || self.is_single()
+    }
+
     /// The kind whose jobs it replaces: the next stretch of a motion counts as the motion.
     pub(super) fn slot(&self) -> Kind {
         match self.into() {

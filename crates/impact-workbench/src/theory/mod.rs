@@ -26,8 +26,6 @@ pub use plan::Study;
 pub enum Pictures {
     /// None.
     None,
-    /// SVG alone.
-    Svg,
     /// SVG, PNG and PDF.
     All,
 }
@@ -83,7 +81,6 @@ impl StudyContext<'_> {
         };
         match self.pictures {
             Pictures::None => Ok(()),
-            Pictures::Svg => self.bytes(&format!("{}.svg", figure.name), figure.svg().as_bytes()),
             Pictures::All => {
                 let files = pictures(figure)?;
                 let mut files = files.iter();

@@ -141,7 +141,8 @@ fn characteristics(machine: &Machine, forward: &[SweepPoint], backward: &[SweepP
     table = table
         .missing("closing_speed_least", speeds.clone().map(|v| least(v)))
         .missing("closing_speed_greatest", speeds.map(|v| greatest(v)))
-        .missing("lyapunov_exponent", maybe(|p| p.lyapunov));
+        .missing("lyapunov_exponent", maybe(|p| p.lyapunov))
+        .missing("lyapunov_standard_error", maybe(|p| p.lyapunov_error));
     for lag in 0..LONGEST_LAG {
         let values = all
             .clone()

@@ -27,6 +27,7 @@ export class CampaignView {
     this.proposals = [];
     this.fit = facts.fit;
     this.head();
+    element("residuals").hidden = !this.fit; // its place, before there is anything in it
     new ResizeObserver(() => this.traces()).observe(element("traces"));
   }
 
@@ -147,6 +148,20 @@ export class CampaignView {
         for (const x of col.simulated_impacts ?? []) tick(x, f.box.top + 7, colour("blue"));
       });
     });
+  }
+
+  /** The open record as tables: each trace measured, simulated and their difference; impacts; what it rests on. */
+  tables() {
+    const { frame } = this;
+    if (!frame || frame.shown === "nothing") return [];
+    const name = frame.record.replace(/[^\w.-]+/g, "_"), c = frame.column;
+    const table = (what, columns) => {
+      const rows = Array.from({ length: Math.max(...columns.map(([, v]) => v?.length ?? 0)) }, (_, i) => columns.map(([, v]) => (v && i < v.length ? v[i] : "")).join(","));
+      return { name: `${name}-${what}.csv`, text: [columns.map(([key]) => key).join(","), ...rows, ""].join("\n") };
+    };
+    if (frame.shown === "decay") return [table("measured", [["time_s", c.t0], ["measured", c.measured0]]), table("fitted", [["time_s", c.t1], ["fitted", c.simulated1]])];
+    const traces = frame.traces.map((t, i) => table(t.role.replace(" ", "_"), [["time_s", c["t" + i]], [`measured_${t.unit}`, c["measured" + i]], ["simulated", c["simulated" + i]], ["difference", c["residual" + i]]]));
+    return [...traces, table("impacts", [["measured_s", c.impacts], ["simulated_s", c.simulated_impacts]])];
   }
 
   evidence() {

@@ -33,8 +33,23 @@ export function tint(style) {
   });
 }
 
+/** A context in which nothing is drawn. */
+const NOWHERE = document.createElement("canvas").getContext("2d");
+/** Where a canvas is drawn instead, for files. */
+let instead = null;
+
+/** Draw one canvas into another context; `paint` draws them all. */
+export function drawnInto(context, canvas, paint) {
+  instead = { context, canvas };
+  try { paint(); } finally { instead = null; }
+}
+
 /** Fit a canvas to its box; returns its context in CSS pixels and its size. */
 export function fit(canvas) {
+  if (instead) {
+    const { width, height } = canvas.getBoundingClientRect();
+    return { context: instead.canvas === canvas ? instead.context : NOWHERE, width: Math.max(1, width), height: Math.max(1, height) };
+  }
   const ratio = window.devicePixelRatio || 1;
   const box = canvas.getBoundingClientRect();
   const [width, height] = [Math.max(1, box.width), Math.max(1, box.height)];
@@ -66,6 +81,16 @@ export function number(v, digits = 4) {
     ? v.toExponential(digits - 1) : String(Number(v.toPrecision(digits)));
   return text.replace("-", "−");
 }
+
+/** A number with its 95 % half width, both to two digits of the latter. */
+export function plusMinus(v, half) {
+  if (!(half > 1e-7)) return number(v, 4);
+  const digits = Math.min(8, Math.max(0, 1 - Math.floor(Math.log10(half))));
+  return `${v.toFixed(digits)} ± ${half.toFixed(digits)}`.replace("-", "−");
+}
+
+/** A motion by name: z = p/n, or the word for it. */
+export const named = ({ label }) => (/^\d/.test(label) ? `z = ${label}` : label);
 
 export const FONT = '"Libertinus Serif", Georgia, serif';
 
@@ -108,8 +133,19 @@ export class Frame {
     c.font = `14px ${FONT}`; c.textAlign = "center"; c.textBaseline = "alphabetic";
     rich(c, this.titles[0], b.left + b.width / 2, this.height - 5);
     c.save(); c.translate(12, b.top + b.height / 2); c.rotate(-Math.PI / 2);
-    rich(c, this.titles[1], 0, 0); c.restore();
+    rich(c, this.titles[1], 0, 0, b.height + 24); c.restore();
     return this;
+  }
+  /** Names of what is drawn, [text, colour], in a row above the box. */
+  key(entries) {
+    const { context: c, box: b } = this;
+    let at = b.left;
+    c.textAlign = "left"; c.textBaseline = "alphabetic"; c.font = `14px ${FONT}`;
+    for (const [text, paint] of entries) {
+      if (paint) { c.beginPath(); c.moveTo(at, b.top - 10); c.lineTo(at + 18, b.top - 10); c.strokeStyle = paint; c.lineWidth = 2; c.stroke(); at += 23; }
+      c.fillStyle = colour("ink");
+      at += rich(c, text, at, b.top - 6) + 16;
+    }
   }
   curve(xs, ys, style = {}) {
     const { context: c } = this;
@@ -126,6 +162,16 @@ export class Frame {
     c.setLineDash(style.dash ?? []); c.globalAlpha = style.alpha ?? 1; c.lineJoin = "round";
     c.stroke(); c.setLineDash([]); c.globalAlpha = 1;
   }
+  /** Half widths as thin bars. */
+  bars(xs, ys, halves, paint) {
+    const { context: c } = this;
+    c.beginPath(); c.strokeStyle = paint; c.lineWidth = 0.7; c.globalAlpha = 0.5;
+    for (let i = 0; i < xs.length; i++) {
+      if (!Number.isFinite(ys[i]) || !(halves[i] > 0)) continue;
+      c.moveTo(this.px(xs[i]), this.py(ys[i] - halves[i])); c.lineTo(this.px(xs[i]), this.py(ys[i] + halves[i]));
+    }
+    c.stroke(); c.globalAlpha = 1;
+  }
   dots(xs, ys, radius, fill) {
     const { context: c } = this;
     c.fillStyle = fill;
@@ -136,17 +182,19 @@ export class Frame {
   }
 }
 
-/** Text in which *symbols* are slanted. */
-export function rich(c, text, x, y) {
-  const size = c.font.match(/(\d+(\.\d+)?)px/)[1];
-  const parts = text.split("*").map((t, i) => [t, `${i % 2 ? "italic " : ""}${size}px ${FONT}`]);
-  let width = 0;
-  for (const [t, font] of parts) { c.font = font; width += c.measureText(t).width; }
+/** Text in which *symbols* are slanted, smaller where it has no room. */
+export function rich(c, text, x, y, room = Infinity) {
+  const wanted = Number(c.font.match(/(\d+(\.\d+)?)px/)[1]);
+  const styled = (size) => text.split("*").map((t, i) => [t, `${i % 2 ? "italic " : ""}${size}px ${FONT}`]);
+  const long = (parts) => parts.reduce((sum, [t, font]) => { c.font = font; return sum + c.measureText(t).width; }, 0);
+  const size = Math.max(9, wanted * Math.min(1, room / long(styled(wanted))));
+  const parts = styled(size), width = long(parts);
   const align = c.textAlign;
   let at = align === "center" ? x - width / 2 : align === "right" ? x - width : x;
   c.textAlign = "left";
   for (const [t, font] of parts) { c.font = font; c.fillText(t, at, y); at += c.measureText(t).width; }
-  c.textAlign = align; c.font = `${size}px ${FONT}`;
+  c.textAlign = align; c.font = `${wanted}px ${FONT}`;
+  return width;
 }
 
 /** The range of values with a margin. */

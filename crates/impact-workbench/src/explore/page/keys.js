@@ -14,38 +14,43 @@ export const KEYS = [
   ["l", "characteristics along a line: drag it, or L again for cursor to cursor", (app) => app.drawLine()],
   ["v", "the lowest characteristic: Lyapunov exponent, autocorrelation, X′ before impacts, phase without impacts", (app) => app.otherCharacteristic()],
   ["o", "set the trajectory at the cursor into the characteristics, or take it out", (app) => app.inset()],
+  ["n", "starts of the basins: ranges, number, which masses", (app) => app.dialogs.starts()],
   ["s", "basins of attraction at the cursor", (app) => app.panel("basins")],
   ["m", "the motion at the cursor", (app) => app.panel("motion")],
   ["f", "demos of the program", (app) => app.dialogs.demos()],
-  ["k", "record a demo; again: save it", (app) => app.record()],
-  ["j", "replay the recorded demo, or one from a file", (app) => app.replay()],
+  ["k", "record a demo; again: save it", (app) => app.player.record()],
+  ["j", "replay the recorded demo, or one from a file", (app) => app.player.replay()],
   ["arrows", "move η and ρ, the motion carried along; Shift: ten steps; Ctrl: a tenth", null],
-  ["+ −", "zoom; wheel: zoom at the pointer; Shift and drag: move the picture", null],
+  ["+", "zoom in; wheel: at the pointer; Shift and drag: move the picture", (app) => app.zoom(1 / 1.25)],
+  ["-", "zoom out", (app) => app.zoom(1.25)],
   ["Home", "all of the plane, or all records", (app) => app.home()],
   ["q", "start again from rest at the cursor", (app) => app.start({ x: 0, vx: 0, y: 0, vy: 0 }, 0)],
   ["w", "map from rest or from a lively start", (app) => app.toggleStart()],
   ["u", "phase of the Poincaré map, by an eighth of the period", (app) => app.strobe()],
-  ["[ ]", "campaign: the record before, the record after", null],
+  ["[", "campaign: the record before", (app) => app.campaign?.step(-1)],
+  ["]", "campaign: the record after", (app) => app.campaign?.step(1)],
   ["Enter", "campaign: the record nearest the cursor", (app) => app.nearest()],
   ["p", "campaign: settings to measure next", (app) => app.propose()],
   ["z", "campaign: back to the fit", (app) => app.backToFit()],
   ["x", "export what is shown: PNG, SVG, CSV, study", (app) => app.dialogs.exports()],
   ["t", "light or dark", (app) => app.theme()],
-  ["?", "these keys", (app) => app.dialogs.help()],
+  ["?", "this menu", (app) => app.dialogs.help()],
   ["Esc", "stop what runs; close", (app) => app.stop()],
 ];
 
 const SPECIAL = {
-  "+": (app) => app.zoom(1 / 1.25), "=": (app) => app.zoom(1 / 1.25), "-": (app) => app.zoom(1.25), "−": (app) => app.zoom(1.25),
-  "[": (app) => app.campaign?.step(-1), "]": (app) => app.campaign?.step(1), Escape: (app) => app.stop(), Home: (app) => app.home(),
+  "=": (app) => app.zoom(1 / 1.25), "−": (app) => app.zoom(1.25),
+  Escape: (app) => app.stop(), Home: (app) => app.home(),
   Enter: (app) => app.nearest(),
-  ArrowLeft: (app, e) => app.nudge(-1, 0, e), ArrowRight: (app, e) => app.nudge(1, 0, e), ArrowUp: (app, e) => app.nudge(0, 1, e), ArrowDown: (app, e) => app.nudge(0, -1, e),
 };
+
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 /** Do what a key means; whether it means anything. */
 export function press(app, key, event) {
-  if (/^[0-9]$/.test(key)) { app.picture(Number(key)); return true; }
+  if (/^[0-9]$/.test(key)) { app.player.picture(Number(key)); return true; }
   const lower = key.length === 1 ? key.toLowerCase() : key;
+  if (ARROWS[key]) { app.nudge(...ARROWS[key], event ?? {}); return true; }
   const action = SPECIAL[lower] ?? KEYS.find(([k]) => k === lower)?.[2];
   if (!action) return false;
   action(app, event ?? {});
@@ -55,10 +60,12 @@ export function press(app, key, event) {
 /** Listen to the keyboard; fields keep their own keys. */
 export function listen(app) {
   document.addEventListener("keydown", (event) => {
+    if (document.body.classList.contains("gone")) return;
     const target = event.target, kind = target.tagName;
     const closed = target.closest("dialog") && !document.getElementById("dialog").open;
     const writes = !closed && (kind === "TEXTAREA" || kind === "SELECT" || (kind === "INPUT" && target.type !== "range"));
     if (document.getElementById("dialog").open || writes) return;
+    if (target.id === "basins" && ARROWS[event.key]) { app.basins.nudge(...ARROWS[event.key], event); event.preventDefault(); return; }
     const slides = kind === "INPUT" && target.type === "range";
     const own = slides && (event.key.startsWith("Arrow") || event.key === "Home");
     const presses = (kind === "BUTTON") && (event.key === "Enter" || event.key === " ");

@@ -4,11 +4,13 @@ import { MapView } from "./map.js";
 import { BasinsPanel, CHARACTERISTICS, LinePanel, MotionPanel, swatch } from "./plots.js";
 import { CampaignView } from "./campaign.js";
 import { Dialogs } from "./dialogs.js";
-import { listen } from "./keys.js";
-import { number, FONT, colour, markColour } from "./draw.js";
+import { listen, press } from "./keys.js";
+import { enter, lost } from "./door.js";
+import { Demos } from "./demos.js";
+import { Sliders } from "./fields.js";
+import { number, named, colour, markColour } from "./draw.js";
 
 const element = (id) => document.getElementById(id);
-const STATE_VERSION = 1;
 /** Points of a boundary. */
 const POINTS = 240;
 /** Boundaries asked for ahead that are kept. */
@@ -16,10 +18,14 @@ const MOST_AHEAD = 8;
 /** What of a state the boundaries depend on. */
 const planeOf = ({ damping_ratio, restitution, single, asymmetry, view }) =>
   JSON.stringify([damping_ratio, restitution, single, asymmetry, view.eta], (_, v) => (typeof v === "number" ? Number(v.toPrecision(9)) : v));
+/** What is asked for where anything may have changed. */
+const EVERYTHING = ["map", "boundaries", "carried", "panel", "residuals"];
 /** Parts of the state that only the map's uppermost layer shows. */
 const CURSOR_PARTS = new Set(["cursor", "line"]);
 /** Time without a new motion after which the motions that coexist with it are looked for, ms. */
 const PAUSE = 250;
+/** Time between two looks at what a running motion is, ms. */
+const LOOK = 200;
 /** Most trajectories that are set into a picture. */
 const MOST_INSETS = 12;
 
@@ -27,12 +33,11 @@ class App {
   constructor() {
     this.state = null;
     this.demos = [];
-    this.recording = null;
-    this.recorded = null;
-    this.playing = 0;
+    this.good = null;       // the newest state that the server took
     this.ahead = new Map(); // bare boundaries of states that a slider's next step leads to
     this.timings = [];      // { kind, level, drawn, ms, at } of what was asked for and first drawn
     this.dialogs = new Dialogs(this);
+    this.player = new Demos(this);
     this.map = new MapView(this);
     this.motion = new MotionPanel(this);
     this.line = new LinePanel(this);
@@ -42,40 +47,44 @@ class App {
   // ---- start ---------------------------------------------------------------
   async open() {
     const saved = new URLSearchParams(location.hash.slice(1));
-    this.token = saved.get("t") ?? "";
-    if (!/^[0-9a-f]{32}$/.test(this.token)) { this.message("This address has no token: use the one that `impactid explore` prints.", "", true); return; }
-    this.wire = new Wire(this.token, (f, slot, since) => this.receive(f, slot, since), () => this.message("The server is gone.", "Start `impactid explore` again and open the address that it prints.", true));
+    this.token = await enter(this, saved.get("t") ?? "");
+    this.wire = new Wire(this.token, (...of) => this.receive(...of), () => lost(this));
     await this.wire.opened;
-    const hello = await this.wire.once({ kind: "hello" });
-    this.first = hello.state; this.demos = hello.demos;
+    const written = this.written(saved.get("s"));
+    const { hello, restored } = await this.hello(written);
+    this.first = hello.state; this.demos = hello.demos; this.limits = hello.limits;
+    if (hello.title) element("title").textContent = hello.title;
     if (hello.campaign) {
       this.campaign = new CampaignView(this, hello.campaign);
       element("title").textContent = hello.campaign.name + (hello.campaign.synthetic ? " (simulated)" : "");
       element("tab-record").hidden = false;
     }
-    const restored = this.restored(saved.get("s"));
+    document.title = `${element("title").textContent} – impactid explore`;
     this.state = restored ?? structuredClone(hello.state);
-    this.sliders();
+    this.good = this.state;
+    this.sliders = new Sliders(this);
     listen(this);
     this.buttons();
     this.restorePanel();
     this.refresh(["map", "boundaries", restored ? "motion" : "carried", "panel", "residuals"]);
     for (const note of hello.notes) this.message(note, "");
-    if (hello.demo) this.play(await this.wire.once({ kind: "read_demo", text: hello.demo }));
+    if (hello.demo) this.player.play(await this.player.read(hello.demo));
     this.ready = true;
     if (this.early) this.arrived(this.early);
   }
 
-  restored(text) {
+  /** The state that an address holds. */
+  written(text) {
     if (!text) return null;
-    try {
-      const state = JSON.parse(text);
-      if (state.version !== STATE_VERSION) { this.message(`The address holds a state of version ${state.version}; this program reads version ${STATE_VERSION}.`, "Open it with the version of impactid that made it; this page starts afresh."); return null; }
-      return state;
-    } catch (error) {
-      this.message("The state in the address cannot be read.", String(error));
-      return null;
+    try { return JSON.parse(text); } catch (error) { this.message("The state in the address cannot be read.", `${error}; this page starts afresh.`); return null; }
+  }
+
+  /** What the server starts from, and the address' state where it takes it. */
+  async hello(state) {
+    if (state !== null) {
+      try { return { hello: await this.wire.once({ kind: "hello" }, state), restored: state }; } catch (error) { this.message(`The state in the address is refused: ${error.message}.`, "This page starts afresh."); }
     }
+    return { hello: await this.wire.once({ kind: "hello" }), restored: null };
   }
 
   // ---- state ---------------------------------------------------------------
@@ -83,9 +92,25 @@ class App {
     this.state = { ...this.state, ...part };
     this.save();
     this.note();
+    this.sliders.show();
+    if (this.refusal) { this.refusal = false; element("message").hidden = true; }
     // a picture that is about to come need not be drawn before
     if (!what.includes("boundaries") || part.view) this.map.redraw(...(CURSOR_PARTS.has(Object.keys(part).join()) ? ["cursor"] : []));
     this.refresh(what);
+  }
+
+  /** Take over a whole state. */
+  become(state, what) {
+    this.state = state;
+    this.save(); this.note(); this.sliders.show(); this.restorePanel(); this.map.redraw();
+    this.refresh(what);
+  }
+
+  /** The server refused a state as a whole: the last one that it took counts. */
+  refused(frame) {
+    this.message(frame.message, frame.remedy);
+    this.refusal = true;
+    if (frame.taken === false && this.good) this.become(structuredClone(this.good), EVERYTHING);
   }
 
   save() {
@@ -99,9 +124,9 @@ class App {
   refresh(what) {
     const s = () => this.state;
     for (const kind of what) {
-      if (kind === "map") this.wire.ask("map", { kind: "map" }, s());
+      if (kind === "map") { this.wire.ask("map", { kind: "map" }, s()); this.map.asked(); }
       else if (kind === "boundaries") this.boundaries();
-      else if (kind === "motion") this.wire.askAfter("motion", () => [{ kind: "motion", carried_from: null }, s()]);
+      else if (kind === "motion") this.wire.askAfter("motion", () => { this.chosen = false; return [{ kind: "motion", carried_from: null }, s()]; });
       else if (kind === "carried") this.wire.askAfter("motion", () => [{ kind: "motion", carried_from: this.from() }, s()]);
       else if (kind === "residuals" && this.campaign) this.wire.askAfter("residuals", () => [{ kind: "residuals" }, s()]);
       else if (kind === "panel") this.refreshPanel();
@@ -138,15 +163,16 @@ class App {
   /** Once the cursor rests, what other starts settle on. */
   coexisting() {
     clearTimeout(this.resting);
-    if (this.state.panel === "motion") this.resting = setTimeout(() => { if (!this.run) this.wire.ask("coexisting", { kind: "coexisting" }, this.state); }, PAUSE);
+    if (this.state.panel === "motion") this.resting = setTimeout(() => this.wire.ask("coexisting", { kind: "coexisting" }, this.state), PAUSE);
   }
 
   /** Where the motion was when the answer before came. */
   from() { return this.at ?? [this.state.cursor.eta, this.state.cursor.rho]; }
 
-  receive(frame, slot, since) {
+  receive(frame, since, asked) {
     if (frame.kind === "campaign") { this.arrived(frame); return; }
-    if (frame.kind === "refused") { this.message(frame.message, frame.remedy); return; }
+    if (frame.kind === "refused") { this.refused(frame); return; }
+    if (asked) this.good = asked;
     const time = (kind, level) => this.timed(kind, level, since);
     if (frame.kind === "map") {
       const tile = this.map.tile(frame);
@@ -177,7 +203,7 @@ class App {
   carriedTo(frame) {
     const { cursor } = this.state;
     this.at = [frame.cursor.eta, frame.cursor.rho];
-    this.state = { ...this.state, cursor: { ...cursor, start: frame.cursor.start, phase: frame.cursor.phase } };
+    if (!this.chosen) this.state = { ...this.state, cursor: { ...cursor, start: frame.cursor.start, phase: frame.cursor.phase } };
     if (frame.motion) this.shown = frame;
     this.save();
     this.note();
@@ -187,7 +213,7 @@ class App {
     const { cursor, restitution, damping_ratio } = this.state, z = this.shown?.motion;
     const box = element("readout"), bold = document.createElement("span");
     bold.className = "z";
-    if (z) { bold.textContent = `z = ${z.label}`; bold.style.color = markColour(z); }
+    if (z) { bold.textContent = named(z); bold.style.color = markColour(z); }
     const rig = this.scale();
     const hz = rig ? ` = ${number(cursor.eta * rig.natural_frequency_hz, 5)} Hz` : "", mm = rig ? ` = ${number(1e3 * cursor.rho * rig.static_deflection_m, 4)} mm` : "";
     const r = typeof restitution === "number" ? number(restitution, 4) : "R(v)";
@@ -201,22 +227,26 @@ class App {
   }
 
   // ---- what a user does ------------------------------------------------------
-  moved() { return ["carried", ...(this.state.panel === "basins" ? ["panel"] : [])]; }
+  /** What follows a move: a running motion goes on by itself, what coexists with it does not. */
+  moved() {
+    if (this.run) { this.motion.others(null); this.coexisting(); return []; }
+    return ["carried", ...(this.state.panel === "basins" ? ["panel"] : [])];
+  }
 
   /** Move the cursor and carry the motion along. */
   carry(eta, rho) {
-    if (!(eta > 0)) return;
-    this.set({ cursor: { ...this.state.cursor, eta, rho } }, this.run ? [] : this.moved());
+    const within = ([low, high], v) => Math.min(high, Math.max(low, v));
+    this.set({ cursor: { ...this.state.cursor, eta: within(this.limits.eta, eta), rho: within(this.limits.rho, rho) } }, this.moved());
   }
 
   nudge(de, dr, event) {
     const { view, cursor } = this.state, by = event.shiftKey ? 10 : event.ctrlKey ? 0.1 : 1;
     const step = (range) => by * (range[1] - range[0]) / 200;
-    const eta = Math.max(1e-3, cursor.eta + de * step(view.eta)), rho = cursor.rho + dr * step(view.rho);
-    this.carry(eta, rho);
+    this.carry(cursor.eta + de * step(view.eta), cursor.rho + dr * step(view.rho));
+    const { eta, rho } = this.state.cursor;
     if (eta < view.eta[0] || eta > view.eta[1] || rho < view.rho[0] || rho > view.rho[1]) {
-      const mid = (r) => (r[1] - r[0]) / 2;
-      this.look([Math.max(1e-3, eta - mid(view.eta)), Math.max(1e-3, eta - mid(view.eta)) + 2 * mid(view.eta)], [rho - mid(view.rho), rho + mid(view.rho)]);
+      const about = (at, r) => [at - (r[1] - r[0]) / 2, at + (r[1] - r[0]) / 2];
+      this.look(about(eta, view.eta), about(rho, view.rho));
     }
   }
 
@@ -224,27 +254,27 @@ class App {
   start(start, phase) {
     const { cursor } = this.state;
     this.at = null;
+    this.chosen = true; // answers under way are of the start before
     this.set({ cursor: { ...cursor, start, phase: phase ?? cursor.phase } }, ["motion"]);
     if (this.state.panel === "basins") this.basins.draw();
   }
 
   /** Change the machine: everything follows, the motion is carried along. */
   parameters(part) {
-    this.set(part, ["map", "boundaries", ...(this.run ? [] : ["carried"]), "residuals", "panel"]);
-    this.showSliders();
+    this.set(part, ["map", "boundaries", "residuals", "panel", ...this.moved().slice(0, 1)]);
   }
 
+  /** Show a part of the plane, moved to where it is within the limits. */
   look(eta, rho) {
-    if (!(eta[0] > 0)) eta = [1e-3, eta[1] - eta[0] + 1e-3];
-    if (!(eta[1] > eta[0] && rho[1] > rho[0])) { this.message("A range must rise.", "Give a greater upper end."); return; }
-    this.set({ view: { eta, rho } }, ["map", "boundaries"]);
+    const inside = ([a, b], [low, high]) => { const size = Math.min(b - a, high - low), from = Math.min(Math.max(a, low), high - size); return [from, from + size]; };
+    this.set({ view: { eta: inside(eta, this.limits.eta), rho: inside(rho, this.limits.rho) } }, ["map", "boundaries"]);
   }
 
   zoom(by, eta, rho) {
     const { view, cursor } = this.state;
     const about = (r, at) => [at - by * (at - r[0]), at + by * (r[1] - at)];
-    const e = about(view.eta, eta ?? cursor.eta);
-    this.look([Math.max(1e-3, e[0]), e[1]], about(view.rho, rho ?? cursor.rho));
+    const next = [about(view.eta, eta ?? cursor.eta), about(view.rho, rho ?? cursor.rho)];
+    if (next.every(([a, b]) => b - a > 1e-9)) this.look(...next);
   }
 
   home() { this.look(this.first.view.eta, this.first.view.rho); }
@@ -267,10 +297,15 @@ class App {
     this.motion.draw(); this.line.draw(); this.basins.draw(); this.campaign?.traces();
   }
 
+  /** The line over η or over ρ through the cursor. */
+  ownLine(key) {
+    const { view, cursor, line } = this.state;
+    const ends = key === "eta" ? { eta: view.eta, rho: [cursor.rho, cursor.rho] } : { eta: [cursor.eta, cursor.eta], rho: view.rho };
+    return { ...ends, steps: line?.steps ?? 200 };
+  }
+
   along(key) {
-    const { view, cursor } = this.state;
-    const line = key === "eta" ? { eta: view.eta, rho: [cursor.rho, cursor.rho] } : { eta: [cursor.eta, cursor.eta], rho: view.rho };
-    this.state = { ...this.state, line: { ...line, steps: this.state.line?.steps ?? 200 } };
+    this.state = { ...this.state, line: this.ownLine(key) };
     this.panel("line");
   }
 
@@ -326,23 +361,27 @@ class App {
     if (this.state.panel !== "motion") this.panel("motion");
     this.run = !this.run;
     document.querySelector('[data-key="g"]').setAttribute("aria-pressed", String(this.run));
-    if (this.run) { this.motion.live = null; this.last = performance.now(); this.runOn(); } else this.refresh(["motion"]);
+    if (this.run) { this.motion.live = null; this.last = performance.now(); this.lookedAt = 0; this.runOn(); } else this.refresh(["carried"]);
   }
 
   runOn() {
-    if (!this.run) return;
     requestAnimationFrame((now) => {
+      if (!this.run) return;
+      const facts = now - this.lookedAt > LOOK;
+      if (facts) this.lookedAt = now;
       const periods = Math.min(2, Math.max(0.02, 2.2 * (now - this.last) / 1000));
       this.last = now;
-      this.wire.askAfter("motion", () => [{ kind: "run", periods }, this.state]);
+      this.wire.askAfter("motion", () => [{ kind: "run", periods, facts }, this.state]);
     });
   }
 
   stop() {
     if (this.run) this.running();
-    this.playing++;
+    this.player.stop();
+    element("map").focus({ preventScroll: true });
     this.map.drawing = false;
-    element("caption").hidden = true; element("message").hidden = true;
+    element("caption").hidden = true;
+    if (element("message").dataset.fixed !== "yes") element("message").hidden = true;
   }
 
   // ---- campaign ----------------------------------------------------------------
@@ -402,114 +441,9 @@ class App {
     } catch (error) { this.message(error.message, error.remedy); }
   }
 
-  // ---- demos ---------------------------------------------------------------------
-  record() {
-    const button = document.querySelector('[data-key="k"]');
-    if (!this.recording) {
-      this.recording = { steps: [], since: performance.now(), last: structuredClone(this.state) };
-      this.sampler = setInterval(() => this.sample(), 250);
-      button.setAttribute("aria-pressed", "true");
-      this.said("recording; K again saves the demo");
-      return;
-    }
-    clearInterval(this.sampler);
-    this.sample(true);
-    const { steps } = this.recording;
-    this.recording = null;
-    button.setAttribute("aria-pressed", "false");
-    this.wire.once({ kind: "write_demo", title: "Recorded in the explorer", steps }, this.state).then((f) => {
-      this.recorded = f.text;
-      download("demo.toml", f.text, "application/toml");
-      this.said(`${steps.length} steps recorded; J replays them`);
-    }, (error) => this.message(error.message, error.remedy));
-  }
-
-  sample(always) {
-    const r = this.recording, now = performance.now();
-    if (!always && JSON.stringify(r.last) === JSON.stringify(this.state)) return;
-    r.steps.push([(now - r.since) / 1000, r.last]);
-    r.since = now; r.last = structuredClone(this.state);
-    if (always) r.steps.push([1, r.last]);
-  }
-
-  async replay() {
-    if (this.recorded) { this.play(await this.wire.once({ kind: "read_demo", text: this.recorded })); return; }
-    const input = element("file");
-    input.onchange = async () => {
-      const file = input.files[0];
-      input.value = "";
-      if (!file) return;
-      try { this.play(await this.wire.once({ kind: "read_demo", text: await file.text() })); } catch (error) { this.message(error.message, error.remedy); }
-    };
-    input.click();
-  }
-
-  async demo(name) { this.play(await this.wire.once({ kind: "demo", name })); }
-
-  /** The first picture of a demo. */
-  async picture(n) {
-    const name = this.demos.find((d) => d.startsWith(`${n} `));
-    if (!name) return;
-    const demo = await this.wire.once({ kind: "demo", name });
-    this.playing++;
-    this.step(demo.steps[0]);
-    this.said(demo.steps[0].caption);
-  }
-
-  async play(demo) {
-    const mine = ++this.playing;
-    for (const step of demo.steps) {
-      this.step(step);
-      if (step.caption) this.said(step.caption, 1e6);
-      await new Promise((resolve) => setTimeout(resolve, 1000 * step.seconds));
-      if (this.playing !== mine) return;
-    }
-    this.said(`end of “${demo.title}”`);
-  }
-
-  step({ state, carry }) {
-    const before = this.state;
-    const same = (key) => JSON.stringify(state[key]) === JSON.stringify(before[key]);
-    const machine = ["damping_ratio", "restitution", "single", "asymmetry"].every(same);
-    const next = { ...state, rig: state.rig ?? before.rig, record: state.record ?? before.record };
-    for (const key of ["rig", "record"]) if (next[key] === undefined || next[key] === null) delete next[key];
-    if (carry) next.cursor = { ...state.cursor, start: before.cursor.start, phase: before.cursor.phase };
-    else this.at = null;
-    this.state = next;
-    this.save(); this.note(); this.showSliders(); this.restorePanel(); this.map.redraw();
-    const plane = machine && same("view") && same("map_start") ? [] : ["map", "boundaries"];
-    const line = state.panel === "line" && machine && same("line") && same("panel") && same("watch");
-    this.refresh([...plane, carry ? "carried" : "motion", ...(line ? [] : ["panel"]), "residuals"]);
-  }
-
-  // ---- exports ---------------------------------------------------------------------
-  async exportFiles(file) {
-    this.said("computing the files");
-    try {
-      const found = await this.wire.once({ kind: "export", file }, this.state);
-      for (const f of found.files) download(f.name, f.text, "text/plain");
-      this.said(`${found.files.map((f) => f.name).join(", ")}`);
-    } catch (error) { this.message(error.message, error.remedy); }
-  }
-
-  /** Every picture of the page in one PNG, with its readout. */
-  png() {
-    const shown = [...document.querySelectorAll("canvas")].filter((c) => c.offsetParent !== null && c.width > 1);
-    const boxes = shown.map((c) => c.getBoundingClientRect()), ratio = window.devicePixelRatio || 1;
-    const left = Math.min(...boxes.map((b) => b.left)), top = Math.min(...boxes.map((b) => b.top));
-    const right = Math.max(...boxes.map((b) => b.right)), bottom = Math.max(...boxes.map((b) => b.bottom));
-    const sheet = document.createElement("canvas"), head = 34;
-    sheet.width = ratio * (right - left + 20); sheet.height = ratio * (bottom - top + head + 20);
-    const c = sheet.getContext("2d");
-    c.scale(ratio, ratio); c.fillStyle = colour("paper"); c.fillRect(0, 0, sheet.width, sheet.height);
-    c.fillStyle = colour("ink"); c.font = `17px ${FONT}`; c.fillText(element("readout").textContent, 12, 24);
-    shown.forEach((s, i) => c.drawImage(s, boxes[i].left - left + 10, boxes[i].top - top + head + 10, boxes[i].width, boxes[i].height));
-    sheet.toBlob((blob) => download("explorer.png", blob, "image/png"));
-  }
-
-  async copyAddress() {
-    history.replaceState(null, "", "#" + this.address());
-    try { await navigator.clipboard.writeText(location.href); this.said("the address is on the clipboard"); } catch { this.said("copy the address from the browser's bar"); }
+  /** Draw every picture now. */
+  paint() {
+    this.map.redrawNow(); this.motion.paint(); this.line.paint(); this.basins.draw(); this.campaign?.traces();
   }
 
   // ---- looks ---------------------------------------------------------------------
@@ -523,15 +457,17 @@ class App {
   legend(styles) {
     this.legendStyles = styles;
     const place = (s) => s.order[0] * 1e6 + s.order[1] * 1e3 + s.order[2];
-    const items = [...styles].sort((a, b) => place(a) - place(b)).map((s) => swatch(s, `z = ${s.label}`));
+    const items = [...styles].sort((a, b) => place(a) - place(b)).map((s) => swatch(s, named(s)));
     for (const kind of this.map.kinds()) {
       const span = document.createElement("span"), canvas = document.createElement("span");
-      canvas.style.cssText = `width:1.6rem;border-top:${kind.width}px ${kind.dash ? "dashed" : "solid"} ${colour(kind.colour)}`;
+      canvas.className = "sample"; canvas.style.cssText = `width:1.6rem;border-top:${kind.width}px ${kind.dash ? "dashed" : "solid"} ${colour(kind.colour)}`;
       const text = document.createElement("span");
       kind.text.split("*").forEach((t, i) => { const e = document.createElement(i % 2 ? "i" : "span"); e.textContent = t; text.append(e); });
       text.style.gap = "0"; span.append(canvas, text); items.push(span);
     }
-    element("legend").replaceChildren(...items);
+    const { vx } = this.state.map_start, from = document.createElement("span");
+    from.textContent = vx === 0 ? "cells: from rest" : `cells: from X′ = Y′ = ${number(vx)}`;
+    element("legend").replaceChildren(...items, from);
   }
 
   said(text, ms = 4000) {
@@ -552,62 +488,9 @@ class App {
     if (!fixed) this.closing = setTimeout(() => { box.hidden = true; }, 15_000);
   }
 
-  // ---- sliders ---------------------------------------------------------------------
-  sliders() {
-    const fit = this.first.rig;
-    const asym = (key) => [() => this.state.asymmetry[key], (v) => ({ asymmetry: { ...this.state.asymmetry, [key]: v } })];
-    const rig = (key) => [() => this.state.rig[key], (v) => ({ rig: { ...this.state.rig, [key]: v } })];
-    const constant = () => (typeof this.state.restitution === "number" ? this.state.restitution : null);
-    const rows = [
-      ["restitution R", 0, 1, 0.001, constant, (v) => ({ restitution: v })],
-      ["damping β", 0, 0.3, 0.0005, () => this.state.damping_ratio, (v) => ({ damping_ratio: v })],
-    ];
-    if (fit) {
-      const f0 = fit.natural_frequency_hz, xst = fit.static_deflection_m;
-      rows.push(["f₀, Hz", 0.8 * f0, 1.2 * f0, f0 / 5000, ...rig("natural_frequency_hz")], ["x_st, mm", 600 * xst, 1400 * xst, xst / 5, () => 1e3 * this.state.rig.static_deflection_m, (v) => ({ rig: { ...this.state.rig, static_deflection_m: v / 1e3 } })]);
-    }
-    if (!fit || !this.first.single) {
-      rows.push(["drive Y/X", 0.8, 1.2, 0.001, ...asym("drive_amplitude")], ["stiffness Y/X", 0.8, 1.2, 0.001, ...asym("stiffness")]);
-      if (!fit) rows.push(["mass Y/X", 0.5, 2, 0.001, ...asym("mass")]);
-    }
-    this.rows = rows.map(([name, low, high, step, get, put]) => {
-      const row = document.createElement("div"), range = document.createElement("input"), text = document.createElement("input"), label = document.createElement("span");
-      row.className = "slider";
-      label.textContent = name;
-      Object.assign(range, { type: "range", min: low, max: high, step });
-      Object.assign(text, { type: "text", inputMode: "decimal" });
-      range.setAttribute("aria-label", name); text.setAttribute("aria-label", `${name}, typed`);
-      const next = () => this.lookAhead([-step, step].map((by) => ({ ...this.state, ...put(Number((Number(range.value) + by).toPrecision(12))) })));
-      range.addEventListener("focus", next);
-      range.addEventListener("input", () => { this.parameters(put(Number(range.value))); next(); });
-      text.addEventListener("change", () => {
-        const v = Number(text.value.replace(",", ".")), good = text.value.trim() !== "" && Number.isFinite(v);
-        text.setAttribute("aria-invalid", String(!good));
-        if (good) this.parameters(put(v));
-      });
-      text.addEventListener("keydown", (e) => { if (e.key === "Enter") { e.preventDefault(); text.blur(); } });
-      row.append(label, range, text);
-      return { row, range, text, get };
-    });
-    element("sliders").replaceChildren(...this.rows.map((r) => r.row));
-    element("sliders").addEventListener("submit", (e) => e.preventDefault());
-    this.showSliders();
-  }
-
-  showSliders() {
-    for (const { range, text, get } of this.rows ?? []) {
-      const v = get();
-      range.disabled = v === null;
-      if (v === null) { text.value = "R(v)"; continue; }
-      if (document.activeElement !== range) range.value = v;
-      if (document.activeElement !== text) text.value = String(Number(v.toPrecision(7)));
-      text.setAttribute("aria-invalid", "false");
-    }
-  }
-
+  // ---- buttons ---------------------------------------------------------------------
   buttons() {
-    const act = { g: () => this.running(), f: () => this.dialogs.demos(), k: () => this.record(), j: () => this.replay(), x: () => this.dialogs.exports(), t: () => this.theme(), "?": () => this.dialogs.help() };
-    for (const b of document.querySelectorAll("nav button")) b.addEventListener("click", () => act[b.dataset.key]());
+    for (const b of document.querySelectorAll("button[data-key]")) b.addEventListener("click", () => press(this, b.dataset.key));
     element("inset").addEventListener("click", () => this.inset());
     element("characteristic").append(...Object.entries(CHARACTERISTICS).map(([value, c]) => new Option(c.text, value)));
     element("characteristic").addEventListener("change", (e) => this.otherCharacteristic(e.target.value));
@@ -624,16 +507,11 @@ class App {
   }
 }
 
-function download(name, content, type) {
-  const link = document.createElement("a"), blob = content instanceof Blob ? content : new Blob([content], { type });
-  link.href = URL.createObjectURL(blob); link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-}
-
 let theme = null;
 try { theme = localStorage.getItem("theme"); } catch { /* a private window keeps none */ }
 document.documentElement.dataset.theme = theme ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
 const app = new App();
 window.impactid = app;
 app.open();
+// another address in the same tab is another page
+addEventListener("hashchange", () => location.reload());

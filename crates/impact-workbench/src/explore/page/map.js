@@ -8,6 +8,13 @@ const KINDS = {
   sticking: { text: "stay together *ρ*ₚ", colour: "quiet", width: 2 },
 };
 
+/** Time within which a map comes at once, ms. */
+const AT_ONCE = 150;
+/** Opacity of a map that another one is replacing. */
+const FAINT = 0.2;
+/** A cell that is not computed yet. */
+const EMPTY = 0xffffffff;
+
 /** The map's canvases, from below: only that which changes is drawn again. */
 const LAYERS = { tiles: "map-tiles", lines: "map", cursor: "map-cursor" };
 
@@ -16,13 +23,14 @@ export class MapView {
     this.layers = Object.fromEntries(Object.entries(LAYERS).map(([name, id]) => [name, document.getElementById(id)]));
     this.canvas = this.layers.lines;
     this.app = app;
-    this.tiles = [];        // { level, eta, rho, size, image, styles, cells, id }
+    this.tiles = [];        // { level, eta, rho, size, image, styles, known, cells, id }
     this.curves = {};       // "s2:1" → { eta, rho, exists }
     this.styles = new Map(); // label → style, of what is in view
     this.due = new Set();    // layers to be drawn
     this.drawn = false;      // whether something was, for the next picture of the screen
     this.labels = [];
     this.finished = 0;       // id of the newest request whose map came to its end
+    this.late = false;       // whether what is wanted has not come yet: what is older is faint
     this.theme = "";
     this.pointer();
     new ResizeObserver(() => this.redraw()).observe(this.canvas);
@@ -38,6 +46,26 @@ export class MapView {
     requestAnimationFrame(() => { this.drawn = false; this.draw(); });
   }
 
+  /** Draw all layers at once. */
+  redrawNow() {
+    for (const layer of Object.keys(LAYERS)) this.due.add(layer);
+    this.draw();
+  }
+
+  /** Another map was asked for: what is shown is that of another machine or view, and faint unless it comes at once. */
+  asked() {
+    clearTimeout(this.waiting);
+    if (!this.late) this.waiting = setTimeout(() => this.fade(true), AT_ONCE);
+  }
+
+  fade(late) {
+    clearTimeout(this.waiting);
+    if (this.late === late) return;
+    this.late = late;
+    document.getElementById("legend").classList.toggle("late", late);
+    this.redraw("tiles", "lines");
+  }
+
   /** A strip of a tile. */
   tile(frame) {
     let tile = this.tiles.find((t) => t.id === frame.id && t.level === frame.level);
@@ -45,21 +73,22 @@ export class MapView {
       const [columns, rows] = frame.size;
       const canvas = document.createElement("canvas");
       canvas.width = columns; canvas.height = rows;
-      tile = { id: frame.id, level: frame.level, eta: frame.eta, rho: frame.rho, size: frame.size, canvas, styles: [], cells: new Uint8Array(columns * rows).fill(255), filled: 0 };
+      tile = { id: frame.id, level: frame.level, eta: frame.eta, rho: frame.rho, size: frame.size, canvas, styles: [], known: new Map(), cells: new Uint32Array(columns * rows).fill(EMPTY), filled: 0 };
       // what is older stays below until the first strip of the new one is there
       this.tiles = this.tiles.filter((t) => t.id === frame.id || t.level <= 1).slice(-3);
       this.tiles.push(tile);
     }
     const index = frame.motions.map((style) => {
-      let at = tile.styles.findIndex((s) => s.label === style.label);
-      if (at < 0) { tile.styles.push(style); at = tile.styles.length - 1; }
-      return at;
+      if (!tile.known.has(style.label)) tile.known.set(style.label, tile.styles.push(style) - 1);
+      return tile.known.get(style.label);
     });
     const first = frame.first_row * tile.size[0];
     for (let i = 0; i < frame.cell.length; i++) tile.cells[first + i] = index[frame.cell[i]];
     this.paint(tile, frame.first_row, frame.cell.length / tile.size[0]);
     tile.filled += frame.cell.length;
     tile.complete = tile.filled >= tile.cells.length;
+    // never the cells of two machines side by side
+    this.fade(!tile.complete && this.tiles.some((t) => t.id !== tile.id));
     if (tile.complete) {
       this.tiles = this.tiles.filter((t) => t === tile || (t.id === tile.id && t.level > tile.level));
       if (tile.level === 1) this.labels = placeLabels(tile);
@@ -79,7 +108,7 @@ export class MapView {
       for (let i = 0; i < columns; i++) {
         const cell = tile.cells[(firstRow + k) * columns + i];
         const at = 4 * ((count - 1 - k) * columns + i);
-        if (cell === 255) continue;
+        if (cell === EMPTY) continue;
         const [r, g, b] = tints[cell];
         image.data[at] = r; image.data[at + 1] = g; image.data[at + 2] = b; image.data[at + 3] = 255;
       }
@@ -126,12 +155,16 @@ export class MapView {
     return new Frame(canvas, state.view.eta, state.view.rho, titles, margin);
   }
 
+  /** Whether a tile is of another map than the one that is late. */
+  isOld(tile) { return this.late && tile.id !== this.app.wire.newest.map; }
+
   tilesLayer(f) {
     f.clip((c) => {
       c.imageSmoothingEnabled = false;
       for (const t of this.tiles) {
         const dx = (t.eta[1] - t.eta[0]) / (t.size[0] - 1) / 2, dy = (t.rho[1] - t.rho[0]) / (t.size[1] - 1) / 2;
         const [x0, x1] = [f.px(t.eta[0] - dx), f.px(t.eta[1] + dx)], [y0, y1] = [f.py(t.rho[1] + dy), f.py(t.rho[0] - dy)];
+        c.globalAlpha = this.isOld(t) ? FAINT : 1;
         c.drawImage(t.canvas, x0, y0, x1 - x0, y1 - y0);
       }
     });
@@ -143,7 +176,7 @@ export class MapView {
     f.clip((c) => {
       this.bands(f, c);
       this.boundaries(f);
-      this.regionLabels(f, c);
+      if (!this.late) this.regionLabels(f, c);
       if (app.campaign) app.campaign.draw(f, c);
     });
     f.axes();
@@ -199,7 +232,7 @@ export class MapView {
     c.beginPath(); c.moveTo(...ends[0]); c.lineTo(...ends[1]);
     c.lineWidth = 2.2; c.strokeStyle = colour("green"); c.stroke();
     c.fillStyle = colour("green"); c.font = `bold 15px ${FONT}`;
-    ends.forEach(([x, y], i) => { c.beginPath(); c.arc(x, y, 4, 0, 7); c.fill(); c.fillText("ab"[i], x + 9, y - 8); });
+    ends.forEach(([x, y], i) => { c.beginPath(); c.arc(x, y, 4, 0, 7); c.fill(); c.fillText("ab"[i], x + (x > f.box.left + f.box.width - 20 ? -16 : 9), y - 8 < f.box.top + 12 ? y + 18 : y - 8); });
   }
 
   cursor(f, c) {
@@ -303,7 +336,7 @@ const ticksOf = (range, count) => { const t = ticks(range[0], range[1], count); 
 
 /** The motions that take most of a tile. */
 function commonest(tile) {
-  const counts = new Uint32Array(256);
+  const counts = new Uint32Array(tile.styles.length);
   for (const cell of tile.cells) counts[cell]++;
   const order = tile.styles.map((_, i) => i).sort((a, b) => counts[b] - counts[a]);
   return order.slice(0, 9).filter((i) => counts[i] > 2e-4 * tile.cells.length).map((i) => tile.styles[i]);

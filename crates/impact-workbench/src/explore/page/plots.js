@@ -1,14 +1,19 @@
 // Beside the map: the motion, characteristics, basins.
-import { Frame, around, colour, fit, markColour, number, tint, FONT } from "./draw.js";
+import { Frame, around, colour, fit, markColour, named, number, plusMinus, tint, FONT } from "./draw.js";
 
 const element = (id) => document.getElementById(id);
+/** Cell of a start that is beyond the contact. */
+const BEYOND = 0xffff;
 
 /** The motion at the cursor: series, phase portrait, Poincaré map, autocorrelation, numbers. */
 export class MotionPanel {
   constructor(app) {
     this.app = app;
     this.frame = null;
-    this.plot = null;
+    this.hover = null; // where the pointer is over the series, px
+    const series = element("series");
+    series.addEventListener("pointermove", (event) => { this.hover = this.timeFrame?.holds(event.offsetX, event.offsetY) ? event.offsetX : null; this.draw(); });
+    series.addEventListener("pointerleave", () => { this.hover = null; this.draw(); });
     for (const id of ["series", "phase", "poincare", "autocorrelation"]) new ResizeObserver(() => this.draw()).observe(element(id));
   }
 
@@ -30,26 +35,31 @@ export class MotionPanel {
     if (!this.coexisting) return "…";
     const { motions, counts } = this.coexisting, all = counts.reduce((sum, n) => sum + n, 0);
     const sorted = motions.map((m, i) => [m.label, counts[i]]).sort((a, b) => b[1] - a[1]);
-    const named = sorted.slice(0, 5).map(([label, n]) => `z = ${label} ${Math.round(100 * n / all)} %`);
-    return named.join(", ") + (sorted.length > 5 ? ", …" : "");
+    const most = sorted.slice(0, 5).map(([label, n]) => `${named({ label })}: ${Math.round(100 * n / all)} %`);
+    return most.join(", ") + (sorted.length > 5 ? ", …" : "");
   }
 
   /** The next stretch of the running motion joins what is shown. */
   run(frame) {
     const span = this.app.state.periods;
-    const old = this.live ?? { t: [], x: [], vx: [], y: [], vy: [], gap: [], px: [], pv: [], end: 0 };
+    const old = this.live ?? { t: [], x: [], vx: [], y: [], vy: [], gap: [], px: [], pv: [], pt: [], end: 0, moved: 0 };
+    const { damping_ratio, restitution, asymmetry } = this.app.state;
+    const at = JSON.stringify([frame.cursor.eta, frame.cursor.rho, damping_ratio, restitution, asymmetry]);
+    if (old.at && old.at !== at) old.moved = old.end;
+    old.at = at;
+    if (frame.motion) this.frame = { ...this.frame, ...frame, column: { ...this.frame?.column, lag: frame.column.lag, autocorrelation: frame.column.autocorrelation } };
     const c = frame.column, n = c.periods.length, jumps = withJumps(c);
     old.jumps = (old.jumps ?? []).concat(jumps.map((p) => [old.end + p[0], p[1], p[2]]));
     for (let i = old.t.length ? 1 : 0; i < n; i++) {
       old.t.push(old.end + c.periods[i]); old.x.push(c.x[i]); old.vx.push(c.vx[i]);
       old.y.push(c.y[i]); old.vy.push(c.vy[i]); old.gap.push(frame.gap);
     }
-    old.px.push(...c.poincare_x); old.pv.push(...c.poincare_vx);
+    old.px.push(...c.poincare_x); old.pv.push(...c.poincare_vx); old.pt.push(...Array(c.poincare_x.length).fill(old.end));
     old.end += c.periods[n - 1];
     const first = old.t.findIndex((t) => t >= old.end - span);
     if (first > 0) for (const key of ["t", "x", "vx", "y", "vy", "gap"]) old[key].splice(0, first);
     old.jumps = old.jumps.filter((p) => p[0] >= old.end - span);
-    if (old.px.length > 500) { old.px.splice(0, old.px.length - 500); old.pv.splice(0, old.pv.length - 500); }
+    for (const key of ["px", "pv", "pt"]) old[key].splice(0, Math.max(0, old[key].length - 500));
     this.live = old;
     this.draw();
   }
@@ -59,57 +69,41 @@ export class MotionPanel {
     this.pending = true;
     requestAnimationFrame(() => {
       this.pending = false;
-      if (element("panel-motion").hidden || (!this.frame && !this.live)) return;
-      this.series(); this.phase(); this.poincare();
-      if (this.frame) { this.correlation(); this.numbers(); }
+      this.paint();
     });
   }
 
+  paint() {
+    if (element("panel-motion").hidden || !this.frame) return;
+    this.series(); this.phase(); this.poincare(); this.correlation(); this.numbers();
+  }
+
   series() {
-    const box = element("series"), l = this.live, c = this.frame?.column;
-    const two = this.frame?.two_masses ?? true;
+    const l = this.live, c = this.frame?.column, two = this.frame?.two_masses ?? true;
     const t = l ? l.t : c.periods, x = l ? l.x : c.x;
     const other = l ? l.y.map((y, i) => l.gap[i] - y) : Float32Array.from(c.y, (y) => this.frame.gap - y);
-    const data = [t, x, other];
-    const theme = document.documentElement.dataset.theme;
-    const size = { width: Math.max(50, box.clientWidth), height: Math.max(60, box.clientHeight - 24) };
-    if (this.plot && this.theme === theme && this.two === two) {
-      if (this.plot.width !== size.width || this.plot.height !== size.height) this.plot.setSize(size);
-      this.plot.setData(data);
-      return;
-    }
-    this.plot?.destroy();
-    this.theme = theme; this.two = two;
-    const axis = (label) => ({ label, labelFont: `14px ${FONT}`, font: `13px ${FONT}`, stroke: colour("ink"), grid: { show: false }, ticks: { stroke: colour("frame"), size: 4 }, labelSize: 18, labelGap: 0 });
-    this.plot = new uPlot({
-      ...size,
-      pxAlign: 0,
-      scales: { x: { time: false }, y: { range: (u, lo, hi) => around([[lo, hi]]) } },
-      cursor: { y: false, drag: { setScale: false } },
-      legend: { live: true },
-      padding: [8, 10, 0, 0],
-      series: [
-        { label: "τ/T", value: (u, v) => number(v, 5) },
-        { label: "X", stroke: colour("blue"), width: 1.5, points: { show: false }, value: (u, v) => number(v, 5) },
-        { label: two ? "2ρ − Y" : "stop", stroke: two ? colour("vermilion") : colour("ink"), width: 1.5, points: { show: false }, value: (u, v) => number(v, 5) },
-      ],
-      axes: [{ ...axis("time τ/T"), size: 36 }, { ...axis("displacement"), size: 46 }],
-      hooks: { drawAxes: [(u) => this.together(u)] },
-    }, data, box);
+    this.span = [t[0], Math.max(t[t.length - 1], t[0] + 0.1)];
+    const f = this.timeFrame = new Frame(element("series"), this.span, around([x, other]), ["time *τ*/*T*", "displacement"], { top: 24 });
+    const curves = [["*X*", x, colour("blue")], [two ? "2*ρ* − *Y*" : "stop", other, two ? colour("vermilion") : colour("ink")]];
+    f.clip(() => {
+      if (!l && c.sticking) this.together(f, c);
+      for (const [, values, paint] of curves) f.curve(t, values, { colour: paint, width: 1.5 });
+    });
+    f.axes();
+    const at = this.hover === null ? -1 : t.findIndex((v) => v >= f.ux(this.hover));
+    if (at >= 0) f.clip(() => f.curve([t[at], t[at]], f.y, { colour: colour("quiet"), dash: [3, 3], width: 1 }));
+    f.key([...(at >= 0 ? [[`*τ*/*T* = ${number(t[at], 5)}`, null]] : []), ...curves.map(([name, values, paint]) => [name + (at >= 0 ? ` = ${number(values[at], 5)}` : ""), paint])]);
   }
 
   /** Grey where the masses stick together. */
-  together(u) {
-    const c = this.frame?.column;
-    if (!c || this.live || !c.sticking) return;
-    u.ctx.fillStyle = colour("together");
-    let from = -1;
-    for (let i = 0; i <= c.sticking.length; i++) {
-      const on = i < c.sticking.length && c.sticking[i] > 0;
+  together(f, { sticking, periods }) {
+    f.context.fillStyle = colour("together");
+    for (let i = 0, from = -1; i <= sticking.length; i++) {
+      const on = i < sticking.length && sticking[i] > 0;
       if (on && from < 0) from = i;
       if (!on && from >= 0) {
-        const a = u.valToPos(c.periods[from], "x", true), b = u.valToPos(c.periods[i - 1], "x", true);
-        u.ctx.fillRect(a, u.bbox.top, Math.max(1, b - a), u.bbox.height);
+        const left = f.px(periods[from]);
+        f.context.fillRect(left, f.box.top, Math.max(1, f.px(periods[i - 1]) - left), f.box.height);
         from = -1;
       }
     }
@@ -122,7 +116,9 @@ export class MotionPanel {
     const wall = this.frame ? this.frame.gap / (this.frame.two_masses ? 2 : 1) : null;
     f.clip(() => {
       if (wall !== null) f.curve([wall, wall], f.y, { colour: colour("quiet"), dash: [3, 3], width: 1 });
-      f.curve(xs, vs, { colour: colour("blue"), width: 1.3 });
+      const before = l ? path.findLastIndex((p) => p[0] < l.moved) + 1 : 0;
+      f.curve(xs.slice(0, before + 1), vs.slice(0, before + 1), { colour: colour("quiet"), width: 1, alpha: 0.35 });
+      f.curve(xs.slice(before), vs.slice(before), { colour: colour("blue"), width: 1.3 });
       if (!l) f.dots(c.impact_x, c.impact_vx_before, 2, colour("ink"));
     });
   }
@@ -131,8 +127,12 @@ export class MotionPanel {
     const l = this.live, c = this.frame?.column;
     const xs = l ? l.px : c.poincare_x, vs = l ? l.pv : c.poincare_vx;
     const grown = (list) => { const [a, b] = around([list], 0.1), m = 0.05; return b - a < 2 * m ? [(a + b) / 2 - m, (a + b) / 2 + m] : [a, b]; };
-    const f = new Frame(element("poincare"), grown(xs), grown(vs), ["*X* once a drive period", "*X*′"]).axes();
-    f.clip(() => f.dots(xs, vs, xs.length > 50 ? 1.2 : 2.5, colour("vermilion")));
+    const before = l ? l.pt.findLastIndex((t) => t < l.moved) + 1 : 0, size = xs.length > 50 ? 1.2 : 2.5;
+    const f = new Frame(element("poincare"), grown(xs), grown(vs), [`*X* once a drive period${before ? "; grey: before the move" : ""}`, "*X*′"]).axes();
+    f.clip(() => {
+      f.dots(xs.slice(0, before), vs.slice(0, before), size, colour("band"));
+      f.dots(xs.slice(before), vs.slice(before), size, colour("vermilion"));
+    });
   }
 
   correlation() {
@@ -145,18 +145,18 @@ export class MotionPanel {
   numbers() {
     const f = this.frame, s = this.app.state, w = f.approach_speeds;
     const speeds = w.length === 0 ? "none" : w.length <= 4 ? w.map((v) => number(v, 6)).join(", ") : `${number(Math.min(...w), 5)} to ${number(Math.max(...w), 5)}`;
-    const start = f.cursor.start;
+    const { start, phase } = s.cursor;
     const rows = [
-      ["settles on", `z = ${f.motion.label}`],
+      [this.live ? "now" : "settles on", named(f.motion)],
       ["of all starts", this.shares()],
       ["approach speed", speeds],
       ["X greatest", number(f.x_max, 6)],
-      ["Lyapunov", f.lyapunov === null ? "−∞ (a dead zone)" : number(f.lyapunov, 4)],
+      ["Lyapunov, per τ", f.lyapunov === null ? "−∞ (a dead zone)" : plusMinus(f.lyapunov, 1.96 * f.lyapunov_error)],
       ["without impacts", `${number(f.impactless.x[0], 5)}, ${number(f.impactless.x[1] * 180 / Math.PI, 4)}° behind`],
       ["start X, X′", `${number(start.x, 5)}, ${number(start.vx, 5)}`],
     ];
     if (f.two_masses && (start.x !== start.y || start.vx !== start.vy)) rows.push(["start Y, Y′", `${number(start.y, 5)}, ${number(start.vy, 5)}`]);
-    rows.push(["phase φ", `${number(f.cursor.phase, 5)} rad`], ["Poincaré at", `${number(s.poincare_phase, 4)} rad`]);
+    rows.push(["phase φ", `${number(phase, 5)} rad`], ["Poincaré at", `${number(s.poincare_phase, 4)} rad`]);
     element("numbers").replaceChildren(...facts(rows));
   }
 }
@@ -185,7 +185,7 @@ export function facts(rows) {
 
 /** What the lowest picture of the characteristics can show: its name, axis, and how it is drawn. */
 export const CHARACTERISTICS = {
-  lyapunov: { text: "Lyapunov exponent", axis: "Lyapunov exponent", zero: true, of: (d) => d.lyapunov },
+  lyapunov: { text: "Lyapunov exponent", axis: "Lyapunov exponent per *τ*", zero: true, of: (d) => d.lyapunov, error: (d) => d.lyapunov_error },
   autocorrelation: { text: "autocorrelation at one drive period", axis: "autocorrelation", range: [-1.05, 1.05], zero: true, of: (d) => d.correlation },
   approach_of_x: { text: "X′ before impacts", axis: "*X*′ before impacts", dots: (d, key) => d.step.map((s) => d[key][s]), of: (d) => d.xSpeed },
   impactless_phase: { text: "phase without impacts", axis: "phase lag, °", range: [0, 180], of: (d) => d.phase },
@@ -207,9 +207,9 @@ export class LinePanel {
   add(frame) {
     if (frame.id !== this.id) this.clear(frame.id);
     this.all = frame.all;
-    const way = this.ways[frame.way] ??= { eta: [], rho: [], x_max: [], lyapunov: [], impactless: [], phase: [], correlation: [], step: [], speed: [], xSpeed: [] };
+    const way = this.ways[frame.way] ??= { eta: [], rho: [], x_max: [], lyapunov: [], lyapunov_error: [], impactless: [], phase: [], correlation: [], step: [], speed: [], xSpeed: [] };
     const c = frame.column;
-    for (const key of ["eta", "rho", "x_max", "lyapunov", "impactless", "correlation"]) way[key].push(...c[key]);
+    for (const key of ["eta", "rho", "x_max", "lyapunov", "lyapunov_error", "impactless", "correlation"]) way[key].push(...c[key]);
     way.phase.push(...c.impactless_phase.map((p) => p * 180 / Math.PI));
     way.step.push(...c.impact_step); way.speed.push(...c.impact_speed); way.xSpeed.push(...c.impact_x_speed);
     this.draw();
@@ -258,7 +258,7 @@ export class LinePanel {
       Object.assign(small, { x: around([xs]), y: around([vs]), box: { left, top: top + 13, width, height: height - 14 } });
       small.clip(() => small.curve(xs, vs, { colour: colour("blue"), width: 1 }));
       c.font = `12px ${FONT}`; c.textAlign = "center"; c.textBaseline = "top"; c.fillStyle = markColour(t.motion);
-      c.fillText(`z = ${t.motion.label}`, left + width / 2, top + 1);
+      c.fillText(named(t.motion), left + width / 2, top + 1);
     });
   }
 
@@ -267,10 +267,13 @@ export class LinePanel {
     this.pending = true;
     requestAnimationFrame(() => {
       this.pending = false;
-      const line = this.app.state?.line;
-      if (element("panel-line").hidden || !line) return;
-      this.pictures(line);
+      this.paint();
     });
+  }
+
+  paint() {
+    const line = this.app.state?.line;
+    if (!element("panel-line").hidden && line) this.pictures(line);
   }
 
   pictures(line) {
@@ -303,6 +306,7 @@ export class LinePanel {
     const values = ways.map(([, d]) => shown.of(d));
     panel("line-l", shown.range ?? around([...values, [0]]), shown.axis, (f, d, ink) => {
       if (shown.zero) f.curve(range, [0, 0], { colour: colour("quiet"), width: 1 });
+      if (shown.error) f.bars(d[key], shown.of(d), shown.error(d).map((e) => 1.96 * e), ink);
       if (shown.dots) f.dots(shown.dots(d, key), shown.of(d), 1, ink);
       else f.curve(d[key], shown.of(d), { colour: ink, width: 1.1 });
     });
@@ -321,8 +325,22 @@ export class BasinsPanel {
     element("basins").addEventListener("click", (event) => {
       const box = event.target.getBoundingClientRect(), f = this.frame;
       const [p, q] = [event.clientX - box.left, event.clientY - box.top];
-      if (f?.holds(p, q)) app.start({ x: f.ux(p), vx: f.uy(q), y: f.ux(p), vy: f.uy(q) });
+      if (f?.holds(p, q)) this.choose(f.ux(p), f.uy(q));
     });
+  }
+
+  /** Move the start that is chosen by a fiftieth of the picture. */
+  nudge(dx, dv, event) {
+    if (!this.tile) return;
+    const { x, vx } = this.tile, { start } = this.app.state.cursor, by = event.shiftKey ? 0.2 : 0.02;
+    const move = (v, d, [low, high]) => Math.min(high, Math.max(low, v + d * by * (high - low)));
+    this.choose(move(start.x, dx, x), move(start.vx, dv, vx));
+  }
+
+  /** Start the motion there, both masses or one as the basins have it. */
+  choose(x, vx) {
+    const one = this.app.state.basins?.starts === "one_mass";
+    this.app.start({ x, vx, y: one ? 0 : x, vy: one ? 0 : vx });
   }
 
   add(frame) {
@@ -336,7 +354,7 @@ export class BasinsPanel {
     const image = t.canvas.getContext("2d").createImageData(w, rows), tints = frame.motions.map(tint);
     for (let k = 0; k < rows; k++) for (let i = 0; i < w; i++) {
       const cell = frame.cell[k * w + i], at = 4 * ((rows - 1 - k) * w + i);
-      if (cell === 255) continue;
+      if (cell === BEYOND) continue;
       const style = frame.motions[cell], seen = t.counts.get(style.label) ?? { style, count: 0 };
       seen.count++; t.total++; t.counts.set(style.label, seen);
       image.data.set([...tints[cell], 255], at);
@@ -348,7 +366,7 @@ export class BasinsPanel {
 
   draw() {
     if (!this.tile || element("panel-basins").hidden) return;
-    const t = this.tile, f = this.frame = new Frame(element("basins"), t.x, t.vx, ["start *X*(0) of both masses", "start *X*′(0)"]);
+    const t = this.tile, f = this.frame = new Frame(element("basins"), t.x, t.vx, [`start *X*(0)${this.app.state.single ? "" : this.app.state.basins?.starts === "one_mass" ? " of X alone" : " of both masses"}`, "start *X*′(0)"]);
     f.clip((c) => {
       c.imageSmoothingEnabled = false;
       for (const tile of [this.below, t]) if (tile) c.drawImage(tile.canvas, f.box.left, f.box.top, f.box.width, f.box.height);
@@ -357,7 +375,7 @@ export class BasinsPanel {
     });
     f.axes();
     const shares = [...t.counts.values()].sort((a, b) => b.count - a.count).slice(0, 8);
-    element("basin-shares").replaceChildren(...shares.map(({ style, count }) => swatch(style, `z = ${style.label}: ${(100 * count / t.total).toFixed(1)} %`)));
+    element("basin-shares").replaceChildren(...shares.map(({ style, count }) => swatch(style, `${named(style)}: ${(100 * count / t.total).toFixed(1)} %`)));
   }
 }
 

@@ -1,7 +1,7 @@
 // One WebSocket for everything: requests as JSON, answers as frames of a JSON header, columns of
 // 32-bit numbers and cells.
 
-/** Decode a frame: its header, with `column` (name → Float32Array) and `cell` (Uint8Array). */
+/** Decode a frame: its header, with `column` (name → Float32Array) and `cell` (Uint16Array). */
 export function decode(buffer) {
   const length = new DataView(buffer).getUint32(0, true);
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
@@ -11,12 +11,15 @@ export function decode(buffer) {
     header.column[name] = new Float32Array(buffer, offset, count);
     offset += 4 * count;
   }
-  header.cell = new Uint8Array(buffer, offset, header.cells);
+  header.cell = new Uint16Array(buffer, offset, header.cells);
   return header;
 }
 
+/** What is asked of a server that is gone. */
+const GONE = { message: "The server is gone.", remedy: "Start `impactid explore` again." };
+
 export class Wire {
-  /** `receive(frame)` is called with every frame that answers the newest request of its slot. */
+  /** `receive(frame, since, state)` is called with every frame that answers the newest request of its slot. */
   constructor(token, receive, closed) {
     this.receive = receive;
     this.next = 1;
@@ -26,6 +29,7 @@ export class Wire {
     this.waiting = {};     // slot → request to be sent then
     this.promises = {};    // id → [resolve, reject]
     this.sent = {};        // id → time it was asked for, ms
+    this.states = {};      // id → the state for which
     this.keyAt = 0;        // time of the last key, ms
     document.addEventListener("keydown", (event) => { this.keyAt = event.timeStamp; }, true);
     const protocols = ["impactid.1", "token." + token];
@@ -33,7 +37,7 @@ export class Wire {
     this.socket.binaryType = "arraybuffer";
     this.opened = new Promise((resolve) => { this.socket.onopen = resolve; });
     this.socket.onmessage = (event) => this.take(decode(event.data));
-    this.socket.onclose = closed;
+    this.socket.onclose = () => { for (const [, refuse] of Object.values(this.promises)) refuse(GONE); closed(); };
   }
 
   /** Now, or the key that led here. */
@@ -47,6 +51,7 @@ export class Wire {
     this.newest[slot] = id;
     this.slots[id] = slot;
     this.sent[id] = since ?? this.clock();
+    this.states[id] = state;
     if (this.socket.readyState === 1) this.socket.send(JSON.stringify({ id, ask, state }));
     return id;
   }
@@ -67,6 +72,7 @@ export class Wire {
 
   /** Ask for what is answered once. */
   once(ask, state) {
+    if (this.socket.readyState > 1) return Promise.reject(GONE);
     const id = this.send("once" + this.next, ask, state);
     return new Promise((resolve, reject) => { this.promises[id] = [resolve, reject]; });
   }
@@ -79,10 +85,10 @@ export class Wire {
       if (frame.kind === "refused") promise[1](frame); else promise[0](frame);
       return;
     }
-    const since = this.sent[frame.id];
+    const since = this.sent[frame.id], state = this.states[frame.id];
     if (this.busy[slot] === frame.id) this.busy[slot] = 0;
     if (frame.kind === "refused" || this.newest[slot] === frame.id || frame.id === 0) {
-      this.receive(frame, slot, since);
+      this.receive(frame, since, state);
     }
     if (!this.busy[slot] && this.waiting[slot]) {
       const [make, asked] = this.waiting[slot];
@@ -90,7 +96,7 @@ export class Wire {
       this.busy[slot] = this.send(slot, ...make(), asked);
     }
     for (const id of Object.keys(this.slots)) {
-      if (this.newest[this.slots[id]] !== Number(id)) { delete this.slots[id]; delete this.sent[id]; }
+      if (this.newest[this.slots[id]] !== Number(id)) { delete this.slots[id]; delete this.sent[id]; delete this.states[id]; }
     }
   }
 }

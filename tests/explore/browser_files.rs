@@ -1,0 +1,163 @@
+//! What a browser saves, and that a picture is of one machine.
+
+use serde_json::{Value, json};
+
+use super::chromium::Chromium;
+use super::server::{Explorer, QUIET};
+
+const SIZE: (u32, u32) = (1280, 800);
+
+const SAMPLE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/data-samples/double-oscillator/campaign.toml"
+);
+
+/// From now on files are kept by the page instead of being saved.
+const KEPT: &str = "(() => { window.kept = new Map(); const made = new Map(); \
+     URL.createObjectURL = (blob) => { const url = `blob:kept/${made.size}`; made.set(url, blob); return url; }; \
+     HTMLAnchorElement.prototype.click = function () { const blob = made.get(this.href); kept.set(this.download, null); \
+       if (blob.type.startsWith('image/png')) createImageBitmap(blob).then((b) => kept.set(this.download, b)); \
+       else blob.text().then((t) => kept.set(this.download, t)); }; })()";
+
+/// Choose an entry of the exports.
+fn export(browser: &mut Chromium, beginning: &str) {
+    browser.key("x", 0);
+    browser.until("document.getElementById('dialog').open");
+    browser.evaluate(&format!(
+        "[...document.querySelectorAll('#dialog button')].find((b) => b.textContent.startsWith('{beginning}')).click()"
+    ));
+}
+
+fn kept(browser: &mut Chromium, name: &str) -> Value {
+    browser.until(&format!("Boolean(kept.get('{name}'))"));
+    browser.evaluate(&format!("kept.get('{name}')"))
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_the_svg_shows_what_is_seen() {
+    let explorer = Explorer::start(&[SAMPLE], &std::env::temp_dir());
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.evaluate("document.fonts.ready.then(() => true)");
+    browser.evaluate(KEPT);
+    export(&mut browser, "SVG");
+    let svg = kept(&mut browser, "explorer.svg");
+    let svg = svg.as_str().unwrap();
+    let parsed = "(() => { const d = new DOMParser().parseFromString(kept.get('explorer.svg'), 'image/svg+xml'); \
+         return { root: d.documentElement.tagName, paths: d.querySelectorAll('path').length, images: d.querySelectorAll('image').length, \
+           text: [...d.querySelectorAll('text')].map((t) => t.textContent).join('').replaceAll(' ', '') }; })()";
+    let found = browser.evaluate(parsed);
+    assert_eq!(found["root"], json!("svg"));
+    // the map's cells are a picture; records, brackets, boundaries and curves are lines
+    assert!(found["images"].as_u64().unwrap() >= 1, "{found}");
+    assert!(found["paths"].as_u64().unwrap() > 300, "{found}");
+    let text = found["text"].as_str().unwrap();
+    let shown = browser.evaluate(
+        "[...document.querySelectorAll('#legend > span, #numbers dt, #numbers dd, #residuals b')].map((e) => e.lastChild.textContent.replaceAll(' ', '')).filter(Boolean)",
+    );
+    for part in shown.as_array().unwrap() {
+        assert!(
+            text.contains(part.as_str().unwrap()),
+            "{part} is not in: {text}"
+        );
+    }
+    for part in [
+        "clearanceratio",
+        "drivefrequency,Hz",
+        "autocorrelation",
+        "η=",
+    ] {
+        assert!(text.contains(part), "{part} is not in: {text}");
+    }
+    assert!(!svg.contains("undefined") && !svg.contains("NaN"));
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_the_png_has_the_keys_and_the_numbers() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.evaluate("document.fonts.ready.then(() => true)");
+    browser.evaluate(KEPT);
+    export(&mut browser, "PNG");
+    browser.until("Boolean(kept.get('explorer.png'))");
+    // within the place of each key and number there is ink
+    let empty = "(() => { const b = kept.get('explorer.png'), canvas = new OffscreenCanvas(b.width, b.height), c = canvas.getContext('2d'); \
+         c.drawImage(b, 0, 0); \
+         const all = [...document.querySelectorAll('main canvas, #legend, #readout, #numbers, #title')].filter((e) => e.checkVisibility()).map((e) => e.getBoundingClientRect()); \
+         const left = Math.min(...all.map((b) => b.left)) - 12, top = Math.min(...all.map((b) => b.top)) - 12; \
+         const parts = [...document.querySelectorAll('#legend > span, #numbers dt, #numbers dd, #readout')]; \
+         return parts.filter((e) => { const r = e.getBoundingClientRect(), d = c.getImageData(r.left - left, r.top - top, r.width, r.height).data; \
+           let ink = 0; for (let i = 0; i < d.length; i += 4) if (d[i] + d[i + 1] + d[i + 2] < 400) ink++; return ink < 8; }).map((e) => e.textContent); })()";
+    assert_eq!(browser.evaluate(empty), json!([]));
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_the_open_record_is_exported_with_its_simulation() {
+    let explorer = Explorer::start(&[SAMPLE], &std::env::temp_dir());
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.evaluate(KEPT);
+    browser.evaluate(
+        "impactid.choose(impactid.campaign.facts.records.find((r) => r.motion.label === '1/2'))",
+    );
+    browser.until("impactid.campaign.frame?.stated?.motion?.label === '1/2'");
+    export(&mut browser, "CSV");
+    browser.until("[...kept.keys()].some((n) => n.endsWith('-impacts.csv'))");
+    let name = browser.evaluate("[...kept.keys()].find((n) => n.includes('displacement_x'))");
+    let table = kept(&mut browser, name.as_str().unwrap());
+    let table = table.as_str().unwrap();
+    let mut lines = table.lines();
+    assert_eq!(lines.next(), Some("time_s,measured_m,simulated,difference"));
+    let mut rows = 0;
+    for line in lines {
+        let values: Vec<f64> = line
+            .split(',')
+            .map(|v| v.parse().unwrap_or(f64::NAN))
+            .collect();
+        let [_, measured, simulated, difference] = values[..] else {
+            panic!("{line}");
+        };
+        if difference.is_finite() {
+            let size = measured.abs().max(simulated.abs());
+            let off = (measured - simulated).abs() - difference.abs();
+            assert!(off.abs() <= 1e-4 * size.max(1e-6), "{line}");
+            rows += 1;
+        }
+    }
+    assert!(rows > 500, "{rows}");
+    let motion = browser.evaluate("kept.has('motion.csv')");
+    assert_eq!(motion, json!(false));
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_a_map_that_is_being_replaced_is_faint() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    // opacity of the map high up, where the strips of a slow map come last
+    let opacity = "(() => { const c = document.getElementById('map-tiles'), b = impactid.map.frame.box; \
+         return c.getContext('2d').getImageData(b.left + b.width - 30, b.top + 20, 1, 1).data[3] / 255; })()";
+    assert_eq!(browser.evaluate(opacity), json!(1));
+    browser.evaluate(
+        "impactid.parameters({ asymmetry: { ...impactid.state.asymmetry, stiffness: 0.95 } })",
+    );
+    browser.until("impactid.map.tiles.some((t) => t.id === impactid.wire.newest.map && t.filled > 0 && !t.complete)");
+    let both =
+        format!("[impactid.map.tiles.every((t) => t.id === impactid.wire.newest.map), {opacity}]");
+    let while_filling = browser.evaluate(&both);
+    let alone = while_filling[0] == json!(true);
+    assert!(
+        alone || while_filling[1].as_f64().unwrap() < 0.25,
+        "{while_filling}"
+    );
+    browser.until(QUIET);
+    assert_eq!(browser.evaluate(opacity), json!(1));
+    let late = browser.evaluate("document.getElementById('legend').classList.contains('late')");
+    assert_eq!(late, json!(false));
+}

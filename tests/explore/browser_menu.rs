@@ -1,0 +1,136 @@
+//! All by pointer, and what only a pointer did by keys too.
+
+use serde_json::json;
+
+use super::chromium::Chromium;
+use super::server::{Explorer, QUIET};
+
+const SIZE: (u32, u32) = (1280, 800);
+
+const SAMPLE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/data-samples/double-oscillator/campaign.toml"
+);
+
+/// Click the middle of an element.
+fn click(browser: &mut Chromium, element: &str) {
+    let place = browser.evaluate(&format!(
+        "(() => {{ const e = {element}; e.scrollIntoView({{ block: 'nearest' }}); const b = e.getBoundingClientRect(); \
+         return [b.left + b.width / 2, b.top + b.height / 2]; }})()"
+    ));
+    browser.click((place[0].as_f64().unwrap(), place[1].as_f64().unwrap()));
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_everything_is_done_by_pointer_alone() {
+    let explorer = Explorer::start(&[SAMPLE], &std::env::temp_dir());
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    let title = "document.getElementById('dialog-title').textContent";
+    let legend = "document.getElementById('legend').textContent";
+    let cases = [
+        ("A", format!("{title}.includes('Initial')")),
+        ("B", format!("{title}.includes('system')")),
+        ("C", format!("{title}.includes('picture')")),
+        ("D", format!("{title}.includes('simulation')")),
+        ("E", format!("{title}.includes('R(v)')")),
+        ("N", format!("{title}.includes('basins')")),
+        (
+            "I",
+            "impactid.state.line?.eta[0] === impactid.state.line?.eta[1]".to_owned(),
+        ),
+        ("L", "impactid.map.drawing === true".to_owned()),
+        ("P", "impactid.campaign.proposals.length > 0".to_owned()),
+        ("Q", "impactid.state.cursor.start.x === 0".to_owned()),
+        (
+            "U",
+            "Math.abs(impactid.state.poincare_phase - Math.PI / 4) < 1e-9".to_owned(),
+        ),
+        ("W", format!("{legend}.includes('cells: from X′ = Y′ = 3')")),
+        (
+            "]",
+            "impactid.state.record === impactid.campaign.facts.records[0].id".to_owned(),
+        ),
+    ];
+    assert_eq!(
+        browser.evaluate(&format!("{legend}.includes('cells: from rest')")),
+        json!(true)
+    );
+    for (key, done) in cases {
+        click(
+            &mut browser,
+            "document.querySelector('nav [data-key=\"?\"]')",
+        );
+        browser.until(&format!(
+            "document.getElementById('dialog').open && {title}.startsWith('Menu')"
+        ));
+        let entry = "[...document.querySelectorAll('dialog .keys button')]";
+        click(
+            &mut browser,
+            &format!("{entry}.find((b) => b.firstChild.textContent === '{key}')"),
+        );
+        browser.until(&done);
+        browser.evaluate("document.getElementById('dialog').close()");
+        browser.until("!document.getElementById('dialog').open");
+    }
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_a_start_in_the_basins_is_chosen_by_keys() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.key("s", 0);
+    browser.until("impactid.basins.tile !== null");
+    browser.evaluate("impactid.start({ x: 0, vx: 0, y: 0, vy: 0 }, 0)");
+    browser.until(QUIET);
+    browser.evaluate("document.getElementById('basins').focus()");
+    let eta = browser.evaluate("impactid.state.cursor.eta");
+    browser.key("ArrowLeft", 0);
+    browser.key("ArrowUp", 8);
+    browser.until(QUIET);
+    // the picture is 8 wide or less and 8 high: X from −4, X′ from −4 to 4
+    let start = browser.evaluate("impactid.state.cursor.start");
+    let [x, vx] = ["x", "vx"].map(|key| start[key].as_f64().unwrap());
+    assert!(x < -0.05 && x > -0.2 && (vx - 1.6).abs() < 1e-9, "{start}");
+    assert_eq!(start["x"], start["y"]);
+    assert_eq!(browser.evaluate("impactid.state.cursor.eta"), eta);
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_restitution_is_a_formula() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.key("e", 0);
+    browser.until("document.getElementById('dialog').open");
+    let apply = |browser: &mut Chromium, text: &str| {
+        browser.evaluate(&format!(
+            "(() => {{ const d = document.getElementById('dialog-body'), s = d.querySelector('select'); s.value = 'formula'; \
+             s.dispatchEvent(new Event('change')); d.querySelector('textarea').value = '{text}'; \
+             [...d.querySelectorAll('button')].find((b) => b.textContent === 'Apply').click(); }})()"
+        ));
+        browser.evaluate("document.querySelector('#dialog-body p').textContent")
+    };
+    for (text, said) in [
+        ("0.9 +", "the end"),
+        ("2 - v", "not between 0 and 1"),
+        ("alert(1)", "alert"),
+        ("0.9)", "not understood"),
+    ] {
+        let note = apply(&mut browser, text);
+        assert!(note.as_str().unwrap().contains(said), "{text}: {note}");
+        assert_eq!(browser.evaluate("impactid.state.restitution"), json!(0.9));
+    }
+    apply(&mut browser, "max(0.5, 0.95 - 0.05*v^(1/2))");
+    browser.until("!document.getElementById('dialog').open");
+    let off = "Math.max(...impactid.state.restitution.table.map(([v, r]) => Math.abs(r - Math.max(0.5, 0.95 - 0.05 * Math.sqrt(v)))))";
+    let off = browser.evaluate(off).as_f64().unwrap();
+    assert!(off < 1e-8, "{off}");
+    browser.until(QUIET);
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}

@@ -1,0 +1,64 @@
+//! The running motion in a browser.
+
+use std::time::Duration;
+
+use serde_json::json;
+
+use super::chromium::Chromium;
+use super::server::{Explorer, QUIET};
+
+const SIZE: (u32, u32) = (1280, 800);
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_label_and_numbers_follow_the_running_motion() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.evaluate("impactid.carry(1.1, 2)");
+    browser.until(QUIET);
+    let readout = "document.getElementById('readout').textContent";
+    let numbers = "document.getElementById('numbers').textContent";
+    browser.until(&format!("{readout}.startsWith('z = 1 at η = 1.1')"));
+    browser.key("g", 0);
+    browser.until(&format!("{numbers}.startsWith('nowz = 1')"));
+    // past the saddle-node at 1.5688 no impact is left
+    for step in 1..=29 {
+        browser.evaluate(&format!("impactid.carry(1.1 + 0.025 * {step}, 2)"));
+        std::thread::sleep(Duration::from_millis(30));
+    }
+    browser.until(&format!("{readout}.startsWith('z = 0 at η = 1.825')"));
+    browser.until(&format!("{numbers}.startsWith('nowz = 0')"));
+    browser.until(&format!("/approach speed\\s*none/.test({numbers})"));
+    browser.until(&format!("/of all starts\\s*z = /.test({numbers})"));
+    // what was before the move is told from what is now
+    let live = browser.evaluate("impactid.motion.live.moved > 0");
+    assert_eq!(live, json!(true));
+    // and back below the end of z = 0, where the impacts come again
+    browser.evaluate("impactid.carry(1.1, 1)");
+    browser.until(&format!("{readout}.startsWith('z = 1 at η = 1.1,')"));
+    browser.key("g", 0);
+    browser.until(QUIET);
+    browser.until(&format!("{numbers}.startsWith('settles onz = 1')"));
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_a_run_that_is_stopped_leaves_the_settled_motion_whole() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    for trial in 0..20 {
+        browser.key("g", 0);
+        browser.until("impactid.motion.live !== null");
+        std::thread::sleep(Duration::from_millis(7 * trial));
+        browser.key("g", 0);
+        browser.until(QUIET);
+        std::thread::sleep(Duration::from_millis(60));
+        browser.until(QUIET);
+        let whole = "[impactid.motion.live === null, Math.round(impactid.motion.span[1]), \
+             impactid.motion.frame.column.poincare_x.length]";
+        assert_eq!(browser.evaluate(whole), json!([true, 8, 300]), "{trial}");
+    }
+}

@@ -1,0 +1,154 @@
+//! The page at every size: nothing is cut, nothing covers another, nothing grows.
+
+use serde_json::{Value, json};
+
+use super::chromium::Chromium;
+use super::server::{Explorer, QUIET};
+
+const SAMPLE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/data-samples/double-oscillator/campaign.toml"
+);
+
+/// Phone, 200 % of 1280 × 800, and screens.
+const SIZES: [(u32, u32); 5] = [
+    (390, 844),
+    (640, 400),
+    (1024, 768),
+    (1280, 800),
+    (1920, 1080),
+];
+
+/// What is wrong with the boxes of what is shown.
+const FAULTS: &str = "(() => { const faults = [], box = (e) => e.getBoundingClientRect(); \
+     const shown = (e) => e.checkVisibility() && box(e).width > 0; \
+     const name = (e) => e.id || e.className || e.textContent || e.tagName; \
+     const all = (query) => [...document.querySelectorAll(query)].filter(shown); \
+     if (document.documentElement.scrollWidth > innerWidth) faults.push('the page is wider than its window'); \
+     for (const e of all('#legend, #readout, .legend, #residuals, #sliders')) \
+       if (e.scrollHeight > e.clientHeight + 1 || e.scrollWidth > e.clientWidth + 1) faults.push(`${name(e)} is cut`); \
+     for (const e of all('button, input, select, canvas, dt, dd, h1, #legend > span')) \
+       if (box(e).left < -1 || box(e).right > innerWidth + 1) faults.push(`${name(e)} leaves the window`); \
+     for (const e of all('input, button, select')) if (box(e).height < 24) faults.push(`${name(e)} is ${box(e).height} px high`); \
+     for (const e of all('input[type=range]')) if (box(e).width < 100) faults.push(`a track of ${box(e).width} px`); \
+     for (const e of all('canvas')) if (box(e).height < 60) faults.push(`${name(e)} is ${box(e).height} px high`); \
+     for (const parent of all('body, #left, #right, .panel, #sliders, header, .row')) { \
+       const inside = [...parent.children].filter((e) => shown(e) && getComputedStyle(e).position !== 'fixed'); \
+       inside.forEach((a, i) => inside.slice(i + 1).forEach((b) => { \
+         const [p, q] = [box(a), box(b)]; \
+         const across = Math.min(p.right, q.right) - Math.max(p.left, q.left), down = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top); \
+         if (across > 1 && down > 1) faults.push(`${name(a)} and ${name(b)} overlap`); })); } \
+     const map = box(document.getElementById('mapbox')).height; \
+     if (map < Math.max(250, 0.45 * innerHeight)) faults.push(`the map is ${map} px high`); \
+     return faults; })()";
+
+fn without_faults(browser: &mut Chromium, where_: &str) {
+    let faults = browser.evaluate(FAULTS);
+    assert_eq!(faults, json!([]), "{where_}");
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_nothing_is_cut_or_covered_at_any_size() {
+    let theory = Explorer::theory();
+    let campaign = Explorer::start(&[SAMPLE], &std::env::temp_dir());
+    for explorer in [&theory, &campaign] {
+        for size in SIZES {
+            let mut browser = Chromium::open(&explorer.url(), size);
+            browser.until(QUIET);
+            for action in [
+                "panel('motion')",
+                // hundreds of motions with long names
+                "parameters({ restitution: 0.6 }); impactid.look([0.3, 5], [-1.1, 7])",
+                "along('eta')",
+                "panel('basins')",
+                "nearest?.()",
+            ] {
+                browser.evaluate(&format!("void impactid.{action}"));
+                browser.until(QUIET);
+                browser.evaluate("new Promise((done) => setTimeout(done, 150))");
+                without_faults(&mut browser, &format!("{action} at {size:?}"));
+            }
+            assert_eq!(browser.errors(), Vec::<String>::new());
+        }
+    }
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_no_picture_grows_while_the_motion_moves() {
+    let explorer = Explorer::theory();
+    let heights = "[...document.querySelectorAll('canvas, #panel')].map((e) => e.getBoundingClientRect().height)";
+    for size in SIZES {
+        let mut browser = Chromium::open(&explorer.url(), size);
+        browser.until(QUIET);
+        browser.key("ArrowRight", 0);
+        browser.until(QUIET);
+        let before = browser.evaluate(heights);
+        for _ in 0..10 {
+            browser.key("ArrowRight", 0);
+            browser.until(QUIET);
+        }
+        browser.key("g", 0);
+        browser.until("impactid.motion.live?.end > 2");
+        browser.key("g", 0);
+        browser.until(QUIET);
+        assert_eq!(browser.evaluate(heights), before, "{size:?}");
+    }
+}
+
+/// The middle of an element in the window.
+fn middle(browser: &mut Chromium, id: &str) -> Value {
+    let place = format!(
+        "(() => {{ const e = document.getElementById('{id}'); e.scrollIntoView({{ block: 'center' }}); \
+         const b = e.getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2]; }})()"
+    );
+    browser.evaluate(&place)
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_a_finger_scrolls_the_page_and_drags_the_cursor() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZES[0]);
+    let touch = json!({"enabled": true, "maxTouchPoints": 1});
+    browser.call("Emulation.setTouchEmulationEnabled", touch);
+    browser.until(QUIET);
+    for picture in ["phase", "poincare", "autocorrelation", "series"] {
+        let at = middle(&mut browser, picture);
+        let before = browser.evaluate("scrollY").as_f64().unwrap();
+        drag(&mut browser, &at);
+        browser.until(&format!("{before} - scrollY > 60"));
+    }
+    let at = middle(&mut browser, "map");
+    let scrolled = browser.evaluate("scrollY");
+    let cursor = browser
+        .evaluate("impactid.state.cursor.rho")
+        .as_f64()
+        .unwrap();
+    drag(&mut browser, &at);
+    browser.until(QUIET);
+    let dragged = browser
+        .evaluate("impactid.state.cursor.rho")
+        .as_f64()
+        .unwrap();
+    assert!((dragged - cursor).abs() > 0.3, "{cursor} {dragged}");
+    assert_eq!(browser.evaluate("scrollY"), scrolled);
+}
+
+/// A finger set down at a place, drawn downwards, and lifted.
+fn drag(browser: &mut Chromium, at: &Value) {
+    let (x, y) = (at[0].as_f64().unwrap(), at[1].as_f64().unwrap());
+    for (kind, by) in [
+        ("touchStart", 0.0),
+        ("touchMove", 20.0),
+        ("touchMove", 60.0),
+        ("touchMove", 120.0),
+    ] {
+        let point = json!({"type": kind, "touchPoints": [{"x": x, "y": y + by}]});
+        browser.call("Input.dispatchTouchEvent", point);
+        std::thread::sleep(std::time::Duration::from_millis(30));
+    }
+    let end = json!({"type": "touchEnd", "touchPoints": []});
+    browser.call("Input.dispatchTouchEvent", end);
+}

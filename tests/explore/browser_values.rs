@@ -1,0 +1,159 @@
+//! Values that are typed, in a browser: what is out of range never counts.
+
+use serde_json::json;
+
+use super::chromium::Chromium;
+use super::server::{Explorer, QUIET};
+
+const SIZE: (u32, u32) = (1280, 800);
+
+const SAMPLE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/data-samples/double-oscillator/campaign.toml"
+);
+
+/// Type a text into the field that an expression names, and leave the field.
+fn type_into(browser: &mut Chromium, field: &str, text: &str) {
+    browser.evaluate(&format!("{field}.focus(); {field}.select(); true"));
+    for letter in text.chars() {
+        browser.key(&letter.to_string(), 0);
+    }
+    browser.evaluate(&format!("{field}.blur()"));
+}
+
+/// What the field says is wrong with what was typed.
+fn fault(browser: &mut Chromium, field: &str) -> String {
+    let said = format!(
+        "{field}.getAttribute('aria-invalid') === 'true' ? \
+         document.getElementById({field}.getAttribute('aria-errormessage')).textContent : ''"
+    );
+    browser.evaluate(&said).as_str().unwrap().to_owned()
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_values_out_of_range_are_refused_in_their_field() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    let state = "JSON.stringify({ ...impactid.state, cursor: 0 })";
+    let before = browser.evaluate(state);
+    let field = "document.querySelectorAll('.slider input[type=text]')[0]";
+    for text in ["1.5", "1e308", "-0.1", "none"] {
+        type_into(&mut browser, field, text);
+        assert_eq!(fault(&mut browser, field), "restitution R: 0 to 1");
+        assert_eq!(browser.evaluate(state), before);
+    }
+    // the motion still follows, and with it the field shows what counts
+    browser.evaluate("document.getElementById('map').focus()");
+    browser.key("ArrowRight", 0);
+    browser.until(QUIET);
+    browser.until("Math.abs(impactid.at[0] - impactid.state.cursor.eta) < 1e-12");
+    assert_eq!(browser.evaluate(&format!("{field}.value")), json!("0.9"));
+    assert_eq!(fault(&mut browser, field), "");
+    for (key, name, text, said) in [
+        ("a", "X(0)", "1e17", "X(0): −10000 to 10000"),
+        (
+            "b",
+            "stiffness of Y over X",
+            "1e9",
+            "stiffness of Y over X: 0.01 to 100",
+        ),
+        (
+            "b",
+            "mass of Y over X",
+            "1e308",
+            "mass of Y over X: 0.01 to 100",
+        ),
+        ("b", "masses (1 or 2)", "1.5", "masses (1 or 2): 1 or 2"),
+        ("c", "η from", "1e-6", "η from: 0.02 to 100"),
+        ("c", "η from", "3.6", "η from: below 3.5"),
+        (
+            "d",
+            "periods to settle",
+            "1e9",
+            "periods to settle: 0 to 20000",
+        ),
+    ] {
+        let before = browser.evaluate(state);
+        browser.key(key, 0);
+        let all = "[...document.querySelectorAll('dialog label')]";
+        let field = format!("{all}.find((l) => l.textContent === '{name}').querySelector('input')");
+        type_into(&mut browser, &field, text);
+        assert_eq!(fault(&mut browser, &field), said);
+        browser.key("Escape", 0);
+        browser.until("!document.getElementById('dialog').open");
+        assert_eq!(browser.evaluate(state), before, "{name}");
+    }
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_a_state_that_is_refused_never_leaves_an_empty_page() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    let first = browser.evaluate("JSON.stringify(impactid.first)");
+    let address = browser.evaluate("location.pathname + '#' + impactid.address()");
+    let address = format!(
+        "http://127.0.0.1:{}{}",
+        explorer.port,
+        address.as_str().unwrap()
+    );
+    let spoiled = address.replace("%22restitution%22%3A0.9", "%22restitution%22%3A1.5");
+    assert_ne!(spoiled, address);
+    let bare = explorer.url() + "&s=%7B%22version%22%3A1%7D";
+    for (url, word) in [(spoiled, "restitution = 1.5"), (bare, "missing field")] {
+        browser.go("about:blank");
+        browser.go(&url);
+        browser.until(QUIET);
+        let message = browser.evaluate("document.getElementById('message').textContent");
+        assert!(message.as_str().unwrap().contains(word), "{message}");
+        assert_eq!(browser.evaluate("JSON.stringify(impactid.first)"), first);
+        browser.until("impactid.map.tiles.length > 0 && impactid.shown.motion.label === '1'");
+    }
+    // a state that is refused later gives way to the last one that was taken
+    browser.evaluate(
+        "impactid.set({ restitution: { table: [[1, 0.5], [0, 0.5]] } }, ['map', 'carried'])",
+    );
+    browser.until("impactid.state.restitution === 0.9");
+    browser.key("ArrowRight", 0);
+    browser.until(QUIET);
+    browser.until("Math.abs(impactid.at[0] - impactid.state.cursor.eta) < 1e-12");
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_thumbs_agree_after_going_back_to_the_fit() {
+    let explorer = Explorer::start(&[SAMPLE], &std::env::temp_dir());
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    let range = "document.querySelector('.slider input[type=range]')";
+    let fit = browser
+        .evaluate("impactid.state.restitution")
+        .as_f64()
+        .unwrap();
+    browser.evaluate(&format!(
+        "{range}.focus(); {range}.value = 0.724; {range}.dispatchEvent(new Event('input'))"
+    ));
+    browser.until("impactid.state.restitution === 0.724");
+    browser.key("z", 0);
+    browser.until("impactid.state.restitution !== 0.724");
+    let thumb = browser.evaluate(&format!("Number({range}.value)"));
+    assert!(
+        (thumb.as_f64().unwrap() - fit).abs() <= 0.0005,
+        "{thumb} {fit}"
+    );
+    browser.key("ArrowRight", 0);
+    let next = browser
+        .evaluate("impactid.state.restitution")
+        .as_f64()
+        .unwrap();
+    assert!((next - fit - 0.001).abs() <= 0.0006, "{next} {fit}");
+    // Esc gives the arrows back to the map
+    browser.key("Escape", 0);
+    browser.key("ArrowRight", 0);
+    browser.until("document.activeElement.id === 'map'");
+    assert_eq!(browser.evaluate("impactid.state.restitution"), json!(next));
+}
