@@ -12,7 +12,7 @@ use sources::{SourceFile, all_sources, packages, root, rust_files};
 
 /// The modules of a package in order: a module never imports from one after it.
 const MODULES: [(&str, &[&str]); 5] = [
-    ("impact-oscillator", &["patience", "parallel", "model", "atlas"]),
+    ("impact-oscillator", &["model", "parallel", "atlas"]),
     (
         "impact-records",
         &["message", "signal", "record", "event", "motion"],

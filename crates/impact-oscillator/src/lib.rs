@@ -52,13 +52,12 @@
 pub mod atlas;
 pub mod model;
 mod parallel;
-pub mod patience;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-pub use patience::Patience;
+pub use model::patience::Patience;
 
 pub use atlas::{MapGrid, MapSettings, region_map};
 pub use model::{

@@ -11,10 +11,11 @@ pub use super::kernel::Kernel;
 use super::kernel::{Cell, Course, Feed, Outcome, run};
 use super::settling::settle_on;
 use super::watched::watch_again;
+use crate::model::patience;
 use crate::model::{
     Flight, Initial, Machine, ModelError, Oscillator, Setting, SettledMotion, Simulator, Watch,
 };
-use crate::{parallel, patience};
+use crate::parallel;
 
 /// The grid: cell (i, k) lies at (`eta[i]`, `rho[k]`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

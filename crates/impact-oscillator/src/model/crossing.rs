@@ -5,7 +5,7 @@
 //! The first root of the right side is a safe step, eq. (3); the steps converge to the zero from below.
 
 use super::path::{Jet, Path};
-use crate::patience;
+use crate::model::patience;
 
 /// Steps between two looks at whether the zero is still wanted.
 const BETWEEN_LOOKS: u64 = 4096;

@@ -13,6 +13,7 @@ pub(crate) mod motion;
 pub mod orbit;
 pub mod params;
 pub mod path;
+pub mod patience;
 pub mod periodic;
 pub mod perturbation;
 pub(crate) mod recurrence;

@@ -6,7 +6,7 @@ use super::contact::{self, Impact, ImpactKind};
 use super::crossing::first_zero;
 use super::flight::{Drive, FlightPaths, State, free_flight, press, sticking_flight};
 use super::params::{Initial, Machine, ModelError, Setting};
-use crate::patience;
+use crate::model::patience;
 
 /// Pieces of motion between two looks at whether it is still wanted.
 const BETWEEN_LOOKS: u32 = 256;

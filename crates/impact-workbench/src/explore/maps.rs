@@ -10,8 +10,8 @@ use super::{ExploreError, State};
 use impact_oscillator::atlas::map::{UnitMass, even};
 use impact_oscillator::model::boundary::{rho_sticking, s1_of_branch, s2_of_branch};
 use impact_oscillator::model::orbit::Branch;
+use impact_oscillator::model::patience::carry;
 use impact_oscillator::model::range;
-use impact_oscillator::patience::carry;
 use impact_oscillator::{
     BoundaryPoint, Machine, MapGrid, SettledMotion, region_map, rho_grazing, rho_s1, rho_s2,
 };

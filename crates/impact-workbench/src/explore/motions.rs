@@ -15,9 +15,9 @@ use impact_oscillator::atlas::basins::basin_rows;
 use impact_oscillator::atlas::map::{UnitMass, even};
 use impact_oscillator::atlas::portrait::{LONGEST_LAG, Portrait, PortraitPlan, portrait};
 use impact_oscillator::atlas::sweep::{Carried, SweepPoint, impactless};
+use impact_oscillator::model::patience::carry;
 use impact_oscillator::model::range;
 use impact_oscillator::model::simulate::Snapshot;
-use impact_oscillator::patience::carry;
 use impact_oscillator::{
     Machine, MapSettings, Setting, SettledMotion, Simulator, Trajectory, Watch,
 };

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use impact_oscillator::patience::carry;
+use impact_oscillator::model::patience::carry;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// Threads of a page, begun when they are first needed; `None` where the system gives none.

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use crate::model::ModelError;
+use super::error::ModelError;
 
 /// Says whether work is still wanted. Simulations on the thread that works under it, and on those that it
 /// shares its work with, look at it every few hundred flights.
