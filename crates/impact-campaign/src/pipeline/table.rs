@@ -54,27 +54,32 @@ impl Table {
     }
 
     /// With a column of numbers.
+    #[must_use]
     pub fn numbers(self, name: &str, values: impl IntoIterator<Item = f64>) -> Self {
         self.missing(name, values.into_iter().map(Some))
     }
 
     /// With a column of numbers some of which are missing.
+    #[must_use]
     pub fn missing(self, name: &str, values: impl IntoIterator<Item = Option<f64>>) -> Self {
         self.with(name, Values::Numbers(values.into_iter().collect()))
     }
 
     /// With a column of counts; one above `u32::MAX` is written as that.
+    #[must_use]
     pub fn counts(self, name: &str, values: impl IntoIterator<Item = usize>) -> Self {
         self.with(name, counts(values.into_iter().map(Some)))
     }
 
     /// With a column of yes and no.
+    #[must_use]
     pub fn flags(self, name: &str, values: impl IntoIterator<Item = bool>) -> Self {
         let values = values.into_iter().map(Some).collect();
         self.with(name, Values::Flags(values))
     }
 
     /// With a column of texts.
+    #[must_use]
     pub fn texts(self, name: &str, values: impl IntoIterator<Item = impl Into<String>>) -> Self {
         let values = values.into_iter().map(|text| Some(text.into())).collect();
         self.with(name, Values::Texts(values))

@@ -1,5 +1,12 @@
 //! Campaigns of the virtual laboratory, identified and compared, for tests here and in `report`.
 
+#![allow(
+    clippy::expect_used,
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
 use std::sync::OnceLock;
 
 use rayon::prelude::*;

@@ -1,6 +1,13 @@
 //! The solver of the identification on the nonlinear regression sets of NIST: all of them, from
 //! both starts, against the certified values.
 
+#![allow(
+    clippy::expect_used,
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
 mod dual;
 mod models;
 

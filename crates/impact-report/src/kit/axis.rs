@@ -54,6 +54,7 @@ impl Axis {
     }
 
     /// With another wanted number of ticks.
+    #[must_use]
     pub fn with_ticks(self, ticks: usize) -> Self {
         Self { ticks, ..self }
     }

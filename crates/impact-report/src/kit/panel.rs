@@ -64,6 +64,7 @@ impl Panel {
     }
 
     /// With the title of the upward axis at a distance, in line with other panels' titles.
+    #[must_use]
     pub fn with_title_reach(self, reach: f64) -> Self {
         Self {
             title_reach: Some(reach),
