@@ -28,13 +28,13 @@
 //!         files.lock().expect("one writer").push((name.to_owned(), bytes.len()));
 //!         Ok(())
 //!     },
-//!     pictures: Pictures::Svg,
+//!     pictures: Pictures::None,
 //!     blocks: &BlockCache::none(),
 //!     progress: &|_done, _of| {},
 //!     inform: &|_message| {},
 //! })?;
 //! let files = files.into_inner()?;
-//! assert!(files.iter().any(|(name, _)| name == "z1.svg"));
+//! assert!(files.iter().any(|(name, _)| name == "z1.csv"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

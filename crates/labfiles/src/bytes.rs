@@ -9,8 +9,26 @@ use std::path::{Path, PathBuf};
 
 use memmap2::Mmap;
 
-use super::numbers::ByteOrder;
 use super::source::ReadError;
+
+/// The order of the bytes of a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ByteOrder {
+    /// Least significant byte first.
+    Little,
+    /// Most significant byte first.
+    Big,
+}
+
+impl ByteOrder {
+    /// The 32-bit number that four bytes hold.
+    pub(crate) fn u32(self, bytes: [u8; 4]) -> u32 {
+        match self {
+            Self::Little => u32::from_le_bytes(bytes),
+            Self::Big => u32::from_be_bytes(bytes),
+        }
+    }
+}
 
 const DAMAGED: &str = "The file is damaged or was cut short: copy or export it again.";
 

@@ -3,16 +3,8 @@
 use half::f16;
 
 use super::source::StoredType;
+pub(crate) use crate::bytes::ByteOrder;
 use crate::bytes::to_usize;
-
-/// The order of the bytes of a number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ByteOrder {
-    /// Least significant byte first.
-    Little,
-    /// Most significant byte first.
-    Big,
-}
 
 /// How one real number is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,16 +69,6 @@ pub(crate) struct Spacing {
     pub stride: usize,
     /// Number of samples.
     pub count: usize,
-}
-
-impl ByteOrder {
-    /// The 32-bit number that four bytes hold.
-    pub(crate) fn u32(self, bytes: [u8; 4]) -> u32 {
-        match self {
-            Self::Little => u32::from_le_bytes(bytes),
-            Self::Big => u32::from_be_bytes(bytes),
-        }
-    }
 }
 
 /// A number in the single precision that was asked for.

@@ -7,6 +7,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use seen::Seen;
+
 use impact_campaign::pipeline::{PipelineError, Progress};
 use impact_identification::identify::evidence::options::{IntervalMethod, UncertaintyOptions};
 use impact_identification::identify::evidence::{Evidence, Nominal};
@@ -17,13 +19,14 @@ use impact_identification::identify::uncertainty::coverage::{Score, Trial, score
 use impact_identification::identify::{Estimator, Identification, Method, boundary_plan};
 use impact_records::event::{DetectSettings, RigKind};
 use impact_records::motion::{
-    Bracket, ClassifySettings, Motion, Observation, brackets, observe, scale_drives,
+    Bracket, ClassifySettings, Observation, brackets, observe, scale_drives,
 };
-use impact_records::record::{FlagCode, Record};
+use impact_records::record::Record;
 use simulated_rig::run::calibrated;
 use simulated_rig::{Laboratory, Reach, RigSpec, TrueMass, Truth, draw, records};
 
 mod mistake;
+mod seen;
 mod tallies;
 
 use mistake::Mistake;
@@ -51,22 +54,6 @@ pub struct Coverage {
     /// What the campaigns without a mistake say otherwise.
     #[serde(flatten)]
     pub tallies: Tallies,
-}
-
-/// A campaign after identification.
-struct Seen {
-    /// The motions according to the noiseless simulation.
-    motions: Vec<Motion>,
-    observations: Vec<Observation>,
-    brackets: Vec<Bracket>,
-    outcome: Identification,
-}
-
-impl Seen {
-    fn flag(&self, code: FlagCode) -> bool {
-        let flagged = |o: &&Observation| o.has_flag(code);
-        2 * self.observations.iter().filter(flagged).count() > self.observations.len()
-    }
 }
 
 fn evidence<'a>(

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::Seen;
+use super::seen::Seen;
 use impact_identification::identify::{Effect, Finding, VerdictKind};
 use impact_records::motion::{Motion, Observation};
 

@@ -1,6 +1,6 @@
 //! Basins of attraction, block of rows by block of rows, and their figure.
 
-use super::StudyContext;
+use super::context::StudyContext;
 use super::plan::BasinPlan;
 use crate::figures::basins::draw;
 use impact_campaign::pipeline::PipelineError;

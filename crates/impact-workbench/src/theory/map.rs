@@ -1,6 +1,6 @@
 //! A region map by brute force from one start, block of rows by block of rows, and its figure.
 
-use super::StudyContext;
+use super::context::StudyContext;
 use super::plan::MapPlan;
 use crate::figures::regions as figure;
 use impact_campaign::pipeline::PipelineError;

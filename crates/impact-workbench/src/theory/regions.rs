@@ -3,7 +3,7 @@
 
 use serde_json::json;
 
-use super::StudyContext;
+use super::context::StudyContext;
 use super::plan::RegionsPlan;
 use crate::figures::regions::draw;
 use impact_campaign::pipeline::PipelineError;

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::{Deserialize, Serialize};
 
-use super::StudyContext;
+use super::context::StudyContext;
 use super::plan::SweepPlan;
 use crate::figures::sweep::{Characteristics, draw};
 use impact_campaign::pipeline::PipelineError;

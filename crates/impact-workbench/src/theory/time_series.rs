@@ -1,6 +1,6 @@
 //! A motion in full: time series, impacts, Poincaré map, autocorrelation, and their figure.
 
-use super::StudyContext;
+use super::context::StudyContext;
 use crate::figures::motion::draw;
 use impact_campaign::pipeline::PipelineError;
 use impact_campaign::pipeline::table::Table;

@@ -2,10 +2,10 @@
 
 use strum::IntoEnumIterator;
 
-use super::*;
+use super::{Finding, Item, Note, PairAgreement, Reason, Remark, Sentence};
 use crate::identify::method::Method;
 use crate::identify::parameters::effect::Effect;
-use impact_records::message::boxed;
+use impact_records::message::{Message, boxed};
 use impact_records::motion::Undetermined;
 use impact_records::record::FlagCode;
 use impact_records::signal::decay::DampingLaw;
@@ -41,6 +41,8 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
+    use crate::identify::messages::StatedValue;
+    use crate::identify::parameters::Coordinate;
     use impact_records::message::{Language, plain};
     use impact_records::record::Role;
 

@@ -1,6 +1,6 @@
 //! The table of measured brackets.
 
-use super::{Column, arrow, table};
+use super::column::{Column, arrow, table};
 use crate::content::ReportContent;
 use crate::document::model::{Rich, Table};
 use crate::figures::boundaries::symbol;

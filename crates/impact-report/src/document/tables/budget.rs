@@ -1,6 +1,6 @@
 //! The uncertainty budget of the joint estimate.
 
-use super::{Column, table};
+use super::column::{Column, table};
 use crate::content::ReportContent;
 use crate::document::model::{Rich, Table};
 use crate::figures::correlation::name;

@@ -1,7 +1,7 @@
 //! The tables of campaigns compared: their estimates, the differences, what they share.
 
+use super::column::{Column, table};
 use super::estimates::{LEAST_P, estimate_cells, p_value};
-use super::{Column, table};
 use crate::document::model::{Rich, Table};
 use crate::document::verdict::headline;
 use crate::figures::correlation::name;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Column, table};
+use super::column::{Column, table};
 use crate::content::ReportContent;
 use crate::document::model::{Rich, Table};
 use crate::document::verdict::headline;

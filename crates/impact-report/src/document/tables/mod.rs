@@ -3,6 +3,7 @@
 mod brackets;
 mod budget;
 mod campaigns;
+mod column;
 mod estimates;
 mod records;
 
@@ -13,91 +14,14 @@ pub(super) use campaigns::{campaigns, differences, p_equals, separate, shared};
 pub(super) use estimates::{agreement, methods, specimen_methods, specimens};
 pub(super) use records::records;
 
+use column::{Column, table};
+
 use crate::content::ReportContent;
 use crate::document::model::{Align, Rich, Table};
 use crate::locale::Locale;
-use crate::phrase::{Phrase, Text};
+use crate::phrase::Phrase;
 use impact_identification::identify::Item;
 use impact_identification::replay::{Unusable, UnusableReason};
-use impact_records::record::Sweep;
-
-/// A column of a table.
-struct Column {
-    /// Its head, with markup.
-    head: Text,
-    align: Align,
-    /// Relative width; 0: as wide as its content.
-    width: u16,
-}
-
-impl Column {
-    /// As wide as its content, left-aligned.
-    fn left(head: impl Into<Text>) -> Self {
-        Self::wide(head, 0)
-    }
-
-    /// With a share of the width that the others leave, left-aligned.
-    fn wide(head: impl Into<Text>, width: u16) -> Self {
-        Self::aligned(head, Align::Left, width)
-    }
-
-    /// As wide as its content, right-aligned: numbers.
-    fn right(head: impl Into<Text>) -> Self {
-        Self::aligned(head, Align::Right, 0)
-    }
-
-    /// As wide as its content, centred: signs.
-    fn center(head: impl Into<Text>) -> Self {
-        Self::aligned(head, Align::Center, 0)
-    }
-
-    fn aligned(head: impl Into<Text>, align: Align, width: u16) -> Self {
-        let head = head.into();
-        Self { head, align, width }
-    }
-}
-
-/// A table of columns whose heads are phrases; `None` if it has no rows.
-fn table(
-    caption: impl Into<Text>,
-    columns: Vec<Column>,
-    rows: Vec<Vec<Rich>>,
-    locale: Locale<'_>,
-) -> Option<Table> {
-    let heads = columns.iter().map(|c| Rich::from(locale.text(&c.head)));
-    let table = Table {
-        caption: Rich::from(locale.text(&caption.into())),
-        heads: heads.collect(),
-        align: columns.iter().map(|c| c.align).collect(),
-        widths: columns.iter().map(|c| c.width).collect(),
-        ..Table::of(rows)
-    };
-    (!table.rows.is_empty()).then(|| without_empty_columns(table))
-}
-
-/// Without the columns that are empty in all rows; the first column is kept.
-fn without_empty_columns(table: Table) -> Table {
-    let says = |i: usize| {
-        table
-            .rows
-            .iter()
-            .any(|row| !matches!(row[i].plain().as_str(), "" | "–"))
-    };
-    let kept: Vec<usize> = (0..table.heads.len())
-        .filter(|&i| i == 0 || says(i))
-        .collect();
-    let rows = table.rows.iter();
-    let rows = rows
-        .map(|row| kept.iter().map(|&i| row[i].clone()).collect())
-        .collect();
-    Table {
-        heads: kept.iter().map(|&i| table.heads[i].clone()).collect(),
-        align: kept.iter().map(|&i| table.align[i]).collect(),
-        widths: kept.iter().map(|&i| table.widths[i]).collect(),
-        rows,
-        ..table
-    }
-}
 
 /// Further tables of the content.
 pub(super) fn further<'a>(
@@ -119,14 +43,6 @@ pub(super) fn further<'a>(
             ..Table::of(rows.collect())
         }
     })
-}
-
-fn arrow(sweep: Sweep) -> &'static str {
-    match sweep {
-        Sweep::Up => "↑",
-        Sweep::Down => "↓",
-        Sweep::Unknown => "",
-    }
 }
 
 /// Records that no method could use, by reason, and what the fits left out.

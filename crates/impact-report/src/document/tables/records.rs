@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{Column, arrow, table};
+use super::column::{Column, arrow, table};
 use crate::content::ReportContent;
 use crate::document::model::{Rich, Table};
 use crate::kit::fonts::{self, Face};
