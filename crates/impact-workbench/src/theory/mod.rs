@@ -12,12 +12,6 @@ pub mod time_series;
 use impact_campaign::pipeline::PipelineError;
 
 pub use context::{Output, Pictures, StudyContext};
-use impact_campaign::pipeline::PipelineError;
-use impact_campaign::pipeline::block_cache::BlockCache;
-use impact_campaign::pipeline::table::Table;
-use impact_report::kit::Figure;
-use impact_report::picture::pictures;
-use labfiles::output::OutputError;
 pub use plan::Study;
 
 /// Do all the work of a study.
