@@ -98,7 +98,7 @@ fn width(table: &Table, rows: &[Vec<Rich>]) -> usize {
         let cells = rows.iter().chain(std::iter::once(&table.heads));
         cells.filter_map(|row| row.get(column)).map(letters).max()
     };
-    let between = 2;
+    let between = 3;
     (0..table.align.len())
         .map(|c| of(c).unwrap_or(0) + between)
         .sum()
@@ -154,6 +154,11 @@ fn escaped(text: &str) -> String {
             // dashes and quotes that a file in UTF-8 may hold
             '–' => all.push_str("--"),
             '—' => all.push_str("---"),
+            '“' => all.push_str("``"),
+            '”' => all.push_str("''"),
+            '„' => all.push_str(",,"),
+            '‘' => all.push('`'),
+            '’' => all.push('\''),
             '…' => all.push_str("\\ldots{}"),
             other => match symbol(other) {
                 Some(name) => all.push_str(&format!("\\ensuremath{{{name}}}")),
@@ -212,8 +217,10 @@ fn symbol(sign: char) -> Option<&'static str> {
         '⁷' => "^{7}",
         '⁸' => "^{8}",
         '⁹' => "^{9}",
+        '₊' => "_{+}",
+        '₋' => "_{-}",
         '⊙' => "\\odot",
-        '●' => "\\bullet",
+        '●' | '•' => "\\bullet",
         '○' => "\\circ",
         '✓' => "\\checkmark",
         _ => return None,

@@ -154,7 +154,10 @@ fn without_settings(name: &str, bytes: &[u8]) -> Vec<u8> {
                 .map(|p| p.split(']').next().unwrap_or(p));
             pages.collect::<Vec<_>>().concat().into_bytes()
         }
-        "observations.json.gz" | "waveforms.json.gz" | "residuals.json.gz" => Vec::new(),
+        "observations.json.gz"
+        | "waveforms.json.gz"
+        | "residuals.json.gz"
+        | "report_data.json.gz" => Vec::new(),
         _ => bytes.to_vec(),
     }
 }

@@ -9,6 +9,7 @@ use crate::pipeline::identify::{self, IdentificationFile};
 use crate::pipeline::json::{read_json, store_error, write_json};
 use crate::pipeline::observe::each_record;
 use crate::pipeline::{Observed, PipelineError, Progress, RefusedRecord, gzip_json};
+use impact_identification::identify::residuals::MethodResiduals;
 use impact_records::motion::{Folded, Observation, brackets};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup, TIMES_CONTACT, TIMES_ERROR};
 use impact_records::record::{ContactContent, Flag, Record, Role};
@@ -21,6 +22,8 @@ const INGESTED_CAMPAIGN: &str = "ingested.json";
 const OBSERVATIONS: &str = "observations.json.gz";
 const WAVEFORMS: &str = "waveforms.json.gz";
 const RESIDUALS: &str = "residuals.json.gz";
+/// What a run keeps for its report.
+const KEPT: &str = "report_data.json.gz";
 
 /// Write the resolved campaign beside the results.
 ///
@@ -250,6 +253,7 @@ pub fn classify(out: &Path, progress: Progress<'_>) -> Result<Observed, Pipeline
 /// their records by index, go with them.
 fn write_observed(observed: &mut Observed, out: &Path) -> Result<(), PipelineError> {
     remove(&out.join(RESIDUALS))?;
+    remove(&out.join(KEPT))?;
     let path = out.join(OBSERVATIONS);
     remove(&path)?;
     let each = observed.observations.iter();
@@ -259,14 +263,13 @@ fn write_observed(observed: &mut Observed, out: &Path) -> Result<(), PipelineErr
     Ok(gzip_json::write(&path, &observed.observations)?)
 }
 
-/// Remove what was kept of an earlier run for its report: it no longer belongs to what is written.
+/// Remove what stages and an earlier run have left for the report: it does not belong to what is written now.
 ///
 /// # Errors
 /// If it cannot be removed.
 pub(super) fn forget(out: &Path) -> Result<(), PipelineError> {
-    remove(&out.join(OBSERVATIONS))?;
-    remove(&out.join(WAVEFORMS))?;
-    remove(&out.join(RESIDUALS))
+    let names = [KEPT, OBSERVATIONS, WAVEFORMS, RESIDUALS];
+    names.iter().try_for_each(|name| remove(&out.join(name)))
 }
 
 /// Keep what a report needs of a run beside its results: the observations, which have no waveforms any more, and
@@ -279,11 +282,20 @@ pub(super) fn keep(
     found: &IdentificationFile,
     out: &Path,
 ) -> Result<(), PipelineError> {
-    gzip_json::write(&out.join(RESIDUALS), &found.identification.residuals)?;
-    Ok(gzip_json::write(
-        &out.join(OBSERVATIONS),
-        &observed.observations,
-    )?)
+    let kept = (&observed.observations, &found.identification.residuals);
+    Ok(gzip_json::write(&out.join(KEPT), &kept)?)
+}
+
+/// What a run kept in a folder, unless stages have been run there since.
+fn kept(out: &Path) -> Result<Option<(Vec<Observation>, Vec<MethodResiduals>)>, PipelineError> {
+    let path = out.join(KEPT);
+    let staged = out.join(OBSERVATIONS).exists();
+    if staged || !path.exists() {
+        return Ok(None);
+    }
+    gzip_json::read(&path)
+        .map(Some)
+        .map_err(|e| store_error(&path, e))
 }
 
 /// Whether a folder holds the calibrated records of stage 1.
@@ -336,6 +348,10 @@ pub fn write_identified(found: &IdentificationFile, out: &Path) -> Result<(), Pi
 /// Where it is missing or unreadable.
 pub fn read_identified(out: &Path) -> Result<IdentificationFile, PipelineError> {
     let mut found = read_identification(out)?;
+    if let Some((_, residuals)) = kept(out)? {
+        found.identification.residuals = residuals;
+        return Ok(found);
+    }
     let is_missing = |name: &str| !out.join(name).exists();
     if is_missing(RESIDUALS) && !is_missing(OBSERVATIONS) {
         return Err(PipelineError::NoResults {
@@ -362,8 +378,8 @@ pub fn read_identification(out: &Path) -> Result<IdentificationFile, PipelineErr
 /// # Errors
 /// If they are missing or unreadable.
 pub fn read_observed(out: &Path) -> Result<Observed, PipelineError> {
-    let mut observed = read_without_waveforms(out)?;
     let path = of_stage(out, WAVEFORMS, "waveforms")?;
+    let mut observed = read_without_waveforms(out)?;
     let waveforms: Vec<Option<Folded>> =
         gzip_json::read(&path).map_err(|e| store_error(&path, e))?;
     for (observation, folded) in observed.observations.iter_mut().zip(waveforms) {
@@ -377,9 +393,13 @@ pub fn read_observed(out: &Path) -> Result<Observed, PipelineError> {
 /// # Errors
 /// If they are missing or unreadable.
 pub fn read_without_waveforms(out: &Path) -> Result<Observed, PipelineError> {
-    let path = of_stage(out, OBSERVATIONS, "observations")?;
-    let observations: Vec<Observation> =
-        gzip_json::read(&path).map_err(|e| store_error(&path, e))?;
+    let observations: Vec<Observation> = match kept(out)? {
+        Some((observations, _)) => observations,
+        None => {
+            let path = of_stage(out, OBSERVATIONS, "observations")?;
+            gzip_json::read(&path).map_err(|e| store_error(&path, e))?
+        }
+    };
     let brackets = brackets(&observations);
     Ok(Observed {
         observations,
@@ -390,7 +410,6 @@ pub fn read_without_waveforms(out: &Path) -> Result<Observed, PipelineError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impact_identification::identify::residuals::MethodResiduals;
     use impact_identification::identify::{Identification, Method, Provenance};
 
     #[test]

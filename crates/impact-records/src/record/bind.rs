@@ -40,6 +40,8 @@ fn find_name(name: &str, dataset: &DatasetInfo) -> Option<usize> {
     let bare = |c: &ChannelInfo| units::split_unit(&c.name).0 == name && !name.is_empty();
     exact
         .or_else(|| only_one(dataset, |c| c.name.rsplit('/').next() == Some(name)))
+        // `Latest: Velocity`, as Vernier's programs name what a run has measured
+        .or_else(|| only_one(dataset, |c| c.name.rsplit(": ").next() == Some(name)))
         .or_else(|| only_one(dataset, bare))
         .or_else(|| find_headed(name, dataset))
         .or_else(|| find_numbered(name, dataset))

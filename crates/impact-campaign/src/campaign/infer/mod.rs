@@ -155,25 +155,39 @@ impl<'a> Place<'a> {
     }
 }
 
-/// The records among tables. Those without times beside others with times are notes or settings; where none has
-/// times, the records are those that have channels of the longest.
+/// How many times longer than a table of notes, with times of its own, a record is.
+const LONGER_THAN_NOTES: u64 = 4;
+
+/// The records among tables. Those without times beside others with times are notes or settings, and so are those
+/// far shorter than the longest that share no channel with it.
 fn without_notes(mut places: Vec<Place<'_>>) -> Vec<Place<'_>> {
     let timed = |place: &Place<'_>| {
         let set = place.set();
         let counts = || (0..set.channels.len()).any(|i| time_axis::counts_frames(set, i));
         is_timed(set) || experiment::is_event_list(set) || counts()
     };
-    if places.iter().any(timed) {
+    let any_timed = places.iter().any(timed);
+    if any_timed {
         places.retain(timed);
-        return places;
     }
-    let rows = |place: &Place<'_>| place.set().channels.iter().map(|c| c.samples).max();
+    let rows = |place: &Place<'_>| {
+        let channels = place.set().channels.iter();
+        channels.map(|c| c.samples).max().unwrap_or(0)
+    };
     let Some(longest) = places.iter().copied().max_by_key(rows) else {
         return places;
     };
+    let time = |set: &DatasetInfo, i: usize| set.time_axis == Some(i);
     places.retain(|place| {
-        let mut channels = place.set().channels.iter();
-        channels.any(|c| longest.set().channel_index(&c.name).is_some())
+        let set = place.set();
+        let mut signals = set
+            .channels
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| !time(set, *i));
+        let shares = signals.any(|(_, c)| longest.set().channel_index(&c.name).is_some());
+        let long = any_timed && LONGER_THAN_NOTES * rows(place) > rows(&longest);
+        shares || long
     });
     places
 }
@@ -689,15 +703,21 @@ mod tests {
             .map(|k| format!("{k},{},1.0\n", 8.0 + f64::from(k)))
             .collect();
         let book = format!("run,frequency [Hz],gap [mm]\n{rows}");
+        let clock = |k: i32| format!("{:02}:{:02}:00,{}\n", 8 + k / 60, k % 60, 8 + k);
+        let clocks: String = (0..40).map(clock).collect();
         let files = [
             ("a book.csv", book),
+            ("a day.csv", format!("time,frequency [Hz]\n{clocks}")),
             ("run01.csv", record(1)),
             ("run02.csv", record(2)),
         ];
         let (found, text) = toml_of(&files);
         assert_eq!((found.files, found.records), (2, 2));
         assert!(text.contains("files = \"run*.csv\""), "{text}");
-        assert!(text.contains("notes or settings: a book.csv"), "{text}");
+        assert!(
+            text.contains("notes or settings: a book.csv, a day.csv"),
+            "{text}"
+        );
         assert!(
             text.contains("[channels.velocity_x]\nchannel = \"v\""),
             "{text}"
