@@ -15,6 +15,11 @@ const FAINT = 0.2;
 /** A cell that is not computed yet. */
 const EMPTY = 0xffffffff;
 
+/** Names of boundaries on the map. */
+const NAMES = { s2: "s₂", s1: "s₁" };
+/** Least length of a boundary that is named, px. */
+const ROOM_OF_A_NAME = 45;
+
 /** The map's canvases, from below: only that which changes is drawn again. */
 const LAYERS = { tiles: "map-tiles", lines: "map", cursor: "map-cursor" };
 
@@ -200,6 +205,7 @@ export class MapView {
   }
 
   boundaries(f) {
+    const c = f.context;
     for (const [name, curve] of Object.entries(this.curves)) {
       if (curve.stale) continue;
       const [kind, n] = name.split(":");
@@ -212,6 +218,27 @@ export class MapView {
         f.curve(curve.eta, curve.rho, { ...line, alpha: curve.bare ? 0.45 : 1 });
       }
     }
+    this.names = Object.entries(this.curves).flatMap(([name, curve]) => this.nameOf(f, name, curve));
+    for (const { text, x, y, paint } of this.names) {
+      c.font = `13px ${FONT}`; c.textAlign = "center"; c.textBaseline = "middle";
+      c.lineWidth = 4; c.strokeStyle = colour("paper"); c.strokeText(text, x, y);
+      c.fillStyle = paint; c.fillText(text, x, y);
+    }
+  }
+
+  /** Where a boundary's name stands: in the middle of the longest stretch on which a stable motion ends. */
+  nameOf(f, name, { eta, rho, exists, stale }) {
+    const [kind, n] = name.split(":");
+    if (stale || !exists || !NAMES[kind]) return [];
+    let best = [0, 0];
+    for (let i = 0, from = 0; i <= eta.length; i++) {
+      if (i < eta.length && exists[i] > 0 && f.holds(f.px(eta[i]), f.py(rho[i]))) continue;
+      if (i - from > best[1] - best[0]) best = [from, i];
+      from = i + 1;
+    }
+    const length = f.px(eta[best[1] - 1] ?? 0) - f.px(eta[best[0]]), at = (best[0] + best[1]) >> 1;
+    if (!(length > ROOM_OF_A_NAME)) return [];
+    return [{ text: `${NAMES[kind]}(${n === "1" ? "1" : `1/${n}`})`, x: f.px(eta[at]), y: f.py(rho[at]), paint: colour(KINDS[kind].colour) }];
   }
 
   regionLabels(f, c) {
