@@ -63,3 +63,22 @@ fn browser_ticks_and_phases_have_no_dust() {
     );
     assert_eq!(swing, json!(true));
 }
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_where_motions_coexist_the_map_is_striped_and_names_both() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.until("impactid.map.other?.id === impactid.wire.newest.map");
+    // between grazing and the saddle-node z = 0 and z = 1 coexist: at η = 1.3 from 1.4 to 4.15
+    let both = "(() => { const { other } = impactid.map, [w, h] = other.size; \
+         const at = (eta, rho) => other.styles[other.cells[Math.round((rho - other.rho[0]) / (other.rho[1] - other.rho[0]) * (h - 1)) * w + Math.round((eta - other.eta[0]) / (other.eta[1] - other.eta[0]) * (w - 1))]].label; \
+         return [at(1.3, 2.5), at(1.3, 6), at(1.3, 0.7)]; })()";
+    assert_eq!(browser.evaluate(both), json!(["0 · 1", "0", "1"]));
+    browser.until("impactid.map.labels.some((l) => l.text === '0 · 1')");
+    let striped = "(() => { const f = impactid.map.frame, c = document.getElementById('map-tiles').getContext('2d'); \
+         const colours = (eta, rho) => new Set(Array.from({ length: 40 }, (_, i) => c.getImageData(f.px(eta) + i, f.py(rho), 1, 1).data.join())).size; \
+         return colours(1.3, 2.5) > 1 && colours(2, 6) === 1; })()";
+    browser.until(striped);
+}

@@ -228,6 +228,8 @@ fn a_foreign_crate_is_used_in_its_module_alone() {
         ("miette", &["cli"]),
         ("clap", &["cli"]),
         ("axum", &["explore"]),
+        ("hyper", &["explore"]),
+        ("hyper_util", &["explore"]),
         ("tokio", &["explore"]),
         ("futures_util", &["explore"]),
     ];
