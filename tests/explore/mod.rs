@@ -3,6 +3,7 @@
 mod browser;
 mod browser_files;
 mod browser_life;
+mod browser_looks;
 mod browser_maps;
 mod browser_menu;
 mod browser_run;

@@ -245,6 +245,8 @@ fn a_foreign_crate_is_used_in_its_module_alone() {
         ("argmin", "impact-identification", "identify"),
         ("plotters", "impact-report", "kit"),
         ("axum", "impact-workbench", "explore"),
+        ("hyper", "impact-workbench", "explore"),
+        ("hyper_util", "impact-workbench", "explore"),
         ("tokio", "impact-workbench", "explore"),
         ("futures_util", "impact-workbench", "explore"),
     ];

@@ -39,6 +39,9 @@ pub struct SweepPoint {
     pub motion: SettledMotion,
     /// Greatest displacement X in the watch.
     pub x_max: f64,
+    /// Least displacement X in the watch.
+    #[serde(default)]
+    pub x_min: f64,
     /// Greatest displacement Y in the watch.
     pub y_max: f64,
     /// Approach speeds of the last impacts: one period's of a periodic motion, else up to 64.
@@ -56,10 +59,10 @@ pub struct SweepPoint {
     pub autocorrelation: Vec<f64>,
 }
 
-/// Greatest value of a path over [0, duration].
-fn maximum(path: &Path, duration: f64) -> f64 {
+/// Greatest value of a path over [0, duration], of its negative with the sign −1.
+fn maximum(path: &Path, duration: f64, sign: f64) -> f64 {
     let steps = (duration * path.rate() * 8.0).ceil().clamp(2.0, 1e5);
-    let at = |k: f64| path.at(duration * k / steps);
+    let at = |k: f64| path.at(duration * k / steps).map(|v| sign * v);
     let mut best = at(0.0)[0].max(at(steps)[0]);
     for k in 0..count(steps) {
         let (mut lo, mut hi) = (f64::from(k), f64::from(k) + 1.0);
@@ -202,9 +205,9 @@ impl<'a> Carried<'a> {
         let mut lyapunov = Lyapunov::new(self.machine, setting.frequency_ratio);
         follower.advance(followed * period, &mut lyapunov);
         let exponent = Some(lyapunov.exponent()).filter(|l| l.is_finite());
-        let greatest = |of: fn(&FlightPaths) -> &Path| {
+        let greatest = |of: fn(&FlightPaths) -> &Path, sign: f64| {
             let arcs = watched.arcs.iter();
-            arcs.map(|arc| maximum(of(&arc.paths), arc.duration))
+            arcs.map(|arc| maximum(of(&arc.paths), arc.duration, sign))
                 .fold(f64::NEG_INFINITY, f64::max)
         };
         let next = |tau: &f64| Some(tau + period / SAMPLES as f64);
@@ -223,8 +226,9 @@ impl<'a> Carried<'a> {
             eta: setting.frequency_ratio,
             rho: setting.clearance,
             motion,
-            x_max: greatest(|paths| &paths.x),
-            y_max: greatest(|paths| &paths.y),
+            x_max: greatest(|paths| &paths.x, 1.0),
+            x_min: -greatest(|paths| &paths.x, -1.0),
+            y_max: greatest(|paths| &paths.y, 1.0),
             approach_speeds: of(|i| i.approach_speed),
             x_speeds: of(|i| i.vx_before),
             phases: of(|i| i.phase),

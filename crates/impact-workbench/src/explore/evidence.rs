@@ -174,6 +174,7 @@ pub(super) fn residuals(campaign: &Campaign, state: &State, job: &Job) -> Result
         methods.push(json!({
             "method": method.to_string(),
             "rms": root_mean(found.squares, found.count),
+            "weight": weights.map(|w| w.get(&method).copied().unwrap_or(0.0)),
             "count": found.count,
             "without": found.without,
         }));

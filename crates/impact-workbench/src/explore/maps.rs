@@ -13,7 +13,8 @@ use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::patience::carry;
 use impact_oscillator::model::range;
 use impact_oscillator::{
-    BoundaryPoint, Machine, MapGrid, SettledMotion, region_map, rho_grazing, rho_s1, rho_s2,
+    BoundaryPoint, Initial, Machine, MapGrid, SettledMotion, region_map, rho_grazing, rho_s1,
+    rho_s2,
 };
 use impact_records::motion::Motion;
 use impact_report::style::MotionStyle;
@@ -26,6 +27,8 @@ const FINE: (usize, usize) = (384, 288);
 const STRIP_CELLS: usize = 12_288;
 /// The same of machines that the exact simulator marches, some 0.4 ms a cell.
 const SLOW_STRIP_CELLS: usize = 192;
+/// X' and Y' of the lively start.
+const LIVELY_SPEED: f64 = 3.0;
 /// Greatest n of the boundaries of z = 1/n.
 const MOST_PERIODS: u32 = 5;
 /// Most points of a boundary that a page may ask for.
@@ -53,7 +56,8 @@ pub(super) fn cells<'a>(
     (known.iter().map(style).collect(), cells)
 }
 
-/// The region map of what the page shows: 32 × 24, 128 × 96, then strips of 384 × 288.
+/// The region map of what the page shows: 32 × 24, 128 × 96, then strips of 384 × 288; of fast machines then 128 × 96
+/// from another start, which shows what coexists.
 pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
     let before_boundaries = job.first_tiles();
     let machine = state.machine();
@@ -71,11 +75,33 @@ pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
         strip_cells,
         finest: level == finest,
         is_first: level < first,
+        start: state.map_start,
     });
     let send = |tile: Tile| tile.send(state, &machine, job);
     tiles.clone().take(first).try_for_each(send)?;
     drop(before_boundaries);
-    tiles.skip(first).try_for_each(send)
+    tiles.skip(first).try_for_each(send)?;
+    match fast {
+        true => send(Tile {
+            level: levels.len(),
+            size: MAP_CELLS,
+            strip_cells,
+            finest: false,
+            is_first: false,
+            start: other_start(state),
+        }),
+        false => Ok(()),
+    }
+}
+
+/// The start from which motions are sought that coexist with those of the map: lively where the map is from rest.
+fn other_start(state: &State) -> Initial {
+    let lively = Initial::both(0.0, LIVELY_SPEED);
+    if state.map_start == lively {
+        Initial::rest()
+    } else {
+        lively
+    }
 }
 
 /// One level of the map.
@@ -89,12 +115,15 @@ struct Tile {
     finest: bool,
     /// Whether it is one of the first tiles.
     is_first: bool,
+    /// Start of its cells.
+    start: Initial,
 }
 
 impl Tile {
     /// Send it strip by strip, each a frame.
     fn send(&self, state: &State, machine: &Machine, job: &Job) -> Result<(), Stop> {
-        let plan = state.map_plan(self.size);
+        let mut plan = state.map_plan(self.size);
+        plan.map.start = self.start;
         let (eta, rho) = (even(plan.eta), even(plan.rho));
         let rows = (self.strip_cells / self.size.0).max(1);
         let last = (rho.len() - 1) / rows;
@@ -115,6 +144,7 @@ impl Tile {
             let frame = job
                 .frame("map")
                 .with("level", self.level)
+                .with("other", self.start != state.map_start)
                 .with("size", self.size)
                 .with("first_row", number * rows)
                 .with("last", self.finest && number == last)

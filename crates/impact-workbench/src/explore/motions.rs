@@ -122,6 +122,7 @@ fn with_facts(frame: Frame, machine: &Machine, point: &SweepPoint) -> Frame {
         .with("motion", style)
         .with("lyapunov_error", point.lyapunov_error)
         .with("x_max", point.x_max)
+        .with("x_min", point.x_min)
         .with("lyapunov", point.lyapunov)
         .with("approach_speeds", &point.approach_speeds)
         .with("impactless", json!({"x": free.x, "y": free.y}))
@@ -292,6 +293,7 @@ impl<'a> Way<'a> {
             .column("eta", points.iter().map(|p| p.eta))
             .column("rho", points.iter().map(|p| p.rho))
             .column("x_max", points.iter().map(|p| p.x_max))
+            .column("x_min", points.iter().map(|p| p.x_min))
             .column(
                 "lyapunov",
                 points.iter().map(|p| p.lyapunov.unwrap_or(f64::NAN)),

@@ -10,6 +10,9 @@ const make = (name, text, className) => {
   return e;
 };
 
+/** Records of sweeps up and down lie apart, as in the report, px. */
+const APART = { up: -4, down: 4 };
+
 const SYMBOLS = { "displacement x": "*x*", "displacement y": "*y*", "velocity x": "*x*′", "velocity y": "*y*′", "frame x": "frame *x*", "frame y": "frame *y*" };
 
 /** A factor and the prefix of its unit that make values neither tiny nor huge. */
@@ -50,7 +53,7 @@ export class CampaignView {
   placed(f) {
     return this.facts.records.filter((r) => r.frequency_hz !== null && r.clearance_m !== null).map((r) => {
       const [eta, rho] = this.at(r.frequency_hz, r);
-      return { r, x: f.px(eta), y: f.py(rho) };
+      return { r, x: f.px(eta), y: f.py(rho) + (APART[r.sweep] ?? 0) };
     });
   }
 
@@ -181,7 +184,7 @@ export class CampaignView {
     if (e.undetermined && frame.shown !== "decay") notes.push(make("p", `Undetermined: ${e.undetermined}`, "bad"));
     for (const reason of e.left_out) notes.push(make("p", `Left out: ${reason}`, "bad"));
     for (const flag of e.flags) notes.push(make("p", `${flag.message}. ${flag.remedy}.`, flag.excludes ? "bad" : "note"));
-    const key = make("p", frame.shown === "decay" ? "Black: measured; blue dashed: the fitted decay." : frame.shown === "nothing" ? "" : "Black: measured; blue dashed: simulated at the sliders; red: their difference; ticks: impacts.", "note");
+    const key = make("p", frame.shown === "decay" ? "Solid: measured; blue dashed: the fitted decay." : frame.shown === "nothing" ? "" : "Solid: measured; blue dashed: simulated at the sliders; thin red: their difference; ticks: impacts.", "note");
     box.replaceChildren(key, make("h2", frame.shown === "decay" ? "Fit" : "What the label rests on"), list, ...notes);
   }
 
@@ -190,13 +193,16 @@ export class CampaignView {
     const box = element("residuals");
     box.hidden = !this.fit;
     if (!this.fit) return;
-    const item = (name, rms, tip) => {
-      const span = make("span");
-      const value = make("b", rms === null ? "no model" : number(rms, 3), rms === null || rms > 2 ? "worse" : "fits");
-      span.append(`${name} `, value); span.title = tip;
+    // a method that the joint fit trusts less than its own noise is judged as the joint fit weighs it
+    const item = (name, rms, tip, weight = 1) => {
+      const span = make("span"), weighed = weight ?? 1;
+      const apart = weighed === 0 && rms > 2;
+      const value = make("b", rms === null ? "no model" : number(rms, 3), rms === null || rms * Math.sqrt(weighed) > 2 ? "worse" : apart ? "" : "fits");
+      span.append(`${name} `, value, apart ? " (not in the joint fit)" : "");
+      span.title = weighed > 0 && weighed < 0.5 ? `${tip}; the joint fit takes its errors ${number(1 / Math.sqrt(weighed), 2)} times as large` : tip;
       return span;
     };
-    const parts = frame.methods.map((m) => item(m.method, m.rms, `${m.count} residuals over their standard errors, root mean square${m.without ? `; ${m.without} observations have no such motion here` : ""}`));
+    const parts = frame.methods.map((m) => item(m.method, m.rms, `${m.count} residuals over their standard errors, root mean square${m.without ? `; ${m.without} observations have no such motion here` : ""}`, m.weight));
     if (frame.joint !== null) parts.unshift(item("Joint", frame.joint, "root mean square of all weighted residuals of the joint fit"));
     const known = frame.brackets.filter((b) => b.boundary_hz !== null), past = known.filter((b) => b.past_hz > 0);
     const most = Math.max(0, ...past.map((b) => b.past_hz));

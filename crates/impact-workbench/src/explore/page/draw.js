@@ -117,7 +117,7 @@ export class Frame {
     c.strokeRect(b.left + 0.5, b.top + 0.5, b.width, b.height);
     c.font = `13px ${FONT}`; c.textAlign = "center"; c.textBaseline = "top";
     c.beginPath();
-    const tx = ticks(...this.x, b.width / 75), ty = ticks(...this.y, Math.max(2.4, b.height / 42));
+    const tx = ticks(...this.x, Math.max(2.4, b.width / 75)), ty = ticks(...this.y, Math.max(2.4, b.height / 42));
     for (const v of tx.all) {
       const p = Math.round(this.px(v)) + 0.5;
       c.moveTo(p, b.top + b.height); c.lineTo(p, b.top + b.height - 4);
@@ -202,7 +202,8 @@ export function around(lists, margin = 0.06) {
   let [low, high] = [Infinity, -Infinity];
   for (const list of lists) for (const v of list) if (Number.isFinite(v)) { if (v < low) low = v; if (v > high) high = v; }
   if (low > high) return [0, 1];
-  const room = margin * Math.max(high - low, 1e-6 * Math.max(Math.abs(high), Math.abs(low)), 1e-9);
+  // a constant is a line in the middle, and its ticks need few digits
+  const spread = Math.max(high - low, 0.02 * Math.max(Math.abs(high), Math.abs(low)), 1e-9), room = margin * spread + (spread - (high - low)) / 2;
   return [low - room, high + room];
 }
 

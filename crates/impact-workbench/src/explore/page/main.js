@@ -174,7 +174,8 @@ class App {
     if (frame.kind === "refused") { this.refused(frame); return; }
     if (asked) this.good = asked;
     const time = (kind, level) => this.timed(kind, level, since);
-    if (frame.kind === "map") {
+    if (frame.kind === "map" && frame.other) this.map.coexisting(frame);
+    else if (frame.kind === "map") {
       const tile = this.map.tile(frame);
       this.progress(tile);
       if (tile.complete) time("map", frame.level);
@@ -467,6 +468,7 @@ class App {
     }
     const { vx } = this.state.map_start, from = document.createElement("span");
     from.textContent = vx === 0 ? "cells: from rest" : `cells: from X′ = Y′ = ${number(vx)}`;
+    if (this.map.other && this.map.other.id === this.wire.newest.map) from.textContent += "; striped: another start, another motion";
     element("legend").replaceChildren(...items, from);
   }
 

@@ -15,6 +15,13 @@ const FAINT = 0.2;
 /** A cell that is not computed yet. */
 const EMPTY = 0xffffffff;
 
+/** Distance of the stripes where motions coexist, px. */
+const STRIPES = 7;
+/** Names of boundaries on the map. */
+const NAMES = { s2: "s₂", s1: "s₁" };
+/** Least length of a boundary that is named, px. */
+const ROOM_OF_A_NAME = 45;
+
 /** The map's canvases, from below: only that which changes is drawn again. */
 const LAYERS = { tiles: "map-tiles", lines: "map", cursor: "map-cursor" };
 
@@ -66,6 +73,42 @@ export class MapView {
     this.redraw("tiles", "lines");
   }
 
+  /** A strip of the map from another start: where its motions differ, two coexist. */
+  coexisting(frame) {
+    const [columns, rows] = frame.size, known = this.cells128;
+    if (known?.id !== frame.id) return;
+    if (frame.first_row === 0) this.building = { id: frame.id, size: frame.size, eta: frame.eta, rho: frame.rho, styles: [], known: new Map(), cells: new Uint32Array(columns * rows), canvas: Object.assign(document.createElement("canvas"), { width: columns, height: rows }) };
+    const b = this.building, c = b.canvas.getContext("2d"), first = frame.first_row * columns;
+    frame.cell.forEach((cell, i) => {
+      const at = first + i, here = known.styles[known.cells[at]], there = frame.motions[cell], both = here.label === there.label ? here.label : `${here.label} · ${there.label}`;
+      if (!b.known.has(both)) b.known.set(both, b.styles.push({ ...here, label: both }) - 1);
+      b.cells[at] = b.known.get(both);
+      if (here.label === there.label) return;
+      c.fillStyle = markColour(there); c.fillRect(at % columns, rows - 1 - Math.floor(at / columns), 1, 1);
+    });
+    if (first + frame.cell.length < b.cells.length) return;
+    this.other = b;
+    this.labels = placeLabels(b);
+    this.app.legend(this.app.legendStyles ?? []);
+    this.redraw("tiles", "lines");
+  }
+
+  /** Stripes in the colour of the motion that coexists with that of the cells. */
+  hatching(f, c) {
+    const { other } = this;
+    if (!other || this.late || other.id !== this.app.wire.newest.map) return;
+    const stripes = document.createElement("canvas"), s = stripes.getContext("2d"), [x0, y0] = [f.px(other.eta[0]), f.py(other.rho[1])];
+    const [w, h] = [f.px(other.eta[1]) - x0, f.py(other.rho[0]) - y0];
+    stripes.width = Math.max(1, w); stripes.height = Math.max(1, h);
+    s.imageSmoothingEnabled = false;
+    s.drawImage(other.canvas, 0, 0, w, h);
+    s.globalCompositeOperation = "destination-in";
+    s.lineWidth = 1; s.beginPath();
+    for (let x = -h; x < w; x += STRIPES) { s.moveTo(x, h); s.lineTo(x + h, 0); }
+    s.stroke();
+    c.globalAlpha = 0.55; c.drawImage(stripes, x0, y0, w, h); c.globalAlpha = 1;
+  }
+
   /** A strip of a tile. */
   tile(frame) {
     let tile = this.tiles.find((t) => t.id === frame.id && t.level === frame.level);
@@ -91,7 +134,7 @@ export class MapView {
     this.fade(!tile.complete && this.tiles.some((t) => t.id !== tile.id));
     if (tile.complete) {
       this.tiles = this.tiles.filter((t) => t === tile || (t.id === tile.id && t.level > tile.level));
-      if (tile.level === 1) this.labels = placeLabels(tile);
+      if (tile.level === 1) { this.labels = placeLabels(tile); this.cells128 = tile; }
       if (tile.level >= 1) this.app.legend(commonest(tile));
     }
     if (frame.last) this.finished = frame.id;
@@ -167,6 +210,8 @@ export class MapView {
         c.globalAlpha = this.isOld(t) ? FAINT : 1;
         c.drawImage(t.canvas, x0, y0, x1 - x0, y1 - y0);
       }
+      c.globalAlpha = 1;
+      this.hatching(f, c);
     });
   }
 
@@ -200,6 +245,7 @@ export class MapView {
   }
 
   boundaries(f) {
+    const c = f.context;
     for (const [name, curve] of Object.entries(this.curves)) {
       if (curve.stale) continue;
       const [kind, n] = name.split(":");
@@ -212,6 +258,27 @@ export class MapView {
         f.curve(curve.eta, curve.rho, { ...line, alpha: curve.bare ? 0.45 : 1 });
       }
     }
+    this.names = Object.entries(this.curves).flatMap(([name, curve]) => this.nameOf(f, name, curve));
+    for (const { text, x, y, paint } of this.names) {
+      c.font = `13px ${FONT}`; c.textAlign = "center"; c.textBaseline = "middle";
+      c.lineWidth = 4; c.strokeStyle = colour("paper"); c.strokeText(text, x, y);
+      c.fillStyle = paint; c.fillText(text, x, y);
+    }
+  }
+
+  /** Where a boundary's name stands: in the middle of the longest stretch on which a stable motion ends. */
+  nameOf(f, name, { eta, rho, exists, stale }) {
+    const [kind, n] = name.split(":");
+    if (stale || !exists || !NAMES[kind]) return [];
+    let best = [0, 0];
+    for (let i = 0, from = 0; i <= eta.length; i++) {
+      if (i < eta.length && exists[i] > 0 && f.holds(f.px(eta[i]), f.py(rho[i]))) continue;
+      if (i - from > best[1] - best[0]) best = [from, i];
+      from = i + 1;
+    }
+    const length = f.px(eta[best[1] - 1] ?? 0) - f.px(eta[best[0]]), at = (best[0] + best[1]) >> 1;
+    if (!(length > ROOM_OF_A_NAME)) return [];
+    return [{ text: `${NAMES[kind]}(${n === "1" ? "1" : `1/${n}`})`, x: f.px(eta[at]), y: f.py(rho[at]), paint: colour(KINDS[kind].colour) }];
   }
 
   regionLabels(f, c) {

@@ -150,13 +150,13 @@ export class MotionPanel {
       [this.live ? "now" : "settles on", named(f.motion)],
       ["of all starts", this.shares()],
       ["approach speed", speeds],
-      ["X greatest", number(f.x_max, 6)],
+      ["X greatest, least", `${number(f.x_max, 6)}, ${number(f.x_min, 6)}`],
       ["Lyapunov, per τ", f.lyapunov === null ? "−∞ (a dead zone)" : plusMinus(f.lyapunov, 1.96 * f.lyapunov_error)],
       ["without impacts", `${number(f.impactless.x[0], 5)}, ${number(f.impactless.x[1] * 180 / Math.PI, 4)}° behind`],
       ["start X, X′", `${number(start.x, 5)}, ${number(start.vx, 5)}`],
     ];
     if (f.two_masses && (start.x !== start.y || start.vx !== start.vy)) rows.push(["start Y, Y′", `${number(start.y, 5)}, ${number(start.vy, 5)}`]);
-    rows.push(["phase φ", `${number(phase, 5)} rad`], ["Poincaré at", `${number(s.poincare_phase, 4)} rad`]);
+    rows.push(["phase φ", `${number(turned(phase), 5)} rad`], ["Poincaré at", `${number(turned(s.poincare_phase), 4)} rad`]);
     element("numbers").replaceChildren(...facts(rows));
   }
 }
@@ -172,6 +172,12 @@ function withJumps(c) {
     path.push([c.periods[i], c.x[i], c.vx[i]]);
   }
   return path;
+}
+
+/** A phase in [0, 2π), without the dust of arithmetic. */
+function turned(phase) {
+  const turn = 2 * Math.PI, within = ((phase % turn) + turn) % turn;
+  return Math.min(within, turn - within) < 1e-6 ? 0 : within;
 }
 
 /** Rows of a definition list. */
@@ -207,9 +213,9 @@ export class LinePanel {
   add(frame) {
     if (frame.id !== this.id) this.clear(frame.id);
     this.all = frame.all;
-    const way = this.ways[frame.way] ??= { eta: [], rho: [], x_max: [], lyapunov: [], lyapunov_error: [], impactless: [], phase: [], correlation: [], step: [], speed: [], xSpeed: [] };
+    const way = this.ways[frame.way] ??= { eta: [], rho: [], x_max: [], x_min: [], lyapunov: [], lyapunov_error: [], impactless: [], phase: [], correlation: [], step: [], speed: [], xSpeed: [] };
     const c = frame.column;
-    for (const key of ["eta", "rho", "x_max", "lyapunov", "lyapunov_error", "impactless", "correlation"]) way[key].push(...c[key]);
+    for (const key of ["eta", "rho", "x_max", "x_min", "lyapunov", "lyapunov_error", "impactless", "correlation"]) way[key].push(...c[key]);
     way.phase.push(...c.impactless_phase.map((p) => p * 180 / Math.PI));
     way.step.push(...c.impact_step); way.speed.push(...c.impact_speed); way.xSpeed.push(...c.impact_x_speed);
     this.draw();
@@ -292,14 +298,14 @@ export class LinePanel {
       return f;
     };
     const lists = (k) => ways.map(([, d]) => d[k]);
-    const top = around(lists("x_max"));
+    const top = around([...lists("x_max"), ...lists("x_min")]);
     if (this.app.state.insets?.length) top[1] += (top[1] - top[0]) * INSETS / (1 - INSETS);
-    const greatest = panel("line-x", top, "*X* greatest", (f, d, ink) => {
+    const greatest = panel("line-x", top, "*X* greatest and least", (f, d, ink) => {
       f.curve(d[key], d.impactless, { colour: colour("quiet"), width: 1, dash: [4, 3] });
-      f.dots(d[key], d.x_max, 1.3, ink);
+      f.dots(d[key], d.x_max, 1.3, ink); f.dots(d[key], d.x_min, 0.8, ink);
     });
     this.insets(greatest, key);
-    panel("line-v", around([...lists("speed"), [0]]), "approach speed *X*′₋ + *Y*′₋", (f, d, ink) => f.dots(d.step.map((s) => d[key][s]), d.speed, 1, ink));
+    panel("line-v", around([...lists("speed"), [0]]), `approach speed *X*′₋${this.app.state.single ? "" : " + *Y*′₋"}`, (f, d, ink) => f.dots(d.step.map((s) => d[key][s]), d.speed, 1, ink));
     const name = this.app.state.characteristic ?? "lyapunov", shown = CHARACTERISTICS[name];
     element("characteristic").value = name;
     element("line-l").setAttribute("aria-label", `${shown.text} along the line`);
