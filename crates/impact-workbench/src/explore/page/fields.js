@@ -43,7 +43,10 @@ export function numberField(name, range, get, put) {
   });
   input.addEventListener("keydown", (e) => {
     if (e.key === "Enter") { e.preventDefault(); input.blur(); }
-    if (e.key === "Escape" && input.value !== input.defaultValue) { e.preventDefault(); input.value = input.defaultValue; say(""); }
+    if (e.key !== "Escape") return;
+    // what was typed goes first; of a field beside the map the next one leads back to it
+    if (input.value !== input.defaultValue) { e.preventDefault(); input.value = input.defaultValue; say(""); }
+    else if (!input.closest("dialog")) element("map").focus({ preventScroll: true });
   });
   show();
   return { input, fault, show };
