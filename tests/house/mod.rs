@@ -4,6 +4,7 @@ mod circles;
 mod licences;
 mod links;
 mod sources;
+mod systems;
 
 use std::fs;
 use std::path::PathBuf;
