@@ -1,6 +1,7 @@
 //! The rules of the layout that cargo cannot keep.
 
 mod circles;
+mod dependencies;
 mod licences;
 mod links;
 mod sources;
