@@ -4,7 +4,6 @@
 mod changing_inputs;
 mod disk;
 mod kills;
-#[cfg(unix)]
 mod signals;
 mod threads;
 

@@ -1,4 +1,5 @@
 //! Ctrl-C, and two runs into one folder.
+#![cfg(unix)]
 
 use std::cell::Cell;
 use std::fs;

@@ -96,7 +96,8 @@ fn browser_the_keyboard_alone_reaches_everything() {
     browser.until("[...document.querySelectorAll('nav button, #map, .slider input')].every((e) => seen.has(e))");
     // the last Tab may have ended in a field, in which digits are digits: Esc leads back to the map
     browser.key("Escape", 0);
-    browser.until("document.activeElement.id === 'map' || document.activeElement === document.body");
+    browser
+        .until("document.activeElement.id === 'map' || document.activeElement === document.body");
     for digit in 0..10 {
         browser.key(&digit.to_string(), 0);
     }

@@ -1,9 +1,11 @@
 //! The rules of the layout that cargo cannot keep.
 
 mod circles;
+mod dependencies;
 mod licences;
 mod links;
 mod sources;
+mod systems;
 
 use std::fs;
 use std::path::PathBuf;

@@ -14,6 +14,7 @@ fn root() -> PathBuf {
 }
 
 /// Blocks of a language in a document, without their fences.
+#[cfg(unix)]
 fn blocks<'a>(document: &'a str, language: &str) -> Vec<&'a str> {
     let fence = format!("```{language}\n");
     let after = document.split(fence.as_str()).skip(1);
@@ -21,6 +22,7 @@ fn blocks<'a>(document: &'a str, language: &str) -> Vec<&'a str> {
 }
 
 /// Run a script in a folder with the program on the path; what it printed.
+#[cfg(unix)]
 fn shell(folder: &Path, script: &str) -> String {
     let program = Path::new(env!("CARGO_BIN_EXE_impactid"));
     let here = program.parent().expect("a folder").to_string_lossy();
@@ -38,6 +40,7 @@ fn shell(folder: &Path, script: &str) -> String {
 }
 
 /// A Python that has numpy and polars or pandas: `IMPACTID_PYTHON`, else the usual names.
+#[cfg(unix)]
 fn python() -> Option<String> {
     let named = std::env::var("IMPACTID_PYTHON").ok();
     let usual = ["python3", "python"].map(String::from);
@@ -51,6 +54,7 @@ fn python() -> Option<String> {
     })
 }
 
+#[cfg(unix)]
 #[test]
 fn the_tutorial_runs_as_written_and_its_results_are_read() {
     let tutorial = fs::read_to_string(root().join("docs/tutorial.md")).expect("the tutorial");
@@ -76,6 +80,7 @@ fn the_tutorial_runs_as_written_and_its_results_are_read() {
 }
 
 /// `python/examples/read_results.py` reads all that the run left.
+#[cfg(unix)]
 fn read_with_python(folder: &Path) {
     let Some(python) = python() else {
         println!("skipped: no Python with numpy and polars or pandas (IMPACTID_PYTHON names one)");

@@ -16,6 +16,7 @@ pub mod resolved;
 mod rig;
 mod run_table;
 mod settings;
+pub(crate) mod slashes;
 pub mod sources;
 pub mod template;
 pub mod written;

@@ -1,10 +1,11 @@
 //! The campaign as resolved: SI, every default explicit, paths from the working directory. It is
-//! written to the results as `campaign.resolved.json`.
+//! written to the results as `campaign.resolved.json`, with `/` in paths on every system.
 
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::slashes;
 use super::sources::Sources;
 use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
 use impact_identification::compare::Common;
@@ -34,9 +35,10 @@ pub struct ResolvedCampaign {
     #[serde(default)]
     pub measured: Option<String>,
     /// campaign.toml itself.
+    #[serde(serialize_with = "slashes::serialize")]
     pub file: PathBuf,
     /// The run table, where there is one.
-    #[serde(default)]
+    #[serde(default, serialize_with = "slashes::serialize_option")]
     pub run_table: Option<PathBuf>,
     /// Nominal values of the rig.
     pub rig: NominalValues,
@@ -137,13 +139,13 @@ pub struct Report {
     #[serde(default)]
     pub formats: Vec<Format>,
     /// A typst template instead of the built-in one.
-    #[serde(default)]
+    #[serde(default, serialize_with = "slashes::serialize_option")]
     pub template: Option<PathBuf>,
     /// A table of the report's words in another language.
-    #[serde(default)]
+    #[serde(default, serialize_with = "slashes::serialize_option")]
     pub words: Option<PathBuf>,
     /// An image for the first page.
-    #[serde(default)]
+    #[serde(default, serialize_with = "slashes::serialize_option")]
     pub logo: Option<PathBuf>,
 }
 
@@ -153,6 +155,7 @@ pub struct RecordEntry {
     /// Name, unique in the campaign.
     pub id: String,
     /// The file, absolute or relative to the working directory.
+    #[serde(serialize_with = "slashes::serialize")]
     pub file: PathBuf,
     /// Index of the dataset in the file; `None` if the file could not be opened.
     pub dataset: Option<usize>,

@@ -9,9 +9,10 @@ use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
 use crate::campaign::resolved::ResolvedCampaign;
+use crate::campaign::slashes;
 
 /// SHA-256 of campaign.toml and of every record file, by path (relative to the folder of campaign.toml
-/// if the file is in it). A file that cannot be read has the hash "unreadable".
+/// if the file is in it, with `/` on every system). A file that cannot be read has the hash "unreadable".
 pub fn hashes(campaign: &ResolvedCampaign) -> BTreeMap<String, String> {
     let mut files: BTreeSet<PathBuf> = campaign.records.iter().map(|r| r.file.clone()).collect();
     files.insert(campaign.file.clone());
@@ -28,7 +29,7 @@ pub fn hashes(campaign: &ResolvedCampaign) -> BTreeMap<String, String> {
         .map(|path| {
             let name = path.strip_prefix(campaign.folder()).unwrap_or(path);
             let hash = hash(path).unwrap_or_else(|_| "unreadable".to_owned());
-            (name.to_string_lossy().into_owned(), hash)
+            (slashes::text(name), hash)
         })
         .collect()
 }

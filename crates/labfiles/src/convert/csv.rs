@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
+use crate::convert::file_names;
 use crate::convert::item::{Column, ConvertError, Item, io};
 use crate::csv::TEXTS_KEY;
 use crate::output::{write_folder_whole_or, write_whole_or};
@@ -15,17 +16,13 @@ pub(super) fn write(items: &[Item<'_>], out: &Path) -> Result<(), ConvertError> 
     }
     let target = out.with_extension("");
     let fill = |folder: &Path| {
-        let each = |item| {
-            let name = file_name(item);
+        let names = file_names::of_records(items.iter().map(|item| item.name.as_str()));
+        items.iter().zip(names).try_for_each(|(item, name)| {
+            let name = format!("{name}.csv");
             one(item, &folder.join(&name), &target.join(&name))
-        };
-        items.iter().try_for_each(each)
+        })
     };
     write_folder_whole_or(&target, fill, |source| io(&target)(source).into())
-}
-
-fn file_name(item: &Item<'_>) -> String {
-    format!("{}.csv", item.name.replace('/', "_"))
 }
 
 /// Write a record to a file that has another name in an error.
