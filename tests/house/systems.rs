@@ -80,7 +80,7 @@ fn outer(lines: &[&str], at: usize) -> Option<usize> {
     let own = indent(lines[at]);
     let closes = lines[at].trim_start().starts_with([')', ']', '}']);
     let before = |l: &&str| !l.trim().is_empty() && indent(l) < own + usize::from(closes);
-    lines[..at].iter().rposition(|l| before(&l))
+    lines[..at].iter().rposition(before)
 }
 
 #[test]
