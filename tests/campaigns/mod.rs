@@ -7,6 +7,8 @@ use std::sync::OnceLock;
 
 use serde_json::Value;
 
+/// An array of jobs on a cluster.
+mod cluster;
 /// Mistakes that act on a whole campaign.
 mod mistakes;
 

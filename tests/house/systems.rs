@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::sources::{packages, root, rust_files};
 
 /// What exists on unix or on Linux only.
-const OF_UNIX: [&str; 8] = [
+const OF_UNIX: [&str; 9] = [
     "std::os::unix",
     "std::os::fd",
     "libc::",
@@ -15,6 +15,7 @@ const OF_UNIX: [&str; 8] = [
     "\"/proc/",
     "\"/tmp/",
     "Command::new(\"sh\")",
+    "Command::new(\"bash\")",
 ];
 
 #[test]
