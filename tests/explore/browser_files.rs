@@ -12,6 +12,9 @@ const SAMPLE: &str = concat!(
     "/data-samples/double-oscillator/campaign.toml"
 );
 
+/// The stripes of coexisting motions, which come last, are there.
+const STRIPED: &str = "impactid.map.other?.id === impactid.wire.newest.map";
+
 /// From now on files are kept by the page instead of being saved.
 const KEPT: &str = "(() => { window.kept = new Map(); const made = new Map(); \
      URL.createObjectURL = (blob) => { const url = `blob:kept/${made.size}`; made.set(url, blob); return url; }; \
@@ -39,6 +42,7 @@ fn browser_the_svg_shows_what_is_seen() {
     let explorer = Explorer::start(&[SAMPLE], &std::env::temp_dir());
     let mut browser = Chromium::open(&explorer.url(), SIZE);
     browser.until(QUIET);
+    browser.until(STRIPED);
     browser.evaluate("document.fonts.ready.then(() => true)");
     browser.evaluate(KEPT);
     export(&mut browser, "SVG");
@@ -80,6 +84,7 @@ fn browser_the_png_has_the_keys_and_the_numbers() {
     let explorer = Explorer::theory();
     let mut browser = Chromium::open(&explorer.url(), SIZE);
     browser.until(QUIET);
+    browser.until(STRIPED);
     browser.evaluate("document.fonts.ready.then(() => true)");
     browser.evaluate(KEPT);
     export(&mut browser, "PNG");
