@@ -107,6 +107,13 @@ impl Chromium {
 
     /// Call a method and wait for its result.
     pub(crate) fn call(&mut self, method: &str, parameters: Value) -> Value {
+        let answer = self.answer(method, parameters);
+        assert!(answer.get("error").is_none(), "{method}: {answer}");
+        answer["result"].clone()
+    }
+
+    /// Call a method and wait for its answer, which may be an error.
+    fn answer(&mut self, method: &str, parameters: Value) -> Value {
         let id = self.next;
         self.next += 1;
         let mut message = json!({"id": id, "method": method, "params": parameters});
@@ -122,8 +129,7 @@ impl Chromium {
             };
             let value: Value = serde_json::from_str(text.as_str()).expect("JSON");
             if value["id"] == id {
-                assert!(value.get("error").is_none(), "{method}: {value}");
-                return value["result"].clone();
+                return value;
             }
             self.events.push_back(value);
         }
@@ -131,8 +137,7 @@ impl Chromium {
 
     /// The value of an expression; promises are waited for.
     pub(crate) fn evaluate(&mut self, expression: &str) -> Value {
-        let ask = json!({"expression": expression, "returnByValue": true, "awaitPromise": true});
-        let done = self.call("Runtime.evaluate", ask);
+        let done = self.call("Runtime.evaluate", asked(expression));
         let thrown = done.get("exceptionDetails");
         assert!(
             thrown.is_none(),
@@ -142,10 +147,19 @@ impl Chromium {
         done["result"]["value"].clone()
     }
 
-    /// Wait until an expression is true.
+    /// Wait until an expression is true, also while the page loads again.
     pub(crate) fn until(&mut self, expression: &str) {
         let begin = Instant::now();
-        while self.evaluate(expression) != json!(true) {
+        loop {
+            let answer = self.answer("Runtime.evaluate", asked(expression));
+            let loads = |error: &str| error.contains("navigated") || error.contains("context");
+            let error = answer["error"]["message"].as_str();
+            assert!(error.is_none_or(loads), "{expression}: {answer}");
+            let thrown = answer["result"].get("exceptionDetails");
+            assert!(thrown.is_none(), "{expression}: {thrown:?}");
+            if answer["result"]["result"]["value"] == json!(true) {
+                return;
+            }
             assert!(begin.elapsed() < LONGEST, "not within 90 s: {expression}");
             std::thread::sleep(Duration::from_millis(20));
         }
@@ -217,4 +231,9 @@ impl Drop for Chromium {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+/// What asks for the value of an expression; promises are waited for.
+fn asked(expression: &str) -> Value {
+    json!({"expression": expression, "returnByValue": true, "awaitPromise": true})
 }
