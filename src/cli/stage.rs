@@ -188,8 +188,7 @@ impl Report {
         let (folder, _lock) = folder.take()?;
         let mut campaign = store::read_resolved(&folder)?;
         self.options.apply(&mut campaign.report, verbosity)?;
-        let observed = store::read_without_waveforms(&folder)?;
-        let found = store::read_identified(&folder)?;
+        let (observed, found) = store::read_for_report(&folder)?;
         let command = match store::is_staged(&folder) {
             true => commands(&campaign.file, &folder, &self.options),
             false => command_line(&campaign.file, &folder, &self.options),

@@ -76,11 +76,15 @@ impl Observed {
             });
             return Err(PipelineError::NothingUsable(refused.collect()));
         }
-        let brackets = brackets(&observations);
-        Ok(Self {
+        Ok(Self::bracketed(observations))
+    }
+
+    /// Observations whose drives are scaled, with the brackets in them.
+    pub(super) fn bracketed(observations: Vec<Observation>) -> Self {
+        Self {
+            brackets: brackets(&observations),
             observations,
-            brackets,
-        })
+        }
     }
 }
 

@@ -342,16 +342,25 @@ pub fn write_identified(found: &IdentificationFile, out: &Path) -> Result<(), Pi
     Ok(gzip_json::write(&path, &found.identification.residuals)?)
 }
 
-/// What stage 3 left.
+/// What a report is made of: from what a run kept for it, or from what stages 2 and 3 left.
 ///
 /// # Errors
-/// Where it is missing or unreadable.
-pub fn read_identified(out: &Path) -> Result<IdentificationFile, PipelineError> {
+/// Where something of it is missing or unreadable.
+pub fn read_for_report(out: &Path) -> Result<(Observed, IdentificationFile), PipelineError> {
+    let (observations, residuals) = match kept(out)? {
+        Some((observations, residuals)) => (observations, Some(residuals)),
+        None => (staged_observations(out)?, None),
+    };
     let mut found = read_identification(out)?;
-    if let Some((_, residuals)) = kept(out)? {
-        found.identification.residuals = residuals;
-        return Ok(found);
-    }
+    found.identification.residuals = match residuals {
+        Some(residuals) => residuals,
+        None => staged_residuals(out)?,
+    };
+    Ok((Observed::bracketed(observations), found))
+}
+
+/// The residuals of stage 3.
+fn staged_residuals(out: &Path) -> Result<Vec<MethodResiduals>, PipelineError> {
     let is_missing = |name: &str| !out.join(name).exists();
     if is_missing(RESIDUALS) && !is_missing(OBSERVATIONS) {
         return Err(PipelineError::NoResults {
@@ -361,8 +370,7 @@ pub fn read_identified(out: &Path) -> Result<IdentificationFile, PipelineError> 
         });
     }
     let path = of_stage(out, RESIDUALS, "residuals")?;
-    found.identification.residuals = gzip_json::read(&path).map_err(|e| store_error(&path, e))?;
-    Ok(found)
+    gzip_json::read(&path).map_err(|e| store_error(&path, e))
 }
 
 /// The identification of stage 3 or of a run, without the residuals.
@@ -379,7 +387,7 @@ pub fn read_identification(out: &Path) -> Result<IdentificationFile, PipelineErr
 /// If they are missing or unreadable.
 pub fn read_observed(out: &Path) -> Result<Observed, PipelineError> {
     let path = of_stage(out, WAVEFORMS, "waveforms")?;
-    let mut observed = read_without_waveforms(out)?;
+    let mut observed = Observed::bracketed(staged_observations(out)?);
     let waveforms: Vec<Option<Folded>> =
         gzip_json::read(&path).map_err(|e| store_error(&path, e))?;
     for (observation, folded) in observed.observations.iter_mut().zip(waveforms) {
@@ -389,22 +397,9 @@ pub fn read_observed(out: &Path) -> Result<Observed, PipelineError> {
 }
 
 /// The observations of stage 2 without their waveforms.
-///
-/// # Errors
-/// If they are missing or unreadable.
-pub fn read_without_waveforms(out: &Path) -> Result<Observed, PipelineError> {
-    let observations: Vec<Observation> = match kept(out)? {
-        Some((observations, _)) => observations,
-        None => {
-            let path = of_stage(out, OBSERVATIONS, "observations")?;
-            gzip_json::read(&path).map_err(|e| store_error(&path, e))?
-        }
-    };
-    let brackets = brackets(&observations);
-    Ok(Observed {
-        observations,
-        brackets,
-    })
+fn staged_observations(out: &Path) -> Result<Vec<Observation>, PipelineError> {
+    let path = of_stage(out, OBSERVATIONS, "observations")?;
+    gzip_json::read(&path).map_err(|e| store_error(&path, e))
 }
 
 #[cfg(test)]
@@ -442,14 +437,14 @@ mod tests {
             autocorrelation: vec![1.0],
         }];
         write_identified(&found, out).unwrap();
-        let kept = read_identified(out).unwrap().identification;
-        assert_eq!(kept.residuals, found.identification.residuals);
+        let kept = staged_residuals(out).unwrap();
+        assert_eq!(kept, found.identification.residuals);
         let mut none = Observed {
             observations: Vec::new(),
             brackets: Vec::new(),
         };
         write_observed(&mut none, out).unwrap();
-        let error = read_identified(out).err().unwrap();
+        let error = staged_residuals(out).err().unwrap();
         assert!(error.to_string().contains("after they were identified"));
         assert!(error.remedy().contains("impactid identify"));
     }
