@@ -77,11 +77,7 @@ pub(super) fn line_levels(times: &[f64], states: &[f64]) -> Option<Levels> {
     if !two || states.len() < FEWEST_ROWS {
         return None;
     }
-    let usual = |level: f64| {
-        let lasting = times.windows(2).zip(&states).filter(|(_, s)| **s == level);
-        let lasting: Vec<f64> = lasting.map(|(t, _)| t[1] - t[0]).collect();
-        robust::median(&lasting)
-    };
+    let usual = |level: f64| usually_lasts(&times, &states, level);
     let (high, low) = (first.max(other), first.min(other));
     let closed = match (usual(high)?, usual(low)?) {
         (of_high, of_low) if of_high > LONGER * of_low => low,
@@ -95,23 +91,21 @@ pub(super) fn line_levels(times: &[f64], states: &[f64]) -> Option<Levels> {
     })
 }
 
+/// How long a level usually lasts in a list of changes, s.
+fn usually_lasts(times: &[f64], states: &[f64], level: f64) -> Option<f64> {
+    let at_level = times.windows(2).zip(states).filter(|(_, s)| **s == level);
+    let lasting: Vec<f64> = at_level.map(|(t, _)| t[1] - t[0]).collect();
+    robust::median(&lasting)
+}
+
 /// The contacts of a line whose levels are known.
 pub(super) fn closings(times: &[f64], states: &[f64], levels: Levels) -> Closings {
     let (times, states) = changed(times, states);
-    let closing = |(_, s): &(&f64, &f64)| **s == levels.closed;
-    let lasting = times
-        .windows(2)
-        .zip(&states)
-        .filter(|(_, s)| **s == levels.closed);
-    let lasting: Vec<f64> = lasting.map(|(t, _)| t[1] - t[0]).collect();
+    let closing = times.iter().zip(&states);
+    let closing = closing.filter(|(_, state)| **state == levels.closed);
     Closings {
-        times_s: times
-            .iter()
-            .zip(&states)
-            .filter(closing)
-            .map(|(t, _)| *t)
-            .collect(),
-        closed_s: robust::median(&lasting).unwrap_or(0.0),
+        times_s: closing.map(|(t, _)| *t).collect(),
+        closed_s: usually_lasts(&times, &states, levels.closed).unwrap_or(0.0),
     }
 }
 
@@ -173,7 +167,7 @@ pub fn candidates(dataset: &DatasetInfo, times: usize) -> impl Iterator<Item = u
     let samples = dataset.channels.get(times).map_or(0, |c| c.samples);
     let others = dataset.channels.iter().enumerate();
     let others = others.filter(move |(i, c)| *i != times && c.samples == samples);
-    others.map(|(i, _)| i).collect::<Vec<_>>().into_iter()
+    others.map(|(i, _)| i)
 }
 
 #[cfg(test)]
@@ -210,6 +204,7 @@ mod tests {
         );
         assert_eq!(levels(&times, &[0.0, 1.0, 2.0, 0.0, 1.0, 0.0, 1.0]), None);
     }
+
     /// Times of `count` bounces, each flight `r` times the one before.
     fn bounces(first_s: f64, r: f64, count: i32) -> Vec<f64> {
         let flights = (0..count - 1).scan(first_s, |at, k| {

@@ -39,23 +39,22 @@ pub(super) fn settle(record: &mut Record, content: ContactContent, closed_s: f64
     let Some(channel) = record.channels.iter_mut().find(|c| c.role == Role::Contact) else {
         return;
     };
-    let found = match content {
+    let printed = || printed_step_s(&channel.values);
+    let (found, step_s) = match content {
         ContactContent::Signal => return,
-        ContactContent::Times => times(&channel.values).map_err(|row| not_rising(channel, row)),
-        ContactContent::Intervals => Ok(added_up(&channel.values)),
+        ContactContent::Times => (
+            times(&channel.values)
+                .map_err(|row| not_rising(channel, row))
+                .and_then(|times| impacts(times, channel)),
+            printed(),
+        ),
+        ContactContent::Intervals => (impacts(added_up(&channel.values), channel), printed()),
         ContactContent::Sound => {
             let found = onsets::find(&channel.values, rate_hz);
-            Ok(found.iter().map(|i| i / rate_hz).collect())
+            let times = found.iter().map(|i| i / rate_hz).collect();
+            (Ok((times, 0.0, None)), rate_hz.recip())
         }
     };
-    let step_s = match content {
-        ContactContent::Sound => rate_hz.recip(),
-        _ => printed_step_s(&channel.values),
-    };
-    let found = found.and_then(|times| match content {
-        ContactContent::Sound => Ok((times, 0.0, None)),
-        _ => impacts(times, channel),
-    });
     let (times_s, lasting_s, note) = match found {
         Ok((times, ..)) if times.len() < FEWEST => {
             let flag = too_few(channel, times.len(), content);
