@@ -5,9 +5,22 @@ const element = (id) => document.getElementById(id);
 /** Cell of a start that is beyond the contact. */
 const BEYOND = 0xffff;
 
+/** A panel whose pictures are painted once a frame, however often they are asked for. */
+class Panel {
+  draw() {
+    if (this.pending) return;
+    this.pending = true;
+    requestAnimationFrame(() => {
+      this.pending = false;
+      this.paint();
+    });
+  }
+}
+
 /** The motion at the cursor: series, phase portrait, Poincaré map, autocorrelation, numbers. */
-export class MotionPanel {
+export class MotionPanel extends Panel {
   constructor(app) {
+    super();
     this.app = app;
     this.frame = null;
     this.hover = null; // where the pointer is over the series, px
@@ -62,15 +75,6 @@ export class MotionPanel {
     for (const key of ["px", "pv", "pt"]) old[key].splice(0, Math.max(0, old[key].length - 500));
     this.live = old;
     this.draw();
-  }
-
-  draw() {
-    if (this.pending) return;
-    this.pending = true;
-    requestAnimationFrame(() => {
-      this.pending = false;
-      this.paint();
-    });
   }
 
   paint() {
@@ -200,8 +204,9 @@ export const CHARACTERISTICS = {
 const INSETS = 0.42;
 
 /** Characteristics along a line, up and down, as they arrive. */
-export class LinePanel {
+export class LinePanel extends Panel {
   constructor(app) {
+    super();
     this.app = app;
     this.trajectories = new Map(); // of insets, by machine and cursor
     this.clear(0);
@@ -265,15 +270,6 @@ export class LinePanel {
       small.clip(() => small.curve(xs, vs, { colour: colour("blue"), width: 1 }));
       c.font = `12px ${FONT}`; c.textAlign = "center"; c.textBaseline = "top"; c.fillStyle = markColour(t.motion);
       c.fillText(named(t.motion), left + width / 2, top + 1);
-    });
-  }
-
-  draw() {
-    if (this.pending) return;
-    this.pending = true;
-    requestAnimationFrame(() => {
-      this.pending = false;
-      this.paint();
     });
   }
 
