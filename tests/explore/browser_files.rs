@@ -2,15 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::chromium::Chromium;
-use super::server::{Explorer, QUIET};
-
-const SIZE: (u32, u32) = (1280, 800);
-
-const SAMPLE: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/data-samples/double-oscillator/campaign.toml"
-);
+use super::chromium::{Chromium, SIZE};
+use super::server::{Explorer, QUIET, SAMPLE};
 
 /// The stripes of coexisting motions, which come last, are there.
 const STRIPED: &str = "impactid.map.other?.id === impactid.wire.newest.map";

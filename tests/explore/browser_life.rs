@@ -2,10 +2,8 @@
 
 use serde_json::json;
 
-use super::chromium::Chromium;
+use super::chromium::{Chromium, SIZE};
 use super::server::{Explorer, QUIET};
-
-const SIZE: (u32, u32) = (1280, 800);
 
 /// Another explorer on a port that one before had.
 fn again(port: u16) -> Explorer {

@@ -2,15 +2,8 @@
 
 use serde_json::json;
 
-use super::chromium::Chromium;
-use super::server::{Explorer, QUIET};
-
-const SIZE: (u32, u32) = (1280, 800);
-
-const SAMPLE: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/data-samples/double-oscillator/campaign.toml"
-);
+use super::chromium::{Chromium, SIZE};
+use super::server::{Explorer, QUIET, SAMPLE};
 
 #[test]
 #[ignore = "needs chromium"]

@@ -1,9 +1,7 @@
 //! The map in a browser, pixel by pixel.
 
-use super::chromium::Chromium;
+use super::chromium::{Chromium, SIZE};
 use super::server::{Explorer, QUIET, STUDIES};
-
-const SIZE: (u32, u32) = (1280, 800);
 
 /// From now on the page notes which label was sent for which cell of which tile.
 const NOTED: &str = "(() => { window.sent = new Map(); const of = impactid.map.tile.bind(impactid.map); \

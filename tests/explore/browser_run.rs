@@ -4,10 +4,8 @@ use std::time::Duration;
 
 use serde_json::json;
 
-use super::chromium::Chromium;
+use super::chromium::{Chromium, SIZE};
 use super::server::{Explorer, QUIET};
-
-const SIZE: (u32, u32) = (1280, 800);
 
 #[test]
 #[ignore = "needs chromium"]

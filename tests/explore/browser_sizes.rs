@@ -3,12 +3,7 @@
 use serde_json::{Value, json};
 
 use super::chromium::Chromium;
-use super::server::{Explorer, QUIET};
-
-const SAMPLE: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/data-samples/double-oscillator/campaign.toml"
-);
+use super::server::{Explorer, QUIET, SAMPLE};
 
 /// Phone, 200 % of 1280 × 800, and screens.
 const SIZES: [(u32, u32); 5] = [

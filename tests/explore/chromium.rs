@@ -11,6 +11,9 @@ use serde_json::{Value, json};
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
 
+/// The window of most tests, CSS px.
+pub(crate) const SIZE: (u32, u32) = (1280, 800);
+
 /// Longest wait for anything in the browser.
 const LONGEST: Duration = Duration::from_secs(90);
 

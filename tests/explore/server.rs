@@ -15,6 +15,12 @@ use tungstenite::{Message, WebSocket};
 pub(crate) const QUIET: &str = "Object.values(impactid.wire.busy).every((b) => !b) \
      && impactid.map.finished === impactid.wire.newest.map";
 
+/// The campaign that comes with the program.
+pub(crate) const SAMPLE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/data-samples/double-oscillator/campaign.toml"
+);
+
 /// The studies that come with the program.
 pub(crate) const STUDIES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data-samples/studies");
 

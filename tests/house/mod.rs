@@ -29,7 +29,7 @@ const MODULES: [(&str, &[&str]); 5] = [
     ),
 ];
 
-/// The package whose own crates a package may use are those before it.
+/// The packages in order: a package uses only those before it.
 const PACKAGES: [&str; 9] = [
     "labfiles",
     "impact-oscillator",
