@@ -59,6 +59,7 @@ TestOfNoChange => "All {count} differences together: F = {statistic}, p {p}.", "
 Trend => "Estimates of the campaigns", "Schätzwerte der Messreihen";
 // Uncertainty
 ContactReach => "contact reach", "Kontaktweg";
+RestitutionSpeed => "R over the speed", "R über der Geschwindigkeit";
 ContactSpeed => "contact's length over the speed", "Kontaktdauer über der Geschwindigkeit";
 BeyondTheModel => "Beyond the model the rig has, and the intervals allow for: {effects}. The section on the uncertainty states the size of each, and the remedy.", "Über das Modell hinaus hat die Maschine, und die Intervalle berücksichtigen es: {effects}. Der Abschnitt zur Unsicherheit nennt die Größe jedes Effekts und die Abhilfe.";
 UncertaintyBudget => "Uncertainty budget: standard uncertainty of each source and what it contributes to that of the joint estimate, in units of 0.0001 (of $R$ absolute, of the others relative). Type A: by statistics; B: by other means.", "Unsicherheitsbudget: Standardunsicherheit jeder Quelle und ihr Beitrag zu der des gemeinsamen Schätzwerts, in Einheiten von 0,0001 (bei $R$ absolut, sonst relativ). Typ A: statistisch; B: auf andere Weise.";

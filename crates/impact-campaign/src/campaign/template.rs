@@ -347,7 +347,7 @@ clock_uncertainty = \"50 ppm\"     # of the clock of the sampler, in f0
 clearance_uncertainty = \"10 um\"  # of each stated clearance, and of the zero that all share
 # mass_x = \"1.50 kg\"             # both masses, if weighed, with mass_uncertainty = \"0.5 %\"
 # effects = [\"harmonics\", \"force_frequency\", \"hardening\", \"friction\", \"drift\", \"contact_duration\",
-#            \"drag\", \"spring_asymmetry\", \"hysteretic_damping\", \"pickup\"]
+#            \"restitution_speed\", \"drag\", \"spring_asymmetry\", \"hysteretic_damping\", \"pickup\"]
 #                                # what springs, drive and contact may add to the model; all by default
 # name = \"rig 1\"                 # which rig it is, where campaigns are compared (impactid compare)
 # shared = [\"clearances\"]        # errors that stay the same in all campaigns on it

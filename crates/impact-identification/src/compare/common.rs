@@ -74,6 +74,7 @@ impl Common {
                 | EffectKind::Friction
                 | EffectKind::Pickup
                 | EffectKind::Drift
+                | EffectKind::RestitutionSpeed
                 | EffectKind::ContactDuration => None,
             },
             Coordinate::Restitution

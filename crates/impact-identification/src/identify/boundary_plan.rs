@@ -187,6 +187,7 @@ mod tests {
             restitution: (0.8, 0.01),
             interval95: [0.78, 0.82],
             early: None,
+            evidence: 0.0,
         };
         let finer = divided(&block, &found, p, 8);
         let [narrow, kept] = &finer.brackets[..] else {

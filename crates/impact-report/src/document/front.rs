@@ -121,6 +121,7 @@ fn phrase(kind: EffectKind) -> Phrase {
         EffectKind::Friction => Phrase::DryFriction,
         EffectKind::Drift => Phrase::DriftOverTheCampaign,
         EffectKind::ContactDuration => Phrase::ContactsOfFiniteDuration,
+        EffectKind::RestitutionSpeed => Phrase::RestitutionSpeed,
         EffectKind::Drag => Phrase::DragOfTheAir,
         EffectKind::SpringAsymmetry => Phrase::SpringsStifferToOneSide,
         EffectKind::HystereticDamping => Phrase::HystereticDampingOfTheSprings,

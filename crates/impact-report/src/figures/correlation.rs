@@ -230,6 +230,7 @@ fn effect_phrase(effect: Effect) -> Phrase {
         Effect::ContactLaw => Phrase::ContactLaw,
         Effect::ContactReach => Phrase::ContactReach,
         Effect::ContactSpeed => Phrase::ContactSpeed,
+        Effect::RestitutionSpeed => Phrase::RestitutionSpeed,
         Effect::Drag => Phrase::Drag,
         Effect::SpringAsymmetry => Phrase::SpringAsymmetry,
         Effect::HystereticDamping => Phrase::HystereticDamping,

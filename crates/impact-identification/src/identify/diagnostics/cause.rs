@@ -214,6 +214,23 @@ mod tests {
     }
 
     #[test]
+    fn records_that_have_not_settled_leave_what_follows_each_impact() {
+        let at = |value: f64, error: f64| Some(estimate(Coordinate::Damping, value.ln(), error));
+        let mut joint = MethodResult::default();
+        joint.parameters.damping_ratio = at(0.055, 2e-3);
+        let mut methods = methods();
+        let replaced = Cause::Unsettled.withdraw(&mut joint.clone(), &methods);
+        assert_eq!(replaced, []);
+        let mut flights = MethodResult::default();
+        flights.parameters.damping_ratio = at(0.05, 1e-2);
+        methods.insert(Method::Flights, flights);
+        let replaced = Cause::Unsettled.withdraw(&mut joint, &methods);
+        assert_eq!(replaced, [Coordinate::Damping]);
+        let beta = joint.parameters.damping_ratio.expect("β");
+        assert!((beta.value.expect("a value") - 0.05).abs() < 1e-12);
+    }
+
+    #[test]
     fn what_the_fit_carries_explains_nothing() {
         let gap = Finding::WrongClearance {
             stated_m: 1e-3,

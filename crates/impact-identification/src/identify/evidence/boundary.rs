@@ -251,6 +251,8 @@ impl Block for BoundaryBlock {
             | Coordinate::DampingAsymmetry
             | Coordinate::MassAsymmetry
             | Coordinate::ScrewZero => true,
+            // R that a boundary is met with counts as that at the typical speed
+            Coordinate::Effect(Effect::RestitutionSpeed) => false,
             Coordinate::Effect(effect) => !effect.is_perturbation(),
             other => Coordinate::PHYSICAL.contains(&other),
         }

@@ -2,6 +2,7 @@
 
 use crate::identify::evidence::pickup::Pickups;
 use crate::identify::parameters::effect::Effect;
+use crate::identify::parameters::own::log_speed;
 use crate::identify::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
 use crate::identify::solver::Block;
 use impact_records::event::{CornerShift, Impact, Lag, RigKind, extrapolation_error};
@@ -145,6 +146,8 @@ pub struct ImpactBlock {
     pub pairs: Vec<SpeedPair>,
     /// Relative error of each ratio beside the noise: what the extrapolation leaves open.
     pub relative_error: f64,
+    /// The median approach speed, m/s, at which R is the campaign's; 0 without impacts.
+    pub typical_approach_m_s: f64,
     /// On which corners the speeds depend, by their index.
     corners: [bool; CHANNELS],
     /// Whether the impacts are between free flights, of records without a drive.
@@ -259,7 +262,9 @@ impl ImpactBlock {
     /// Of given pairs.
     pub fn of_pairs(pairs: Vec<SpeedPair>, relative_error: f64) -> Self {
         let corners = corners_in(pairs.iter().flat_map(|p| &p.corner_shifts));
+        let speeds: Vec<f64> = pairs.iter().map(|p| p.before_m_s).collect();
         Self {
+            typical_approach_m_s: impact_records::signal::robust::median(&speeds).unwrap_or(0.0),
             pairs,
             relative_error,
             corners,
@@ -348,6 +353,13 @@ impl ImpactBlock {
             .hypot(self.relative_error * pair.before_m_s)
     }
 
+    /// The true approach speed by both speeds (`contact_law`), times its logarithm over the typical one, m/s.
+    fn speed_log(&self, pair: &SpeedPair, restitution: f64) -> f64 {
+        let deviation = pair.after_m_s - restitution * pair.before_m_s;
+        let speed = pair.before_m_s + self.shared(pair, restitution) * deviation;
+        speed * log_speed(speed, self.typical_approach_m_s)
+    }
+
     /// Mean error of the speed before per error of after − R·before, with the sign of −1: half the slope
     /// of the variance of that over R, over the variance.
     pub fn shared(&self, pair: &SpeedPair, restitution: f64) -> f64 {
@@ -377,7 +389,10 @@ impl Block for ImpactBlock {
         let r = parameters.restitution;
         let shift = pair.shift(parameters);
         let (before, after) = (pair.before_m_s + shift, pair.after_m_s - shift);
-        Some(vec![(after - r * before) / self.error(pair, r)])
+        let over_speed = parameters.effect(Effect::RestitutionSpeed) * self.speed_log(pair, r);
+        Some(vec![
+            (after - r * before - over_speed) / self.error(pair, r),
+        ])
     }
 
     fn slopes(
@@ -400,6 +415,7 @@ impl Block for ImpactBlock {
                 let own = shifts.filter(|s| gain_index(s.role) == Some(*index));
                 -(1.0 + r) * own.map(|s| s.speed_m_s).sum::<f64>() / error
             }
+            Coordinate::Effect(Effect::RestitutionSpeed) => -self.speed_log(pair, r) / error,
             Coordinate::Effect(effect) => {
                 let place = PICKUPS.iter().position(|p| p == effect);
                 (1.0 + r) * place.map_or(0.0, |i| pair.picked_up_m_s[i]) / error
@@ -413,6 +429,7 @@ impl Block for ImpactBlock {
     fn touches(&self, coordinate: Coordinate) -> bool {
         match coordinate {
             Coordinate::Corner(index) => self.has_corner(index),
+            Coordinate::Effect(Effect::RestitutionSpeed) => !self.free,
             Coordinate::Effect(effect) => self.picks_up(effect),
             _ => coordinate == Coordinate::Restitution,
         }
@@ -455,7 +472,10 @@ mod tests {
         let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
         parameters.corners = [1.1, 0.9, 1.0, 1.0, 1.0, 1.0];
         let parameters = parameters.with(Coordinate::Effect(Effect::PickupX), 2e-3);
+        let mut block = block;
+        block.typical_approach_m_s = 0.3;
         let coordinates = [
+            Coordinate::Effect(Effect::RestitutionSpeed),
             Coordinate::Restitution,
             Coordinate::Corner(0),
             Coordinate::Corner(1),
@@ -470,6 +490,33 @@ mod tests {
                 apart.abs() < 1e-7 * exact[0].abs(),
                 "{coordinate:?}: {apart}"
             );
+        }
+    }
+
+    #[test]
+    fn valid_impacts_whose_r_follows_the_speed_fit_with_its_slope() {
+        // R = 0.8 − 0.02 ln v/v₀: to second order of the slope the residuals vanish
+        let pair = |v: f64| SpeedPair {
+            observation: 0,
+            time_s: 0.1,
+            before_m_s: v,
+            after_m_s: (0.8 - 0.02 * (v / 0.4).ln()) * v,
+            error_m_s: 1e-3,
+            by_time_m_s: [0.0; 2],
+            corner_shifts: [None, None],
+            lags: [None, None],
+            picked_up_m_s: [0.0; 2],
+            sample_place: None,
+            in_record: 1.0,
+        };
+        let block = ImpactBlock::of_pairs([0.2, 0.4, 0.7].map(pair).into(), 0.0);
+        assert!((block.typical_approach_m_s - 0.4).abs() < 1e-12);
+        let constant = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
+        let slope = constant.with(Coordinate::Effect(Effect::RestitutionSpeed), -0.02);
+        for (item, v) in [0.2, 0.4, 0.7].into_iter().enumerate() {
+            let off = |p: &Parameters| block.residuals(item, p).expect("a residual")[0];
+            let unexplained = off(&constant).abs();
+            assert!(off(&slope).abs() < 0.02 * unexplained + 1e-9, "{v}: {unexplained}");
         }
     }
 

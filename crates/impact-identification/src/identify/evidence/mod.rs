@@ -301,7 +301,9 @@ impl Blocks {
         }
         let records = self.trajectory.records.iter();
         let speeds: Vec<f64> = records.map(|r| r.closing_speed_m_s).collect();
-        let typical_m_s = robust::median(&speeds).unwrap_or(0.0);
+        let by_impacts = Some(self.impact.typical_approach_m_s).filter(|v| *v > 0.0);
+        let typical_m_s = by_impacts.or_else(|| robust::median(&speeds));
+        let typical_m_s = typical_m_s.unwrap_or(0.0);
         for record in &mut self.trajectory.records {
             record.typical_approach_m_s = typical_m_s;
             record.place = places[record.observation];

@@ -604,6 +604,7 @@ pub(super) mod tests {
         effects[Effect::ContactLaw.place()] = 0.1;
         effects[Effect::ContactReach.place()] = 0.05;
         effects[Effect::ContactSpeed.place()] = 0.1;
+        effects[Effect::RestitutionSpeed.place()] = -0.02;
         effects[Effect::HystereticDamping.place()] = 0.1;
         effects[Effect::ClearanceDrift.place()] = 0.02;
         Parameters {

@@ -683,7 +683,10 @@ impl Block for ResonanceBlock {
             }
             Coordinate::Effect(effect) => !matches!(
                 effect.kind(),
-                EffectKind::Harmonics | EffectKind::ContactDuration | EffectKind::SpringAsymmetry
+                EffectKind::Harmonics
+                    | EffectKind::ContactDuration
+                    | EffectKind::RestitutionSpeed
+                    | EffectKind::SpringAsymmetry
             ),
             _ => true,
         }

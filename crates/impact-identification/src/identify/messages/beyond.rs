@@ -117,6 +117,16 @@ pub(super) fn beyond(effect: Effect, rises: bool) -> [&'static str; 2] {
              round bumpers do",
             "Kontakte werden mit der Geschwindigkeit kürzer, mit einem Exponenten von {strength} ± {error} %, wie \
              die runder Puffer";
+        (Effect::RestitutionSpeed, true) =>
+            "R rises by {strength} ± {error} % for each factor 2.7 of the approach speed; it is stated at the median \
+             speed of the impacts",
+            "R steigt um {strength} ± {error} % je Faktor 2,7 der Auftreffgeschwindigkeit; angegeben ist es beim Median \
+             der Geschwindigkeiten der Stöße";
+        (Effect::RestitutionSpeed, false) =>
+            "R falls by {strength} ± {error} % for each factor 2.7 of the approach speed; it is stated at the median \
+             speed of the impacts",
+            "R sinkt um {strength} ± {error} % je Faktor 2,7 der Auftreffgeschwindigkeit; angegeben ist es beim Median \
+             der Geschwindigkeiten der Stöße";
         (Effect::ContactDuration, _) =>
             "a contact acts like one of {strength} ± {error} ms: use harder bumpers",
             "ein Kontakt wirkt wie einer von {strength} ± {error} ms: härtere Puffer verwenden";

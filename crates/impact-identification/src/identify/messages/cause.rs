@@ -11,7 +11,7 @@ pub enum Cause {
     Change,
     /// The contact has no single coefficient of restitution.
     Contact,
-    /// Most records begin before their motions have settled.
+    /// Many records begin before their motions have settled, which takes them for steady ones.
     Unsettled,
     /// A stated number is wrong, and the fit carries its error.
     Statement,
@@ -32,7 +32,12 @@ impl Cause {
         match self {
             Self::Channel | Self::Change => true,
             Self::Contact => !matches!(method, Method::Resonance | Method::FreeDecay),
-            Self::Unsettled | Self::Statement | Self::Effect | Self::Symptom => false,
+            // the others follow a motion from impact to impact, or from turn to turn, whether it has settled or not
+            Self::Unsettled => matches!(
+                method,
+                Method::Resonance | Method::Trajectories | Method::Boundaries
+            ),
+            Self::Statement | Self::Effect | Self::Symptom => false,
         }
     }
 }

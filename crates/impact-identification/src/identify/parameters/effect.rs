@@ -65,6 +65,8 @@ pub enum Effect {
     /// How a contact's length falls with the approach speed: the exponent, 0 of a linear spring, 1/5 of round bodies
     /// (Hertz), over the campaign's typical speed
     ContactSpeed,
+    /// Change of R per factor e of the approach speed, about the campaign's typical speed
+    RestitutionSpeed,
     /// Drag that grows with the square of the velocity, relative to F0 at the velocity 2πf0 times the
     /// greatest displacement measured
     Drag,
@@ -113,6 +115,8 @@ pub enum EffectKind {
     Drift,
     /// Contacts of finite duration
     ContactDuration,
+    /// R over the approach speed
+    RestitutionSpeed,
     /// Drag of the air
     Drag,
     /// Springs that are stiffer to one side
@@ -164,6 +168,7 @@ impl Effect {
             Self::ContactLaw => (EffectKind::ContactDuration, 0.45, false),
             Self::ContactReach => (EffectKind::ContactDuration, 0.3, false),
             Self::ContactSpeed => (EffectKind::ContactDuration, 0.2, false),
+            Self::RestitutionSpeed => (EffectKind::RestitutionSpeed, 2e-2, false),
             Self::Drag => (EffectKind::Drag, 1e-2, true),
             Self::SpringAsymmetry => (EffectKind::SpringAsymmetry, 5e-3, true),
             Self::HystereticDamping => (EffectKind::HystereticDamping, 0.1, false),

@@ -26,6 +26,21 @@ pub struct Circumstances {
     pub masses: f64,
 }
 
+impl Circumstances {
+    /// Logarithm of the approach speed over the campaign's typical one; 0 where either is not known.
+    fn log_speed(&self) -> f64 {
+        log_speed(self.approach_m_s, self.typical_approach_m_s)
+    }
+}
+
+/// Logarithm of an approach speed over the typical one; 0 where either is not positive.
+pub fn log_speed(approach_m_s: f64, typical_m_s: f64) -> f64 {
+    match approach_m_s > 0.0 && typical_m_s > 0.0 {
+        true => (approach_m_s / typical_m_s).ln(),
+        false => 0.0,
+    }
+}
+
 /// Derivative of a record's own parameters over one coordinate of the fit: of R, ln f0, ln β,
 /// ln `x_st`, and of the clearance in m.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -82,7 +97,7 @@ impl Parameters {
     }
 
     /// The parameters that a record has of its own, and its clearance, m: where drift, the force
-    /// against frequency, errors of the clearances and the length of contacts have been applied.
+    /// against frequency, R over the speed, errors of the clearances and the length of contacts have been applied.
     ///
     /// A contact that lasts a time acts outside of it like an impact where both flights meet.
     pub fn own(&self, at: &Circumstances) -> (Self, f64) {
@@ -96,7 +111,8 @@ impl Parameters {
         let [press_law, drag_law] = self.contact_law();
         let beyond = press_law * contact.press * at.press_per_s
             + drag_law * contact.drag * self.decay_per_s();
-        let restitution = self.restitution + contact_s * beyond;
+        let over_speed = self.effect(Effect::RestitutionSpeed) * at.log_speed();
+        let restitution = self.restitution + over_speed + contact_s * beyond;
         let own = Self {
             restitution: restitution.clamp(0.0, 1.0),
             natural_frequency_hz: self.natural_frequency_hz
@@ -187,6 +203,7 @@ impl Parameters {
                 Effect::ClearanceDrift => clearance(self.static_deflection_m * at.place),
                 Effect::ContactDuration => length(1e-3 * slower),
                 Effect::ContactSpeed => length(duration_s * slower_slope),
+                Effect::RestitutionSpeed => only(0, at.log_speed()),
                 Effect::ContactLaw => only(
                     0,
                     contact_s
@@ -219,10 +236,7 @@ impl Parameters {
 
     /// Length of a contact over that at the typical speed, v over it to the power −κ, and the slope over κ.
     fn contact_speed(&self, at: &Circumstances) -> [f64; 2] {
-        if !(at.approach_m_s > 0.0 && at.typical_approach_m_s > 0.0) {
-            return [1.0, 0.0];
-        }
-        let log = (at.approach_m_s / at.typical_approach_m_s).ln();
+        let log = at.log_speed();
         let slower = (-self.effect(Effect::ContactSpeed) * log).exp();
         [slower, -log * slower]
     }

@@ -7,6 +7,10 @@
 //! force against frequency, drift, errors of clearances), and expectation propagation (`propagation`) gives the
 //! probability that every jump falls into its bracket, with the scales of early jumps summed out.
 //!
+//! Early jumps and the length of contacts act to one side: both take the ends of motions down, and R that explains
+//! them up. A rig may have neither, and a few brackets do not show which. The 95 % interval therefore reaches to that
+//! of a rig whose jumps come at their boundaries and whose contacts have no length, unless the brackets refute it.
+//!
 //! Jumps that are all early by much the same look like jumps at the boundaries of a lower R: brackets
 //! alone cannot tell the two apart. Where the waveforms determine an R that the brackets miss, and that
 //! early jumps explain, the brackets therefore say from one side only where the boundaries lie.
@@ -33,9 +37,24 @@ pub struct Posterior {
     /// Mean distance of the ends of z = 1 from s2, relative to its frequency, where the waveforms show that
     /// they are early.
     pub early: Option<f64>,
+    /// Logarithm of the mean likelihood over R from 0 to 1.
+    pub evidence: f64,
 }
 
 impl Posterior {
+    /// With an interval that reaches to that of another posterior, and a normal distribution as wide.
+    fn reaching(mut self, other: &Self) -> Self {
+        let [low, high] = self.interval95;
+        self.interval95 = [
+            low.min(other.interval95[0]),
+            high.max(other.interval95[1]),
+        ];
+        let ((a, sa), (b, sb)) = (self.restitution, other.restitution);
+        let spread = 0.5 * (sa * sa + sb * sb) + 0.25 * (a - b).powi(2);
+        self.restitution = (0.5 * (a + b), spread.sqrt());
+        self
+    }
+
     /// The normal distribution of R that stands for the brackets in a joint fit.
     pub fn as_prior(&self) -> Prior {
         let (centre, deviation) = self.restitution;
@@ -47,6 +66,43 @@ impl Posterior {
 const EARLY_SCALES: [f64; 8] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2];
 /// A scale so long that no distance of an early jump is more likely than another.
 const ANY_DISTANCE: [f64; 1] = [1.0];
+
+/// Scales of early jumps that are summed over: those of ends of motions, and those of grazing, before which a
+/// disturbance may lead to the motion that exists beside z = 0.
+#[derive(Debug, Clone, Copy)]
+struct Scales<'a> {
+    ends: &'a [f64],
+    grazing: &'a [f64],
+}
+
+impl Scales<'_> {
+    /// The same of all boundaries.
+    fn alike(scales: &[f64]) -> Scales<'_> {
+        Scales {
+            ends: scales,
+            grazing: scales,
+        }
+    }
+
+    fn of(&self, bracket: &Bracket) -> &[f64] {
+        match bracket.kind {
+            BoundaryKind::Grazing => self.grazing,
+            _ => self.ends,
+        }
+    }
+
+    /// The middle ones alone.
+    fn middle(&self) -> Self {
+        let middle = |scales: &[f64]| scales.len() / 2;
+        let (ends, grazing) = (middle(self.ends), middle(self.grazing));
+        Self {
+            ends: &self.ends[ends..=ends],
+            grazing: &self.grazing[grazing..=grazing],
+        }
+    }
+}
+/// Ratio of their likelihoods at which brackets refute a rig without early jumps and lasting contacts.
+const REFUTED: f64 = 0.05;
 /// Deviations by which brackets miss the waveforms' R before their jumps count as early.
 const MISSED: f64 = 3.0;
 /// Points of the final grid of R.
@@ -64,7 +120,16 @@ pub fn of_brackets(
     if !block.determines_restitution() {
         return None;
     }
-    let found = over_grid(block, surroundings, &EARLY_SCALES);
+    let all = Scales::alike(&EARLY_SCALES);
+    let at_their_ends = Scales {
+        ends: &EARLY_SCALES[..1],
+        ..all
+    };
+    let mut found = over_grid(block, surroundings, all);
+    let plain = over_grid(block, &surroundings.of_instants(), at_their_ends);
+    if plain.evidence > found.evidence + REFUTED.ln() {
+        found = found.reaching(&plain);
+    }
     let (mean, deviation) = found.restitution;
     let missed = waveforms.filter(|p| (p.restitution - mean).abs() > MISSED * deviation);
     let early = missed.and_then(|p| early_jumps(block, surroundings, p));
@@ -78,7 +143,7 @@ fn early_jumps(
     surroundings: &Surroundings,
     waveforms: &Parameters,
 ) -> Option<Posterior> {
-    let found = over_grid(block, surroundings, &ANY_DISTANCE);
+    let found = over_grid(block, surroundings, Scales::alike(&ANY_DISTANCE));
     let [low, high] = found.interval95;
     let early = mean_distance(block, waveforms);
     (low..=high)
@@ -87,11 +152,10 @@ fn early_jumps(
 }
 
 /// Posterior with jumps of these scales.
-fn over_grid(block: &BoundaryBlock, surroundings: &Surroundings, scales: &[f64]) -> Posterior {
+fn over_grid(block: &BoundaryBlock, surroundings: &Surroundings, scales: Scales<'_>) -> Posterior {
     let at = |r: f64| likelihood(block, surroundings, (r, scales));
     // The middle scale alone tells where R may be.
-    let middle = &scales[scales.len() / 2..][..1];
-    let (low, high) = support(&|r| likelihood(block, surroundings, (r, middle)));
+    let (low, high) = support(&|r| likelihood(block, surroundings, (r, scales.middle())));
     let grid: Vec<f64> = (0..FINE)
         .map(|i| low + (high - low) * i as f64 / (FINE - 1) as f64)
         .collect();
@@ -110,6 +174,7 @@ fn summed(grid: &[f64], logs: &[f64]) -> Posterior {
         restitution: (mean, spread.hypot(step / 12f64.sqrt())),
         interval95: [0.025, 0.975].map(|share| quantile(grid, &weights, share)),
         early: None,
+        evidence: most + (weights.iter().sum::<f64>() * step).ln(),
     }
 }
 
@@ -172,11 +237,12 @@ struct Held<'a> {
 fn likelihood(
     block: &BoundaryBlock,
     surroundings: &Surroundings,
-    (restitution, scales): (f64, &[f64]),
+    (restitution, scales): (f64, Scales<'_>),
 ) -> f64 {
     let places = surroundings.boundaries(block, restitution);
     let mut log = 0.0;
     let mut families: BTreeMap<Family, usize> = BTreeMap::new();
+    let mut of_families: Vec<&[f64]> = Vec::new();
     let mut held: Vec<(Held<'_>, usize)> = Vec::new();
     for (bracket, place) in block.brackets.iter().zip(&places) {
         let Some(boundary) = place else {
@@ -187,18 +253,20 @@ fn likelihood(
         let count = families.len();
         let family = (bracket.kind.name(), bracket.periods_n > 1);
         let index = *families.entry(family).or_insert(count);
+        if index == of_families.len() {
+            of_families.push(scales.of(bracket));
+        }
         held.push((Held { bracket, boundary }, index));
     }
-    log + summed_over_scales(&held, families.len(), surroundings, scales)
+    log + summed_over_scales(&held, &of_families, surroundings)
 }
 
-/// Logarithm of the mean over all families' scales, each as likely before: a family's sum is taken at the best scales
+/// Logarithm of the mean over the scales of all families, each as likely before: a family's sum is taken at the best scales
 /// of the others.
 fn summed_over_scales(
     held: &[(Held<'_>, usize)],
-    families: usize,
+    families: &[&[f64]],
     surroundings: &Surroundings,
-    scales: &[f64],
 ) -> f64 {
     let mut directions: Vec<_> = held
         .iter()
@@ -227,10 +295,11 @@ fn summed_over_scales(
         }
         log
     };
-    let mut chosen = vec![scales[scales.len() / 2]; families];
+    let middles = families.iter().map(|scales| scales[scales.len() / 2]);
+    let mut chosen: Vec<f64> = middles.collect();
     let mut best = of(&chosen);
     let mut beyond = 0.0;
-    for family in 0..families {
+    for (family, scales) in families.iter().enumerate() {
         let logs: Vec<f64> = scales
             .iter()
             .map(|scale| {
@@ -394,6 +463,22 @@ mod tests {
         let surroundings = Surroundings::known(&p, &[prior]);
         let [low, high] = of_brackets(&block, &surroundings, None).unwrap().interval95;
         assert!(low < 0.7 && 0.7 < high && high - low < 0.1, "{low} {high}");
+    }
+
+    #[test]
+    fn valid_ends_at_the_lower_edges_of_their_brackets_are_held_without_early_jumps() {
+        // each s2 a hundredth of the width above the last setting at which z = 1 was seen
+        let p = Parameters::symmetric(0.7, 12.6, 0.05, 1e-3);
+        let brackets =
+            [1.1, 1.3, 1.5].map(|eta| bracket(BoundaryKind::SaddleNode, eta, &p, -0.98));
+        let block = BoundaryBlock::new(RigKind::Double, &brackets);
+        let effect = Effect::ContactDuration;
+        let prior = Prior::new(Coordinate::Effect(effect), 0.0, effect.accepted());
+        let surroundings = Surroundings::known(&p, &[prior]);
+        let [low, high] = of_brackets(&block, &surroundings, None).unwrap().interval95;
+        assert!(low < 0.701 && 0.72 < high, "{low} {high}");
+        let alone = over_grid(&block, &surroundings, Scales::alike(&EARLY_SCALES));
+        assert!(alone.interval95[0] > 0.701, "{alone:?}");
     }
 
     #[test]
