@@ -13,9 +13,8 @@ use super::records;
 use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign};
 use super::rig;
 use super::sources::Sources;
-use super::written::{
-    self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign, value,
-};
+use super::written::{self, Flight, Format, Machine, Paper, Placed, WrittenCampaign, value};
+use impact_records::language::Language;
 use impact_report::catalog::Catalog;
 use labfiles::units::{self, Dimension};
 
@@ -198,7 +197,8 @@ fn report(
             }
         }
     }
-    let language = value(&written.language).unwrap_or(Language::En);
+    let language = value(&written.language).unwrap_or_default();
+    let comma = Language::of_code(&language.0).is_some_and(Language::decimal_comma);
     Report {
         title: value(&written.title).unwrap_or_else(|| name.to_owned()),
         points: value(&written.points)
@@ -208,7 +208,7 @@ fn report(
             .collect(),
         paper: value(&written.paper).unwrap_or(Paper::A4),
         language,
-        decimal_comma: value(&written.decimal_comma).unwrap_or(language == Language::De),
+        decimal_comma: value(&written.decimal_comma).unwrap_or(comma),
         formats: value(&written.formats)
             .filter(|formats| !formats.is_empty())
             .unwrap_or_else(|| vec![Format::Pdf]),

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::slashes;
 use super::sources::Sources;
-use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
+use super::written::{Excitation, Flight, Format, LanguageCode, Machine, Paper};
 use impact_identification::compare::Common;
 use impact_identification::identify::evidence::options::IntervalMethod;
 use impact_identification::identify::parameters::effect::EffectKind;
@@ -132,7 +132,7 @@ pub struct Report {
     /// Paper size.
     pub paper: Paper,
     /// Language.
-    pub language: Language,
+    pub language: LanguageCode,
     /// Whether numbers are printed with a decimal comma.
     pub decimal_comma: bool,
     /// Formats; the data of the figures are always written.

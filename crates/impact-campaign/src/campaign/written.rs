@@ -12,6 +12,7 @@ use toml::Spanned;
 
 pub use impact_identification::identify::evidence::options::IntervalMethod;
 pub use impact_records::event::{FlightKind as Flight, RigKind as Machine};
+use impact_records::language::Language;
 use impact_records::record::ContactContent;
 use impact_records::record::calibrate::ChannelKey;
 pub use impact_records::record::{Excitation, Sweep};
@@ -238,7 +239,7 @@ pub struct Report {
     /// Paper size.
     pub paper: Placed<Paper>,
     /// Language of dates and hyphenation.
-    pub language: Placed<Language>,
+    pub language: Placed<LanguageCode>,
     /// Whether numbers are printed with a decimal comma.
     pub decimal_comma: Placed<bool>,
     /// What it is written as: pdf, html, svg, png, figure-pdf, tex, csv.
@@ -251,17 +252,15 @@ pub struct Report {
     pub logo: Placed<String>,
 }
 
-/// Language of the report.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
-#[serde(rename_all = "snake_case")]
-#[strum(serialize_all = "snake_case")]
-pub enum Language {
-    /// English.
-    En,
-    /// Czech.
-    Cs,
-    /// German.
-    De,
+/// Code of the report's language as ISO 639-1 writes it. The program has texts in some languages; in others
+/// the report is in English, or in the words of a table.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct LanguageCode(pub String);
+
+impl Default for LanguageCode {
+    fn default() -> Self {
+        Self(Language::default().code().to_owned())
+    }
 }
 
 /// One text or a list of them.
@@ -319,6 +318,15 @@ deserialize_with!(ChannelVisitor for WrittenKey, "a channel's name, or its index
         usize::try_from(v)
             .map(|index| WrittenKey(ChannelKey::Index(index)))
             .map_err(|_| E::custom(format!("a channel's index is counted from 0, not {v}")))
+    }
+});
+
+deserialize_with!(LanguageVisitor for LanguageCode, "a language as ISO 639-1 writes it, such as \"en\"", {
+    fn visit_str<E: de::Error>(self, v: &str) -> Result<LanguageCode, E> {
+        let two_letters = v.len() == 2 && v.bytes().all(|b| b.is_ascii_lowercase());
+        two_letters
+            .then(|| LanguageCode(v.to_owned()))
+            .ok_or_else(|| E::invalid_value(de::Unexpected::Str(v), &self))
     }
 });
 
