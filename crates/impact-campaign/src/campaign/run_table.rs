@@ -8,8 +8,8 @@ use strum::VariantNames;
 
 use super::context::Wrong;
 use super::diagnostic::{Code, FaultCollector, first_of};
-use super::read::nearest;
-use super::written::Excitation;
+use super::nearest::nearest;
+use super::values::Excitation;
 use impact_records::language::{Language, RunTableWords};
 use impact_records::record::Sweep;
 use labfiles::units::{self, Dimension};
