@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::context::ResolveContext;
-use super::diagnostic::{Code, Diagnostics, FaultCollector};
+use super::diagnostic::{Diagnostics, FaultCollector};
 use super::discovery::{Opener, Shared, Taken};
 use super::lines::Text;
 use super::read;
@@ -143,6 +143,7 @@ fn exclude(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::diagnostic::Code;
 
     #[test]
     fn broken_syntax_is_reported_alone() {
