@@ -122,12 +122,18 @@ impl Language {
     }
 }
 
+/// The names in braces of a template; between dollars braces belong to the symbol.
+pub fn names(template: &str) -> impl Iterator<Item = &str> {
+    let texts = template.split('$').step_by(2);
+    let pieces = texts.flat_map(|text| text.split('{').skip(1));
+    pieces.filter_map(|piece| Some(piece.split_once('}')?.0))
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::message::names;
 
     /// No text is missing in a language and none is superfluous, and all have the values of the English ones
     /// and whole symbols.

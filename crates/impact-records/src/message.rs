@@ -11,7 +11,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Display;
 
-use crate::language::Language;
+use crate::language::{Language, names};
 
 /// Something that a module states, to be printed in the language of the reader.
 pub trait Message {
@@ -125,13 +125,6 @@ pub fn filled(template: &str, value: impl Fn(&str) -> Option<String>) -> String 
     }
     text.push_str(rest);
     text
-}
-
-/// The names in braces of a template; between dollars braces belong to the symbol.
-pub fn names(template: &str) -> impl Iterator<Item = &str> {
-    let texts = template.split('$').step_by(2);
-    let pieces = texts.flat_map(|text| text.split('{').skip(1));
-    pieces.filter_map(|piece| Some(piece.split_once('}')?.0))
 }
 
 /// What is wrong with the texts of messages: a message without a text, a text whose names in braces are

@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::phrase::Phrase;
 use impact_identification::compare;
 use impact_identification::identify;
-use impact_records::language::Language;
-use impact_records::message::{Message, names};
+use impact_records::language::{Language, names};
+use impact_records::message::Message;
 
 /// Phrases and messages, and what is printed instead of their English.
 #[derive(Debug, Clone, Default, PartialEq, Eq, serde::Deserialize)]

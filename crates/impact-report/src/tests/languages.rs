@@ -27,7 +27,7 @@ fn german() -> catalog::Catalog {
 fn marks_for_phrases() -> catalog::Catalog {
     let mut text = String::from("[words]\n");
     for (i, phrase) in catalog::Catalog::phrases().into_iter().enumerate() {
-        let values: String = impact_records::message::names(phrase)
+        let values: String = impact_records::language::names(phrase)
             .map(|n| format!("{{{n}}}"))
             .collect();
         let key = toml::Value::from(phrase);

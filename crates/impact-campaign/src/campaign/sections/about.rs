@@ -29,10 +29,7 @@ keys! {
 }
 
 /// Two masses or one, which must be stated.
-pub(in crate::campaign) fn machine(
-    placed: &Placed<Machine>,
-    context: &mut ResolveContext<'_>,
-) -> Machine {
+pub(crate) fn machine(placed: &Placed<Machine>, context: &mut ResolveContext<'_>) -> Machine {
     if placed.is_none() && !context.faults.blocks() {
         let (key, what) = ("campaign.machine", "it is not given");
         let remedy = "write machine = \"double\" (two masses) or \"single\" (one, and a stop)";
@@ -42,7 +39,7 @@ pub(in crate::campaign) fn machine(
 }
 
 /// The campaign's name: that of its folder where none is stated.
-pub(in crate::campaign) fn name(placed: &Placed<String>, folder: &Path) -> String {
+pub(crate) fn name(placed: &Placed<String>, folder: &Path) -> String {
     let folder_name = || {
         let whole = std::path::absolute(Path::new(".").join(folder)).ok()?;
         whole.file_name().map(|n| n.to_string_lossy().into_owned())

@@ -55,10 +55,7 @@ pub struct Analysis {
 }
 
 /// The settings, defaults included.
-pub(in crate::campaign) fn resolve(
-    table: &AnalysisTable,
-    context: &mut ResolveContext<'_>,
-) -> Analysis {
+pub(crate) fn resolve(table: &AnalysisTable, context: &mut ResolveContext<'_>) -> Analysis {
     let skip = context.within(
         &table.skip,
         "analysis.skip",

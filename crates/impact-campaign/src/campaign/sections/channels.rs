@@ -76,7 +76,7 @@ pub struct ChannelTables {
 }
 
 impl ChannelTables {
-    pub(in crate::campaign) fn of(&self, role: Role) -> &Placed<ChannelTable> {
+    pub(crate) fn of(&self, role: Role) -> &Placed<ChannelTable> {
         match role {
             Role::Drive => &self.drive,
             Role::Contact => &self.contact,
@@ -93,7 +93,7 @@ impl ChannelTables {
 }
 
 /// All channels that campaign.toml names, in the order of the roles.
-pub(in crate::campaign) fn resolve(
+pub(crate) fn resolve(
     channels: &ChannelTables,
     (machine, flight): (Machine, Flight),
     context: &mut ResolveContext<'_>,
@@ -442,7 +442,7 @@ fn of_contact<'a, T>(
 }
 
 /// The delay of a channel must be less than a period of the drive.
-pub(in crate::campaign) fn refuse_long_delays(
+pub(crate) fn refuse_long_delays(
     channels: &[ChannelSetup],
     records: &[RecordEntry],
     written: &ChannelTables,

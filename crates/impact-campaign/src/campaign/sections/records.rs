@@ -62,16 +62,13 @@ keys! {
 
 impl RecordsTable {
     /// Samples per second of files that state none.
-    pub(in crate::campaign) fn sample_rate_hz(
-        &self,
-        context: &mut ResolveContext<'_>,
-    ) -> Option<f64> {
+    pub(crate) fn sample_rate_hz(&self, context: &mut ResolveContext<'_>) -> Option<f64> {
         let key = "records.sample_rate";
         context.positive(&self.sample_rate, key, Dimension::Frequency)
     }
 
     /// Seconds in the stated unit of time.
-    pub(in crate::campaign) fn time_unit_s(&self, context: &mut ResolveContext<'_>) -> Option<f64> {
+    pub(crate) fn time_unit_s(&self, context: &mut ResolveContext<'_>) -> Option<f64> {
         let placed = self.time_unit.as_ref()?;
         let unit = units::parse_unit(placed.get_ref()).filter(|u| u.dimension == Dimension::Time);
         if unit.is_none() {
@@ -90,10 +87,7 @@ impl RecordsTable {
 }
 
 /// The setting of records that state none.
-pub(in crate::campaign) fn defaults(
-    records: &RecordsTable,
-    context: &mut ResolveContext<'_>,
-) -> Setting {
+pub(crate) fn defaults(records: &RecordsTable, context: &mut ResolveContext<'_>) -> Setting {
     let frequency = context.positive(
         &records.drive_frequency,
         "records.drive_frequency",

@@ -78,19 +78,19 @@ pub struct Report {
 }
 
 /// What the report of a campaign refers to.
-pub(in crate::campaign) struct Around<'a> {
+pub(crate) struct Around<'a> {
     /// The campaign's name.
-    pub(in crate::campaign) name: &'a str,
+    pub(crate) name: &'a str,
     /// The folder of campaign.toml.
-    pub(in crate::campaign) folder: &'a Path,
+    pub(crate) folder: &'a Path,
     /// Names of the records.
-    pub(in crate::campaign) records: &'a [&'a str],
+    pub(crate) records: &'a [&'a str],
     /// Whether these are all.
-    pub(in crate::campaign) all: bool,
+    pub(crate) all: bool,
 }
 
 /// The settings, defaults included.
-pub(in crate::campaign) fn resolve(
+pub(crate) fn resolve(
     table: &ReportTable,
     around: &Around<'_>,
     context: &mut ResolveContext<'_>,

@@ -104,10 +104,7 @@ pub struct NominalValues {
 }
 
 /// Nominal values and uncertainties, defaults included.
-pub(in crate::campaign) fn resolve(
-    rig: &RigTable,
-    context: &mut ResolveContext<'_>,
-) -> NominalValues {
+pub(crate) fn resolve(rig: &RigTable, context: &mut ResolveContext<'_>) -> NominalValues {
     use Dimension::{Frequency, Length, Mass, Number};
     let mut positive = |placed, name: &str, d| context.positive(placed, &format!("rig.{name}"), d);
     let natural_frequency_hz = positive(&rig.natural_frequency, "natural_frequency", Frequency);
