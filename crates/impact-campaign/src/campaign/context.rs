@@ -10,7 +10,7 @@ use labfiles::units::{self, Dimension, QuantityError};
 
 /// The lines of campaign.toml and the problems found so far.
 #[derive(Debug)]
-pub(super) struct ResolveContext<'a> {
+pub(crate) struct ResolveContext<'a> {
     pub(super) text: Text<'a>,
     pub(super) faults: FaultCollector,
 }
