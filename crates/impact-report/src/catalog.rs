@@ -76,7 +76,10 @@ impl Catalog {
 
     /// Every English phrase of a report, in order.
     pub fn phrases() -> BTreeSet<&'static str> {
-        Phrase::ALL.iter().map(|p| p.english()).collect()
+        let labels = identify::messages::labels().into_iter();
+        let labels = labels.map(|label| label.template(Language::default()));
+        let phrases = Phrase::ALL.iter().map(|p| p.english());
+        phrases.chain(labels).collect()
     }
 
     /// The language of texts that the catalog does not have.

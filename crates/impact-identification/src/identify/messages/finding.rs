@@ -352,8 +352,8 @@ message_table! { "finding": Finding, key = template_key;
         measured = Value::Number(*measured, 3),
         stated = Value::Number(*stated, 3);
     Self::BeyondModel { effect, strength, standard_error, .. } =>
-        strength = Value::Number(scale(*effect) * strength.abs(), 3),
-        error = Value::Number(1.96 * scale(*effect) * standard_error, 3);
+        strength = Value::Number(effect.unit().factor() * strength.abs(), 3),
+        error = Value::Number(1.96 * effect.unit().factor() * standard_error, 3);
     Self::Misfit { method, remark } | Self::Noticed { method, remark } =>
         method = Value::Message(method),
         remark = Value::Message(remark);
@@ -397,14 +397,6 @@ fn millimetres(metres: f64) -> Value<'static> {
 /// Rounded to two significant digits.
 fn two_digits(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
-}
-
-/// From the strength of an effect to the number in its text: per cent, or milliseconds.
-fn scale(effect: Effect) -> f64 {
-    match effect {
-        Effect::ContactDuration => 1.0,
-        _ => 100.0,
-    }
 }
 
 fn sentences(verdict: &[Sentence]) -> Value<'_> {

@@ -4,7 +4,7 @@ use strum::IntoEnumIterator;
 
 use super::{Finding, Item, Note, PairAgreement, Reason, Remark, Sentence};
 use crate::identify::method::Method;
-use crate::identify::parameters::effect::Effect;
+use crate::identify::parameters::effect::{Effect, EffectKind};
 use impact_records::message::{Message, boxed};
 use impact_records::motion::Undetermined;
 use impact_records::record::{FlagCode, Role};
@@ -40,6 +40,13 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         .chain(boxed([PairAgreement::default()].into_iter()))
         .chain(boxed(Item::iter()))
         .chain(boxed(DampingLaw::iter()))
+        .collect()
+}
+
+/// One message of each name that a figure or a table prints: effects and kinds of effects.
+pub fn labels() -> Vec<Box<dyn Message>> {
+    boxed(Effect::ALL.iter().copied())
+        .chain(boxed(EffectKind::ALL.iter().copied()))
         .collect()
 }
 
@@ -98,7 +105,7 @@ mod tests {
             assert!(!kind.is_empty() && keys.insert(kind.clone()), "{kind}");
             assert!(!plain(message.as_ref()).contains(['{', '}', '$']), "{kind}");
         }
-        let all: Vec<_> = kinds().into_iter().chain(parts()).collect();
+        let all: Vec<_> = kinds().into_iter().chain(labels()).chain(parts()).collect();
         assert_eq!(faults(&all), Vec::<String>::new());
     }
 

@@ -14,7 +14,7 @@ mod sentence;
 
 pub use damping::DampingPoint;
 pub use finding::{Finding, PublishedSetting};
-pub use kinds::kinds;
+pub use kinds::{kinds, labels};
 pub use note::Note;
 pub use pair::PairAgreement;
 pub use reason::{Item, LeftOut, Reason};
@@ -22,8 +22,10 @@ pub use remark::{GroupPoint, Remark, SpeedPoint};
 pub use sentence::{Sentence, StatedValue};
 
 use crate::identify::parameters::Coordinate;
+use crate::identify::parameters::effect::{Effect, EffectKind};
 use impact_records::language::Language;
 use impact_records::message::Message;
+use impact_records::message_table;
 
 impl Message for Coordinate {
     fn table(&self) -> &'static str {
@@ -39,3 +41,7 @@ impl Message for Coordinate {
         self.symbol()
     }
 }
+
+message_table! { "effect": Effect; }
+
+message_table! { "effect_kind": EffectKind; }

@@ -8,7 +8,6 @@ use crate::kit::richtext::plain;
 use crate::locale::Locale;
 use crate::phrase::Phrase;
 use impact_identification::identify::parameters::Coordinate;
-use impact_identification::identify::parameters::effect::Effect;
 use impact_identification::identify::uncertainty::budget::{
     Budget, Combined, Contribution, Row, Source,
 };
@@ -122,7 +121,8 @@ fn stated(row: &Row, locale: Locale<'_>) -> String {
     };
     let (factor, unit) = match coordinate {
         Coordinate::ScrewZero | Coordinate::Gap(_) => (1e3, "µm"),
-        Coordinate::Delay(_) | Coordinate::Effect(Effect::ContactDuration) => (1.0, "ms"),
+        Coordinate::Delay(_) => (1.0, "ms"),
+        Coordinate::Effect(effect) => (effect.unit().factor(), effect.unit().symbol()),
         _ => (1e2, "%"),
     };
     format!("{} {unit}", locale.significant(factor * u, 2))
