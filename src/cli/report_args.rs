@@ -7,10 +7,11 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::{Failure, Verbosity};
-use impact_campaign::campaign::resolved::{Report, ResolvedCampaign};
-use impact_campaign::campaign::written::Paper;
+use impact_campaign::campaign::resolved::ResolvedCampaign;
+use impact_campaign::campaign::sections::report::ReportSettings;
 use impact_campaign::pipeline;
 use impact_report::Format;
+use impact_report::Paper;
 
 /// Options of the report.
 #[derive(Debug, Clone, Default, Args)]
@@ -51,7 +52,11 @@ pub(super) fn paper_parser() -> impl TypedValueParser<Value = Paper> {
 
 impl ReportArgs {
     /// Override the options of campaign.toml.
-    pub(super) fn apply(&self, report: &mut Report, verbosity: Verbosity) -> Result<(), Failure> {
+    pub(super) fn apply(
+        &self,
+        report: &mut ReportSettings,
+        verbosity: Verbosity,
+    ) -> Result<(), Failure> {
         let files = [&self.template, &self.words, &self.logo];
         for file in files.into_iter().flatten() {
             if !file.is_file() {

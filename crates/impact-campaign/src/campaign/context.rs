@@ -3,13 +3,14 @@
 use toml::Spanned;
 
 use super::diagnostic::{Code, FaultCollector};
-use super::read::Text;
-use super::written::{Placed, Quantity};
+use super::lines::Text;
+use super::nearest::nearest;
+use super::values::{Placed, WrittenQuantity};
 use labfiles::units::{self, Dimension, QuantityError};
 
 /// The lines of campaign.toml and the problems found so far.
 #[derive(Debug)]
-pub(super) struct ResolveContext<'a> {
+pub(crate) struct ResolveContext<'a> {
     pub(super) text: Text<'a>,
     pub(super) faults: FaultCollector,
 }
@@ -31,7 +32,7 @@ impl ResolveContext<'_> {
     /// A quantity of a dimension in SI; `None` if it is not written or faulty.
     pub(super) fn quantity(
         &mut self,
-        placed: &Placed<Quantity>,
+        placed: &Placed<WrittenQuantity>,
         key: &str,
         dimension: Dimension,
     ) -> Option<f64> {
@@ -54,7 +55,7 @@ impl ResolveContext<'_> {
     /// A quantity within a range, both ends allowed.
     pub(super) fn within(
         &mut self,
-        placed: &Placed<Quantity>,
+        placed: &Placed<WrittenQuantity>,
         key: &str,
         dimension: Dimension,
         range: [f64; 2],
@@ -66,9 +67,10 @@ impl ResolveContext<'_> {
         let symbol = dimension.si_symbol();
         let message = format!("{value} {symbol} is out of range");
         let zero = if range[0] == 0.0 { "0 or " } else { "" };
-        let remedy = match range[1].is_finite() {
-            true => format!("write a value from {} to {} {symbol}", range[0], range[1]),
-            false => format!("write {zero}a positive value, in {symbol} or a multiple of it"),
+        let remedy = if range[1].is_finite() {
+            format!("write a value from {} to {} {symbol}", range[0], range[1])
+        } else {
+            format!("write {zero}a positive value, in {symbol} or a multiple of it")
         };
         if let Some(placed) = placed {
             self.fault(Code::OutOfRange, placed, key, message, &remedy);
@@ -76,10 +78,29 @@ impl ResolveContext<'_> {
         None
     }
 
+    /// Note a name of a record that there is not.
+    pub(super) fn unknown_record<T>(
+        &mut self,
+        placed: &Spanned<T>,
+        key: &str,
+        name: &str,
+        records: &[&str],
+    ) {
+        let what = format!("no record is called '{name}'");
+        let remedy = match nearest(name, records) {
+            Some(near) => format!("did you mean '{near}'?"),
+            None => format!(
+                "the first records are {}",
+                records[..records.len().min(4)].join(", ")
+            ),
+        };
+        self.fault(Code::UnknownRecord, placed, key, what, &remedy);
+    }
+
     /// A positive quantity.
     pub(super) fn positive(
         &mut self,
-        placed: &Placed<Quantity>,
+        placed: &Placed<WrittenQuantity>,
         key: &str,
         dimension: Dimension,
     ) -> Option<f64> {
@@ -93,19 +114,21 @@ pub(super) struct Wrong {
     pub(super) remedy: String,
 }
 
-fn in_si(quantity: &Quantity, key: &str, dimension: Dimension) -> Result<f64, Wrong> {
+fn in_si(quantity: &WrittenQuantity, key: &str, dimension: Dimension) -> Result<f64, Wrong> {
     let text = match quantity {
-        Quantity::Bare(value) if dimension == Dimension::Number && value.is_finite() => {
+        WrittenQuantity::Bare(value) if dimension == Dimension::Number && value.is_finite() => {
             return Ok(*value);
         }
-        Quantity::Bare(value) if dimension == Dimension::Number => {
+        WrittenQuantity::Bare(value) if dimension == Dimension::Number => {
             return Err(Wrong {
                 message: format!("{value} is not a number"),
                 remedy: "write a finite number".to_owned(),
             });
         }
-        Quantity::Bare(value) => return Err(without_unit(key, &value.to_string(), dimension)),
-        Quantity::Text(text) => text,
+        WrittenQuantity::Bare(value) => {
+            return Err(without_unit(key, &value.to_string(), dimension));
+        }
+        WrittenQuantity::Text(text) => text,
     };
     units::parse_quantity_of(text, dimension).map_err(|error| match &error {
         QuantityError::Dimension {

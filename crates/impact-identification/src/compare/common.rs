@@ -67,15 +67,7 @@ impl Common {
             Coordinate::Effect(effect) => match effect.kind() {
                 EffectKind::Harmonics => Some(Self::Harmonics),
                 EffectKind::ForceFrequency => Some(Self::ForceFrequency),
-                EffectKind::Drag
-                | EffectKind::SpringAsymmetry
-                | EffectKind::HystereticDamping
-                | EffectKind::Hardening
-                | EffectKind::Friction
-                | EffectKind::Pickup
-                | EffectKind::Drift
-                | EffectKind::RestitutionSpeed
-                | EffectKind::ContactDuration => None,
+                _ => None,
             },
             Coordinate::Restitution
             | Coordinate::Frequency

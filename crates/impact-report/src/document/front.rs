@@ -30,9 +30,10 @@ pub(super) fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
             Some(false) => "no",
             None => "unknown",
         },
-        agreement: match id.specimens.is_empty() {
-            true => Rich::from(drawn.locale.sentence(&id.agreement)),
-            false => Rich::default(),
+        agreement: if id.specimens.is_empty() {
+            Rich::from(drawn.locale.sentence(&id.agreement))
+        } else {
+            Rich::default()
         },
         facts: facts(content, drawn.locale),
         map: drawn.figure("map_small", ""),
@@ -107,26 +108,9 @@ fn beyond_model(findings: &[&Finding], locale: Locale<'_>) -> String {
             _ => None,
         })
         .collect();
-    let names = kinds.into_iter().map(|k| locale.translate(phrase(k)));
+    let names = kinds.iter().map(|kind| locale.message(kind));
     let names: Vec<String> = names.collect();
     locale.translate_with(Phrase::BeyondTheModel, &[("effects", &names.join(", "))])
-}
-
-/// A kind of effect as a phrase.
-fn phrase(kind: EffectKind) -> Phrase {
-    match kind {
-        EffectKind::Harmonics => Phrase::HarmonicsOfTheDrive,
-        EffectKind::ForceFrequency => Phrase::ForceDependsOnFrequency,
-        EffectKind::Hardening => Phrase::NonlinearSprings,
-        EffectKind::Friction => Phrase::DryFriction,
-        EffectKind::Drift => Phrase::DriftOverTheCampaign,
-        EffectKind::ContactDuration => Phrase::ContactsOfFiniteDuration,
-        EffectKind::RestitutionSpeed => Phrase::RestitutionSpeed,
-        EffectKind::Drag => Phrase::DragOfTheAir,
-        EffectKind::SpringAsymmetry => Phrase::SpringsStifferToOneSide,
-        EffectKind::HystereticDamping => Phrase::HystereticDampingOfTheSprings,
-        EffectKind::Pickup => Phrase::PickupFromTheDrive,
-    }
 }
 
 /// The parameters' cards; none where only each specimen alone has an answer.

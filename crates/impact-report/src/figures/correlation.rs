@@ -16,8 +16,8 @@ use crate::kit::richtext;
 use crate::locale::Locale;
 use crate::parameters::parameter;
 use crate::phrase::{Phrase, Text};
+use impact_identification::identify::GAIN_ROLES;
 use impact_identification::identify::parameters::Coordinate;
-use impact_identification::identify::{Effect, GAIN_ROLES};
 use impact_identification::replay::Correlation;
 
 /// Room above the cells for the columns' symbols, points.
@@ -192,11 +192,12 @@ pub(crate) fn name(coordinate: Coordinate, locale: Locale<'_>) -> String {
             let number = (i + 1).to_string();
             locale.translate_with(Phrase::ClearanceErrorOf, &[("number", &number)])
         }
+        Coordinate::Effect(effect) => locale.message(&effect),
         other => locale.text(&coordinate_text(other)),
     }
 }
 
-/// Name of a coordinate that belongs to no channel and no single clearance.
+/// Name of a coordinate that belongs to no channel, no single clearance and no effect.
 fn coordinate_text(coordinate: Coordinate) -> Text {
     let phrase = match coordinate {
         Coordinate::DriveAsymmetry => Phrase::DriveAsymmetry,
@@ -204,40 +205,11 @@ fn coordinate_text(coordinate: Coordinate) -> Text {
         Coordinate::DampingAsymmetry => Phrase::DampingAsymmetry,
         Coordinate::MassAsymmetry => Phrase::MassAsymmetry,
         Coordinate::ScrewZero => Phrase::ScrewZero,
-        Coordinate::Effect(effect) => effect_phrase(effect),
         other => {
             return parameter(other).map_or(other.name(), |p| p.symbol).into();
         }
     };
     phrase.into()
-}
-
-fn effect_phrase(effect: Effect) -> Phrase {
-    match effect {
-        Effect::SecondHarmonicCos => Phrase::DriveHarmonic2Cos,
-        Effect::SecondHarmonicSin => Phrase::DriveHarmonic2Sin,
-        Effect::ThirdHarmonicCos => Phrase::DriveHarmonic3Cos,
-        Effect::ThirdHarmonicSin => Phrase::DriveHarmonic3Sin,
-        Effect::ForceSlope => Phrase::ForceSlope,
-        Effect::ForceCurve => Phrase::ForceCurve,
-        Effect::Hardening => Phrase::Hardening,
-        Effect::Friction => Phrase::Friction,
-        Effect::FrequencyDrift => Phrase::FrequencyDrift,
-        Effect::FrequencyBend => Phrase::FrequencyDriftBend,
-        Effect::DampingDrift => Phrase::DampingDrift,
-        Effect::DeflectionDrift => Phrase::DeflectionDrift,
-        Effect::ContactDuration => Phrase::ContactDuration,
-        Effect::ContactLaw => Phrase::ContactLaw,
-        Effect::ContactReach => Phrase::ContactReach,
-        Effect::ContactSpeed => Phrase::ContactSpeed,
-        Effect::RestitutionSpeed => Phrase::RestitutionSpeed,
-        Effect::Drag => Phrase::Drag,
-        Effect::SpringAsymmetry => Phrase::SpringAsymmetry,
-        Effect::HystereticDamping => Phrase::HystereticDamping,
-        Effect::ClearanceDrift => Phrase::ClearanceDrift,
-        Effect::PickupX => Phrase::PickupX,
-        Effect::PickupY => Phrase::PickupY,
-    }
 }
 
 /// Blue for positive, vermilion for negative, deeper for stronger.

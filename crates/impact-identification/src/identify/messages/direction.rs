@@ -4,22 +4,20 @@ use impact_records::message::Value;
 use impact_records::message_table;
 
 /// Whether something is too high or too low.
-#[derive(Debug, Clone, Copy, strum::IntoStaticStr)]
+#[derive(Debug, Clone, Copy, strum::EnumIter, strum::IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
-enum Direction {
+pub(super) enum Direction {
     High,
     Low,
 }
 
 /// The direction of a deviation.
 pub(super) fn direction(deviation: f64) -> Value<'static> {
-    match deviation > 0.0 {
-        true => Value::Message(&Direction::High),
-        false => Value::Message(&Direction::Low),
+    if deviation > 0.0 {
+        Value::Message(&Direction::High)
+    } else {
+        Value::Message(&Direction::Low)
     }
 }
 
-message_table! { Direction;
-    Self::High => "high", "hoch";
-    Self::Low => "low", "tief";
-}
+message_table! { "direction": Direction; }
