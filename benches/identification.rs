@@ -16,7 +16,7 @@ use impact_records::event::DetectSettings;
 use impact_records::event::RigKind;
 use impact_records::motion::{ClassifySettings, Observation, brackets, observe, scale_drives};
 use simulated_rig::run::calibrated;
-use simulated_rig::{Differences, Effects, Faults, Laboratory, Plan, Truth, records};
+use simulated_rig::{Differences, Faults, Laboratory, Plan, RigEffects, Truth, records};
 
 const RECORDS: usize = 846;
 
@@ -87,7 +87,7 @@ fn campaign() -> Result<Vec<Observation>, ModelError> {
     let laboratory = Laboratory {
         truth,
         faults: Faults::default(),
-        effects: Effects::default(),
+        effects: RigEffects::default(),
         clearance_uncertainty_m: None,
         plan,
         rig_seed: 1,

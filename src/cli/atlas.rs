@@ -3,11 +3,11 @@
 
 use clap::{Args, ValueEnum};
 
-use super::machine::{MachineArgs, WatchArgs, at_least, range, refused};
-use super::theory::{OutArgs, study_text};
+use super::atlas_part::{NAME, computed};
+use super::machine::{MachineArgs, WatchArgs, at_least, range};
+use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_oscillator::atlas::map::{Kernel, MapSettings};
-use impact_oscillator::atlas::shard::{AtlasPart, AtlasRequest, part};
 use impact_workbench::theory::Study;
 use impact_workbench::theory::plan::RegionsPlan;
 use labfiles::output::{Lock, write_json_line};
@@ -52,9 +52,6 @@ pub(super) struct Atlas {
     #[command(flatten)]
     out: OutArgs,
 }
-
-/// The atlas' name in its study and its files.
-pub(super) const NAME: &str = "atlas";
 
 /// Instruction sets of the marching kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -154,21 +151,4 @@ impl Atlas {
         verbosity.info(&format!("{}; next: impactid merge", file.display()));
         Ok(Exit::Done)
     }
-}
-
-/// A part of an atlas, with the study of the whole.
-///
-/// # Errors
-/// [`Failure`] where a parameter is out of range.
-pub(super) fn computed(
-    study: &Study,
-    plan: &RegionsPlan,
-    (number, of): (usize, usize),
-) -> Result<AtlasPart, Failure> {
-    let request = AtlasRequest::new(study.machine(), plan.settings());
-    let part = part(&request, number, of).map_err(|e| refused(&e))?;
-    Ok(AtlasPart {
-        study: study_text(study)?,
-        ..part
-    })
 }

@@ -14,7 +14,7 @@ use super::stdout::print;
 use super::watch::{PaceArgs, tell};
 use super::{Exit, Failure, Progress, Verbosity};
 use impact_campaign::pipeline::watch::Watcher;
-use impact_workbench::explore::{Campaign, ExploreError, Server, Session, check};
+use impact_workbench::explore::{ExploreError, OpenCampaign, Server, Session, check};
 use impact_workbench::theory::Study;
 
 /// Arguments of `impactid explore`.
@@ -139,10 +139,10 @@ fn open(path: &Path, verbosity: Verbosity) -> Result<Session, Failure> {
     if path.is_dir() {
         let bar = bar();
         let path = &fs::canonicalize(path).map_err(|e| Failure::io(path, &e))?;
-        if let Some(base) = Campaign::base(path)? {
+        if let Some(base) = OpenCampaign::base(path)? {
             std::env::set_current_dir(&base).map_err(|e| Failure::io(&base, &e))?;
         }
-        let (campaign, notes) = Campaign::read(path, &|s, d, t| bar.step(s, d, t))?;
+        let (campaign, notes) = OpenCampaign::read(path, &|s, d, t| bar.step(s, d, t))?;
         return Ok(Session::of_campaign(campaign, notes));
     }
     let text = read(path)?;
@@ -159,7 +159,7 @@ fn open(path: &Path, verbosity: Verbosity) -> Result<Session, Failure> {
     }
     let campaign = load_campaign(path, verbosity)?;
     let bar = bar();
-    let campaign = Campaign::of(campaign, &|s, d, t| bar.step(s, d, t))?;
+    let campaign = OpenCampaign::of(campaign, &|s, d, t| bar.step(s, d, t))?;
     Ok(Session::of_campaign(campaign, Vec::new()))
 }
 
@@ -190,13 +190,13 @@ impl Watched {
     }
 
     /// The campaign at its next fit.
-    fn at_next_fit(&mut self) -> Campaign {
+    fn at_next_fit(&mut self) -> OpenCampaign {
         loop {
             let seen = self.watcher.look(self.begin.elapsed());
             tell(&seen, &mut self.screen);
             if self.watcher.is_due(self.begin.elapsed()) {
                 let fitted = self.watcher.fit::<Failure>(|_| Ok(()), |_| Ok(()));
-                match fitted.map(|live| live.map(Campaign::live)) {
+                match fitted.map(|live| live.map(OpenCampaign::live)) {
                     Ok(Some(campaign)) => return campaign,
                     Ok(None) => {}
                     Err(failure) => self.screen.fail(&failure),
@@ -209,9 +209,9 @@ impl Watched {
 
 /// The campaign at each fit, without end.
 impl Iterator for Watched {
-    type Item = Campaign;
+    type Item = OpenCampaign;
 
-    fn next(&mut self) -> Option<Campaign> {
+    fn next(&mut self) -> Option<OpenCampaign> {
         Some(self.at_next_fit())
     }
 }

@@ -210,9 +210,10 @@ fn rendered(message: &str, remedy: &str, severity: Severity) -> String {
 fn theme() -> GraphicalTheme {
     use std::io::IsTerminal;
     let plain = std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
-    match std::io::stderr().is_terminal() && !plain {
-        true => GraphicalTheme::unicode(),
-        false => GraphicalTheme::unicode_nocolor(),
+    if std::io::stderr().is_terminal() && !plain {
+        GraphicalTheme::unicode()
+    } else {
+        GraphicalTheme::unicode_nocolor()
     }
 }
 

@@ -65,9 +65,12 @@ impl Inspect {
         let mut listed = Vec::new();
         let mut text = String::new();
         for path in &self.files {
-            let done = open(path).and_then(|s| match self.json {
-                true => self.list(&*s, &mut listed),
-                false => self.describe(&*s, &mut text),
+            let done = open(path).and_then(|s| {
+                if self.json {
+                    self.list(&*s, &mut listed)
+                } else {
+                    self.describe(&*s, &mut text)
+                }
             });
             print(&std::mem::take(&mut text))?;
             for error in done.unwrap_or_else(|error| vec![error]) {
@@ -241,9 +244,10 @@ fn one_line(info: &DatasetInfo, text: &mut String) {
 
 /// A rate to a thousandth, below 1 Hz to a millionth, without trailing zeros.
 fn rounded(rate_hz: f64) -> String {
-    let text = match rate_hz < 1.0 {
-        true => format!("{rate_hz:.6}"),
-        false => format!("{rate_hz:.3}"),
+    let text = if rate_hz < 1.0 {
+        format!("{rate_hz:.6}")
+    } else {
+        format!("{rate_hz:.3}")
     };
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

@@ -69,9 +69,10 @@ pub(super) fn asked(folder: PathBuf) -> Arc<AtomicBool> {
 /// Note a folder; whether it is the first.
 fn remember(folder: PathBuf) -> bool {
     let mut folders = FOLDERS.lock().unwrap_or_else(PoisonError::into_inner);
-    folders.push(match folder.as_os_str().is_empty() {
-        true => PathBuf::from("."),
-        false => folder,
+    folders.push(if folder.as_os_str().is_empty() {
+        PathBuf::from(".")
+    } else {
+        folder
     });
     folders.len() == 1
 }

@@ -6,7 +6,7 @@ use super::Failure;
 use impact_oscillator::model::params::Asymmetry;
 use impact_oscillator::model::{Initial, Machine, Restitution, Watch};
 use impact_workbench::theory::Study;
-use impact_workbench::theory::plan::Law;
+use impact_workbench::theory::plan::RestitutionLaw;
 
 /// The dimensionless machine.
 #[derive(Debug, Clone, Args)]
@@ -14,7 +14,7 @@ pub(super) struct MachineArgs {
     /// Coefficient of restitution R, 0 to 1, or a law of the approach speed: `table = [[0, 0.95],
     /// [6, 0.85]]`, `power_law = {…}`, `exponential = {…}`
     #[arg(long, value_name = "R|LAW", default_value = "0.9", value_parser = law)]
-    pub restitution: Law,
+    pub restitution: RestitutionLaw,
     /// Damping ratio β, from 0 to below 1
     #[arg(long, value_name = "B", default_value_t = 0.07)]
     pub damping_ratio: f64,
@@ -61,16 +61,16 @@ impl MachineArgs {
 }
 
 /// R as a number, or a law of the approach speed as a key and its value in TOML.
-fn law(text: &str) -> Result<Law, String> {
+fn law(text: &str) -> Result<RestitutionLaw, String> {
     #[derive(serde::Deserialize)]
     struct Wrapped {
         law: Restitution,
     }
     if let Ok(r) = text.trim().parse::<f64>() {
-        return Ok(Law::Constant(r));
+        return Ok(RestitutionLaw::Constant(r));
     }
     toml::from_str::<Wrapped>(&format!("law = {{ {text} }}"))
-        .map(|w| Law::Law(w.law))
+        .map(|w| RestitutionLaw::Law(w.law))
         .map_err(|_| {
             format!(
                 "“{text}” is neither a number nor a law: write 0.9, or a law such as \

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::atlas::NAME;
+use super::atlas_part::NAME;
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity};
 use impact_oscillator::atlas::shard::{AtlasPart, merge};

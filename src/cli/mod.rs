@@ -1,6 +1,7 @@
 //! The command line: one file per command; the only module that prints or exits.
 
 mod atlas;
+mod atlas_part;
 mod basins;
 mod boundary;
 mod check;

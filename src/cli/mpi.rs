@@ -3,7 +3,7 @@
 
 use ::mpi::traits::{Communicator, Destination, Source};
 
-use super::atlas::computed;
+use super::atlas_part::computed;
 use super::merge::whole;
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity};

@@ -70,16 +70,17 @@ impl Plan {
 /// How to step through the ends of z = 1, for R from the boundaries alone.
 fn boundaries(plan: &BoundaryPlan) -> String {
     let (now, then) = (plan.half_width95_now, plan.half_width95_then);
-    let mut text = match plan.halved {
-        true => format!(
+    let mut text = if plan.halved {
+        format!(
             "R from the measured boundaries alone is ± {now:.2e} (95 %); it would be ± {then:.2e} with these upward \
              sweeps past the end of z = 1:\n"
-        ),
-        false => format!(
+        )
+    } else {
+        format!(
             "R from the measured boundaries alone is ± {now:.2e} (95 %). Finer steps do not halve it: with these it \
              would be ± {then:.2e}, and the rest is what acts on boundaries beside R (f0, β, x_st and clearances as \
              they are known, the length of contacts):\n"
-        ),
+        )
     };
     text += &format!(
         "{:>13} {:>12} {:>12} {:>12}\n",
@@ -97,14 +98,14 @@ fn boundaries(plan: &BoundaryPlan) -> String {
     text
 }
 
-fn print_table(found: &plan::Plan) {
+fn print_table(found: &plan::MeasurementPlan) {
     print_settings(found);
     if let Some(plan) = &found.boundaries {
         print!("{}", boundaries(plan));
     }
 }
 
-fn print_settings(found: &plan::Plan) {
+fn print_settings(found: &plan::MeasurementPlan) {
     if let (Some(r), Some(error)) = (found.restitution, found.restitution_error_now) {
         println!("R = {r:.6}, standard error now {error:.2e}");
     }

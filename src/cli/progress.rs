@@ -27,9 +27,10 @@ impl Progress {
     pub(crate) fn new(verbosity: Verbosity, stage: &'static str, total: u64) -> Self {
         let (pace, fits) = (Pace::default(), FitProgress::default());
         let visible = !verbosity.is_quiet() && std::io::stderr().is_terminal();
-        let bar = match visible {
-            true => Self::bar(&pace, &fits, stage, total),
-            false => ProgressBar::hidden(),
+        let bar = if visible {
+            Self::bar(&pace, &fits, stage, total)
+        } else {
+            ProgressBar::hidden()
         };
         Self {
             bar,

@@ -8,7 +8,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::{Failure, Verbosity};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
-use impact_campaign::campaign::sections::report::Report;
+use impact_campaign::campaign::sections::report::ReportSettings;
 use impact_campaign::pipeline;
 use impact_report::Format;
 use impact_report::Paper;
@@ -52,7 +52,11 @@ pub(super) fn paper_parser() -> impl TypedValueParser<Value = Paper> {
 
 impl ReportArgs {
     /// Override the options of campaign.toml.
-    pub(super) fn apply(&self, report: &mut Report, verbosity: Verbosity) -> Result<(), Failure> {
+    pub(super) fn apply(
+        &self,
+        report: &mut ReportSettings,
+        verbosity: Verbosity,
+    ) -> Result<(), Failure> {
         let files = [&self.template, &self.words, &self.logo];
         for file in files.into_iter().flatten() {
             if !file.is_file() {

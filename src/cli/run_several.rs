@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::estimate_text::with_error;
 use super::run_one::RunOptions;
 use super::{Exit, Failure, Verbosity, interrupt};
-use impact_campaign::pipeline::summary::{Fault, Found, Outcome, Row, Summary};
+use impact_campaign::pipeline::summary::{Fault, Found, RunOutcome, RunSummary, SummaryRow};
 use impact_campaign::pipeline::{campaign_folders, layout, summary};
 use impact_identification::identify::VerdictKind;
 
@@ -19,9 +19,10 @@ pub(super) fn expanded(typed: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut all = Vec::new();
     for path in typed {
         let text = path.to_string_lossy();
-        match text.contains(['*', '?', '[']) && !path.exists() {
-            true => all.extend(matching(&text)?),
-            false => all.push(path.clone()),
+        if text.contains(['*', '?', '[']) && !path.exists() {
+            all.extend(matching(&text)?);
+        } else {
+            all.push(path.clone());
         }
     }
     let mut seen = HashSet::new();
@@ -62,14 +63,14 @@ pub(super) fn run(
         verbosity.info(&format!("[{}/{count}] {}", number + 1, campaign.display()));
         let (exit, outcome) = one(campaign, &out.join(&folder), options, verbosity);
         worst = worst.max(exit);
-        rows.push(Row {
+        rows.push(SummaryRow {
             campaign: campaign.display().to_string(),
             folder,
             exit_code: exit.code(),
             outcome,
         });
     }
-    let summary = Summary::of(rows);
+    let summary = RunSummary::of(rows);
     summary.write(out)?;
     verbosity.info(&table(&summary));
     verbosity.info(&format!(
@@ -86,25 +87,25 @@ fn one(
     folder: &Path,
     options: RunOptions<'_>,
     verbosity: Verbosity,
-) -> (Exit, Outcome) {
+) -> (Exit, RunOutcome) {
     let checked = layout::check(folder).map_err(Failure::from);
     match checked.and_then(|()| options.run(campaign, folder, verbosity)) {
         Ok(done) => (
             Exit::of(done.identification.verdict.kind),
-            Outcome::Result(Box::new(Found::of(&done))),
+            RunOutcome::Result(Box::new(Found::of(&done))),
         ),
         Err(failure) => {
             interrupt::give_way();
             failure.print(verbosity);
             let problems = failure.problems().into_iter();
             let faults = problems.map(|(message, remedy)| Fault { message, remedy });
-            (Exit::BadInput, Outcome::Errors(faults.collect()))
+            (Exit::BadInput, RunOutcome::Errors(faults.collect()))
         }
     }
 }
 
 /// The summary as the terminal shows it.
-fn table(summary: &Summary) -> String {
+fn table(summary: &RunSummary) -> String {
     let folders = summary.campaigns.iter().map(|r| r.folder.chars().count());
     let width = folders.max().unwrap_or(0).max("campaign".len());
     let mut text = format!(
@@ -113,8 +114,8 @@ fn table(summary: &Summary) -> String {
     );
     for row in &summary.campaigns {
         let line = match &row.outcome {
-            Outcome::Result(found) => found_line(found),
-            Outcome::Errors(faults) => failed_line(faults),
+            RunOutcome::Result(found) => found_line(found),
+            RunOutcome::Errors(faults) => failed_line(faults),
         };
         text += &format!("{:<width$} {line}\n", row.folder);
     }

@@ -77,9 +77,10 @@ impl Screen {
 
     /// Lines that are longer than those of the terminal are cut there: the number of lines must be known.
     fn put_cut(&self, text: &str) {
-        match self.is_terminal {
-            true => self.put(&format!("\x1b[?7l{text}\x1b[?7h")),
-            false => self.put(text),
+        if self.is_terminal {
+            self.put(&format!("\x1b[?7l{text}\x1b[?7h"));
+        } else {
+            self.put(text);
         }
     }
 

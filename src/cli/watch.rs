@@ -13,7 +13,9 @@ use super::report_args::{ReportArgs, print_report_paths};
 use super::run_one::{command_line, keep_from, print_completed};
 use super::screen::Screen;
 use super::{Exit, Failure, Verbosity, interrupt, live_text};
-use impact_campaign::pipeline::watch::{News, NewsKind, Pace, Patience, Seen, Watcher, write_live};
+use impact_campaign::pipeline::watch::{
+    News, NewsKind, Pace, Seen, WatchPatience, Watcher, write_live,
+};
 use impact_campaign::pipeline::{Completed, Destination, layout};
 use impact_report::Format;
 use labfiles::output::Lock;
@@ -73,9 +75,10 @@ const PAUSE: u32 = 4;
 
 fn seconds(text: &str) -> Result<Duration, String> {
     let value: f64 = text.parse().map_err(|_| "it is not a number".to_owned())?;
-    match (0.05..=86_400.0).contains(&value) {
-        true => Ok(Duration::from_secs_f64(value)),
-        false => Err("it must lie between 0.05 and 86400 seconds".to_owned()),
+    if (0.05..=86_400.0).contains(&value) {
+        Ok(Duration::from_secs_f64(value))
+    } else {
+        Err("it must lie between 0.05 and 86400 seconds".to_owned())
     }
 }
 
@@ -84,9 +87,9 @@ impl PaceArgs {
     pub(super) fn pace(self) -> Pace {
         let settle = self.settle.unwrap_or(SETTLE);
         Pace {
-            patience: Patience {
+            patience: WatchPatience {
                 quiet: settle,
-                ..Patience::default()
+                ..WatchPatience::default()
             },
             idle: PAUSE * settle,
         }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use impact_campaign::pipeline::watch::{News, Pace, Patience, Seen, Watcher};
+use impact_campaign::pipeline::watch::{News, Pace, Seen, WatchPatience, Watcher};
 
 use crate::support::{Lab, table};
 
@@ -15,7 +15,7 @@ struct Looking {
 impl Looking {
     fn at(lab: &Lab) -> Self {
         let pace = Pace {
-            patience: Patience::default(),
+            patience: WatchPatience::default(),
             idle: Duration::from_secs(20),
         };
         let watcher = Watcher::new(&lab.path("campaign.toml"), pace).expect("a good campaign");

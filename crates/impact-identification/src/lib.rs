@@ -15,7 +15,7 @@
 //! use impact_records::motion::{ClassifySettings, observe};
 //! use impact_records::record::Sweep;
 //! use simulated_rig::run::calibrated;
-//! use simulated_rig::{Effects, Faults, Laboratory, Plan, Step, Truth, records};
+//! use simulated_rig::{RigEffects, Faults, Laboratory, Plan, Step, Truth, records};
 //!
 //! let step = |i: u32| Step {
 //!     frequency_hz: 9.0 + 0.5 * f64::from(i),
@@ -26,7 +26,7 @@
 //! let laboratory = Laboratory {
 //!     truth: Truth::symmetric(0.8, 12.0, 0.05, 1e-3),
 //!     faults: Faults::default(),
-//!     effects: Effects::default(),
+//!     effects: RigEffects::default(),
 //!     clearance_uncertainty_m: None,
 //!     plan: Plan { steps: (0..14).map(step).collect() },
 //!     rig_seed: 1,

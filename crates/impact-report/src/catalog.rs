@@ -108,9 +108,10 @@ impl Catalog {
     /// The template of a message: that of its key in the catalog, else the translation of its English
     /// template, else the program's in the catalog's language, else the English one.
     pub fn template<'a>(&'a self, message: &dyn Message) -> &'a str {
-        let keyed = match self.findings.is_empty() {
-            true => None,
-            false => self.findings.get(&message.key()),
+        let keyed = if self.findings.is_empty() {
+            None
+        } else {
+            self.findings.get(&message.key())
         };
         let own = keyed.or_else(|| self.words.get(message.template(Language::default())));
         own.map_or_else(|| message.template(self.fallback()), String::as_str)

@@ -64,16 +64,18 @@ fn latex(table: &Table) -> String {
                 body(rows)
             );
     }
-    let (open, close) = match wide {
-        true => (
+    let (open, close) = if wide {
+        (
             "\\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n",
             "}\n",
-        ),
-        false => ("", ""),
+        )
+    } else {
+        ("", "")
     };
-    let parts: Vec<&[Vec<Rich>]> = match rows.is_empty() {
-        true => vec![rows],
-        false => rows.chunks(LONG).collect(),
+    let parts: Vec<&[Vec<Rich>]> = if rows.is_empty() {
+        vec![rows]
+    } else {
+        rows.chunks(LONG).collect()
     };
     for (number, rows) in parts.iter().enumerate() {
         let caption = if number == 0 { caption.as_str() } else { "" };

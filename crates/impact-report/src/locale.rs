@@ -97,9 +97,10 @@ impl Locale<'_> {
         let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
         let minus = if is_zero { "" } else { "\u{2212}" };
         let text = text.replace('-', minus);
-        match self.decimal_comma {
-            true => text.replace('.', ","),
-            false => text,
+        if self.decimal_comma {
+            text.replace('.', ",")
+        } else {
+            text
         }
     }
 

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::coverage::{Tally, identified};
 use impact_campaign::pipeline::{PipelineError, Progress};
-use impact_identification::compare::{self, Campaign, Common, Comparison, Outcome};
+use impact_identification::compare::{self, Campaign, Common, Comparison, ComparisonOutcome};
 use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::{GAIN_ROLES, Identification};
 use impact_records::event::{FlightKind, RigKind};
@@ -127,8 +127,10 @@ pub fn study(plan: &PairsPlan, progress: Progress<'_>) -> Result<Pairs, Pipeline
     let tally = |changed: bool| {
         let chosen = pairs.iter().filter(|p| p.changed == changed);
         let outcomes = chosen.filter_map(|p| Some(p.comparison.as_ref()?.outcome()));
-        let decided = outcomes.filter(|o| *o != Outcome::Undetermined);
-        let said: Vec<bool> = decided.map(|o| o != Outcome::NothingChanged).collect();
+        let decided = outcomes.filter(|o| *o != ComparisonOutcome::Undetermined);
+        let said: Vec<bool> = decided
+            .map(|o| o != ComparisonOutcome::NothingChanged)
+            .collect();
         Tally {
             found: said.iter().filter(|c| **c).count(),
             of: said.len(),
@@ -155,9 +157,10 @@ fn pair(plan: &PairsPlan, index: u64) -> Result<Pair, PipelineError> {
     let mut rng = ChaCha8Rng::seed_from_u64(plan.seed ^ 0x0DD5);
     rng.set_stream(index);
     let seed = rng.random();
-    let truth = match changed {
-        true => changed_truth(&first.truth, &mut rng),
-        false => first.truth.clone(),
+    let truth = if changed {
+        changed_truth(&first.truth, &mut rng)
+    } else {
+        first.truth.clone()
     };
     let second = first.again(truth, seed);
     let campaigns = [(&first, 0), (&second, 1)].map(|(draw, number)| {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::source::{ChannelInfo, Clock};
+use crate::channel::{ChannelInfo, Clock};
 
 /// When channels begin, s, as `contact=0.3|x=0`.
 const STARTS_KEY: &str = "channel_starts_s";

@@ -73,9 +73,10 @@ pub(crate) fn open_text(text: TextFile, name: &str) -> Result<OpenedTable, ReadE
     let mut header = front.header;
     let times = time_axis::candidates(&header, &layout, &rows);
     let (mut datasets, mut parts) = (Vec::new(), Vec::new());
-    let makeup = match own {
-        true => Makeup::One,
-        false => parts::find(&header, &layout.kinds, &rows, &times),
+    let makeup = if own {
+        Makeup::One
+    } else {
+        parts::find(&header, &layout.kinds, &rows, &times)
     };
     match makeup {
         Makeup::Runs(runs) => {

@@ -13,7 +13,7 @@ use std::path::Path;
 use calamine::{Data, DataRef, Reader as _, Xls, Xlsx};
 
 use crate::csv::{self, CsvReader};
-use crate::excel::cells::SheetCells;
+use crate::excel::cells::{SheetCells, damaged};
 use crate::excel::compound::Compound;
 use crate::parquet::guard::caught;
 use crate::source::{DatasetInfo, ReadError, Reader, Samples, Source, opened};
@@ -54,15 +54,12 @@ impl Reader for Workbook {
 /// If the file cannot be read, is no workbook, or none of its sheets holds a table.
 pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let bytes = whole(path)?;
-    let sheets = match bytes.starts_with(ZIP) {
-        true => {
-            refuse_bomb(path, &bytes)?;
-            caught(|| xlsx(path, bytes))
-        }
-        false => {
-            refuse_scattered(path, &bytes)?;
-            caught(|| xls(path, bytes))
-        }
+    let sheets = if bytes.starts_with(ZIP) {
+        refuse_bomb(path, &bytes)?;
+        caught(|| xlsx(path, bytes))
+    } else {
+        refuse_scattered(path, &bytes)?;
+        caught(|| xls(path, bytes))
     };
     let sheets =
         sheets.unwrap_or_else(|| Err(damaged(path, "contents that contradict each other")))?;
@@ -189,15 +186,6 @@ fn xls(path: &Path, bytes: Vec<u8>) -> Result<Sheets, ReadError> {
         sheets.push((name, text));
     }
     Ok(sheets)
-}
-
-fn damaged(path: &Path, found: &str) -> ReadError {
-    ReadError::new(
-        path,
-        "an Excel workbook",
-        found,
-        "Open it in a spreadsheet program and save it as .xlsx or CSV.",
-    )
 }
 
 #[cfg(test)]

@@ -40,7 +40,7 @@ use ::hdf5::{AttrValue, FileBuilder};
 use crate::hdf5_write::record::Folder;
 use crate::output::write_whole_or;
 
-pub use crate::hdf5_write::record::{ColumnToWrite, RecordTable, Stored, Value};
+pub use crate::hdf5_write::record::{AttributeValue, ColumnToWrite, RecordTable, Stored};
 
 /// Version of the layout, written as `impactid_layout` into the file.
 const LAYOUT_VERSION: i64 = 1;
@@ -88,7 +88,7 @@ impl WriteError {
 /// Collects records; the file appears with [`CampaignWriter::finish`].
 pub struct CampaignWriter {
     path: PathBuf,
-    attributes: Vec<(String, Value)>,
+    attributes: Vec<(String, AttributeValue)>,
     root: Folder,
     single_precision: bool,
 }
@@ -113,7 +113,7 @@ impl CampaignWriter {
     }
 
     /// An attribute of the whole file, inherited by all records.
-    pub fn attribute(&mut self, name: &str, value: impl Into<Value>) -> &mut Self {
+    pub fn attribute(&mut self, name: &str, value: impl Into<AttributeValue>) -> &mut Self {
         self.attributes.push((name.to_owned(), value.into()));
         self
     }

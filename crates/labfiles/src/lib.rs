@@ -47,6 +47,7 @@
 
 pub mod attribute;
 mod bytes;
+mod channel;
 mod clocks;
 pub mod convert;
 mod csv;

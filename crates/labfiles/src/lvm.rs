@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::bytes::to_usize;
+use crate::lvm::header::Column;
 use crate::lvm::scan::{Keys, Scan, Segment};
 use crate::rate;
 use crate::source::{
@@ -30,17 +31,6 @@ struct Table {
     layout: Layout,
     columns: Vec<usize>,
     rows: usize,
-}
-
-/// What a column of a table holds.
-#[derive(Clone, Copy, PartialEq)]
-enum Column {
-    /// X values for the channels from this number on.
-    X(usize),
-    /// The channel of this number.
-    Y(usize),
-    /// Remarks.
-    Comment,
 }
 
 /// Open a `LabVIEW` measurement file.

@@ -81,9 +81,10 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         return Err(ReadError::new(path, "a record file", *kind, remedy));
     }
     let extension = path.extension().unwrap_or_default();
-    match TABLES.iter().any(|t| extension.eq_ignore_ascii_case(t)) || looks_like_text(&front) {
-        true => csv::open(path),
-        false => Err(unknown(path, &front)),
+    if TABLES.iter().any(|t| extension.eq_ignore_ascii_case(t)) || looks_like_text(&front) {
+        csv::open(path)
+    } else {
+        Err(unknown(path, &front))
     }
 }
 

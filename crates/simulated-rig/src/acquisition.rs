@@ -4,7 +4,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::effects::Effects;
+use crate::effects::RigEffects;
 use crate::truth::{Faults, TrueImpact};
 
 /// Samples per second, Hz.
@@ -14,12 +14,12 @@ pub const FULL_SCALE_V: f64 = 5.0;
 
 /// First-order high-pass x → y, y' + `ω_c` y = x', run at a fine step.
 #[derive(Debug, Clone)]
-pub struct HighPass {
+pub struct SensorHighPass {
     low: f64,
     decay: f64,
 }
 
-impl HighPass {
+impl SensorHighPass {
     /// A high-pass of the given corner for samples `step_s` apart.
     pub fn new(corner_hz: f64, step_s: f64) -> Self {
         Self {
@@ -113,7 +113,7 @@ pub struct Disturbance {
 
 impl Disturbance {
     /// That of one record of a campaign.
-    pub fn new(effects: &Effects, seed: u64, record: usize) -> Self {
+    pub fn new(effects: &RigEffects, seed: u64, record: usize) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0xF11C_4E12);
         rng.set_stream(record as u64);
         Self {

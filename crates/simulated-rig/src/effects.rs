@@ -45,7 +45,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// The effects of one campaign with their drawn sizes, the truth that a fit may find.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Effects {
+pub struct RigEffects {
     /// Gaps that are not what is stated.
     pub gaps: Vec<TrueGap>,
     /// Second harmonic of the force.
@@ -92,7 +92,7 @@ pub struct Effects {
     pub restarts: Option<Restarts>,
 }
 
-impl Effects {
+impl RigEffects {
     /// True clearance of a stated one, m.
     pub fn true_clearance_m(&self, stated_m: f64) -> f64 {
         let gap = self.gaps.iter().find(|g| g.stated_m == stated_m);

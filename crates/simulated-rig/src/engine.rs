@@ -5,7 +5,7 @@ use impact_oscillator::model::Impact;
 use impact_oscillator::model::params::{Initial, ModelError, Setting};
 use impact_oscillator::model::simulate::{Simulator, Trajectory};
 
-use super::equations::{ContactLaw, Equations, Phase4};
+use super::equations::{ContactModel, Equations, Phase4};
 use super::integrate::{Hit, Integrator, Recording};
 use super::laboratory::Laboratory;
 use super::plan::Step;
@@ -60,11 +60,11 @@ impl Laboratory {
         )
     }
 
-    fn law(&self) -> Result<ContactLaw, ModelError> {
-        ContactLaw::new(&self.truth, &self.effects)
+    fn law(&self) -> Result<ContactModel, ModelError> {
+        ContactModel::new(&self.truth, &self.effects)
     }
 
-    fn equations(&self, law: ContactLaw, index: usize, step: &Step) -> Equations {
+    fn equations(&self, law: ContactModel, index: usize, step: &Step) -> Equations {
         let last = self.plan.steps.len().saturating_sub(1);
         let elapsed = if last > 0 {
             index as f64 / last as f64
@@ -231,7 +231,7 @@ impl Recorded {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::{Effects, Harmonic};
+    use crate::effects::{Harmonic, RigEffects};
     use crate::plan::Plan;
     use crate::truth::{Differences, Faults, Truth};
     use impact_records::record::Sweep;
@@ -245,7 +245,7 @@ mod tests {
         }
     }
 
-    fn laboratory(truth: Truth, effects: Effects, steps: Vec<Step>) -> Laboratory {
+    fn laboratory(truth: Truth, effects: RigEffects, steps: Vec<Step>) -> Laboratory {
         Laboratory {
             truth,
             faults: Faults::default(),
@@ -275,7 +275,7 @@ mod tests {
                 mass: 0.03,
             });
             let step = step(eta, rho);
-            let laboratory = laboratory(truth, Effects::default(), vec![step]);
+            let laboratory = laboratory(truth, RigEffects::default(), vec![step]);
             let mut exact = laboratory.at_rest(0, &step).unwrap();
             let mut integrated = laboratory.integrated(0, &step).unwrap();
             assert!(matches!(exact, Engine::Exact(_)));
@@ -305,12 +305,12 @@ mod tests {
             amplitude: harmonics[i].1,
             phase_rad: harmonics[i].2,
         };
-        let effects = Effects {
+        let effects = RigEffects {
             second_harmonic: harmonic(1),
             third_harmonic: harmonic(2),
             force_slope: 0.1,
             force_curvature: 0.05,
-            ..Effects::default()
+            ..RigEffects::default()
         };
         let eta = 1.3;
         let step = step(eta, 30.0);
@@ -340,9 +340,9 @@ mod tests {
     fn valid_f0_drifts_about_its_mean() {
         // slow drive far below resonance: X = F/κ, κ = (1 + d(s − ½))²
         let truth = Truth::symmetric(0.9, 10.0, 0.3, 1e-3);
-        let effects = Effects {
+        let effects = RigEffects {
             frequency_drift: 0.1,
-            ..Effects::default()
+            ..RigEffects::default()
         };
         let step = step(0.01, 30.0);
         let laboratory = laboratory(truth, effects, vec![step; 3]);

@@ -6,7 +6,7 @@
 
 use impact_oscillator::model::params::ModelError;
 
-use super::effects::Effects;
+use super::effects::RigEffects;
 use super::plan::Step;
 use super::truth::Truth;
 
@@ -72,19 +72,19 @@ impl Compliance {
 
 /// How the masses act on each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ContactLaw {
+pub enum ContactModel {
     /// Newton's instantaneous impact with this R.
     Newton(f64),
     /// A spring and a damper.
     Compliant(Compliance),
 }
 
-impl ContactLaw {
+impl ContactModel {
     /// The law of a rig.
     ///
     /// # Errors
     /// [`ModelError`] if a contact of finite duration cannot have the rig's R.
-    pub fn new(truth: &Truth, effects: &Effects) -> Result<Self, ModelError> {
+    pub fn new(truth: &Truth, effects: &RigEffects) -> Result<Self, ModelError> {
         let r = truth.restitution;
         if effects.contact_duration_s == 0.0 {
             return Ok(Self::Newton(r));
@@ -102,7 +102,7 @@ pub struct Equations {
     /// Gap at X = Y = 0: 2ρ.
     pub gap: f64,
     /// How the masses act on each other.
-    pub law: ContactLaw,
+    pub law: ContactModel,
     /// μ
     pub friction: f64,
     /// 2δ of each mass.
@@ -127,8 +127,8 @@ impl Equations {
     /// At a step of a plan, when a share `elapsed` (0 to 1) of the campaign has gone by.
     pub fn new(
         truth: &Truth,
-        effects: &Effects,
-        law: ContactLaw,
+        effects: &RigEffects,
+        law: ContactModel,
         step: &Step,
         elapsed: f64,
     ) -> Self {
@@ -143,9 +143,12 @@ impl Equations {
         let beyond = eta - 1.0;
         let lean = 1.0 + beyond * (effects.force_slope + beyond * effects.force_curvature);
         let amplitude = effects.resonance_amplitude_m / x_st;
-        let over_amplitude = |strength: f64, power: i32| match strength == 0.0 {
-            true => 0.0,
-            false => strength / amplitude.powi(power),
+        let over_amplitude = |strength: f64, power: i32| {
+            if strength == 0.0 {
+                0.0
+            } else {
+                strength / amplitude.powi(power)
+            }
         };
         let harmonic = |h: super::effects::Harmonic| {
             [h.phase_rad.cos(), h.phase_rad.sin()].map(|c| c * h.amplitude)
@@ -168,7 +171,7 @@ impl Equations {
 
     /// Two free masses: springs of stiffness κ and cubic h/A², friction μ, no drive, no damping.
     #[cfg(test)]
-    pub fn undriven(stiffness: f64, cubic: f64, friction: f64, law: ContactLaw) -> Self {
+    pub fn undriven(stiffness: f64, cubic: f64, friction: f64, law: ContactModel) -> Self {
         Self {
             eta: 1.0,
             gap: 1e3,
@@ -230,9 +233,9 @@ mod tests {
     fn prop_hysteretic_damping_halves_at_twice_the_frequency() {
         let truth = Truth::symmetric(0.8, 12.0, 0.05, 1e-3);
         let at_twice_f0 = |truth: &Truth, hysteretic_damping| {
-            let effects = Effects {
+            let effects = RigEffects {
                 hysteretic_damping,
-                ..Effects::default()
+                ..RigEffects::default()
             };
             let step = Step {
                 frequency_hz: 24.0,
@@ -240,7 +243,7 @@ mod tests {
                 sweep: Sweep::Up,
                 from_rest: true,
             };
-            Equations::new(truth, &effects, ContactLaw::Newton(0.8), &step, 0.5)
+            Equations::new(truth, &effects, ContactModel::Newton(0.8), &step, 0.5)
         };
         // b ∝ 1/η: half the dashpots, which is half the damping ratio
         let half = Truth::symmetric(0.8, 12.0, 0.025, 1e-3);

@@ -4,7 +4,7 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::effects::Effects;
+use super::effects::RigEffects;
 use super::plan::Plan;
 use super::rig_spec::RigSpec;
 use super::truth::{Faults, Truth, draw_differences};
@@ -18,7 +18,7 @@ pub struct Laboratory {
     /// Faults of the rig.
     pub faults: Faults,
     /// Effects beyond the model.
-    pub effects: Effects,
+    pub effects: RigEffects,
     /// Standard uncertainty that the laboratory states of its gaps, m, if they are off.
     pub clearance_uncertainty_m: Option<f64>,
     /// The settings that are visited.

@@ -8,7 +8,7 @@
 //! ```
 //! use impact_records::record::Sweep;
 //! use simulated_rig::run::calibrated;
-//! use simulated_rig::{Effects, Faults, Laboratory, Plan, Step, Truth, records};
+//! use simulated_rig::{RigEffects, Faults, Laboratory, Plan, Step, Truth, records};
 //!
 //! let step = |i: u32| Step {
 //!     frequency_hz: 9.0 + 0.5 * f64::from(i),
@@ -20,7 +20,7 @@
 //!     // R, f0 in Hz, β and x_st in m
 //!     truth: Truth::symmetric(0.8, 12.0, 0.05, 1e-3),
 //!     faults: Faults::default(),
-//!     effects: Effects::default(),
+//!     effects: RigEffects::default(),
 //!     clearance_uncertainty_m: None,
 //!     plan: Plan { steps: (0..4).map(step).collect() },
 //!     rig_seed: 1,
@@ -49,7 +49,7 @@ pub mod truth;
 #[cfg(test)]
 mod tests;
 
-pub use effects::Effects;
+pub use effects::RigEffects;
 pub use laboratory::{Laboratory, Reach, draw};
 pub use plan::{Plan, Step};
 pub use rig_spec::{Effect, RigError, RigSpec};

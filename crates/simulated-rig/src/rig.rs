@@ -18,7 +18,7 @@ pub const ROLES: [(Role, Dimension, bool); 7] = [
 
 /// Sensitivity of a channel: what one volt stands for nominally.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sensitivity {
+pub struct SensorSensitivity {
     /// Name of the channel in the file.
     pub name: &'static str,
     /// SI units per volt.
@@ -27,13 +27,13 @@ pub struct Sensitivity {
 
 /// The channels of the virtual rig with their nominal sensitivities, for a rig of this truth:
 /// round numbers that put the largest motions well within the converter's range.
-pub fn sensitivities(truth: &Truth) -> [Sensitivity; 7] {
+pub fn sensitivities(truth: &Truth) -> [SensorSensitivity; 7] {
     // The resonance amplitude x_st/(2β) must stay below four fifths of full scale.
     let reach = (0.5 / truth.damping_ratio() / (0.8 * acquisition::FULL_SCALE_V)).max(2.0);
     let length = round_up(truth.static_deflection_m() * reach);
     let speed = round_up(truth.static_deflection_m() * truth.natural_rate() * reach);
     let si_per_volt = [1.0, 1.0, speed, speed, length, length, 1e-2 * length];
-    std::array::from_fn(|i| Sensitivity {
+    std::array::from_fn(|i| SensorSensitivity {
         name: NAMES[i],
         si_per_volt: si_per_volt[i],
     })

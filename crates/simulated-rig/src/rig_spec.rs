@@ -1,5 +1,5 @@
 //! What a real rig does beyond the model: each effect is a switch with a strength, and the
-//! strengths are drawn for one campaign as [`Effects`].
+//! strengths are drawn for one campaign as [`RigEffects`].
 //!
 //! | effect | strength | what it does |
 //! | --- | --- | --- |
@@ -36,7 +36,7 @@ use strum::VariantArray;
 use thiserror::Error;
 
 use super::acquisition::RATE_HZ;
-use super::effects::{Effects, Harmonic, Restarts};
+use super::effects::{Harmonic, Restarts, RigEffects};
 use super::plan::Plan;
 use super::truth::Truth;
 
@@ -197,7 +197,7 @@ pub struct Switch {
 
 impl Switch {
     /// Switch it on in the effects of a campaign.
-    fn draw(&self, effects: &mut Effects, truth: &mut Truth, plan: &Plan, rng: &mut ChaCha8Rng) {
+    fn draw(&self, effects: &mut RigEffects, truth: &mut Truth, plan: &Plan, rng: &mut ChaCha8Rng) {
         let spread = rng.random_range(0.5..1.5);
         let size = self.strength * if self.spread { spread } else { 1.0 };
         let sign = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
@@ -332,10 +332,10 @@ impl RigSpec {
     /// The effects of one campaign: sizes, signs and phases drawn from a seed. Each effect has a
     /// random stream of its own, so switching one on does not change the others.
     /// The asymmetry of damping is put into the truth.
-    pub fn draw(&self, truth: &mut Truth, plan: &Plan, seed: u64) -> Effects {
-        let mut effects = Effects {
+    pub fn draw(&self, truth: &mut Truth, plan: &Plan, seed: u64) -> RigEffects {
+        let mut effects = RigEffects {
             resonance_amplitude_m: truth.static_deflection_m() / (2.0 * truth.damping_ratio()),
-            ..Effects::default()
+            ..RigEffects::default()
         };
         for switch in &self.switches {
             let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0x00EF_FEC7);

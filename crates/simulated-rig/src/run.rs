@@ -4,7 +4,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use crate::acquisition::{self, Disturbance, HighPass};
+use crate::acquisition::{self, Disturbance, SensorHighPass};
 use crate::engine::{Engine, Recorded};
 use crate::equations::Phase4;
 use crate::laboratory::Laboratory;
@@ -237,9 +237,10 @@ impl VirtualRig<'_> {
             "integrator_x" | "integrator_y" => effects.resonance_amplitude_m,
             _ => effects.resonance_amplitude_m * self.laboratory.truth.natural_rate(),
         };
-        match effects.compression == 0.0 {
-            true => 0.0,
-            false => effects.compression / (full * full),
+        if effects.compression == 0.0 {
+            0.0
+        } else {
+            effects.compression / (full * full)
         }
     }
 
@@ -287,7 +288,7 @@ impl VirtualRig<'_> {
 
 /// One component of a motion through a high-pass, at the rate of sampling.
 fn filtered(states: &[Phase4], component: usize, corner_hz: Option<f64>) -> Vec<f64> {
-    let mut filter = corner_hz.map(|c| HighPass::new(c, FINE_STEP_S));
+    let mut filter = corner_hz.map(|c| SensorHighPass::new(c, FINE_STEP_S));
     let mut last = states.first().copied().unwrap_or_default();
     let mut out = Vec::with_capacity(SAMPLES);
     for (i, state) in states.iter().enumerate() {

@@ -2,14 +2,14 @@
 
 use super::acquisition::RATE_HZ;
 use super::run::calibrated;
-use super::{Effects, Faults, Laboratory, Plan, Truth, records};
+use super::{Faults, Laboratory, Plan, RigEffects, Truth, records};
 use impact_records::event::{DetectSettings, Impact, RigKind, detect};
 use impact_records::motion::{ClassifySettings, LateChannel, late_channels, observe};
 use impact_records::record::{Record, Role};
 use impact_records::signal::robust;
 
 /// A campaign of forty records with R = 0.7.
-fn campaign(effects: &Effects) -> Vec<Record> {
+fn campaign(effects: &RigEffects) -> Vec<Record> {
     let laboratory = Laboratory {
         truth: Truth::symmetric(0.7, 12.0, 0.06, 1e-3),
         faults: Faults::default(),
@@ -25,7 +25,7 @@ fn campaign(effects: &Effects) -> Vec<Record> {
 }
 
 /// Its impacts as detected.
-fn impacts(effects: &Effects) -> Vec<Impact> {
+fn impacts(effects: &RigEffects) -> Vec<Impact> {
     let records = campaign(effects);
     let found = records
         .iter()
@@ -46,9 +46,9 @@ fn restitution(impacts: &[Impact]) -> f64 {
 #[test]
 fn valid_contacts_of_finite_duration_keep_their_restitution() {
     for duration_s in [0.3e-3, 0.6e-3, 1e-3] {
-        let impacts = impacts(&Effects {
+        let impacts = impacts(&RigEffects {
             contact_duration_s: duration_s,
-            ..Effects::default()
+            ..RigEffects::default()
         });
         let durations: Vec<f64> = impacts
             .iter()
@@ -79,14 +79,14 @@ fn valid_contacts_of_finite_duration_keep_their_restitution() {
 
 #[test]
 fn instantaneous_contacts_are_instants() {
-    let impacts = impacts(&Effects::default());
+    let impacts = impacts(&RigEffects::default());
     assert!(impacts.iter().all(|i| i.contact_duration_s.is_none()));
     assert!((restitution(&impacts) / 0.7 - 1.0).abs() < 3e-3);
 }
 
 #[test]
 fn valid_delayed_velocities_keep_their_restitution() {
-    let mut effects = Effects::default();
+    let mut effects = RigEffects::default();
     // x a quarter of a sample late, y a quarter early
     (effects.delays_s[2], effects.delays_s[3]) = (0.125e-3, -0.125e-3);
     let r = restitution(&impacts(&effects));
@@ -101,7 +101,7 @@ fn valid_channels_that_are_late_by_different_delays_keep_their_restitution() {
         [0.163, 0.189, 0.05, 0.03],
         [-0.25, 0.25, 0.2, -0.2],
     ] {
-        let mut effects = Effects::default();
+        let mut effects = RigEffects::default();
         effects.delays_s[2..6].copy_from_slice(&delays_ms.map(|ms| 1e-3 * ms));
         let r = restitution(&impacts(&effects));
         assert!((r / 0.7 - 1.0).abs() < 0.01, "{delays_ms:?}: R = {r}");
@@ -119,8 +119,8 @@ fn late(records: &[Record]) -> Vec<LateChannel> {
 
 #[test]
 fn valid_a_velocity_that_is_late_by_three_samples_is_told_by_its_jumps() {
-    assert_eq!(late(&campaign(&Effects::default())), []);
-    let mut effects = Effects::default();
+    assert_eq!(late(&campaign(&RigEffects::default())), []);
+    let mut effects = RigEffects::default();
     effects.delays_s[2] = 1.5e-3;
     let [x] = late(&campaign(&effects))[..] else {
         panic!("one channel is late");
@@ -132,7 +132,7 @@ fn valid_a_velocity_that_is_late_by_three_samples_is_told_by_its_jumps() {
 
 #[test]
 fn valid_velocities_behind_a_low_pass_are_told_by_their_jumps() {
-    let mut records = campaign(&Effects::default());
+    let mut records = campaign(&RigEffects::default());
     let decay = (-std::f64::consts::TAU * 200.0 / RATE_HZ).exp();
     for channel in records.iter_mut().flat_map(|r| &mut r.channels) {
         if matches!(channel.role, Role::VelocityX | Role::VelocityY) {

@@ -5,7 +5,7 @@ use toml::Spanned;
 use super::diagnostic::{Code, FaultCollector};
 use super::lines::Text;
 use super::nearest::nearest;
-use super::values::{Placed, Quantity};
+use super::values::{Placed, WrittenQuantity};
 use labfiles::units::{self, Dimension, QuantityError};
 
 /// The lines of campaign.toml and the problems found so far.
@@ -32,7 +32,7 @@ impl ResolveContext<'_> {
     /// A quantity of a dimension in SI; `None` if it is not written or faulty.
     pub(super) fn quantity(
         &mut self,
-        placed: &Placed<Quantity>,
+        placed: &Placed<WrittenQuantity>,
         key: &str,
         dimension: Dimension,
     ) -> Option<f64> {
@@ -55,7 +55,7 @@ impl ResolveContext<'_> {
     /// A quantity within a range, both ends allowed.
     pub(super) fn within(
         &mut self,
-        placed: &Placed<Quantity>,
+        placed: &Placed<WrittenQuantity>,
         key: &str,
         dimension: Dimension,
         range: [f64; 2],
@@ -67,9 +67,10 @@ impl ResolveContext<'_> {
         let symbol = dimension.si_symbol();
         let message = format!("{value} {symbol} is out of range");
         let zero = if range[0] == 0.0 { "0 or " } else { "" };
-        let remedy = match range[1].is_finite() {
-            true => format!("write a value from {} to {} {symbol}", range[0], range[1]),
-            false => format!("write {zero}a positive value, in {symbol} or a multiple of it"),
+        let remedy = if range[1].is_finite() {
+            format!("write a value from {} to {} {symbol}", range[0], range[1])
+        } else {
+            format!("write {zero}a positive value, in {symbol} or a multiple of it")
         };
         if let Some(placed) = placed {
             self.fault(Code::OutOfRange, placed, key, message, &remedy);
@@ -99,7 +100,7 @@ impl ResolveContext<'_> {
     /// A positive quantity.
     pub(super) fn positive(
         &mut self,
-        placed: &Placed<Quantity>,
+        placed: &Placed<WrittenQuantity>,
         key: &str,
         dimension: Dimension,
     ) -> Option<f64> {
@@ -113,19 +114,21 @@ pub(super) struct Wrong {
     pub(super) remedy: String,
 }
 
-fn in_si(quantity: &Quantity, key: &str, dimension: Dimension) -> Result<f64, Wrong> {
+fn in_si(quantity: &WrittenQuantity, key: &str, dimension: Dimension) -> Result<f64, Wrong> {
     let text = match quantity {
-        Quantity::Bare(value) if dimension == Dimension::Number && value.is_finite() => {
+        WrittenQuantity::Bare(value) if dimension == Dimension::Number && value.is_finite() => {
             return Ok(*value);
         }
-        Quantity::Bare(value) if dimension == Dimension::Number => {
+        WrittenQuantity::Bare(value) if dimension == Dimension::Number => {
             return Err(Wrong {
                 message: format!("{value} is not a number"),
                 remedy: "write a finite number".to_owned(),
             });
         }
-        Quantity::Bare(value) => return Err(without_unit(key, &value.to_string(), dimension)),
-        Quantity::Text(text) => text,
+        WrittenQuantity::Bare(value) => {
+            return Err(without_unit(key, &value.to_string(), dimension));
+        }
+        WrittenQuantity::Text(text) => text,
     };
     units::parse_quantity_of(text, dimension).map_err(|error| match &error {
         QuantityError::Dimension {

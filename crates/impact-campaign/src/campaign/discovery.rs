@@ -68,9 +68,10 @@ pub(super) fn list_files(
         let found = expand(shared.folder, pattern);
         if found.is_empty() && shared.taken.is_none() {
             let what = format!("no file matches '{pattern}' in {}", shared.folder.display());
-            let remedy = match pattern.contains('\\') {
-                true => "write / between folders, as in \"sub/*.csv\", on Windows too",
-                false => "check the pattern; it is relative to campaign.toml",
+            let remedy = if pattern.contains('\\') {
+                "write / between folders, as in \"sub/*.csv\", on Windows too"
+            } else {
+                "check the pattern; it is relative to campaign.toml"
             };
             context.fault(Code::UnreadableFile, files, "records.files", what, remedy);
         }

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 /// What is known of a key apart from its value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Key {
+pub struct KeyRow {
     /// Name.
     pub name: &'static str,
     /// What it states, in Markdown.
@@ -47,9 +47,9 @@ macro_rules! keys {
 
         impl $section {
             /// Its keys.
-            pub const KEYS: &'static [$crate::campaign::keys::Key] = &[
+            pub const KEYS: &'static [$crate::campaign::keys::KeyRow] = &[
                 $(
-                    $crate::campaign::keys::Key {
+                    $crate::campaign::keys::KeyRow {
                         name: stringify!($key),
                         meaning: &[$($meaning),+],
                         default: $crate::campaign::keys::optional!($($default)?),
@@ -74,7 +74,7 @@ macro_rules! optional {
 pub(super) use {keys, optional};
 
 /// The lines of `impactid init` for the keys of a section.
-pub(super) fn init_lines(keys: &[Key]) -> String {
+pub(super) fn init_lines(keys: &[KeyRow]) -> String {
     let mut text = String::new();
     for line in keys.iter().filter_map(|key| key.init) {
         // writing to a String cannot fail
@@ -84,7 +84,7 @@ pub(super) fn init_lines(keys: &[Key]) -> String {
 }
 
 /// The table of docs/campaign.md for the keys of a section; `heading` is that of the second column.
-pub fn markdown(keys: &[Key], heading: &str) -> String {
+pub fn markdown(keys: &[KeyRow], heading: &str) -> String {
     let defaults = keys.iter().any(|key| key.default.is_some());
     let row = |cells: &[&str]| format!("| {} |\n", cells.join(" | "));
     let width = if defaults { 3 } else { 2 };

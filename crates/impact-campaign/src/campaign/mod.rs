@@ -27,4 +27,4 @@ pub mod written;
 pub use discovery::{Opener, Taken};
 pub use named_files::NamedFiles;
 pub use nearest::nearest;
-pub use resolve::{Outcome, load, load_taken};
+pub use resolve::{LoadOutcome, load, load_taken};

@@ -87,11 +87,10 @@ fn note_syntax(places: &Text<'_>, fault: &toml::de::Error, faults: &mut FaultCol
     let line = fault.span().map(|s| places.line(s.start));
     let what = format!("not valid TOML: {}", one_line(fault.message()));
     let escaped = fault.message().contains("escape");
-    let remedy = match escaped {
-        true => {
-            "write / between folders, \"sub/*.csv\", on Windows too; \\ within \" quotes begins an escape"
-        }
-        false => "fix the line; texts are written in quotes, tables in [brackets]",
+    let remedy = if escaped {
+        "write / between folders, \"sub/*.csv\", on Windows too; \\ within \" quotes begins an escape"
+    } else {
+        "fix the line; texts are written in quotes, tables in [brackets]"
     };
     faults.fault(Code::Syntax, line, "", what, remedy);
 }

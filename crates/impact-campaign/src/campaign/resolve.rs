@@ -16,7 +16,7 @@ use super::written::WrittenCampaign;
 
 /// A campaign as far as it could be resolved, and everything that is wrong with it.
 #[derive(Debug)]
-pub struct Outcome {
+pub struct LoadOutcome {
     /// The campaign; `None` if a problem stops it.
     pub campaign: Option<ResolvedCampaign>,
     /// All problems, the gravest first.
@@ -24,17 +24,17 @@ pub struct Outcome {
 }
 
 /// Read campaign.toml and list its records, opening files by `open`.
-pub fn load(path: &Path, open: Opener<'_>) -> Outcome {
+pub fn load(path: &Path, open: Opener<'_>) -> LoadOutcome {
     load_listed(path, (open, None))
 }
 
 /// As [`load`], while records are still arriving: only the files that are taken are listed, none at
 /// all is no fault, and records that campaign.toml names may not be there yet.
-pub fn load_taken(path: &Path, open: Opener<'_>, taken: Taken<'_>) -> Outcome {
+pub fn load_taken(path: &Path, open: Opener<'_>, taken: Taken<'_>) -> LoadOutcome {
     load_listed(path, (open, Some(taken)))
 }
 
-fn load_listed(path: &Path, files: (Opener<'_>, Option<Taken<'_>>)) -> Outcome {
+fn load_listed(path: &Path, files: (Opener<'_>, Option<Taken<'_>>)) -> LoadOutcome {
     let mut faults = FaultCollector::new(path);
     let text = read::text(path, &mut faults);
     let text = text.as_deref();
@@ -47,7 +47,7 @@ fn load_listed(path: &Path, files: (Opener<'_>, Option<Taken<'_>>)) -> Outcome {
     let blocks = context.faults.blocks();
     let mut diagnostics = context.faults.into_diagnostics();
     diagnostics.sort();
-    Outcome {
+    LoadOutcome {
         campaign: campaign.filter(|_| !blocks),
         diagnostics,
     }

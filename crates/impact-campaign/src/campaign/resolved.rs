@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::sections::analysis::Analysis;
 use super::sections::published::Published;
-use super::sections::report::Report;
+use super::sections::report::ReportSettings;
 use super::sections::rig::NominalValues;
 use super::slashes;
 use super::sources::Sources;
@@ -57,7 +57,7 @@ pub struct ResolvedCampaign {
     /// Settings of the analysis.
     pub analysis: Analysis,
     /// Settings of the report.
-    pub report: Report,
+    pub report: ReportSettings,
     /// Published speeds to be identified from, instead of records.
     #[serde(default)]
     pub published: Option<Published>,

@@ -195,9 +195,10 @@ fn read_header(names: &csv::StringRecord, faults: &mut FaultCollector) -> Header
         ..Header::default()
     };
     for (index, name) in names.iter().enumerate() {
-        let (bare, symbol) = match COLUMNS.contains(&name) {
-            true => (name, None),
-            false => units::split_unit(name),
+        let (bare, symbol) = if COLUMNS.contains(&name) {
+            (name, None)
+        } else {
+            units::split_unit(name)
         };
         let Some(column) = column_of(bare) else {
             note_unknown(name, bare, faults);
@@ -465,9 +466,10 @@ fn expected(column: usize, texts: &[String]) -> (String, &'static str) {
         7 => of(Excitation::VARIANTS),
         _ => {
             let what = if one { "a number" } else { "numbers" };
-            let remedy = match texts.iter().any(|text| text.contains(',')) {
-                true => "write a decimal point",
-                false => "write a number; the unit belongs in the header",
+            let remedy = if texts.iter().any(|text| text.contains(',')) {
+                "write a decimal point"
+            } else {
+                "write a number; the unit belongs in the header"
             };
             (format!("{verb} not {what}"), remedy)
         }

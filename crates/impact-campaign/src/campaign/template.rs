@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::diagnostic::first_of;
 use super::infer::{self, Experiment, FolderContents, InferredChannel};
-use super::keys::{Key, init_lines};
+use super::keys::{KeyRow, init_lines};
 use super::sections::analysis::AnalysisTable;
 use super::sections::records::RecordsTable;
 use super::sections::report::ReportTable;
@@ -34,7 +34,7 @@ pub fn campaign_toml(name: &str, found: &FolderContents) -> String {
 }
 
 /// A section whose lines are those of its keys.
-fn section(text: &mut String, head: &str, keys: &[Key]) -> std::fmt::Result {
+fn section(text: &mut String, head: &str, keys: &[KeyRow]) -> std::fmt::Result {
     writeln!(text, "{head}")?;
     text.write_str(&init_lines(keys))
 }

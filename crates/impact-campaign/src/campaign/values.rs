@@ -40,7 +40,7 @@ pub struct WrittenKey(pub ChannelKey);
 
 /// A quantity as written: text with number and unit, or a bare number.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Quantity {
+pub enum WrittenQuantity {
     /// Number and unit, not yet read.
     Text(String),
     /// A number without unit.
@@ -65,15 +65,15 @@ macro_rules! deserialize_with {
     };
 }
 
-deserialize_with!(QuantityVisitor for Quantity, "a text with number and unit", {
-    fn visit_str<E: de::Error>(self, v: &str) -> Result<Quantity, E> {
-        Ok(Quantity::Text(v.to_owned()))
+deserialize_with!(QuantityVisitor for WrittenQuantity, "a text with number and unit", {
+    fn visit_str<E: de::Error>(self, v: &str) -> Result<WrittenQuantity, E> {
+        Ok(WrittenQuantity::Text(v.to_owned()))
     }
-    fn visit_f64<E: de::Error>(self, v: f64) -> Result<Quantity, E> {
-        Ok(Quantity::Bare(v))
+    fn visit_f64<E: de::Error>(self, v: f64) -> Result<WrittenQuantity, E> {
+        Ok(WrittenQuantity::Bare(v))
     }
-    fn visit_i64<E: de::Error>(self, v: i64) -> Result<Quantity, E> {
-        Ok(Quantity::Bare(v as f64))
+    fn visit_i64<E: de::Error>(self, v: i64) -> Result<WrittenQuantity, E> {
+        Ok(WrittenQuantity::Bare(v as f64))
     }
 });
 

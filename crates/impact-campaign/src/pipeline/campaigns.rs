@@ -25,9 +25,10 @@ pub const TABLE: &str = "comparison.csv";
 /// [`PipelineError::NoResults`] if the folder holds no results, [`PipelineError::Layout`] if they are of
 /// another version.
 pub fn read(folder: &Path, measurement: usize) -> Result<Vec<Campaign>, PipelineError> {
-    let file = match folder.is_dir() {
-        true => folder.join(FILE),
-        false => folder.to_path_buf(),
+    let file = if folder.is_dir() {
+        folder.join(FILE)
+    } else {
+        folder.to_path_buf()
     };
     let unusable = |reason: String, remedy: String| PipelineError::NoResults {
         path: file.display().to_string(),
@@ -56,16 +57,15 @@ pub fn read(folder: &Path, measurement: usize) -> Result<Vec<Campaign>, Pipeline
 /// What to do where there are no results.
 fn missing(folder: &Path) -> String {
     let campaign = folder.join("campaign.toml");
-    match campaign.is_file() {
-        true => format!(
+    if campaign.is_file() {
+        format!(
             "this folder holds records, not results: give {}",
             campaign.display()
-        ),
-        false => {
-            "give folders that `impactid run` or `impactid identify` has written, or campaign.toml \
+        )
+    } else {
+        "give folders that `impactid run` or `impactid identify` has written, or campaign.toml \
                   files"
-                .to_owned()
-        }
+            .to_owned()
     }
 }
 
@@ -124,7 +124,7 @@ pub fn tell_apart(campaigns: &mut [Campaign], places: &[String]) {
 /// versions.
 #[derive(Serialize)]
 struct Written<'a> {
-    outcome: impact_identification::compare::Outcome,
+    outcome: impact_identification::compare::ComparisonOutcome,
     p_value: Option<f64>,
     #[serde(flatten)]
     comparison: &'a Comparison,

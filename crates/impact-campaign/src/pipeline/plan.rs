@@ -14,7 +14,7 @@ use labfiles::output::write_together;
 
 /// What is written as plan.json.
 #[derive(Debug, Clone, Serialize)]
-pub struct Plan {
+pub struct MeasurementPlan {
     /// R as identified now; `None` if it is not identifiable.
     pub restitution: Option<f64>,
     /// Its standard error now.
@@ -42,7 +42,7 @@ pub fn plan(
     count: usize,
     out: &Path,
     progress: Progress<'_>,
-) -> Result<Plan, PipelineError> {
+) -> Result<MeasurementPlan, PipelineError> {
     let observed = Observed::of(campaign, progress)?;
     progress("identify", 0, 1);
     let found = identify::identify(campaign, &observed, None)?;
@@ -55,7 +55,7 @@ pub fn plan(
     let fitted = found.identification.joint_fit.as_ref();
     let boundaries = fitted.and_then(|joint| halving(&evidence, &joint.fit.parameters));
     let now = found.identification.joint.parameters.restitution.as_ref();
-    let plan = Plan {
+    let plan = MeasurementPlan {
         restitution: now.and_then(|r| r.value),
         restitution_error_now: now.and_then(|r| r.standard_error),
         proposals,

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::campaign::sections::report::Report as StatedOptions;
+use crate::campaign::sections::report::ReportSettings as StatedOptions;
 use crate::pipeline::identify::{IdentificationFile, settings};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::{Observed, PipelineError};

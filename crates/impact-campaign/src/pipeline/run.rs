@@ -58,9 +58,10 @@ pub fn run(
             identification: published::run(campaign, published, out, command_line)?,
         });
     }
-    let observed = match campaign.records.len() < destination.keep_from {
-        true => Observed::of(campaign, progress)?,
-        false => Observed::resumable(campaign, (out, destination.resume), progress)?,
+    let observed = if campaign.records.len() < destination.keep_from {
+        Observed::of(campaign, progress)?
+    } else {
+        Observed::resumable(campaign, (out, destination.resume), progress)?
     };
     complete(campaign, (observed, None), destination, progress)
 }

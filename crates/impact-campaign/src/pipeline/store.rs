@@ -13,7 +13,7 @@ use impact_identification::identify::residuals::MethodResiduals;
 use impact_records::motion::{Folded, Observation, brackets};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup, TIMES_CONTACT, TIMES_ERROR};
 use impact_records::record::{ContactContent, Flag, Record, Role};
-use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Value};
+use labfiles::hdf5_write::{AttributeValue, CampaignWriter, ColumnToWrite, RecordTable};
 use labfiles::units::{Dimension, Quantity, Unit};
 
 const RESOLVED: &str = "campaign.resolved.json";
@@ -181,7 +181,7 @@ fn table(place: usize, record: &Record) -> RecordTable {
     }
 }
 
-fn table_attributes(record: &Record) -> Vec<(String, Value)> {
+fn table_attributes(record: &Record) -> Vec<(String, AttributeValue)> {
     let listed = record.listed;
     let known = [
         (TIMES_ERROR, listed.error_s),

@@ -26,16 +26,16 @@ pub(super) fn versions() -> BTreeMap<String, String> {
 
 /// Several campaigns in their order.
 #[derive(Debug, Clone, Serialize)]
-pub struct Summary {
+pub struct RunSummary {
     /// Versions of the program and of the files' layouts.
     pub versions: BTreeMap<String, String>,
     /// A row for each campaign.
-    pub campaigns: Vec<Row>,
+    pub campaigns: Vec<SummaryRow>,
 }
 
 /// One campaign.
 #[derive(Debug, Clone, Serialize)]
-pub struct Row {
+pub struct SummaryRow {
     /// Its campaign.toml, as given.
     pub campaign: String,
     /// The folder of its results in that of the summary.
@@ -44,13 +44,13 @@ pub struct Row {
     pub exit_code: u8,
     /// What came of it.
     #[serde(flatten)]
-    pub outcome: Outcome,
+    pub outcome: RunOutcome,
 }
 
 /// What came of a campaign.
 #[derive(Debug, Clone, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Outcome {
+pub enum RunOutcome {
     /// Its results are in the folder.
     Result(Box<Found>),
     /// It could not be run; what was in its folder is untouched.
@@ -92,9 +92,9 @@ impl Found {
     }
 }
 
-impl Summary {
+impl RunSummary {
     /// Rows with this program's versions.
-    pub fn of(campaigns: Vec<Row>) -> Self {
+    pub fn of(campaigns: Vec<SummaryRow>) -> Self {
         Self {
             versions: versions(),
             campaigns,
@@ -133,7 +133,7 @@ impl Summary {
     }
 }
 
-impl Row {
+impl SummaryRow {
     fn cells(&self) -> Vec<String> {
         let mut cells = vec![
             self.campaign.clone(),
@@ -141,7 +141,7 @@ impl Row {
             self.exit_code.to_string(),
         ];
         match &self.outcome {
-            Outcome::Result(found) => {
+            RunOutcome::Result(found) => {
                 cells.push(found.verdict.name().to_owned());
                 cells.push(found.records.to_string());
                 cells.push(found.usable_records.to_string());
@@ -150,7 +150,7 @@ impl Row {
                 }
                 cells.push(String::new());
             }
-            Outcome::Errors(faults) => {
+            RunOutcome::Errors(faults) => {
                 cells.resize(6 + 5 * Coordinate::PHYSICAL.len(), String::new());
                 let messages: Vec<&str> = faults.iter().map(|f| f.message.as_str()).collect();
                 cells.push(messages.join("; "));
@@ -179,8 +179,8 @@ mod tests {
     use super::*;
     use impact_identification::identify::Status;
 
-    fn row(folder: &str, exit_code: u8, outcome: Outcome) -> Row {
-        Row {
+    fn row(folder: &str, exit_code: u8, outcome: RunOutcome) -> SummaryRow {
+        SummaryRow {
             campaign: format!("{folder}/campaign.toml"),
             folder: folder.to_owned(),
             exit_code,
@@ -210,9 +210,9 @@ mod tests {
             message: "a, \"quoted\" message".to_owned(),
             remedy: "a remedy".to_owned(),
         }];
-        let summary = Summary::of(vec![
-            row("day1", 0, Outcome::Result(Box::new(found))),
-            row("day2", 2, Outcome::Errors(faults)),
+        let summary = RunSummary::of(vec![
+            row("day1", 0, RunOutcome::Result(Box::new(found))),
+            row("day2", 2, RunOutcome::Errors(faults)),
         ]);
         let folder = tempfile::tempdir().unwrap();
         summary.write(folder.path()).unwrap();

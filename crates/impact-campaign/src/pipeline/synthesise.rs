@@ -14,7 +14,7 @@ use simulated_rig::acquisition::{FULL_SCALE_V, converter_step};
 use simulated_rig::rig::{ROLES, sensitivities};
 use simulated_rig::run::RATE_HZ;
 use simulated_rig::{
-    Effects, Faults, Laboratory, Plan, RawRecord, RigSpec, TrueImpact, Truth, blocks,
+    Faults, Laboratory, Plan, RawRecord, RigEffects, RigSpec, TrueImpact, Truth, blocks,
 };
 
 /// What a synthetic campaign is made of.
@@ -68,7 +68,7 @@ struct TruthFile<'a> {
     static_deflection_m: f64,
     /// What was drawn of the effects beyond the model.
     #[serde(skip_serializing_if = "Option::is_none")]
-    effects: Option<&'a Effects>,
+    effects: Option<&'a RigEffects>,
     /// Separation speed at the end over approach speed at the start of contact, over all impacts
     /// by least squares: R as it acts, springs and drive included, where impacts last.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -236,7 +236,7 @@ fn run_table(files: &[RecordsFile]) -> String {
 
 fn truth_file<'a>(
     recipe: &'a Recipe,
-    effects: &'a Effects,
+    effects: &'a RigEffects,
     files: &'a [RecordsFile],
 ) -> TruthFile<'a> {
     TruthFile {

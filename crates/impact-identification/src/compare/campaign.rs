@@ -60,9 +60,10 @@ impl Campaign {
             ),
             None => (of_interval(parameter, estimate)?, f64::INFINITY),
         };
-        let value = match parameter.is_logarithm() {
-            true => value.ln(),
-            false => value,
+        let value = if parameter.is_logarithm() {
+            value.ln()
+        } else {
+            value
         };
         Some(Known {
             value,
@@ -88,9 +89,10 @@ impl Campaign {
 fn of_interval(parameter: Coordinate, estimate: &Estimate) -> Option<f64> {
     let value = estimate.value?;
     let [low, high] = estimate.interval95?;
-    let half = match parameter.is_logarithm() {
-        true => (high / value).ln().max((value / low).ln()),
-        false => (high - value).max(value - low),
+    let half = if parameter.is_logarithm() {
+        (high / value).ln().max((value / low).ln())
+    } else {
+        (high - value).max(value - low)
     };
     let error = estimate.standard_error.unwrap_or(0.0);
     Some((half / NORMAL_975).max(error / parameter.slope(value))).filter(|e| e.is_finite())

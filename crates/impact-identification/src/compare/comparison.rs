@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::compare::campaign::Known;
 use crate::compare::share::{SeparateNuisance, SharedNuisance, sharing};
 use crate::compare::stack::Stack;
-use crate::compare::{Campaign, Outcome, Remark, decision};
+use crate::compare::{Campaign, ComparisonOutcome, ComparisonRemark, decision};
 use crate::identify::parameters::coordinate::Coordinate;
 use crate::identify::solver::normal::inverse;
 use crate::identify::statistics::distribution::{fisher_tail, student_tail};
@@ -16,7 +16,7 @@ use impact_records::event::{FlightKind, RigKind};
 
 /// What is shown of a campaign.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Summary {
+pub struct ComparisonSummary {
     /// Its name.
     pub name: String,
     /// When it was measured, in words.
@@ -69,7 +69,7 @@ pub struct EqualityTest {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// The campaigns in the order given.
-    pub campaigns: Vec<Summary>,
+    pub campaigns: Vec<ComparisonSummary>,
     /// The differences from the first, campaign by campaign.
     pub differences: Vec<Difference>,
     /// The test of nothing having changed by all differences together; `None` where that cannot be determined.
@@ -81,7 +81,7 @@ pub struct Comparison {
     /// What two of them do not share although something suggests it.
     pub separate: Vec<SeparateNuisance>,
     /// What to keep in mind.
-    pub remarks: Vec<Remark>,
+    pub remarks: Vec<ComparisonRemark>,
 }
 
 impl Comparison {
@@ -92,17 +92,18 @@ impl Comparison {
     }
 
     /// Whether anything changed, and what.
-    pub fn outcome(&self) -> Outcome {
+    pub fn outcome(&self) -> ComparisonOutcome {
         let Some(p_value) = self.p_value() else {
-            return Outcome::Undetermined;
+            return ComparisonOutcome::Undetermined;
         };
         if !decision::is_significant(p_value) {
-            return Outcome::NothingChanged;
+            return ComparisonOutcome::NothingChanged;
         }
         let parameters = self.changed();
-        match parameters.is_empty() {
-            true => Outcome::ChangedTogether,
-            false => Outcome::Changed { parameters },
+        if parameters.is_empty() {
+            ComparisonOutcome::ChangedTogether
+        } else {
+            ComparisonOutcome::Changed { parameters }
         }
     }
 
@@ -207,8 +208,8 @@ pub fn compare(campaigns: &[Campaign]) -> Result<Comparison, ComparisonError> {
     })
 }
 
-fn summary(campaign: &Campaign) -> Summary {
-    Summary {
+fn summary(campaign: &Campaign) -> ComparisonSummary {
+    ComparisonSummary {
         name: campaign.name.clone(),
         measured: campaign.measured.clone(),
         synthetic: campaign.synthetic,
@@ -251,20 +252,20 @@ fn same_fit(a: &Campaign, b: &Campaign) -> bool {
     found(a) == found(b)
 }
 
-fn remarks(campaigns: &[Campaign], shared: &[SharedNuisance]) -> Vec<Remark> {
+fn remarks(campaigns: &[Campaign], shared: &[SharedNuisance]) -> Vec<ComparisonRemark> {
     let poor = campaigns
         .iter()
         .filter(|c| c.verdict == VerdictKind::DoesNotFit);
-    let poor = poor.map(|c| Remark::CampaignDoesNotFit {
+    let poor = poor.map(|c| ComparisonRemark::CampaignDoesNotFit {
         campaign: c.name.clone(),
         verdict: c.verdict,
     });
     let alone = campaigns.iter().filter(|c| c.fit.is_none());
-    let alone = alone.map(|c| Remark::NoJointFit {
+    let alone = alone.map(|c| ComparisonRemark::NoJointFit {
         campaign: c.name.clone(),
     });
     let fitted = campaigns.iter().all(|c| c.fit.is_some());
-    let nothing = (fitted && shared.is_empty()).then_some(Remark::NothingShared);
+    let nothing = (fitted && shared.is_empty()).then_some(ComparisonRemark::NothingShared);
     poor.chain(alone).chain(nothing).collect()
 }
 
@@ -384,9 +385,12 @@ impl Contrasts {
         let [value, variance] = self.si[i];
         let (coordinate, error) = (self.values[i], self.covariance[(i, i)].sqrt());
         let [low, high] = interval([coordinate, error * error], quantile);
-        let relative = |difference: f64| match contrast.parameter.is_logarithm() {
-            true => difference.exp_m1(),
-            false => difference / contrast.known[0].value,
+        let relative = |difference: f64| {
+            if contrast.parameter.is_logarithm() {
+                difference.exp_m1()
+            } else {
+                difference / contrast.known[0].value
+            }
         };
         Difference {
             campaign: contrast.campaign,
@@ -416,9 +420,10 @@ impl Contrasts {
         let least = freedom.fold(f64::INFINITY, f64::min);
         // Hotelling's T² with n degrees of freedom is q n/(n − q + 1) times F with q and n − q + 1.
         let rest = (least - count as f64 + 1.0).max(1.0);
-        let statistic = match least.is_finite() {
-            true => square * rest / (least.max(rest) * count as f64),
-            false => square / count as f64,
+        let statistic = if least.is_finite() {
+            square * rest / (least.max(rest) * count as f64)
+        } else {
+            square / count as f64
         };
         Some(EqualityTest {
             statistic,

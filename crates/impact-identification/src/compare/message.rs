@@ -60,7 +60,7 @@ pub enum NotShared {
 )]
 #[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
-pub enum Remark {
+pub enum ComparisonRemark {
     /// The model does not describe a campaign's data.
     CampaignDoesNotFit {
         /// The campaign.
@@ -83,7 +83,7 @@ pub enum Remark {
 )]
 #[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
-pub enum Outcome {
+pub enum ComparisonOutcome {
     /// The differences are no greater than chance makes them.
     NothingChanged,
     /// These parameters did.
@@ -97,9 +97,9 @@ pub enum Outcome {
     Undetermined,
 }
 
-messages!(WhyShared, NotShared, Remark, Outcome);
+messages!(WhyShared, NotShared, ComparisonRemark, ComparisonOutcome);
 
-message_table! { "outcome": Outcome;
+message_table! { "outcome": ComparisonOutcome;
     Self::Changed { parameters } => parameters = Value::list(parameters);
 }
 
@@ -114,7 +114,7 @@ message_table! { "not_shared": NotShared;
     Self::OtherRig { first, second } => first = Value::Name(first), second = Value::Name(second);
 }
 
-message_table! { "compare_remark": Remark;
+message_table! { "compare_remark": ComparisonRemark;
     Self::CampaignDoesNotFit { campaign, .. } => campaign = Value::Name(campaign);
     Self::NoJointFit { campaign } => campaign = Value::Name(campaign);
 }
@@ -123,8 +123,8 @@ message_table! { "compare_remark": Remark;
 pub fn kinds() -> Vec<Box<dyn Message>> {
     boxed(WhyShared::iter())
         .chain(boxed(NotShared::iter()))
-        .chain(boxed(Remark::iter()))
-        .chain(boxed(Outcome::iter()))
+        .chain(boxed(ComparisonRemark::iter()))
+        .chain(boxed(ComparisonOutcome::iter()))
         .collect()
 }
 

@@ -28,6 +28,8 @@ mod tests;
 
 pub use campaign::Campaign;
 pub use common::Common;
-pub use comparison::{Comparison, ComparisonError, Difference, EqualityTest, Summary, compare};
-pub use message::{NotShared, Outcome, Remark, WhyShared, kinds};
+pub use comparison::{
+    Comparison, ComparisonError, ComparisonSummary, Difference, EqualityTest, compare,
+};
+pub use message::{ComparisonOutcome, ComparisonRemark, NotShared, WhyShared, kinds};
 pub use share::{AcrossCampaigns, SeparateNuisance, SharedNuisance};

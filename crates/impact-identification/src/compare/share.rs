@@ -151,9 +151,10 @@ fn verdict(
         Some(role) => of_channels(a, b, common, role)?,
         None => stated(a, b, common)?,
     };
-    match same_reference(a, b, first.coordinate) {
-        true => Ok(why),
-        false => Err(Some(NotShared::StatedOtherwise)),
+    if same_reference(a, b, first.coordinate) {
+        Ok(why)
+    } else {
+        Err(Some(NotShared::StatedOtherwise))
     }
 }
 

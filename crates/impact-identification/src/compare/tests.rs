@@ -184,7 +184,7 @@ proptest! {
         for (own, alone) in d.interval95.iter().zip(d.independent_interval95) {
             prop_assert!((own - alone).abs() < 1e-9);
         }
-        prop_assert_eq!(found.remarks, vec![Remark::NothingShared]);
+        prop_assert_eq!(found.remarks, vec![ComparisonRemark::NothingShared]);
     }
 
     #[test]
@@ -277,7 +277,7 @@ fn valid_the_test_of_one_difference_is_that_of_its_interval() {
     let far = [simple(0, 0.7, 0.01), simple(1, 0.8, 0.01)];
     let found = compare(&far).expect("comparable");
     let parameters = vec![Coordinate::Restitution];
-    assert_eq!(found.outcome(), Outcome::Changed { parameters });
+    assert_eq!(found.outcome(), ComparisonOutcome::Changed { parameters });
 }
 
 #[test]
@@ -329,9 +329,9 @@ fn a_difference_that_is_clear_alone_decides_against_a_test_of_all_without_power(
     let p = found.p_value().expect("a probability");
     assert!((p - 0.0024).abs() < 1e-15, "{p}");
     let parameters = vec![Coordinate::Restitution];
-    assert_eq!(found.outcome(), Outcome::Changed { parameters });
+    assert_eq!(found.outcome(), ComparisonOutcome::Changed { parameters });
     found.differences[0].p_value = 0.02;
-    assert_eq!(found.outcome(), Outcome::NothingChanged);
+    assert_eq!(found.outcome(), ComparisonOutcome::NothingChanged);
 }
 
 #[test]
@@ -535,5 +535,8 @@ fn a_result_without_a_joint_fit_enters_by_its_interval() {
     let found = compare(&[fitted, alone]).expect("comparable");
     let d = found.differences[0];
     assert!((d.interval95[0] - d.independent_interval95[0]).abs() < 1e-6);
-    assert!(matches!(found.remarks[..], [Remark::NoJointFit { .. }]));
+    assert!(matches!(
+        found.remarks[..],
+        [ComparisonRemark::NoJointFit { .. }]
+    ));
 }

@@ -91,12 +91,13 @@ pub fn estimate_within(
     let half = spread.half95();
     if !half.is_finite() || half >= unknown {
         let parameter = coordinate;
-        return not_identifiable(match half.is_finite() {
-            true => Note::Open {
+        return not_identifiable(if half.is_finite() {
+            Note::Open {
                 parameter,
                 standard_error: error,
-            },
-            false => Note::NotDetermined { parameter },
+            }
+        } else {
+            Note::NotDetermined { parameter }
         });
     }
     let (value, standard_error, interval) = if coordinate.is_logarithm() {
@@ -153,9 +154,10 @@ pub fn wider(coordinate: Coordinate, estimate: &Estimate, by: f64) -> Estimate {
     let logarithm = coordinate.is_logarithm();
     let unit = coordinate.slope(value);
     let half = (0.5 * (high - low) / unit).hypot(NORMAL_975 * by);
-    let interval = match logarithm {
-        true => [value * (-half).exp(), value * half.exp()],
-        false => [(value - half).max(0.0), (value + half).min(1.0)],
+    let interval = if logarithm {
+        [value * (-half).exp(), value * half.exp()]
+    } else {
+        [(value - half).max(0.0), (value + half).min(1.0)]
     };
     let error = error.hypot(by * unit);
     let mut wider = Estimate {

@@ -7,14 +7,14 @@ use impact_records::event::{DetectSettings, RigKind};
 use impact_records::motion::{ClassifySettings, Observation, observe};
 use impact_records::record::Record;
 use simulated_rig::run::calibrated;
-use simulated_rig::{Effects, Faults, Laboratory, Plan, Truth, records};
+use simulated_rig::{Faults, Laboratory, Plan, RigEffects, Truth, records};
 
 /// Records of a rig without effects: two equal masses with R, f0 in Hz, β = 0.06 and `x_st` = 1 mm.
 pub(super) fn recorded((restitution, f0): (f64, f64), count: usize, seed: u64) -> Vec<Record> {
     let laboratory = Laboratory {
         truth: Truth::symmetric(restitution, f0, 0.06, 1e-3),
         faults: Faults::default(),
-        effects: Effects::default(),
+        effects: RigEffects::default(),
         clearance_uncertainty_m: None,
         plan: Plan::for_rig(12.0, 0.06, 1e-3, count),
         rig_seed: seed,

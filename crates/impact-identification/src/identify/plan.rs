@@ -133,9 +133,10 @@ pub fn propose(
         });
         covariance = after;
     }
-    match chosen.is_empty() && count > 0 {
-        true => Err(Obstacle::NothingGained),
-        false => Ok(chosen),
+    if chosen.is_empty() && count > 0 {
+        Err(Obstacle::NothingGained)
+    } else {
+        Ok(chosen)
     }
 }
 

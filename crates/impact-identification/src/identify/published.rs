@@ -167,9 +167,10 @@ pub fn identify(speeds: &[PublishedSpeed], printed: &[f64]) -> Identification {
     });
     let judged = printed.iter().map(|p| judge(speeds, *p, (beta, error)));
     let verdict = Verdict {
-        kind: match fits {
-            true => VerdictKind::Identified,
-            false => VerdictKind::DoesNotFit,
+        kind: if fits {
+            VerdictKind::Identified
+        } else {
+            VerdictKind::DoesNotFit
         },
         sentences: vec![sentence],
         findings: judged.collect(),
@@ -222,10 +223,13 @@ fn judge(speeds: &[PublishedSpeed], printed: f64, (beta, error): (f64, f64)) -> 
         .collect();
     let far = (printed / beta).ln().abs() > NORMAL_975 * error;
     match worst_deviation(speeds, printed) {
-        Some(deviation) if settings.is_empty() => match far {
-            true => Finding::PrintedDampingDoesNotFit { printed, deviation },
-            false => Finding::PrintedDampingFits { printed },
-        },
+        Some(deviation) if settings.is_empty() => {
+            if far {
+                Finding::PrintedDampingDoesNotFit { printed, deviation }
+            } else {
+                Finding::PrintedDampingFits { printed }
+            }
+        }
         deviation => Finding::PrintedDampingWithoutMotion {
             printed,
             deviation,

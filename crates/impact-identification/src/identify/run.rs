@@ -36,7 +36,7 @@ use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::residuals::MethodResiduals;
 use crate::identify::selection::Selection;
 use crate::identify::solver::{Fit, Precision, Problem};
-use crate::identify::uncertainty::budget::{self, Further, Source};
+use crate::identify::uncertainty::budget::{self, Further, UncertaintySource};
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::surroundings::Surroundings;
 use crate::identify::uncertainty::{self, Uncertainty};
@@ -163,10 +163,13 @@ fn further(
     let doubtful = doubts.iter().map(|d| (d.parameter, d.by)).collect();
     let of_clock = (clock > 0.0).then_some((Coordinate::Frequency, clock));
     [
-        Further::new(Source::RestitutionOverSpeed, Vec::from_iter(over_speed)),
-        Further::new(Source::BetweenMethods, apart),
-        Further::new(Source::Clock, Vec::from_iter(of_clock)),
-        Further::new(Source::InstrumentOff, doubtful),
+        Further::new(
+            UncertaintySource::RestitutionOverSpeed,
+            Vec::from_iter(over_speed),
+        ),
+        Further::new(UncertaintySource::BetweenMethods, apart),
+        Further::new(UncertaintySource::Clock, Vec::from_iter(of_clock)),
+        Further::new(UncertaintySource::InstrumentOff, doubtful),
     ]
 }
 

@@ -411,9 +411,10 @@ impl<'a> Selection<'a> {
             .collect();
         let mut found = Vec::new();
         while let Some(influences) = influence::influences(&records, &others) {
-            let batch = match ends.is_empty() {
-                true => influence::strongest(&influences, &doubtful),
-                false => std::mem::take(&mut ends),
+            let batch = if ends.is_empty() {
+                influence::strongest(&influences, &doubtful)
+            } else {
+                std::mem::take(&mut ends)
             };
             if batch.is_empty() {
                 break;

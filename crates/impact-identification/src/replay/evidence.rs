@@ -17,7 +17,7 @@ use labfiles::units::Dimension;
 
 /// One point of a resonance curve; errors are standard errors.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ResonancePoint {
+pub struct MeasuredAmplitude {
     /// The record's name.
     pub record: String,
     /// Drive frequency, Hz.
@@ -42,7 +42,7 @@ pub struct ResonanceCurve {
     /// Dimension of the amplitude.
     pub dimension: Dimension,
     /// The measured points, by frequency.
-    pub points: Vec<ResonancePoint>,
+    pub points: Vec<MeasuredAmplitude>,
     /// The fitted curve: (frequency Hz, amplitude, phase rad).
     pub fitted: Vec<[f64; 3]>,
 }
@@ -136,8 +136,8 @@ fn curve(input: &Input<'_>, role: Role) -> Option<ResonanceCurve> {
         let used = !o.excluded() && !left_out.contains_key(&i);
         Some(point(o, response, used))
     });
-    let points: Vec<ResonancePoint> = points.collect();
-    let mut points: Vec<ResonancePoint> = thinned(&points, MOST_POINTS).cloned().collect();
+    let points: Vec<MeasuredAmplitude> = points.collect();
+    let mut points: Vec<MeasuredAmplitude> = thinned(&points, MOST_POINTS).cloned().collect();
     if points.len() < FEWEST_POINTS {
         return None;
     }
@@ -150,11 +150,11 @@ fn curve(input: &Input<'_>, role: Role) -> Option<ResonanceCurve> {
     })
 }
 
-fn point(o: &Observation, response: &Response, used: bool) -> ResonancePoint {
+fn point(o: &Observation, response: &Response, used: bool) -> MeasuredAmplitude {
     let amplitude = response.amplitude();
     // without the drive's phase the response has none
     let known = |phase: f64| o.drive.map_or(f64::NAN, |_| phase);
-    ResonancePoint {
+    MeasuredAmplitude {
         record: o.record.clone(),
         frequency_hz: o.frequency_hz().unwrap_or(f64::NAN),
         amplitude: amplitude / o.setting.drive_amplitude,
@@ -165,7 +165,7 @@ fn point(o: &Observation, response: &Response, used: bool) -> ResonancePoint {
     }
 }
 
-fn fitted(input: &Input<'_>, role: Role, points: &[ResonancePoint]) -> Vec<[f64; 3]> {
+fn fitted(input: &Input<'_>, role: Role, points: &[MeasuredAmplitude]) -> Vec<[f64; 3]> {
     let (Some(parameters), Some(first), Some(last)) =
         (input.parameters(), points.first(), points.last())
     else {

@@ -20,7 +20,7 @@ use impact_records::motion::{ClassifySettings, brackets, observe, scale_drives};
 use impact_records::record::{Channel, Excitation, Record, Role, Setting};
 use labfiles::units::Dimension;
 use simulated_rig::run::calibrated;
-use simulated_rig::{Differences, Effects, Faults, Laboratory, Plan, Truth, records};
+use simulated_rig::{Differences, Faults, Laboratory, Plan, RigEffects, Truth, records};
 
 /// A campaign identified and compared.
 pub struct Identified {
@@ -80,7 +80,7 @@ fn laboratory() -> Vec<Record> {
     let laboratory = Laboratory {
         truth,
         faults: Faults::default(),
-        effects: Effects::default(),
+        effects: RigEffects::default(),
         clearance_uncertainty_m: None,
         plan: Plan::for_rig(12.6, 0.07, 1.25e-3, 120),
         rig_seed: 2026,

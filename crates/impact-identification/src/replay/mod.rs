@@ -16,15 +16,15 @@ mod traces;
 
 pub use decays::FreeDecay;
 pub use evidence::{
-    Correlation, ImpactPoint, ImpactScatter, ResidualPoint, ResidualSet, ResonanceCurve,
-    ResonancePoint,
+    Correlation, ImpactPoint, ImpactScatter, MeasuredAmplitude, ResidualPoint, ResidualSet,
+    ResonanceCurve,
 };
 pub use input::Input;
 pub use left_out::{Unusable, UnusableReason};
 pub use plane::{BoundaryCurve, RegionMap};
 pub use records::{BracketRow, Overview, RecordRow};
 pub use replays::ReplayedRecord;
-pub use single::{Beside, WhyNot, beside};
+pub use single::{BesideRecord, WhyNot, beside};
 pub use traces::{Signal, Trace};
 
 /// The fitted model and the measurement, side by side. All quantities are SI; every list may be empty.
@@ -88,7 +88,7 @@ pub fn replay(input: &Input<'_>) -> Compared {
 
 /// Where a campaign's records, brackets and fitted boundaries are in the (η, ρ) plane.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Placed {
+pub struct PlacedRecord {
     /// One row per record.
     pub records: Vec<RecordRow>,
     /// Measured brackets of the boundaries.
@@ -98,8 +98,8 @@ pub struct Placed {
 }
 
 /// Place every record, bracket and boundary; nothing is replayed.
-pub fn placed(input: &Input<'_>) -> Placed {
-    Placed {
+pub fn placed(input: &Input<'_>) -> PlacedRecord {
+    PlacedRecord {
         records: records::all_records(input),
         brackets: records::brackets(input),
         curves: plane::curves(input),

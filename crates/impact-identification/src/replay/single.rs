@@ -9,7 +9,7 @@ use crate::identify::parameters::Parameters;
 
 /// A record beside its simulation.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Beside {
+pub enum BesideRecord {
     /// A driven record beside the motion of the model.
     Motion(Box<ReplayedRecord>),
     /// A free decay beside its fit.
@@ -43,22 +43,22 @@ impl fmt::Display for WhyNot {
 }
 
 /// A record by its index beside what the model with parameters does there.
-pub fn beside(input: &Input<'_>, index: usize, parameters: &Parameters) -> Beside {
+pub fn beside(input: &Input<'_>, index: usize, parameters: &Parameters) -> BesideRecord {
     let Some(o) = input.observations.get(index) else {
-        return Beside::Nothing(WhyNot::Unknown);
+        return BesideRecord::Nothing(WhyNot::Unknown);
     };
     let Some(record) = (input.read)(index) else {
-        return Beside::Nothing(WhyNot::Unknown);
+        return BesideRecord::Nothing(WhyNot::Unknown);
     };
     if record.samples() == 0 {
         let message = record.flags.first().map(|flag| flag.message.clone());
-        return Beside::Nothing(WhyNot::Unreadable(message.unwrap_or_default()));
+        return BesideRecord::Nothing(WhyNot::Unreadable(message.unwrap_or_default()));
     }
     if let Some(decay) = free_decay(o, &record, None) {
-        return Beside::Decay(Box::new(decay));
+        return BesideRecord::Decay(Box::new(decay));
     }
     match comparison(input, o, &record, ('A', Some(parameters))) {
-        Some(found) => Beside::Motion(Box::new(found)),
-        None => Beside::Nothing(WhyNot::NeitherDriveNorDecay),
+        Some(found) => BesideRecord::Motion(Box::new(found)),
+        None => BesideRecord::Nothing(WhyNot::NeitherDriveNorDecay),
     }
 }

@@ -14,7 +14,7 @@ use crate::parallel;
 
 /// A point of a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct CurvePoint {
+pub struct PointOfCurve {
     /// η
     pub eta: f64,
     /// ρ
@@ -37,7 +37,7 @@ pub struct Curve {
     /// Whether the motion lies below the curve.
     pub upper: bool,
     /// Its points.
-    pub points: Vec<CurvePoint>,
+    pub points: Vec<PointOfCurve>,
 }
 
 /// All boundaries as curves.
@@ -125,8 +125,8 @@ fn closed_forms(
     parallel::map(&all, pieces).into_iter().flatten().collect()
 }
 
-fn curve_point(p: &BoundaryPoint) -> CurvePoint {
-    CurvePoint {
+fn curve_point(p: &BoundaryPoint) -> PointOfCurve {
+    PointOfCurve {
         eta: p.eta,
         rho: p.rho,
         approach_speed: p.approach_speed,
@@ -144,7 +144,7 @@ fn stable_below(machine: &Machine, piece: &[Option<BoundaryPoint>], n: u32) -> b
 }
 
 fn grazing_curve(machine: &Machine, etas: &[f64]) -> Curve {
-    let at = |eta: &f64| CurvePoint {
+    let at = |eta: &f64| PointOfCurve {
         eta: *eta,
         rho: rho_grazing(machine, *eta),
         approach_speed: 0.0,
@@ -168,7 +168,7 @@ type Key = (u32, u32, bool, bool, &'static str);
 struct Mark {
     key: Key,
     kind: EdgeKind,
-    point: CurvePoint,
+    point: PointOfCurve,
     interval: (f64, f64),
 }
 
@@ -178,7 +178,7 @@ fn slice_marks(s: &Slice) -> Vec<Mark> {
         .into_iter()
         .filter(|(edge, _)| edge.kind != EdgeKind::Bound)
         .map(|(edge, upper)| {
-            let point = CurvePoint {
+            let point = PointOfCurve {
                 eta: s.eta,
                 rho: edge.orbit.rho,
                 approach_speed: edge.orbit.greatest_speed(),
@@ -198,7 +198,7 @@ fn resting_marks(s: &RestingSlice) -> Vec<Mark> {
         .into_iter()
         .filter_map(|(edge, upper)| {
             let (rho, kind) = edge?;
-            let point = CurvePoint {
+            let point = PointOfCurve {
                 eta: s.eta,
                 rho,
                 approach_speed: 0.0,

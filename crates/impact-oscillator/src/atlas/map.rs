@@ -188,9 +188,10 @@ pub fn march_from(
             let cells: Vec<Cell> = starts.iter().map(|s| unit.cell(s)).collect();
             let mut outcomes = march_all(&unit.course(settings), &cells, settings.kernel);
             watch_again(&unit, &mut outcomes, settings);
-            match patience::is_over() {
-                true => Err(ModelError::GivenUp),
-                false => Ok(outcomes.iter().map(|o| unit.end(o)).collect()),
+            if patience::is_over() {
+                Err(ModelError::GivenUp)
+            } else {
+                Ok(outcomes.iter().map(|o| unit.end(o)).collect())
             }
         }
         _ => parallel::map(starts, |s| exact_cell(machine, s, settings))

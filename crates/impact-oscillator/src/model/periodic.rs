@@ -67,14 +67,14 @@ impl Part {
 
 /// The linear response of a machine with impacts every T = 2πn/η.
 #[derive(Debug, Clone)]
-pub struct Response {
+pub struct LinearResponse {
     eta: f64,
     period: f64,
     forced: C64,
     parts: Vec<Part>,
 }
 
-impl Response {
+impl LinearResponse {
     /// Of a machine at η with n drive periods.
     pub fn new(machine: &Machine, eta: f64, n: u32) -> Self {
         let period = f64::from(n) * TAU / eta;
@@ -125,7 +125,7 @@ impl Response {
 /// their Jacobian by times and speeds, times (closures) first.
 fn linearise(
     machine: &Machine,
-    response: &Response,
+    response: &LinearResponse,
     orbit: &PeriodicOrbit,
 ) -> (DVector<f64>, DMatrix<f64>) {
     let p = orbit.times.len();
@@ -224,13 +224,17 @@ impl PeriodicOrbit {
 
     /// Residual and Jacobian by the unknowns.
     pub fn linearised(&self, machine: &Machine) -> (DVector<f64>, DMatrix<f64>) {
-        linearise(machine, &Response::new(machine, self.eta, self.n), self)
+        linearise(
+            machine,
+            &LinearResponse::new(machine, self.eta, self.n),
+            self,
+        )
     }
 
     /// Newton's method at fixed η and ρ. `None`: it does not converge, or impacts change their
     /// order on the way.
     pub fn solve(mut self, machine: &Machine) -> Option<Self> {
-        let response = Response::new(machine, self.eta, self.n);
+        let response = LinearResponse::new(machine, self.eta, self.n);
         for _ in 0..30 {
             let (residual, jacobian) = linearise(machine, &response, &self);
             let size = 1.0 + self.speeds.iter().fold(0.0, |m: f64, w| m.max(w.abs()));
@@ -257,13 +261,13 @@ impl PeriodicOrbit {
 
     /// State just before and just after each impact.
     pub fn impact_states(&self, machine: &Machine) -> Vec<(State, State)> {
-        let response = Response::new(machine, self.eta, self.n);
+        let response = LinearResponse::new(machine, self.eta, self.n);
         (0..self.times.len())
             .map(|k| self.states_at(machine, &response, k))
             .collect()
     }
 
-    fn states_at(&self, machine: &Machine, response: &Response, k: usize) -> (State, State) {
+    fn states_at(&self, machine: &Machine, response: &LinearResponse, k: usize) -> (State, State) {
         let law = machine.restitution();
         let t = self.times[k];
         let of = |part: &Part| {

@@ -53,9 +53,10 @@ impl Drift {
             };
             let per_sample = factor * std::f64::consts::TAU * corner_hz / kinematics.rate_hz;
             // What was integrated itself walks by its noise.
-            let step = match corner_hz > 0.0 {
-                true => per_sample * velocity.noise,
-                false => factor * velocity.noise,
+            let step = if corner_hz > 0.0 {
+                per_sample * velocity.noise
+            } else {
+                factor * velocity.noise
             };
             drift.walk += step * step;
             drift.slopes = true;

@@ -171,9 +171,10 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
         candidates: &found.candidates,
         samples: arc_samples,
     };
-    let lags = match found.may_be_late(rate_hz) {
-        true => channel_lags(&kinematics, &closed, width),
-        false => Vec::new(),
+    let lags = if found.may_be_late(rate_hz) {
+        channel_lags(&kinematics, &closed, width)
+    } else {
+        Vec::new()
     };
     let impacts = refined(&mut kinematics, arcs, drive.as_ref(), rig);
     Detection {

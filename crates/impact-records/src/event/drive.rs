@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::record::consistency::{Compared, mistaken};
+use crate::record::consistency::{ComparedChannels, mistaken};
 use crate::record::{Flag, FlagCode, Record, Role};
 use crate::signal::tone;
 
@@ -113,7 +113,7 @@ fn contradiction(
             format!(
                 "the drive channel shows {:.4} Hz, the campaign states {stated:.4} Hz{}",
                 drive.frequency_hz,
-                mistaken(stated / drive.frequency_hz, Compared::Frequency)
+                mistaken(stated / drive.frequency_hz, ComparedChannels::Frequency)
                     .map_or(String::new(), |m| format!(": the factor {m}"))
             ),
             "the measured frequency is used; correct the run table or the file's name",

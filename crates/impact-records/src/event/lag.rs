@@ -32,12 +32,13 @@ pub(super) fn lags(
             let fits = flights(measured_velocity(body)?, arcs, i)?;
             Read::of(body, fits, (instants[i].time, delay), kinematics)
         };
-        match placed {
-            true => [
+        if placed {
+            [
                 read(&kinematics.x, assumed[0]),
                 read(&kinematics.y, assumed[1]),
-            ],
-            false => [None, None],
+            ]
+        } else {
+            [None, None]
         }
     };
     let read: Vec<[Option<Read>; 2]> = arcs.candidates.iter().enumerate().map(of).collect();

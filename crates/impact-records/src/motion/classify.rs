@@ -38,7 +38,7 @@ impl Default for ClassifySettings {
 
 /// What the decision rests on.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Evidence {
+pub struct MotionEvidence {
     /// Drive periods in the record.
     pub periods_observed: f64,
     /// Periods of the motion in the record.
@@ -71,7 +71,7 @@ pub struct Classification {
     /// Between 0 and 1; from 0.9 on the program counts as sure.
     pub confidence: f64,
     /// What it rests on.
-    pub evidence: Evidence,
+    pub evidence: MotionEvidence,
 }
 
 impl Classification {
@@ -89,7 +89,7 @@ impl Classification {
     }
 }
 
-pub(super) fn undetermined(reason: Undetermined, evidence: Evidence) -> Classification {
+pub(super) fn undetermined(reason: Undetermined, evidence: MotionEvidence) -> Classification {
     Classification {
         motion: Motion::Undetermined { reason },
         confidence: 0.0,
@@ -103,9 +103,9 @@ pub fn classify(
     duration_s: f64,
     settings: &ClassifySettings,
 ) -> Classification {
-    let mut evidence = Evidence {
+    let mut evidence = MotionEvidence {
         impacts: detection.impacts.len(),
-        ..Evidence::default()
+        ..MotionEvidence::default()
     };
     let Some(drive) = &detection.drive else {
         return undetermined(Undetermined::NoDrive, evidence);
@@ -226,7 +226,11 @@ struct Case<'a> {
 }
 
 impl Case<'_> {
-    fn by_waveform(&self, closures: &[WaveformClosure], mut evidence: Evidence) -> Classification {
+    fn by_waveform(
+        &self,
+        closures: &[WaveformClosure],
+        mut evidence: MotionEvidence,
+    ) -> Classification {
         // The smallest n that closes about as well as any.
         let slack = slack(closures);
         let Some(chosen) = closures.iter().find(|c| c.ratio <= slack) else {
@@ -267,7 +271,7 @@ impl Case<'_> {
     }
 
     /// Without velocity: the smallest n for which the impact times close.
-    fn by_impacts_alone(&self, mut evidence: Evidence) -> Classification {
+    fn by_impacts_alone(&self, mut evidence: MotionEvidence) -> Classification {
         let impacts = &self.detection.impacts;
         if impacts.is_empty() {
             return undetermined(Undetermined::NoMotion, evidence);
@@ -301,7 +305,12 @@ impl Case<'_> {
     }
 
     /// The waveform (or the impact times) close after n periods: count the impacts in them.
-    fn periodic(&self, periods_n: u32, quality: f64, mut evidence: Evidence) -> Classification {
+    fn periodic(
+        &self,
+        periods_n: u32,
+        quality: f64,
+        mut evidence: MotionEvidence,
+    ) -> Classification {
         evidence.cycles_observed = evidence.periods_observed / f64::from(periods_n);
         let Some(count) = self.count(periods_n) else {
             return undetermined(Undetermined::NoWholePeriod, evidence);
@@ -352,7 +361,7 @@ impl Case<'_> {
         periods_n: u32,
         count: Count,
         quality: f64,
-        evidence: Evidence,
+        evidence: MotionEvidence,
     ) -> Classification {
         if periods_n > 1 && evidence.shorter_closure > evidence.waveform_closure.map(|c| 2.0 * c) {
             return undetermined(Undetermined::RepeatsWithoutImpact { periods_n }, evidence);
@@ -370,7 +379,7 @@ impl Case<'_> {
         }
     }
 
-    fn aperiodic(&self, mut evidence: Evidence) -> Classification {
+    fn aperiodic(&self, mut evidence: MotionEvidence) -> Classification {
         let impacts = &self.detection.impacts;
         if impacts.is_empty() {
             return undetermined(Undetermined::SettlingWithoutImpact, evidence);
@@ -406,7 +415,7 @@ fn cycles_factor(cycles: f64) -> f64 {
 }
 
 /// A longer period must close clearly better than every shorter one.
-fn shorter_factor(evidence: &Evidence) -> f64 {
+fn shorter_factor(evidence: &MotionEvidence) -> f64 {
     match (evidence.shorter_closure, evidence.waveform_closure) {
         (Some(shorter), Some(chosen)) => {
             ((shorter / chosen.max(1e-12) - 1.0) / 0.6).clamp(0.3, 1.0)

@@ -1,23 +1,10 @@
 //! Channels of a campaign that show all impacts later than the contact and the other channels do.
 
-use serde::{Deserialize, Serialize};
-
-use super::Observation;
+use super::late_channel::LateChannel;
+use super::observation::Observation;
 use crate::event::ChannelLag;
 use crate::record::{LowPass, Role};
 use crate::signal::robust;
-
-/// A channel that is later than stated.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct LateChannel {
-    /// The channel.
-    pub role: Role,
-    /// By how much it is later than stated, s, beside the delay of the low-pass.
-    pub delay_s: f64,
-    /// The low-pass that its jumps show and that is not stated.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub low_pass: Option<LowPass>,
-}
 
 /// Samples of delay that the detection of impacts does not notice: a jump may take two.
 const UNNOTICED: f64 = 1.5;

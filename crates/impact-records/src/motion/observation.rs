@@ -11,7 +11,7 @@ use crate::event::{
 use crate::motion::classify::{Classification, ClassifySettings, classify, undetermined};
 use crate::motion::fold::{Folded, fold};
 use crate::motion::kind::Motion;
-use crate::motion::late::LateChannel;
+use crate::motion::late_channel::LateChannel;
 use crate::motion::response::{Response, responses};
 use crate::motion::undetermined::Undetermined;
 use crate::record::{Excitation, Flag, FlagCode, Record, Role, Setting};
@@ -113,9 +113,10 @@ impl Observation {
 
     /// The channel that the speed of a mass at impacts comes from.
     pub fn speed_from(&self, of_y: bool) -> Option<Role> {
-        let roles = match of_y {
-            false => [Role::VelocityX, Role::DisplacementX, Role::AccelerationX],
-            true => [Role::VelocityY, Role::DisplacementY, Role::AccelerationY],
+        let roles = if of_y {
+            [Role::VelocityY, Role::DisplacementY, Role::AccelerationY]
+        } else {
+            [Role::VelocityX, Role::DisplacementX, Role::AccelerationX]
         };
         let measured = |role: &Role| self.amplitudes.iter().any(|a| a.role == *role);
         roles.into_iter().find(measured)
@@ -427,9 +428,11 @@ impl Observation {
 
 /// A shared waveform is stored as if its record alone had it.
 mod shared {
+    use std::sync::Arc;
+
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    use super::{Arc, Folded};
+    use crate::motion::fold::Folded;
 
     #[expect(clippy::ref_option, reason = "serde passes a reference to the field")]
     pub(super) fn serialize<S: Serializer>(

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ContactContent, Flag, FlagCode, LowPass, Role};
+use super::{ContactContent, Flag, FlagCode, LowPass, Role, Setting};
 use labfiles::units::{self, Dimension, Quantity, Scale, Unit};
 use labfiles::{ChannelInfo, DatasetInfo};
 
@@ -175,7 +175,7 @@ impl ChannelSetup {
 
 /// A channel of a role found in a dataset, with the conversion settled.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Bound {
+pub struct BoundChannel {
     /// Index in the dataset.
     pub index: usize,
     /// Factor and dimension of the calibrated values.
@@ -190,7 +190,7 @@ pub struct Bound {
 ///
 /// # Errors
 /// A [`Flag`] with the reason why the channel cannot be used.
-pub fn bind(setup: &ChannelSetup, dataset: &DatasetInfo) -> Result<Bound, Flag> {
+pub fn bind(setup: &ChannelSetup, dataset: &DatasetInfo) -> Result<BoundChannel, Flag> {
     let index = setup
         .source
         .find(dataset)
@@ -203,7 +203,7 @@ pub fn bind(setup: &ChannelSetup, dataset: &DatasetInfo) -> Result<Bound, Flag> 
         .ok_or_else(|| unfit_scale(setup, info, unit))?;
     check_dimension(setup, info, scaled.dimension)?;
     let after_scale = scaled.to_si / unit.to_si;
-    Ok(Bound {
+    Ok(BoundChannel {
         index,
         to_si: Unit {
             to_si: scaled.to_si * setup.sign,
@@ -374,6 +374,31 @@ fn serves(role: Role, found: Dimension) -> bool {
         Role::FrameX | Role::FrameY => matches!(found, Length | Velocity | Acceleration),
         _ => true,
     }
+}
+
+pub(super) type BoundRole<'a> = (&'a ChannelSetup, BoundChannel);
+
+/// Everything that turns one dataset into one record.
+#[derive(Debug, Clone)]
+pub struct RecordSetup<'a> {
+    /// The record's name.
+    pub id: &'a str,
+    /// Index of the dataset in the source.
+    pub dataset: usize,
+    /// The channels by role.
+    pub channels: &'a [ChannelSetup],
+    /// The channel with the time, if the file's reader cannot find it.
+    pub time: Option<&'a ChannelKey>,
+    /// Seconds in the unit of a time axis that states none.
+    pub time_unit_s: Option<f64>,
+    /// Samples per second, Hz, for files that do not state it.
+    pub sample_rate_hz: Option<f64>,
+    /// The setting as the laboratory states it.
+    pub setting: &'a Setting,
+    /// Whether a harmonic drive must be seen.
+    pub driven: bool,
+    /// Part to leave out at the start, s.
+    pub skip_s: f64,
 }
 
 #[cfg(test)]

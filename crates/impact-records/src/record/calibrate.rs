@@ -1,36 +1,14 @@
 //! From what a file holds to a [`Record`] in SI: each channel is found, its unit settled, its
 //! numbers scaled; what is wrong with it becomes a [`Flag`] and the other records go on.
 
+use super::bind::BoundRole;
 use super::bind::flag;
-pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
+pub use super::bind::{BoundChannel, ChannelKey, ChannelSetup, RecordSetup, bind};
 use super::times::Clocks;
 use super::{Channel, ContactContent, Flag, FlagCode, ListedTimes, Record, Role, Setting};
 use super::{changes, condition, consistency, events, late};
 use crate::signal::whole;
 use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
-
-/// Everything that turns one dataset into one record.
-#[derive(Debug, Clone)]
-pub struct RecordSetup<'a> {
-    /// The record's name.
-    pub id: &'a str,
-    /// Index of the dataset in the source.
-    pub dataset: usize,
-    /// The channels by role.
-    pub channels: &'a [ChannelSetup],
-    /// The channel with the time, if the file's reader cannot find it.
-    pub time: Option<&'a ChannelKey>,
-    /// Seconds in the unit of a time axis that states none.
-    pub time_unit_s: Option<f64>,
-    /// Samples per second, Hz, for files that do not state it.
-    pub sample_rate_hz: Option<f64>,
-    /// The setting as the laboratory states it.
-    pub setting: &'a Setting,
-    /// Whether a harmonic drive must be seen.
-    pub driven: bool,
-    /// Part to leave out at the start, s.
-    pub skip_s: f64,
-}
 
 /// A record without channels, for a file that cannot be read.
 pub fn unreadable(id: &str, setting: &Setting, error: &ReadError) -> Record {
@@ -120,9 +98,10 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
     };
     let bound = bind_all(setup, dataset, &mut record.flags);
     let content = content(setup);
-    let clocks = match content.is_list() {
-        true => Clocks::default(),
-        false => Clocks::of(setup, dataset, &bound, &mut record.flags),
+    let clocks = if content.is_list() {
+        Clocks::default()
+    } else {
+        Clocks::of(setup, dataset, &bound, &mut record.flags)
     };
     let mut wanted: Vec<usize> = bound.iter().map(|(_, b)| b.index).collect();
     wanted.extend(&clocks.axes);
@@ -247,8 +226,6 @@ fn no_dataset(source: &dyn Source, index: usize) -> Flag {
     )
 }
 
-pub(super) type BoundRole<'a> = (&'a ChannelSetup, Bound);
-
 fn bind_all<'a>(
     setup: &RecordSetup<'a>,
     dataset: &DatasetInfo,
@@ -289,7 +266,7 @@ fn scale_all(
 fn scaled(
     samples: Samples,
     setup: &ChannelSetup,
-    bound: &Bound,
+    bound: &BoundChannel,
     info: &ChannelInfo,
 ) -> Result<Channel, Flag> {
     let Samples::Real(mut values) = samples else {

@@ -201,9 +201,10 @@ fn frozen_stretches(values: &[f64]) -> Vec<(usize, usize)> {
 }
 
 fn no_samples(record: &Record) -> Flag {
-    let message = match record.channels.is_empty() {
-        true => "none of the channels that campaign.toml names can be used",
-        false => "the record is empty: it holds no samples",
+    let message = if record.channels.is_empty() {
+        "none of the channels that campaign.toml names can be used"
+    } else {
+        "the record is empty: it holds no samples"
     };
     Flag::new(
         FlagCode::Empty,

@@ -14,7 +14,7 @@ const SCALE_RATIO: f64 = 1.5;
 
 /// What two numbers that are compared measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Compared {
+pub enum ComparedChannels {
     /// A displacement and the integral of a velocity.
     Displacement,
     /// A velocity and the integral of an acceleration.
@@ -24,21 +24,21 @@ pub enum Compared {
 }
 
 /// Units of length and conventions of amplitude concern both motions.
-const MOTIONS: &[Compared] = &[Compared::Displacement, Compared::Velocity];
+const MOTIONS: &[ComparedChannels] = &[ComparedChannels::Displacement, ComparedChannels::Velocity];
 
 /// Factors between two units or conventions that are often mistaken for each other, and where they can be.
-const MISTAKEN: [(f64, &str, &[Compared]); 7] = [
+const MISTAKEN: [(f64, &str, &[ComparedChannels]); 7] = [
     (1000.0, "between m and mm", MOTIONS),
-    (1000.0, "between Hz and kHz", &[Compared::Frequency]),
+    (1000.0, "between Hz and kHz", &[ComparedChannels::Frequency]),
     (
         std::f64::consts::TAU,
         "between Hz and rad/s",
-        &[Compared::Frequency],
+        &[ComparedChannels::Frequency],
     ),
     (
         labfiles::units::STANDARD_GRAVITY_M_S2,
         "between g and m/s²",
-        &[Compared::Velocity],
+        &[ComparedChannels::Velocity],
     ),
     (std::f64::consts::SQRT_2, "between RMS and peak", MOTIONS),
     (25.4, "between inch and mm", MOTIONS),
@@ -53,7 +53,7 @@ const MISTAKEN: [(f64, &str, &[Compared]); 7] = [
 const MISTAKEN_WITHIN: f64 = 0.02;
 
 /// The units or conventions that a ratio of two numbers, or its reciprocal, suggests.
-pub fn mistaken(ratio: f64, compared: Compared) -> Option<&'static str> {
+pub fn mistaken(ratio: f64, compared: ComparedChannels) -> Option<&'static str> {
     let near = |factor: f64| (ratio.abs() / factor - 1.0).abs() < MISTAKEN_WITHIN;
     MISTAKEN
         .iter()
@@ -248,14 +248,15 @@ const ONLY_SIGN: f64 = 0.1;
 /// of its quantity: channels that are swapped look alike, but for their scales.
 fn opposite(record: &Record, gain: f64, d: Role, v: Role) -> Flag {
     let [d_name, v_name] = [d, v].map(Role::name);
-    let (apart, swapped) = match (gain.abs() - 1.0).abs() < ONLY_SIGN {
-        true => (String::new(), String::new()),
-        false => (
+    let (apart, swapped) = if (gain.abs() - 1.0).abs() < ONLY_SIGN {
+        (String::new(), String::new())
+    } else {
+        (
             format!(", and their scales differ by a factor of {:.3}", gain.abs()),
             format!(
                 "swap [channels.{d_name}] and [channels.{v_name}] if each holds the other, or "
             ),
-        ),
+        )
     };
     flag(
         record,
@@ -274,8 +275,8 @@ fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag
         return Some(opposite(record, found.gain, d, v));
     }
     let (compared, moves) = match d {
-        Role::DisplacementX | Role::DisplacementY => (Compared::Displacement, "moves"),
-        _ => (Compared::Velocity, "changes"),
+        Role::DisplacementX | Role::DisplacementY => (ComparedChannels::Displacement, "moves"),
+        _ => (ComparedChannels::Velocity, "changes"),
     };
     let suspected = mistaken(found.gain, compared);
     let off = found.gain > SCALE_RATIO || found.gain < 1.0 / SCALE_RATIO || suspected.is_some();
@@ -332,7 +333,7 @@ mod tests {
 
     #[test]
     fn factors_between_units_are_named() {
-        use Compared::{Displacement, Frequency, Velocity};
+        use ComparedChannels::{Displacement, Frequency, Velocity};
         for (ratio, compared, named) in [
             (1000.0, Displacement, "between m and mm"),
             (0.001, Velocity, "between m and mm"),
@@ -350,7 +351,7 @@ mod tests {
 
     #[test]
     fn factors_that_the_quantities_compared_cannot_have_are_not_named() {
-        use Compared::{Displacement, Frequency, Velocity};
+        use ComparedChannels::{Displacement, Frequency, Velocity};
         for (ratio, compared) in [
             (10.0, Displacement),
             (std::f64::consts::TAU, Displacement),

@@ -1,33 +1,10 @@
 //! Contacts that a file states as events: times, intervals, or the sound of them.
 
-use serde::{Deserialize, Serialize};
-
 use super::changes::{Closings, Listing, listing};
+use super::content::ContactContent;
 use super::{Channel, Flag, FlagCode, ListedTimes, Record, Role};
 use crate::signal::onsets;
 use labfiles::units::Dimension;
-
-/// What the contact's channel contains.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ContactContent {
-    /// A signal that jumps while the bodies touch.
-    #[default]
-    Signal,
-    /// The times of the impacts, one in each row.
-    Times,
-    /// The times between impacts, one in each row.
-    Intervals,
-    /// A microphone's signal.
-    Sound,
-}
-
-impl ContactContent {
-    /// Whether the rows are impacts, so that there is no time axis.
-    pub(super) fn is_list(self) -> bool {
-        matches!(self, Self::Times | Self::Intervals)
-    }
-}
 
 /// Fewest impacts from which flight times can be compared.
 const FEWEST: usize = 3;

@@ -16,9 +16,10 @@ fn whole_samples(delay_s: f64, rate_hz: f64) -> i64 {
 
 /// What is left of a channel's delay, less that of its low-pass, when whole samples are removed, s.
 pub fn remainder_s(setup: &ChannelSetup, rate_hz: f64) -> f64 {
-    let removed_s = match rate_hz > 0.0 {
-        true => whole_samples(setup.whole_delay_s(), rate_hz) as f64 / rate_hz,
-        false => 0.0,
+    let removed_s = if rate_hz > 0.0 {
+        whole_samples(setup.whole_delay_s(), rate_hz) as f64 / rate_hz
+    } else {
+        0.0
     };
     setup.delay_s - removed_s
 }

@@ -10,6 +10,7 @@ pub mod calibrate;
 pub mod changes;
 mod condition;
 pub mod consistency;
+mod content;
 mod events;
 mod flag;
 pub mod late;
@@ -21,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use labfiles::units::Dimension;
 
-pub use events::ContactContent;
+pub use content::ContactContent;
 pub use flag::{Flag, FlagCode};
 pub use low_pass::LowPass;
 

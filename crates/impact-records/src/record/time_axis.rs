@@ -89,9 +89,10 @@ pub fn inspect(times: &[f64], flags: &mut Vec<Flag>) -> Option<f64> {
         // steps that scatter: rounded stamps of a uniform axis, or no uniform axis
         let printed = steps.iter().copied().find(|s| *s > 0.0).filter(|_| shared);
         let rounding = spread.max(mean).max(printed.unwrap_or(0.0));
-        let line = match shared {
-            true => shared_step(times),
-            false => Ok(nearest_step(times)),
+        let line = if shared {
+            shared_step(times)
+        } else {
+            Ok(nearest_step(times))
         };
         let line = match line {
             Ok(line) => line,

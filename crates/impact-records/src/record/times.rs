@@ -1,7 +1,7 @@
 //! When the samples of a record were taken: by a time axis, by a rate, or by a clock of each channel.
 
 use super::alignment::{self, Timing};
-use super::calibrate::{BoundRole, RecordSetup};
+use super::bind::{BoundRole, RecordSetup};
 use super::{Flag, FlagCode, Record, Role};
 use super::{changes, condition, time_axis};
 use labfiles::timing::AxisUnit;

@@ -10,7 +10,7 @@ use crate::kit::Figure;
 use crate::locale::Locale;
 use crate::parameters::{self, PARAMETERS};
 use crate::phrase::Phrase;
-use impact_identification::compare::{Comparison, Difference, EqualityTest, Outcome};
+use impact_identification::compare::{Comparison, ComparisonOutcome, Difference, EqualityTest};
 
 /// Builds the document's data.
 pub(crate) fn campaigns(
@@ -35,9 +35,9 @@ fn front(comparison: &Comparison, locale: Locale<'_>) -> Front {
     Front {
         synthetic: comparison.campaigns.iter().any(|c| c.synthetic),
         verdict: match comparison.outcome() {
-            Outcome::Changed { .. } | Outcome::ChangedTogether => "weak",
-            Outcome::NothingChanged => "identified",
-            Outcome::Undetermined => "not_identifiable",
+            ComparisonOutcome::Changed { .. } | ComparisonOutcome::ChangedTogether => "weak",
+            ComparisonOutcome::NothingChanged => "identified",
+            ComparisonOutcome::Undetermined => "not_identifiable",
         },
         headline: Rich::from(locale.message(&comparison.outcome())).plain(),
         summary: Rich::from(summary(comparison, locale)),

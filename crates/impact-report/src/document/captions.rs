@@ -67,13 +67,14 @@ fn narrow(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
     let others = Phrase::CaptionCorrelationOthers;
     let shown = content.compared.correlation.as_ref();
     let beside = shown.is_some_and(|c| c.parameters.iter().any(|p| parameter(*p).is_none()));
-    let correlation = match beside {
-        true => format!(
+    let correlation = if beside {
+        format!(
             "{} {}",
             locale.translate(correlation),
             locale.translate(others)
-        ),
-        false => locale.translate(correlation),
+        )
+    } else {
+        locale.translate(correlation)
     };
     vec![
         ("boundary_fit".into(), locale.translate(boundary)),

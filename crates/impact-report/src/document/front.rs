@@ -30,9 +30,10 @@ pub(super) fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
             Some(false) => "no",
             None => "unknown",
         },
-        agreement: match id.specimens.is_empty() {
-            true => Rich::from(drawn.locale.sentence(&id.agreement)),
-            false => Rich::default(),
+        agreement: if id.specimens.is_empty() {
+            Rich::from(drawn.locale.sentence(&id.agreement))
+        } else {
+            Rich::default()
         },
         facts: facts(content, drawn.locale),
         map: drawn.figure("map_small", ""),

@@ -12,7 +12,7 @@ use crate::kit::path::Rect;
 use crate::kit::units::{PrintUnit, print_unit};
 use crate::locale::Locale;
 use crate::phrase::{Phrase, role_text};
-use impact_identification::replay::{ResonanceCurve, ResonancePoint};
+use impact_identification::replay::{MeasuredAmplitude, ResonanceCurve};
 
 /// Height of the panels, points.
 const HEIGHT: f64 = 128.0;
@@ -33,12 +33,12 @@ pub(crate) fn draw(
     let peak = curve.points.iter().map(|p| p.amplitude).fold(0.0, f64::max);
     let unit = print_unit(curve.dimension, peak);
     let panel = amplitude_panel(curve, unit, left);
-    let value = |p: &ResonancePoint| [p.amplitude, p.amplitude_error].map(|v| v * unit.factor);
+    let value = |p: &MeasuredAmplitude| [p.amplitude, p.amplitude_error].map(|v| v * unit.factor);
     let fitted = curve.fitted.iter();
     let fit = fitted.map(|f| (f[0], f[1] * unit.factor)).collect();
     Series { curve, panel, fit }.draw(&mut canvas, value, locale);
     let panel = phase_panel(curve, right);
-    let value = |p: &ResonancePoint| [p.phase_rad, p.phase_error_rad].map(f64::to_degrees);
+    let value = |p: &MeasuredAmplitude| [p.phase_rad, p.phase_error_rad].map(f64::to_degrees);
     let fitted = curve.fitted.iter();
     let fit = fitted.map(|f| (f[0], f[2].to_degrees())).collect();
     Series { curve, panel, fit }.draw(&mut canvas, value, locale);
@@ -105,13 +105,13 @@ impl Series<'_> {
     fn draw(
         &self,
         canvas: &mut Canvas,
-        value: impl Fn(&ResonancePoint) -> [f64; 2],
+        value: impl Fn(&MeasuredAmplitude) -> [f64; 2],
         locale: Locale<'_>,
     ) {
         let radius = dots::radius(self.curve.points.len()) + 0.2;
-        let colour = |point: &ResonancePoint| if point.used { look::BLUE } else { look::QUIET };
+        let colour = |point: &MeasuredAmplitude| if point.used { look::BLUE } else { look::QUIET };
         let all = self.curve.points.iter();
-        let known: Vec<&ResonancePoint> = all.filter(|p| value(p)[0].is_finite()).collect();
+        let known: Vec<&MeasuredAmplitude> = all.filter(|p| value(p)[0].is_finite()).collect();
         canvas.layer(1);
         for point in &known {
             let [y, error] = value(point);

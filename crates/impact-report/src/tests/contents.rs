@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 
 use crate::{CampaignFacts, CampaignsContent, NominalValue, Phrase, ReportContent, Subject};
 use impact_identification::compare::{
-    Comparison, Difference, EqualityTest, NotShared, Remark, SeparateNuisance, SharedNuisance,
-    Summary, WhyShared,
+    Comparison, ComparisonRemark, ComparisonSummary, Difference, EqualityTest, NotShared,
+    SeparateNuisance, SharedNuisance, WhyShared,
 };
 use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::{Provenance, VerdictKind};
@@ -167,7 +167,7 @@ fn unidentified() -> ReportContent {
 /// Two campaigns on one rig, between which R has fallen.
 pub(super) fn compared() -> CampaignsContent {
     let parameters = fixture::whole().identification.joint.parameters.clone();
-    let campaign = |name: &str| Summary {
+    let campaign = |name: &str| ComparisonSummary {
         name: name.into(),
         measured: Some("May".into()),
         synthetic: true,
@@ -209,7 +209,7 @@ pub(super) fn compared() -> CampaignsContent {
                 campaigns: vec![0, 1],
                 why: NotShared::StatedOtherwise,
             }],
-            remarks: vec![Remark::NothingShared],
+            remarks: vec![ComparisonRemark::NothingShared],
         },
         command_line: "impactid compare before after --out compared".into(),
     }

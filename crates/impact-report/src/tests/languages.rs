@@ -10,7 +10,7 @@ use crate::{
 use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::parameters::effect::Effect;
 use impact_identification::identify::uncertainty::budget::{
-    Budget, Combined, Contribution, Evaluation, Row, Source,
+    Budget, Combined, Contribution, Evaluation, Row, UncertaintySource,
 };
 use impact_identification::identify::{Finding, Identification, Method, Reason};
 use impact_identification::replay::{BracketRow, Correlation, Unusable, UnusableReason};
@@ -157,20 +157,20 @@ fn real_rig() -> ReportContent {
         z_score: 10.0,
     });
     id.verdict.findings.extend(findings);
-    let stated = |coordinate, clearance_m| Source::Stated {
+    let stated = |coordinate, clearance_m| UncertaintySource::Stated {
         coordinate,
         clearance_m,
     };
     let method = Method::Trajectories;
     let sources = [
-        (Source::Noise { method }, 1e-3),
-        (Source::BetweenGroups { groups: 9 }, 1e-3),
+        (UncertaintySource::Noise { method }, 1e-3),
+        (UncertaintySource::BetweenGroups { groups: 9 }, 1e-3),
         (stated(Coordinate::Gap(0), Some(1e-3)), 1e-3),
-        (Source::FirstOrder, 1e-3),
-        (Source::RestitutionOverSpeed, 1e-3),
-        (Source::BetweenMethods, 1e-3),
-        (Source::Clock, 1e-3),
-        (Source::InstrumentOff, 1e-3),
+        (UncertaintySource::FirstOrder, 1e-3),
+        (UncertaintySource::RestitutionOverSpeed, 1e-3),
+        (UncertaintySource::BetweenMethods, 1e-3),
+        (UncertaintySource::Clock, 1e-3),
+        (UncertaintySource::InstrumentOff, 1e-3),
         (stated(Coordinate::Effect(Effect::PickupX), None), 1e-3),
         (stated(Coordinate::Effect(Effect::PickupY), None), 1e-3),
         (stated(Coordinate::ScrewZero, None), 1e-9),

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::ExploreError;
 use super::limits::{DEFLECTION, ETA, FREQUENCY, RHO};
 use super::state::{Cursor, Panel, RigScale, State, Window};
-use crate::theory::plan::Law;
+use crate::theory::plan::RestitutionLaw;
 use impact_campaign::campaign::resolved::ResolvedCampaign;
 use impact_campaign::pipeline::identify::{IdentificationFile, evidence};
 use impact_campaign::pipeline::observe::read_one;
@@ -18,7 +18,7 @@ use impact_campaign::pipeline::{
 use impact_identification::identify::evidence::Blocks;
 use impact_identification::identify::parameters::Parameters;
 use impact_identification::identify::{Estimate, Identification};
-use impact_identification::replay::{self, Input, Placed};
+use impact_identification::replay::{self, Input, PlacedRecord};
 use impact_records::event::RigKind;
 use impact_records::motion::Observation;
 use impact_records::record::Record;
@@ -26,16 +26,16 @@ use impact_records::signal::robust;
 use impact_report::style::MotionStyle;
 
 /// A campaign with what was observed and identified.
-pub struct Campaign {
+pub struct OpenCampaign {
     pub(super) resolved: ResolvedCampaign,
     pub(super) observed: Observed,
     pub(super) identification: Identification,
     /// The evidence sorted and weighed as at the fit.
     pub(super) blocks: Blocks,
-    placed: Placed,
+    placed: PlacedRecord,
 }
 
-impl Campaign {
+impl OpenCampaign {
     /// Observe and identify a campaign.
     ///
     /// # Errors
@@ -116,7 +116,7 @@ impl Campaign {
             observed,
             identification,
             blocks,
-            placed: Placed::default(),
+            placed: PlacedRecord::default(),
         };
         campaign.placed = campaign.with_input(replay::placed);
         campaign
@@ -222,7 +222,7 @@ impl Campaign {
             .or(stated.damping_ratio);
         let view = self.view(scale, &first);
         State {
-            restitution: Law::Constant(restitution.unwrap_or(0.9).clamp(0.0, 1.0)),
+            restitution: RestitutionLaw::Constant(restitution.unwrap_or(0.9).clamp(0.0, 1.0)),
             damping_ratio: damping.unwrap_or(0.05).clamp(0.0, 0.9),
             single: self.resolved.machine == RigKind::Single,
             cursor: self.first_cursor(scale, view),

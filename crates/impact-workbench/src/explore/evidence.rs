@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::answer::Stop;
-use super::campaign::Campaign;
+use super::campaign::OpenCampaign;
 use super::jobs::Job;
 use super::{ExploreError, State};
 use impact_campaign::pipeline::identify::evidence;
@@ -15,7 +15,7 @@ use impact_identification::identify::joint;
 use impact_identification::identify::parameters::Parameters;
 use impact_identification::identify::plan::propose;
 use impact_identification::identify::solver::Block;
-use impact_identification::replay::{Beside, Signal, beside};
+use impact_identification::replay::{BesideRecord, Signal, beside};
 use impact_records::motion::{BoundaryKind, Motion, Observation};
 use impact_report::style::MotionStyle;
 
@@ -23,7 +23,7 @@ use impact_report::style::MotionStyle;
 const PROPOSALS: usize = 6;
 
 /// The chosen record, measured beside simulated, with the evidence for its label; or why not.
-pub(super) fn record(campaign: &Campaign, state: &State, job: &Job) -> Result<(), Stop> {
+pub(super) fn record(campaign: &OpenCampaign, state: &State, job: &Job) -> Result<(), Stop> {
     let Some(name) = &state.record else {
         let message = "no record is chosen".to_owned();
         return Err(Stop::Refused(ExploreError::Absent(message)));
@@ -40,7 +40,7 @@ pub(super) fn record(campaign: &Campaign, state: &State, job: &Job) -> Result<()
         .with("stated", stated(&observations[index]))
         .with("evidence", evidence_of(campaign, index));
     let frame = match campaign.with_input(|input| beside(input, index, &parameters)) {
-        Beside::Motion(c) => {
+        BesideRecord::Motion(c) => {
             let traces = c.traces.iter().map(|t| {
                 json!({
                     "role": t.role.name(),
@@ -71,7 +71,7 @@ pub(super) fn record(campaign: &Campaign, state: &State, job: &Job) -> Result<()
                     .column(&format!("residual{i}"), residual)
             })
         }
-        Beside::Decay(d) => frame
+        BesideRecord::Decay(d) => frame
             .with("shown", "decay")
             .with("unit", d.dimension.si_symbol())
             .with("natural_frequency_hz", d.natural_frequency_hz)
@@ -80,7 +80,7 @@ pub(super) fn record(campaign: &Campaign, state: &State, job: &Job) -> Result<()
             .column("measured0", d.measured.values.iter().copied())
             .column("t1", d.fitted.time_s.iter().copied())
             .column("simulated1", d.fitted.values.iter().copied()),
-        Beside::Nothing(why) => frame.with("shown", "nothing").with("why", why.to_string()),
+        BesideRecord::Nothing(why) => frame.with("shown", "nothing").with("why", why.to_string()),
     };
     Ok(job.send(frame)?)
 }
@@ -100,7 +100,7 @@ fn stated(o: &Observation) -> Value {
 }
 
 /// What a record's label rests on, its flags, who used it, and why a fit did not.
-fn evidence_of(campaign: &Campaign, index: usize) -> Value {
+fn evidence_of(campaign: &OpenCampaign, index: usize) -> Value {
     let o = &campaign.observed.observations[index];
     let reason = match &o.classification.motion {
         Motion::Undetermined { reason } => Some(reason.to_string()),
@@ -154,7 +154,7 @@ fn root_mean(squares: f64, count: usize) -> Option<f64> {
 }
 
 /// Residuals of every method and of the joint fit at the sliders, and where each boundary is then.
-pub(super) fn residuals(campaign: &Campaign, state: &State, job: &Job) -> Result<(), Stop> {
+pub(super) fn residuals(campaign: &OpenCampaign, state: &State, job: &Job) -> Result<(), Stop> {
     let at = campaign.at_sliders(state);
     let mut methods = Vec::new();
     let (mut squares, mut count) = (0.0, 0);
@@ -195,7 +195,7 @@ pub(super) fn residuals(campaign: &Campaign, state: &State, job: &Job) -> Result
 }
 
 /// The settings to measure next.
-pub(super) fn proposals(campaign: &Campaign, job: &Job) -> Result<(), Stop> {
+pub(super) fn proposals(campaign: &OpenCampaign, job: &Job) -> Result<(), Stop> {
     let evidence = evidence(&campaign.resolved, &campaign.observed);
     let joint = campaign.identification.joint_fit.as_ref();
     let found = propose(&evidence, joint, PROPOSALS).unwrap_or_default();

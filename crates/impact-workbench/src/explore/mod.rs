@@ -24,7 +24,7 @@ mod session;
 mod state;
 mod wire;
 
-pub use campaign::Campaign;
+pub use campaign::OpenCampaign;
 pub use check::check;
 pub use error::ExploreError;
 pub use server::Server;

@@ -4,7 +4,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 use tokio::sync::watch;
 
-use super::campaign::Campaign;
+use super::campaign::OpenCampaign;
 use super::state::{Line, Panel, State, Window};
 use super::{ExploreError, demo};
 use crate::theory::Study;
@@ -22,11 +22,11 @@ pub struct Session {
 /// What a page shows when it opens.
 struct Opened {
     state: State,
-    campaign: Option<Arc<Campaign>>,
+    campaign: Option<Arc<OpenCampaign>>,
 }
 
 impl Session {
-    fn new(state: State, campaign: Option<Campaign>, notes: Vec<String>) -> Self {
+    fn new(state: State, campaign: Option<OpenCampaign>, notes: Vec<String>) -> Self {
         Self {
             opened: RwLock::new(Opened {
                 state,
@@ -45,12 +45,12 @@ impl Session {
     }
 
     /// A campaign with its fit.
-    pub fn of_campaign(campaign: Campaign, notes: Vec<String>) -> Self {
+    pub fn of_campaign(campaign: OpenCampaign, notes: Vec<String>) -> Self {
         Self::new(campaign.first_state(), Some(campaign), notes)
     }
 
     /// The campaign has more records, or another fit: pages that are open show it at once.
-    pub fn replace_campaign(&self, campaign: Campaign) {
+    pub fn replace_campaign(&self, campaign: OpenCampaign) {
         let opened = Opened {
             state: campaign.first_state(),
             campaign: Some(Arc::new(campaign)),
@@ -97,7 +97,7 @@ impl Session {
                 starts: plan.grid.starts,
             });
             if let Some(r) = plan.restitution {
-                state.restitution = crate::theory::plan::Law::Constant(r);
+                state.restitution = crate::theory::plan::RestitutionLaw::Constant(r);
             }
         }
         if let Some(plan) = study.sweep.values().next() {
@@ -159,7 +159,7 @@ impl Session {
     ///
     /// # Errors
     /// [`ExploreError::Absent`] where the explorer shows the theory alone.
-    pub(super) fn campaign(&self) -> Result<Arc<Campaign>, ExploreError> {
+    pub(super) fn campaign(&self) -> Result<Arc<OpenCampaign>, ExploreError> {
         let opened = self.opened.read().unwrap_or_else(PoisonError::into_inner);
         opened.campaign.clone().ok_or_else(|| {
             ExploreError::Absent("no campaign is open: start `impactid explore RESULTS`".into())

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::ExploreError;
 use super::limits::{self, Limit};
 use crate::theory::Study;
-use crate::theory::plan::{BasinPlan, Law, MapPlan, SweepPlan};
+use crate::theory::plan::{BasinPlan, MapPlan, RestitutionLaw, SweepPlan};
 use impact_oscillator::atlas::portrait::PortraitPlan;
 use impact_oscillator::atlas::{BasinGrid, MapSettings, Starts};
 use impact_oscillator::model::params::Asymmetry;
@@ -27,7 +27,7 @@ pub struct State {
     /// β
     pub damping_ratio: f64,
     /// R, a number or a law R(v).
-    pub restitution: Law,
+    pub restitution: RestitutionLaw,
     /// One mass against a fixed stop instead of two against each other.
     #[serde(default)]
     pub single: bool,
@@ -192,7 +192,7 @@ impl Default for State {
         Self {
             version: VERSION,
             damping_ratio: 0.07,
-            restitution: Law::Constant(0.9),
+            restitution: RestitutionLaw::Constant(0.9),
             single: false,
             asymmetry: Asymmetry::default(),
             view: Window {
@@ -271,7 +271,7 @@ impl State {
     }
 
     fn check_machine(&self) -> Result<(), ModelError> {
-        if let Law::Constant(r) = self.restitution {
+        if let RestitutionLaw::Constant(r) = self.restitution {
             limits::RESTITUTION.check("restitution", r)?;
         }
         limits::DAMPING_RATIO.check("damping_ratio", self.damping_ratio)?;

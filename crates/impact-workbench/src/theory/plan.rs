@@ -18,7 +18,7 @@ pub struct Study {
     /// β
     pub damping_ratio: f64,
     /// R, a number or a law R(v).
-    pub restitution: Law,
+    pub restitution: RestitutionLaw,
     /// One mass against a fixed stop instead of two against each other.
     #[serde(default)]
     pub single: bool,
@@ -45,14 +45,14 @@ pub struct Study {
 /// R as a number or as a law R(v).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum Law {
+pub enum RestitutionLaw {
     /// The same at every speed.
     Constant(f64),
     /// By the approach speed.
     Law(Restitution),
 }
 
-impl Law {
+impl RestitutionLaw {
     /// The law as the model has it.
     pub fn restitution(&self) -> Restitution {
         match self {
@@ -140,7 +140,7 @@ impl RegionsPlan {
 
 impl Study {
     /// A study of a machine without any work.
-    pub fn empty(title: &str, damping_ratio: f64, restitution: Law) -> Self {
+    pub fn empty(title: &str, damping_ratio: f64, restitution: RestitutionLaw) -> Self {
         Self {
             title: title.to_owned(),
             damping_ratio,
@@ -174,7 +174,11 @@ mod tests {
 
     #[test]
     fn a_study_is_the_same_after_writing_and_reading() {
-        let mut study = Study::empty("R(v)", 0.07, Law::Law(Restitution::Table(vec![(0.0, 0.9)])));
+        let mut study = Study::empty(
+            "R(v)",
+            0.07,
+            RestitutionLaw::Law(Restitution::Table(vec![(0.0, 0.9)])),
+        );
         study.asymmetry.mass = 1.1;
         let plan = SweepPlan {
             eta: (0.9, 1.4),

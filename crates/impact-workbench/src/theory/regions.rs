@@ -9,7 +9,7 @@ use crate::figures::regions::draw;
 use impact_campaign::pipeline::PipelineError;
 use impact_campaign::pipeline::table::Table;
 use impact_identification::replay::RegionMap;
-use impact_oscillator::atlas::curves::{Curve, CurvePoint};
+use impact_oscillator::atlas::curves::{Curve, PointOfCurve};
 use impact_oscillator::atlas::regions::{assemble, columns};
 use impact_oscillator::atlas::shard::AtlasRequest;
 use impact_oscillator::atlas::{Atlas, Cause, MapGrid, Maps, Slice, brute_maps};
@@ -133,7 +133,7 @@ fn why(cause: Cause) -> String {
 }
 
 fn curves(curves: &[Curve]) -> Table {
-    let rows: Vec<(usize, &Curve, &CurvePoint)> = curves
+    let rows: Vec<(usize, &Curve, &PointOfCurve)> = curves
         .iter()
         .enumerate()
         .flat_map(|(i, c)| c.points.iter().map(move |p| (i, c, p)))

@@ -42,9 +42,12 @@ fn rows(item: &Item<'_>, columns: &[Column], mut out: impl Write) -> std::io::Re
         writeln!(out, "# {TEXTS_KEY} = {}", texts.join(" "))?;
     }
     // Headings of texts are quoted in any case: a reader learns early that there are quotes.
-    let heading = |c: &Column| match text(c) {
-        true => in_quotes(&c.heading()),
-        false => quoted(&c.heading()),
+    let heading = |c: &Column| {
+        if text(c) {
+            in_quotes(&c.heading())
+        } else {
+            quoted(&c.heading())
+        }
     };
     let headings: Vec<String> = columns.iter().map(heading).collect();
     writeln!(out, "{}", headings.join(","))?;

@@ -33,9 +33,10 @@ fn portable(name: &str) -> String {
     let kept = taken.trim_end_matches(['.', ' ']).len();
     let ending = taken.split_off(kept);
     taken.extend(ending.chars().map(|_| '_'));
-    match taken.is_empty() || is_device(&taken) {
-        true => format!("_{taken}"),
-        false => taken,
+    if taken.is_empty() || is_device(&taken) {
+        format!("_{taken}")
+    } else {
+        taken
     }
 }
 

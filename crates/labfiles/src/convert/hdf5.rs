@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::convert::item::{Column, ConvertError, Item, Options};
-use crate::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Value};
+use crate::hdf5_write::{AttributeValue, CampaignWriter, ColumnToWrite, RecordTable};
 
 /// Write all records; texts are left out, complex numbers become two channels.
 pub(super) fn write(items: &[Item<'_>], out: &Path, options: &Options) -> Result<(), ConvertError> {
@@ -29,10 +29,10 @@ fn record(item: &Item<'_>) -> Result<RecordTable, ConvertError> {
     let channels = item.columns()?.into_iter().filter_map(numbers).collect();
     let start = item
         .start_time()
-        .map(|s| ("start_time".to_owned(), Value::from(s)));
+        .map(|s| ("start_time".to_owned(), AttributeValue::from(s)));
     let value = |text: &String| match text.parse::<f64>() {
-        Ok(number) if number.is_finite() => Value::Number(number),
-        _ => Value::Text(text.clone()),
+        Ok(number) if number.is_finite() => AttributeValue::Number(number),
+        _ => AttributeValue::Text(text.clone()),
     };
     let own = item.described().map(|(k, v)| (k.clone(), value(v)));
     Ok(RecordTable {

@@ -145,9 +145,10 @@ impl Record<'_> {
         }
         let points = values.len() / if complex { 2 } else { 1 };
         self.header(name, info, (points, complex), out)?;
-        match self.text {
-            true => self.text(values, out)?,
-            false => self.binary(values, out)?,
+        if self.text {
+            self.text(values, out)?;
+        } else {
+            self.binary(values, out)?;
         }
         writeln!(out, "    -1")
     }
@@ -190,9 +191,10 @@ impl Record<'_> {
             fitted(0.0, NARROW)
         )?;
         let timed = self.item.sample_rate_hz().is_some();
-        let abscissa = match timed {
-            true => axis(17, 0, "time", Some("s")),
-            false => axis(0, 0, "sample", None),
+        let abscissa = if timed {
+            axis(17, 0, "time", Some("s"))
+        } else {
+            axis(0, 0, "sample", None)
         };
         let (kind, length) = data_type(info.unit.as_deref());
         let ordinate = axis(kind, length, "NONE", info.unit.as_deref());
@@ -223,9 +225,10 @@ impl Record<'_> {
 
     fn binary(&self, values: &[f64], out: &mut dyn Write) -> std::io::Result<()> {
         for value in values {
-            match self.single {
-                true => out.write_all(&to_f32(*value).to_le_bytes())?,
-                false => out.write_all(&value.to_le_bytes())?,
+            if self.single {
+                out.write_all(&to_f32(*value).to_le_bytes())?;
+            } else {
+                out.write_all(&value.to_le_bytes())?;
             }
         }
         writeln!(out)

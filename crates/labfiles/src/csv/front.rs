@@ -121,9 +121,12 @@ fn stated_texts(before: &[&[u8]]) -> Option<Vec<usize>> {
 }
 
 fn stated_kinds(texts: &[usize], columns: usize) -> Vec<Kind> {
-    let kind = |number| match texts.contains(&number) {
-        true => Kind::Text,
-        false => Kind::Number,
+    let kind = |number| {
+        if texts.contains(&number) {
+            Kind::Text
+        } else {
+            Kind::Number
+        }
     };
     (1..=columns).map(kind).collect()
 }

@@ -204,9 +204,10 @@ fn grouped_names(rows: &[Vec<String>], columns: usize) -> Option<Vec<String>> {
     let mut group = "";
     let named = names.iter().enumerate().map(|(i, name)| {
         group = groups.get(i).filter(|g| !g.is_empty()).map_or(group, |g| g);
-        match name.is_empty() {
-            true => String::new(),
-            false => format!("{name} {group}").trim().to_owned(),
+        if name.is_empty() {
+            String::new()
+        } else {
+            format!("{name} {group}").trim().to_owned()
         }
     });
     Some(named.collect())

@@ -107,3 +107,13 @@ pub(super) fn value(data: &Data) -> String {
         Data::Empty => String::new(),
     }
 }
+
+/// A workbook that cannot be read.
+pub(super) fn damaged(path: &Path, found: &str) -> ReadError {
+    ReadError::new(
+        path,
+        "an Excel workbook",
+        found,
+        "Open it in a spreadsheet program and save it as .xlsx or CSV.",
+    )
+}

@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use crate::bytes::to_usize;
+use crate::excel::cells::damaged;
 use crate::source::ReadError;
 
 /// Numbers from here on are no sectors: free, end of a chain, tables.
@@ -36,7 +37,7 @@ impl<'a> Compound<'a> {
     /// # Errors
     /// If its sectors form a loop, or its lengths exceed it.
     pub(super) fn new(path: &Path, bytes: &'a [u8]) -> Result<Self, ReadError> {
-        Self::checked(bytes).map_err(|found| super::damaged(path, found))
+        Self::checked(bytes).map_err(|found| damaged(path, found))
     }
 
     fn checked(bytes: &'a [u8]) -> Result<Self, &'static str> {

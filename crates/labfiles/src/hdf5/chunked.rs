@@ -52,13 +52,12 @@ pub(crate) fn rows(
         if !zlib_into(&packed, &mut unpacked) {
             return None;
         }
-        let bytes = match grid.shuffled {
-            true => {
-                plain.resize(unpacked.len(), 0);
-                unshuffle(&unpacked, element, &mut plain);
-                &plain
-            }
-            false => &unpacked,
+        let bytes = if grid.shuffled {
+            plain.resize(unpacked.len(), 0);
+            unshuffle(&unpacked, element, &mut plain);
+            &plain
+        } else {
+            &unpacked
         };
         grid.lay(chunk, bytes, &rows, &mut out);
     }

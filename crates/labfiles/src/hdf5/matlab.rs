@@ -194,9 +194,10 @@ impl Walk<'_> {
             dims,
             content,
             logical: name == "logical",
-            class: match name.is_empty() {
-                true => "array".to_owned(),
-                false => name,
+            class: if name.is_empty() {
+                "array".to_owned()
+            } else {
+                name
             },
             value: None,
         };

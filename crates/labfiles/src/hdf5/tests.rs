@@ -132,15 +132,15 @@ fn shared_data_goldens_of_matlab_7_3() {
     let mut arrays = 0;
     for (path, golden) in goldens("mat73_conformance") {
         // One of the goldens is among the files of the older levels.
-        let path = match path.exists() {
-            true => path,
-            false => path
-                .parent()
+        let path = if path.exists() {
+            path
+        } else {
+            path.parent()
                 .unwrap()
                 .parent()
                 .unwrap()
                 .join("mat5_conformance")
-                .join(path.file_name().unwrap()),
+                .join(path.file_name().unwrap())
         };
         let (store, tree) = open_store(&path).unwrap();
         for (name, golden) in golden.as_object().unwrap() {

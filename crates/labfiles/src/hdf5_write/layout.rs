@@ -4,7 +4,7 @@ use std::convert::identity;
 
 use ::hdf5::{AttrValue, DatasetBuilder, FinishedGroup, GroupBuilder};
 
-use crate::hdf5_write::record::{ColumnToWrite, Folder, RecordTable, Stored, Value};
+use crate::hdf5_write::record::{AttributeValue, ColumnToWrite, Folder, RecordTable, Stored};
 use crate::numbers::to_f32;
 
 /// Rows of a chunk.
@@ -40,10 +40,10 @@ pub(super) fn is_table(record: &RecordTable) -> bool {
         && record.channels[0].samples.len() > 1
 }
 
-pub(super) fn attr(value: &Value) -> AttrValue {
+pub(super) fn attr(value: &AttributeValue) -> AttrValue {
     match value {
-        Value::Number(number) => AttrValue::F64(*number),
-        Value::Text(text) => AttrValue::String(text.clone()),
+        AttributeValue::Number(number) => AttrValue::F64(*number),
+        AttributeValue::Text(text) => AttrValue::String(text.clone()),
     }
 }
 

@@ -4,26 +4,26 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// An attribute's value.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Value {
+pub enum AttributeValue {
     /// A number.
     Number(f64),
     /// A text.
     Text(String),
 }
 
-impl From<f64> for Value {
+impl From<f64> for AttributeValue {
     fn from(number: f64) -> Self {
         Self::Number(number)
     }
 }
 
-impl From<&str> for Value {
+impl From<&str> for AttributeValue {
     fn from(text: &str) -> Self {
         Self::Text(text.to_owned())
     }
 }
 
-impl From<String> for Value {
+impl From<String> for AttributeValue {
     fn from(text: String) -> Self {
         Self::Text(text)
     }
@@ -86,7 +86,7 @@ pub struct RecordTable {
     /// Its channels.
     pub channels: Vec<ColumnToWrite>,
     /// Further attributes with their unit in the name: `clearance_m`, `drive_frequency_hz`, …
-    pub attributes: Vec<(String, Value)>,
+    pub attributes: Vec<(String, AttributeValue)>,
 }
 
 /// A group of the file: records and further groups.

@@ -2,10 +2,20 @@
 
 use std::collections::BTreeMap;
 
-use super::Column;
 use crate::lvm::scan::{FIRST_WORDS, Keys, Segment};
 use crate::text::cells::Separator;
 use crate::text::{clock, number};
+
+/// What a column of a table holds.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Column {
+    /// X values for the channels from this number on.
+    X(usize),
+    /// The channel of this number.
+    Y(usize),
+    /// Remarks.
+    Comment,
+}
 
 /// The value of a header key for a channel; a single value holds for all.
 pub(super) fn value_for(keys: &Keys, key: &str, n: usize) -> Option<String> {

@@ -135,9 +135,10 @@ impl<'a> Elements<'a> {
     /// stream are behind the position.
     pub(super) fn data(&mut self, at: u64, bytes: u64, what: &str) -> Result<Vec<u8>, ReadError> {
         let (tag_at, tag) = self.last;
-        match at == tag_at + 4 && bytes <= 4 {
-            true => Ok(tag[4..4 + to_usize(bytes)].to_vec()),
-            false => self.fetch(at, bytes, what),
+        if at == tag_at + 4 && bytes <= 4 {
+            Ok(tag[4..4 + to_usize(bytes)].to_vec())
+        } else {
+            self.fetch(at, bytes, what)
         }
     }
 
@@ -165,15 +166,16 @@ impl<'a> Elements<'a> {
         if !matches!(tag.kind, 1 | 2 | 16) {
             return Err(self.refuse(tag.at, format!("{what} as int8"), kind_name(tag.kind)));
         }
-        match bytes.is_ascii() {
-            true => Ok(String::from_utf8_lossy(&bytes)
+        if bytes.is_ascii() {
+            Ok(String::from_utf8_lossy(&bytes)
                 .trim_end_matches('\0')
-                .to_owned()),
-            false => Err(self.refuse(
+                .to_owned())
+        } else {
+            Err(self.refuse(
                 tag.at,
                 format!("{what} in ASCII"),
                 format!("{:?}", String::from_utf8_lossy(&bytes)),
-            )),
+            ))
         }
     }
 }

@@ -107,9 +107,10 @@ impl<'a> Stream<'a> {
             Err(error) => return Err(self.fault("the end", error)),
         }
         let used = self.decoder.get_ref().total_in();
-        match used == self.packed {
-            true => Ok(()),
-            false => Err(self.fault("the end", format!("{} bytes too many", self.packed - used))),
+        if used == self.packed {
+            Ok(())
+        } else {
+            Err(self.fault("the end", format!("{} bytes too many", self.packed - used)))
         }
     }
 }

@@ -289,13 +289,12 @@ impl Walker<'_, '_> {
     fn check_children(&self, head: &Head, per: u64, at: u64, end: u64) -> Result<u64, ReadError> {
         let children = head.count.saturating_mul(per);
         let room = end.saturating_sub(at);
-        match children.saturating_mul(8) <= room {
-            true => Ok(children),
-            false => {
-                Err(self
-                    .elements
-                    .refuse(at, format!("{children} arrays"), format!("{room} bytes")))
-            }
+        if children.saturating_mul(8) <= room {
+            Ok(children)
+        } else {
+            Err(self
+                .elements
+                .refuse(at, format!("{children} arrays"), format!("{room} bytes")))
         }
     }
 

@@ -237,13 +237,14 @@ impl Columns {
             let arrays: Vec<_> = arrays.into_iter().map(plain).collect();
             samples(&Series::try_from((name, arrays))?)
         })?;
-        match samples.len() == group.num_rows() {
-            true => Ok(samples),
-            false => Err(damaged(format!(
+        if samples.len() == group.num_rows() {
+            Ok(samples)
+        } else {
+            Err(damaged(format!(
                 "{} rows where the footer states {}",
                 samples.len(),
                 group.num_rows()
-            ))),
+            )))
         }
     }
 

@@ -35,9 +35,10 @@ pub(super) fn share(
         return Err(file.refuse(at + 8, "dimension 1", dimension.to_string()));
     }
     let count = cursor.u64("the number of samples")?;
-    let device = match device {
-        true => Some(Arc::new(device_index(file, cursor, digital)?)),
-        false => None,
+    let device = if device {
+        Some(Arc::new(device_index(file, cursor, digital)?))
+    } else {
+        None
     };
     let bytes = match kind.bytes() {
         _ if device.is_some() => Some(0),
@@ -96,14 +97,16 @@ fn scaler(cursor: &mut Cursor<'_>, digital: bool) -> Result<Scaler, ReadError> {
     };
     let buffer = cursor.u32("a DAQmx buffer")?;
     let offset = u64::from(cursor.u32("a DAQmx offset")?);
-    match digital {
-        true => drop(cursor.u8("a DAQmx bitmap")?),
-        false => drop(cursor.u32("a DAQmx bitmap")?),
+    if digital {
+        cursor.u8("a DAQmx bitmap")?;
+    } else {
+        cursor.u32("a DAQmx bitmap")?;
     }
     let scale = cursor.u32("a DAQmx scale")?;
-    let (byte, bit) = match digital {
-        true => (offset / 8, Some((offset % 8) as u32)),
-        false => (offset, None),
+    let (byte, bit) = if digital {
+        (offset / 8, Some((offset % 8) as u32))
+    } else {
+        (offset, None)
     };
     Ok(Scaler {
         scale,

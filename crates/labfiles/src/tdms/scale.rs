@@ -225,9 +225,10 @@ impl Reader<'_> {
             inputs.reverse();
             outputs.reverse();
         }
-        match inputs.windows(2).all(|pair| pair[0] < pair[1]) {
-            true => Ok(Step::Table { inputs, outputs }),
-            false => Err(ScalingFault::TableOrder),
+        if inputs.windows(2).all(|pair| pair[0] < pair[1]) {
+            Ok(Step::Table { inputs, outputs })
+        } else {
+            Err(ScalingFault::TableOrder)
         }
     }
 }

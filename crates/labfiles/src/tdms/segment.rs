@@ -267,11 +267,12 @@ impl Scanner<'_> {
     /// Count entries of layouts that a few bytes of metadata can call forth.
     fn spend(&mut self, at: u64, entries: usize) -> Result<(), ReadError> {
         self.built += entries as u64;
-        match self.built <= self.file.size() / 4 + 4096 {
-            true => Ok(()),
-            false => Err(self
+        if self.built <= self.file.size() / 4 + 4096 {
+            Ok(())
+        } else {
+            Err(self
                 .file
-                .refuse(at, "layouts in proportion to the file", "far too many")),
+                .refuse(at, "layouts in proportion to the file", "far too many"))
         }
     }
 

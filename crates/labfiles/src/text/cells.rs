@@ -118,9 +118,10 @@ impl<'a> Iterator for Lines<'a> {
 /// The line that begins at `at` of a block, without its line end, and where the next begins.
 pub(crate) fn line_at(block: &[u8], at: usize, quotes: bool) -> (&[u8], usize) {
     let rest = &block[at..];
-    let end = match quotes {
-        false => memchr::memchr(b'\n', rest),
-        true => line_feed_outside_quotes(rest),
+    let end = if quotes {
+        line_feed_outside_quotes(rest)
+    } else {
+        memchr::memchr(b'\n', rest)
     };
     let end = end.unwrap_or(rest.len());
     let line = &rest[..end];

@@ -63,14 +63,16 @@ const fn reciprocal(power: u128) -> u128 {
 pub(crate) fn nearest(mantissa: u64, exponent: i64) -> Option<f64> {
     if mantissa < SHORT && (-22..=22).contains(&exponent) {
         let power = EXACT_POWERS[exponent.unsigned_abs() as usize];
-        return Some(match exponent < 0 {
-            true => mantissa as f64 / power,
-            false => mantissa as f64 * power,
+        return Some(if exponent < 0 {
+            mantissa as f64 / power
+        } else {
+            mantissa as f64 * power
         });
     }
-    match (-GREATEST_POWER..=GREATEST_POWER).contains(&exponent) && mantissa > 0 {
-        true => Some(long(mantissa, exponent)),
-        false => None,
+    if (-GREATEST_POWER..=GREATEST_POWER).contains(&exponent) && mantissa > 0 {
+        Some(long(mantissa, exponent))
+    } else {
+        None
     }
 }
 

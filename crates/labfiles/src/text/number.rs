@@ -55,9 +55,10 @@ fn step_by_step(text: &[u8], at: usize, mark: u8) -> Option<(f64, usize)> {
             return None;
         }
         // Zeros before the first digit that counts do not lengthen the mantissa.
-        digits = match whole == 0 && digits <= MOST_DIGITS {
-            true => significant(text, fraction, end),
-            false => digits + end - fraction,
+        digits = if whole == 0 && digits <= MOST_DIGITS {
+            significant(text, fraction, end)
+        } else {
+            digits + end - fraction
         };
     } else if digits == 0 {
         return None;

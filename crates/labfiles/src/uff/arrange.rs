@@ -202,9 +202,10 @@ fn ordinate(sets: &Sets, function: &Function, name: String) -> ChannelInfo {
     ChannelInfo {
         name,
         unit,
-        stored: match header.complex() {
-            true => StoredType::Complex(bits),
-            false => StoredType::Float(bits),
+        stored: if header.complex() {
+            StoredType::Complex(bits)
+        } else {
+            StoredType::Float(bits)
         },
         samples: function.samples,
         sample_rate_hz: timed.then_some(rate),

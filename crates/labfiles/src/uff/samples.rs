@@ -81,9 +81,10 @@ fn binary(function: &Function, body: &[u8], at: usize) -> Vec<f64> {
     {
         let header = &function.header;
         let width = to_usize(ordinate.bytes());
-        let first = match header.even {
-            true => 0,
-            false => to_usize(abscissa.bytes()),
+        let first = if header.even {
+            0
+        } else {
+            to_usize(abscissa.bytes())
         };
         let (number, offset) = match at.checked_sub(usize::from(!header.even)) {
             None => (abscissa, 0),

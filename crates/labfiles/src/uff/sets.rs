@@ -295,16 +295,18 @@ impl<'a> Scanner<'a> {
         at: u64,
         stated: u64,
     ) -> Result<Function, ReadError> {
-        let ordinate = match header.double() {
-            true => Number::F64,
-            false => Number::F32,
+        let ordinate = if header.double() {
+            Number::F64
+        } else {
+            Number::F32
         };
         let parts = (1 + u64::from(header.complex())) * ordinate.bytes();
         // An uneven abscissa is single precision, or that of the ordinate.
         let uneven = [Number::F32, ordinate].map(|w| (w, parts + w.bytes()));
-        let forms: &[(Number, u64)] = match header.even {
-            true => &[(ordinate, parts)],
-            false => &uneven,
+        let forms: &[(Number, u64)] = if header.even {
+            &[(ordinate, parts)]
+        } else {
+            &uneven
         };
         let length = |per_point: u64| header.points.checked_mul(per_point);
         let fits = |&&(_, per_point): &&(Number, u64)| {

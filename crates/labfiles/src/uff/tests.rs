@@ -95,9 +95,10 @@ impl Written {
     fn lines(&self, per_line: usize, wide: impl Fn(usize) -> bool) -> Vec<u8> {
         let mut out = format!("    -1\n    58\n{}", self.header());
         for (index, value) in self.numbers().into_iter().enumerate() {
-            let number = match wide(index) {
-                true => format!("{:>20}", format!("{value:.12E}")),
-                false => format!("{:>13}", format!("{value:.5E}")),
+            let number = if wide(index) {
+                format!("{:>20}", format!("{value:.12E}"))
+            } else {
+                format!("{:>13}", format!("{value:.5E}"))
             };
             out.push_str(&number);
             if (index + 1) % per_line == 0 {

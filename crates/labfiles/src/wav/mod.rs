@@ -55,9 +55,10 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
 fn channel(wave: &Wave, k: u16) -> ChannelInfo {
     let format = &wave.format;
     let number = native(format);
-    let full_scale = match format.float {
-        true => 1.0,
-        false => 2f64.powi(i32::from(number.bits()) - 1),
+    let full_scale = if format.float {
+        1.0
+    } else {
+        2f64.powi(i32::from(number.bits()) - 1)
     };
     let mut properties = BTreeMap::from([
         ("bits_per_sample".to_owned(), format.bits.to_string()),

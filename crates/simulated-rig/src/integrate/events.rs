@@ -1,7 +1,7 @@
 //! What ends a smooth piece of motion, and where.
 
 use super::{Integrator, SHORTEST, Touch};
-use crate::equations::{ContactLaw, Phase4};
+use crate::equations::{ContactModel, Phase4};
 
 /// What ends a smooth piece of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,7 +35,7 @@ impl Integrator {
         match event {
             Event::Contact => match (self.touch, &e.law) {
                 (Touch::Apart, _) => -e.overlap(s),
-                (Touch::Pressed, ContactLaw::Compliant(c)) => c.press(e.overlap(s), s[1] + s[3]),
+                (Touch::Pressed, ContactModel::Compliant(c)) => c.press(e.overlap(s), s[1] + s[3]),
                 (Touch::Joined, _) => {
                     let forces = e.free(drive(), s);
                     let slides = self.slides[0] + self.slides[1];
@@ -44,7 +44,7 @@ impl Integrator {
                 _ => e.overlap(s),
             },
             Event::PressedAgain => match (self.touch, &e.law) {
-                (Touch::Recovering, ContactLaw::Compliant(c)) => {
+                (Touch::Recovering, ContactModel::Compliant(c)) => {
                     -c.press(e.overlap(s), s[1] + s[3])
                 }
                 _ => f64::INFINITY,

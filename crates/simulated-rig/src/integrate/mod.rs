@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 mod events;
 mod recording;
 
-use super::equations::{ContactLaw, Equations, Phase4};
+use super::equations::{ContactModel, Equations, Phase4};
 use events::Event;
 use recording::Segment;
 pub(super) use recording::{Hit, Recording};
@@ -89,7 +89,7 @@ impl Integrator {
     }
 
     /// How the masses act on each other.
-    pub fn law(&self) -> ContactLaw {
+    pub fn law(&self) -> ContactModel {
         self.equations.law
     }
 
@@ -152,7 +152,7 @@ impl Integrator {
     fn usual_step(&self) -> f64 {
         let smooth = TAU / self.equations.eta.max(1.0) / STEPS_PER_PERIOD;
         match (self.touch, &self.equations.law) {
-            (Touch::Pressed | Touch::Recovering, ContactLaw::Compliant(c)) => {
+            (Touch::Pressed | Touch::Recovering, ContactModel::Compliant(c)) => {
                 smooth.min(c.duration / STEPS_PER_CONTACT)
             }
             _ => smooth,
@@ -163,7 +163,7 @@ impl Integrator {
     fn forces(&self, drive: f64, s: &Phase4) -> [f64; 2] {
         let free = self.equations.free(drive, s);
         match (self.touch, &self.equations.law) {
-            (Touch::Pressed, ContactLaw::Compliant(c)) => {
+            (Touch::Pressed, ContactModel::Compliant(c)) => {
                 let press = c.press(self.equations.overlap(s), s[1] + s[3]);
                 // The contact is that of two unit masses: on unlike ones with the same reduced mass.
                 std::array::from_fn(|i| free[i] - 2.0 * self.equations.mobility[i] * press)
@@ -243,12 +243,12 @@ impl Integrator {
             (Event::TurnX, ..) => self.turn(0),
             (Event::TurnY, ..) => self.turn(1),
             (Event::PressedAgain, ..) => self.touch = Touch::Pressed,
-            (Event::Contact, Touch::Apart, ContactLaw::Newton(r)) => self.bounce(r),
-            (Event::Contact, Touch::Apart, ContactLaw::Compliant(_)) => {
+            (Event::Contact, Touch::Apart, ContactModel::Newton(r)) => self.bounce(r),
+            (Event::Contact, Touch::Apart, ContactModel::Compliant(_)) => {
                 self.begin_hit();
                 self.touch = Touch::Pressed;
             }
-            (Event::Contact, Touch::Pressed, ContactLaw::Compliant(c)) => {
+            (Event::Contact, Touch::Pressed, ContactModel::Compliant(c)) => {
                 let overlaps = c.damping > 0.0 && self.equations.overlap(&self.state) > 0.0;
                 self.touch = if overlaps {
                     Touch::Recovering
@@ -361,7 +361,7 @@ mod tests {
     fn valid_hardening_springs_vibrate_faster_by_three_eighths() {
         // Backbone of the Duffing oscillator: Ω = 1 + 3/8 ε a² − 21/256 ε² a⁴ + …
         let (epsilon, a) = (4e-3, 1.5f64);
-        let equations = Equations::undriven(1.0, epsilon, 0.0, ContactLaw::Newton(0.9));
+        let equations = Equations::undriven(1.0, epsilon, 0.0, ContactModel::Newton(0.9));
         let turns = turning_points(equations, a, 20);
         let period = (turns[19].0 - turns[1].0) / 9.0;
         let e = epsilon * a * a;
@@ -378,7 +378,7 @@ mod tests {
         // x'' = −x + d x'² while x' < 0: from a turning point a to the next one b,
         // (1 + 2db) e^{−2db} = (1 + 2da) e^{−2da}
         let d = 0.02;
-        let equations = Equations::undriven(1.0, 0.0, 0.0, ContactLaw::Newton(0.9));
+        let equations = Equations::undriven(1.0, 0.0, 0.0, ContactModel::Newton(0.9));
         let turns = turning_points(equations.with(0.0, d), 1.5, 20);
         let invariant = |x: f64| (1.0 + 2.0 * d * x) * (-2.0 * d * x).exp();
         for pair in turns.windows(2) {
@@ -393,7 +393,7 @@ mod tests {
     #[test]
     fn valid_springs_stiffer_to_one_side_turn_where_their_energy_is_the_same() {
         let q = 0.05;
-        let equations = Equations::undriven(1.0, 0.0, 0.0, ContactLaw::Newton(0.9));
+        let equations = Equations::undriven(1.0, 0.0, 0.0, ContactModel::Newton(0.9));
         let energy = |x: f64| x * x / 2.0 + q * x.powi(3) / 3.0;
         for (_, x) in turning_points(equations.with(q, 0.0), 1.5, 10) {
             assert!((energy(x) - energy(1.5)).abs() < 1e-7, "{x}");
@@ -404,7 +404,7 @@ mod tests {
     fn valid_friction_takes_four_times_its_share_from_every_cycle() {
         // free decay under Coulomb friction: the amplitude falls by 2μ/k in every half cycle
         let mu = 0.01;
-        let equations = Equations::undriven(1.0, 0.0, mu, ContactLaw::Newton(0.9));
+        let equations = Equations::undriven(1.0, 0.0, mu, ContactModel::Newton(0.9));
         let mut motion = Integrator::at_rest(equations);
         motion.state = [1.0, 0.0, 0.0, 0.0];
         motion.turn(0);
@@ -421,7 +421,7 @@ mod tests {
     #[test]
     fn valid_a_contact_of_finite_duration_has_the_restitution_and_the_duration_asked_for() {
         for (r, duration) in [(1.0, 0.05), (0.9, 0.08), (0.598, 0.05), (0.2, 0.003)] {
-            let law = ContactLaw::Compliant(Compliance::new(r, duration).unwrap());
+            let law = ContactModel::Compliant(Compliance::new(r, duration).unwrap());
             let equations = Equations::undriven(0.0, 0.0, 0.0, law);
             let mut motion = Integrator::at_rest(equations);
             motion.state = [499.0, 2.0, 499.0, 1.0];

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::campaign::context::ResolveContext;
 use crate::campaign::diagnostic::Code;
 use crate::campaign::keys::keys;
-use crate::campaign::values::{Placed, Quantity, value};
+use crate::campaign::values::{Placed, WrittenQuantity, value};
 use impact_identification::identify::evidence::options::IntervalMethod;
 use labfiles::units::Dimension;
 
@@ -17,7 +17,7 @@ keys! {
         exclude: Placed<Vec<String>>, default "none",
             init r#"# exclude = ["record_12"]    # records to leave out, by name; * and ? are wildcards"#;
         /// part of each record that is skipped at its start
-        skip: Placed<Quantity>, default "0 s",
+        skip: Placed<WrittenQuantity>, default "0 s",
             init r#"# skip = "0.1 s"             # part of each record to leave out at its start"#;
         /// longest period n of a motion z = p/n that is searched
         longest_period_n: Placed<u32>, default "6",

@@ -7,7 +7,7 @@ use crate::campaign::context::{ResolveContext, remedy};
 use crate::campaign::diagnostic::Code;
 use crate::campaign::keys::keys;
 use crate::campaign::resolved::RecordEntry;
-use crate::campaign::values::{Flight, Machine, Placed, Quantity, WrittenKey, value};
+use crate::campaign::values::{Flight, Machine, Placed, WrittenKey, WrittenQuantity, value};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
 use impact_records::record::{ContactContent, LowPass, Role};
 use labfiles::units::{self, Dimension, Scale, Unit};
@@ -23,32 +23,32 @@ keys! {
         unit: Placed<String>;
         /// from the unit of the numbers to the quantity: `"50 mm/s per V"`, `"0.05 m/s/V"`, a sensor's sensitivity
         /// `"100 mV/g"`, or a plain factor
-        scale: Placed<Quantity>;
+        scale: Placed<WrittenQuantity>;
         /// value at rest, in the unit of the file
-        offset: Placed<Quantity>;
+        offset: Placed<WrittenQuantity>;
         /// 1, or -1 if the sensor is positive away from the other mass
         sign: Placed<f64>;
         /// corner of the first-order high-pass in the signal: of an integrator or an AC coupling; `"0 Hz"`: none
-        high_pass: Placed<Quantity>;
+        high_pass: Placed<WrittenQuantity>;
         /// corner of the low-pass that the signal has passed: of an anti-alias filter, a vibrometer, an amplifier;
         /// `"0 Hz"`: none. The model is filtered, values near impacts are left out until the filter has settled, and
         /// the speeds at impacts are not used
-        low_pass: Placed<Quantity>;
+        low_pass: Placed<WrittenQuantity>;
         /// number of its poles, 1 to 8 (Butterworth); 2 if not given
         low_pass_order: Placed<u32>;
         /// of the channel relative to the drive channel, less than a period; 0 if not given
-        delay: Placed<Quantity>;
+        delay: Placed<WrittenQuantity>;
         /// standard uncertainty of the delay; half a sample if not given
-        delay_uncertainty: Placed<Quantity>;
+        delay_uncertainty: Placed<WrittenQuantity>;
         /// of the contact: the level between open and closed
-        threshold: Placed<Quantity>;
+        threshold: Placed<WrittenQuantity>;
         /// of the contact: `"signal"` (default); `"times"` or `"intervals"` of impacts, one in each row, or of changes
         /// of the contact, closed, open, closed …, with or without a column of its state; `"sound"` of a microphone. R
         /// then follows from the flight times, under `flight = "constant_force"`
         content: Placed<ContactContent>;
         /// full scale of the converter; samples there are clipped. Of an acceleration, spikes at impacts may be, and
         /// equal greatest values show it without this key
-        range: Placed<Quantity>;
+        range: Placed<WrittenQuantity>;
         /// `true` if the file states a wrong unit
         ignore_file_unit: Placed<bool>;
         /// what recorded it, as text: sensor, amplifier, serial number; in `impactid compare` campaigns with the same
@@ -284,7 +284,7 @@ fn low_pass(
 
 /// The corner of a high-pass; at 0 Hz there is none.
 fn high_pass(
-    placed: &Placed<Quantity>,
+    placed: &Placed<WrittenQuantity>,
     key: &str,
     context: &mut ResolveContext<'_>,
 ) -> Option<f64> {
@@ -309,11 +309,15 @@ fn unit(placed: &Placed<String>, key: &str, context: &mut ResolveContext<'_>) ->
     found
 }
 
-fn scale(placed: &Placed<Quantity>, key: &str, context: &mut ResolveContext<'_>) -> Option<Scale> {
+fn scale(
+    placed: &Placed<WrittenQuantity>,
+    key: &str,
+    context: &mut ResolveContext<'_>,
+) -> Option<Scale> {
     let placed = placed.as_ref()?;
     let scale = match placed.get_ref() {
-        Quantity::Bare(factor) => Ok(Scale::Factor(*factor)),
-        Quantity::Text(text) => units::parse_scale(text),
+        WrittenQuantity::Bare(factor) => Ok(Scale::Factor(*factor)),
+        WrittenQuantity::Text(text) => units::parse_scale(text),
     };
     match scale {
         Ok(scale) if size(scale) > 0.0 => Some(scale),
@@ -369,7 +373,7 @@ fn sign(placed: &Placed<f64>, key: &str, context: &mut ResolveContext<'_>) -> f6
 
 /// A level in the file's unit, SI.
 fn raw_level(
-    placed: &Placed<Quantity>,
+    placed: &Placed<WrittenQuantity>,
     key: &str,
     unit: Option<Unit>,
     context: &mut ResolveContext<'_>,
@@ -398,14 +402,14 @@ fn raw_level(
 }
 
 fn any_quantity(
-    placed: &Placed<Quantity>,
+    placed: &Placed<WrittenQuantity>,
     key: &str,
     context: &mut ResolveContext<'_>,
 ) -> Option<units::Quantity> {
     let placed = placed.as_ref()?;
     let found = match placed.get_ref() {
-        Quantity::Text(text) => units::parse_quantity(text).map_err(|e| e.to_string()),
-        Quantity::Bare(value) => Err(format!("a level without unit: {value}")),
+        WrittenQuantity::Text(text) => units::parse_quantity(text).map_err(|e| e.to_string()),
+        WrittenQuantity::Bare(value) => Err(format!("a level without unit: {value}")),
     };
     if let Err(message) = &found {
         let remedy = "write number and unit in quotes, such as \"2.5 V\"";
@@ -416,7 +420,7 @@ fn any_quantity(
 
 fn threshold(
     role: Role,
-    placed: &Placed<Quantity>,
+    placed: &Placed<WrittenQuantity>,
     key: &str,
     context: &mut ResolveContext<'_>,
 ) -> Option<units::Quantity> {

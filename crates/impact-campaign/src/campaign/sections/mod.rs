@@ -8,10 +8,10 @@ pub mod records;
 pub mod report;
 pub mod rig;
 
-use super::keys::Key;
+use super::keys::KeyRow;
 
 /// Each section: its heading in docs/campaign.md, its keys, and the heading of what they state.
-pub const SECTIONS: [(&str, &[Key], &str); 8] = [
+pub const SECTIONS: [(&str, &[KeyRow], &str); 8] = [
     ("campaign", about::AboutTable::KEYS, "meaning"),
     ("records", records::RecordsTable::KEYS, "meaning"),
     (

@@ -3,7 +3,9 @@
 use crate::campaign::context::ResolveContext;
 use crate::campaign::diagnostic::Code;
 use crate::campaign::keys::keys;
-use crate::campaign::values::{Excitation, OneOrMany, Placed, Quantity, Sweep, WrittenKey, value};
+use crate::campaign::values::{
+    Excitation, OneOrMany, Placed, Sweep, WrittenKey, WrittenQuantity, value,
+};
 use impact_records::record::Setting;
 use labfiles::units::{self, Dimension};
 
@@ -16,7 +18,7 @@ keys! {
         /// a CSV table instead of `files`, see below
         run_table: Placed<String>;
         /// for files that state none, `"2 kHz"`; of a camera that numbers its frames, their rate
-        sample_rate: Placed<Quantity>;
+        sample_rate: Placed<WrittenQuantity>;
         /// unit of time axes that state none: `"s"`, `"ms"`, `"us"`, `"ns"` or `"min"`. Whole numbers, or numbers
         /// beyond 10⁹, are not taken as seconds without it
         time_unit: Placed<String>;
@@ -25,13 +27,13 @@ keys! {
         /// r of records that state none: half the gap of two masses, or the gap to a stop. Without any clearance R
         /// rests on the speeds at impacts alone, whose interval is then about ± 0.006 wide: how long the contacts last
         /// is not known
-        clearance: Placed<Quantity>;
+        clearance: Placed<WrittenQuantity>;
         /// of records that state none, relative to the nominal one
         drive_amplitude: Placed<f64>;
         /// of records that state none: `"up"`, `"down"` or `"unknown"`
         sweep: Placed<Sweep>, init r#"# sweep = "up"               # of records that state none: up, down or unknown"#;
         /// of records that state none
-        drive_frequency: Placed<Quantity>,
+        drive_frequency: Placed<WrittenQuantity>,
             init r#"# drive_frequency = "12 Hz"  # measured from the drive channel; a stated one is compared with it"#;
         /// of records that state none: `"harmonic"` or `"free_decay"` (blows or a release, then no drive; each blow
         /// gives a decay of its own, fitted from the greatest excursion on, 1.5 periods or more)

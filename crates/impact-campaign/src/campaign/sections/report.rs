@@ -52,7 +52,7 @@ keys! {
 
 /// Settings of the report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct ReportSettings {
     /// Title.
     pub title: String,
     /// Records whose time series and phase portraits are drawn; empty: chosen by the program.
@@ -94,7 +94,7 @@ pub(crate) fn resolve(
     table: &ReportTable,
     around: &Around<'_>,
     context: &mut ResolveContext<'_>,
-) -> Report {
+) -> ReportSettings {
     let known = |point: &String| around.records.contains(&point.as_str());
     if let Some(points) = table.points.as_ref().filter(|_| around.all) {
         for point in points.get_ref() {
@@ -106,7 +106,7 @@ pub(crate) fn resolve(
     let language = value(&table.language).unwrap_or_default();
     let comma = Language::of_code(&language.0).is_some_and(Language::decimal_comma);
     let folder = around.folder;
-    Report {
+    ReportSettings {
         title: value(&table.title).unwrap_or_else(|| around.name.to_owned()),
         points: value(&table.points)
             .unwrap_or_default()

@@ -8,7 +8,7 @@ use strum::VariantNames;
 use crate::campaign::context::ResolveContext;
 use crate::campaign::diagnostic::Code;
 use crate::campaign::keys::keys;
-use crate::campaign::values::{Placed, Quantity, value};
+use crate::campaign::values::{Placed, WrittenQuantity, value};
 use impact_identification::compare::Common;
 use impact_identification::identify::parameters::effect::EffectKind;
 use labfiles::units::Dimension;
@@ -18,34 +18,34 @@ keys! {
     #[serde(default)]
     pub struct RigTable {
         /// nominal f0
-        natural_frequency: Placed<Quantity>, default "none",
+        natural_frequency: Placed<WrittenQuantity>, default "none",
             init r#"# natural_frequency = "12.6 Hz""#;
         /// nominal β
-        damping_ratio: Placed<Quantity>, default "none", init "# damping_ratio = 0.07";
+        damping_ratio: Placed<WrittenQuantity>, default "none", init "# damping_ratio = 0.07";
         /// nominal x_st = F0/k
-        static_deflection: Placed<Quantity>, default "none",
+        static_deflection: Placed<WrittenQuantity>, default "none",
             init r#"# static_deflection = "1.0 mm"   # x_st = F0/k"#;
         /// nominal R
-        restitution: Placed<Quantity>, default "none", init "# restitution = 0.9";
+        restitution: Placed<WrittenQuantity>, default "none", init "# restitution = 0.9";
         /// of the scales of the channels, relative
-        gain_uncertainty: Placed<Quantity>, default "`\"0.5 %\"`",
+        gain_uncertainty: Placed<WrittenQuantity>, default "`\"0.5 %\"`",
             init r#"gain_uncertainty = "0.5 %"       # of the channels' scales"#;
         /// of the corners of the channels' high-pass, relative
-        corner_uncertainty: Placed<Quantity>, default "`\"5 %\"`",
+        corner_uncertainty: Placed<WrittenQuantity>, default "`\"5 %\"`",
             init r#"corner_uncertainty = "5 %"       # of the corners of the channels' high-pass"#;
         /// of the clock of the sampler, relative: times and thus f0 follow from it
-        clock_uncertainty: Placed<Quantity>, default "`\"50 ppm\"`",
+        clock_uncertainty: Placed<WrittenQuantity>, default "`\"50 ppm\"`",
             init r#"clock_uncertainty = "50 ppm"     # of the clock of the sampler, in f0"#;
         /// of each stated clearance, and of the zero that all share
-        clearance_uncertainty: Placed<Quantity>, default "`\"10 um\"`",
+        clearance_uncertainty: Placed<WrittenQuantity>, default "`\"10 um\"`",
             init r#"clearance_uncertainty = "10 um"  # of each stated clearance, and of the zero that all share"#;
         /// mass x; with `mass_y` it states the asymmetry of the masses
-        mass_x: Placed<Quantity>, default "none",
+        mass_x: Placed<WrittenQuantity>, default "none",
             init r#"# mass_x = "1.50 kg"             # both masses, if weighed, with mass_uncertainty = "0.5 %""#;
         /// mass y
-        mass_y: Placed<Quantity>, default "none";
+        mass_y: Placed<WrittenQuantity>, default "none";
         /// of each mass, relative
-        mass_uncertainty: Placed<Quantity>, default "`\"0.5 %\"`";
+        mass_uncertainty: Placed<WrittenQuantity>, default "`\"0.5 %\"`";
         /// effects beyond the model that the fit allows, any of `"harmonics"`, `"force_frequency"`, `"hardening"`,
         /// `"friction"`, `"drift"`, `"contact_duration"`, `"drag"`, `"spring_asymmetry"`, `"hysteretic_damping"`,
         /// `"pickup"`

@@ -91,14 +91,14 @@ struct Reported {
 
 /// Times by which files are judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Patience {
+pub struct WatchPatience {
     /// A file that has not changed for so long has stopped growing.
     pub quiet: Duration,
     /// A file that is not whole for so long is named.
     pub half_written: Duration,
 }
 
-impl Default for Patience {
+impl Default for WatchPatience {
     fn default() -> Self {
         Self {
             quiet: Duration::from_secs(5),
@@ -114,13 +114,13 @@ const RETRY: Duration = Duration::from_secs(30);
 /// All files that a campaign names.
 #[derive(Debug)]
 pub(super) struct Ledger {
-    patience: Patience,
+    patience: WatchPatience,
     files: BTreeMap<PathBuf, Entry>,
 }
 
 impl Ledger {
     /// Of no files.
-    pub(super) fn new(patience: Patience) -> Self {
+    pub(super) fn new(patience: WatchPatience) -> Self {
         Self {
             patience,
             files: BTreeMap::new(),
@@ -213,7 +213,7 @@ impl Entry {
         still && refused.is_none_or(|(at, _)| now.saturating_sub(*at) >= RETRY)
     }
 
-    fn news(&mut self, path: &Path, now: Duration, patience: Patience) -> Vec<News> {
+    fn news(&mut self, path: &Path, now: Duration, patience: WatchPatience) -> Vec<News> {
         let mut news = Vec::new();
         let replaced = self.taken.is_some_and(|t| self.stamp.replaces(&t));
         if replaced && !self.reported.replaced {
@@ -251,7 +251,7 @@ mod tests {
     }
 
     fn ledger() -> Ledger {
-        Ledger::new(Patience::default())
+        Ledger::new(WatchPatience::default())
     }
 
     /// A ledger that has taken the file `a` of so many bytes at 5 s.

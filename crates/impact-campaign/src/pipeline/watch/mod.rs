@@ -12,7 +12,7 @@ mod live;
 mod processor_time;
 mod spacing;
 
-pub use ledger::{News, NewsKind, Patience};
+pub use ledger::{News, NewsKind, WatchPatience};
 pub use live::{Live, write_live};
 
 use std::collections::BTreeMap;
@@ -29,7 +29,7 @@ use super::run::{Completed, Destination, complete};
 use super::{Observed, PipelineError, Progress, identify};
 use crate::campaign::diagnostic::{Diagnostic, Diagnostics};
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::campaign::sections::report::Report;
+use crate::campaign::sections::report::ReportSettings;
 use crate::campaign::{NamedFiles, load_taken};
 use impact_records::motion::{Bracket, Observation, brackets, scale_drives};
 
@@ -84,7 +84,7 @@ pub struct Outline {
 #[derive(Debug, Clone, Copy)]
 pub struct Pace {
     /// When files count as whole, or as half-written.
-    pub patience: Patience,
+    pub patience: WatchPatience,
     /// When no record has arrived for so long, it is time for a fit.
     pub idle: Duration,
 }
@@ -193,15 +193,16 @@ impl Watcher {
 
     /// Take a file that has stopped growing; whether it could be.
     fn take(&mut self, path: &Path, now: Duration, faults: &mut Diagnostics) -> bool {
-        let taken = match self.is_description(path) {
-            true => NamedFiles::read(&self.path).map_err(|found| {
+        let taken = if self.is_description(path) {
+            NamedFiles::read(&self.path).map_err(|found| {
                 faults.0.extend(found.0);
                 "it is faulty".to_owned()
-            }),
-            false => match self.listings.take(path) {
+            })
+        } else {
+            match self.listings.take(path) {
                 Ok(()) => Ok(self.named.clone()),
                 Err(error) => Err(error.fault()),
-            },
+            }
         };
         match taken {
             Ok(named) => {
@@ -290,7 +291,7 @@ impl Watcher {
     /// Those of the fit, and of `then`.
     pub fn fit<E: From<PipelineError>>(
         &mut self,
-        adjust: impl Fn(&mut Report) -> Result<(), E>,
+        adjust: impl Fn(&mut ReportSettings) -> Result<(), E>,
         then: impl FnOnce(&Live) -> Result<(), E>,
     ) -> Result<Option<&Live>, E> {
         let begin = self.meter.read();

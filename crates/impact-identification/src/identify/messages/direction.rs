@@ -13,9 +13,10 @@ pub(super) enum Direction {
 
 /// The direction of a deviation.
 pub(super) fn direction(deviation: f64) -> Value<'static> {
-    match deviation > 0.0 {
-        true => Value::Message(&Direction::High),
-        false => Value::Message(&Direction::Low),
+    if deviation > 0.0 {
+        Value::Message(&Direction::High)
+    } else {
+        Value::Message(&Direction::Low)
     }
 }
 

@@ -83,9 +83,9 @@ impl StrengthUnit {
     }
 }
 
-/// What an effect changes.
+/// What an effect acts on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Change {
+pub enum Acts {
     /// The values of an orbit, by a small extra acceleration ([`crate::identify::evidence`]) or at the channel, so
     /// that its slopes are those of a perturbation.
     Values,
@@ -98,7 +98,7 @@ struct Row {
     kind: EffectKind,
     accepted: f64,
     unit: StrengthUnit,
-    change: Change,
+    acts: Acts,
 }
 
 /// Defines [`Effect`], a row each: what it is, its name in `identification.json`, which is also the key of its texts,
@@ -106,7 +106,7 @@ struct Row {
 macro_rules! effects {
     ($(
         $(#[$attribute:meta])*
-        $effect:ident = $name:literal: $kind:ident, $accepted:literal, $unit:ident, $change:ident;
+        $effect:ident = $name:literal: $kind:ident, $accepted:literal, $unit:ident, $acts:ident;
     )+) => {
         /// One effect beyond the model.
         #[derive(
@@ -139,7 +139,7 @@ macro_rules! effects {
                 kind: EffectKind::$kind,
                 accepted: $accepted,
                 unit: StrengthUnit::$unit,
-                change: Change::$change,
+                acts: Acts::$acts,
             }),+
         ];
     };
@@ -231,7 +231,7 @@ impl Effect {
 
     /// Whether it changes the values of an orbit; the others change the parameters of a record.
     pub fn is_perturbation(self) -> bool {
-        self.row().change == Change::Values
+        self.row().acts == Acts::Values
     }
 
     /// Name in `identification.json`.

@@ -142,9 +142,12 @@ impl Problem<'_> {
         if self.precision == Precision::Start || !self.priors.iter().any(|p| far(p, FAR)) {
             return None;
         }
-        let narrowed = |p: &Prior| match far(p, 0.5 * FAR) {
-            true => Prior::new(p.coordinate, p.centre, NARROW * p.deviation),
-            false => *p,
+        let narrowed = |p: &Prior| {
+            if far(p, 0.5 * FAR) {
+                Prior::new(p.coordinate, p.centre, NARROW * p.deviation)
+            } else {
+                *p
+            }
         };
         Some(Self {
             blocks: self.blocks.clone(),

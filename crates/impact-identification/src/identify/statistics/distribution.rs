@@ -21,9 +21,10 @@ pub fn normal_tail(z: f64) -> f64 {
 pub fn student_tail(t: f64, freedom: f64) -> f64 {
     let t = t.abs();
     if freedom > MOST {
-        let z = match freedom.is_finite() {
-            true => ((freedom - 0.5) * (t * t / freedom).ln_1p()).sqrt(),
-            false => t,
+        let z = if freedom.is_finite() {
+            ((freedom - 0.5) * (t * t / freedom).ln_1p()).sqrt()
+        } else {
+            t
         };
         return normal_tail(z);
     }

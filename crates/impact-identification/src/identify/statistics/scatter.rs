@@ -185,9 +185,10 @@ impl Excess {
         let beyond = (self.ratio / factor - 1.0).max(0.0) * self.share * variance;
         let whole = variance + beyond;
         // Welch and Satterthwaite: only what the groups' scatter was found from is uncertain.
-        let freedom = match beyond > 0.0 {
-            true => self.freedom * (whole / beyond).powi(2),
-            false => f64::INFINITY,
+        let freedom = if beyond > 0.0 {
+            self.freedom * (whole / beyond).powi(2)
+        } else {
+            f64::INFINITY
         };
         Spread {
             error: whole.sqrt(),

@@ -18,7 +18,7 @@ use crate::identify::statistics::quantile::student_975;
 /// Where an uncertainty comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
-pub enum Source {
+pub enum UncertaintySource {
     /// Noise of what a method measures.
     Noise {
         /// The method.
@@ -51,13 +51,13 @@ pub enum Source {
 /// What a source beside the fit leaves open: standard uncertainties, of R absolute, of the others relative.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Further {
-    source: Source,
+    source: UncertaintySource,
     open: Vec<(Coordinate, f64)>,
 }
 
 impl Further {
     /// Of a source.
-    pub fn new(source: Source, open: Vec<(Coordinate, f64)>) -> Self {
+    pub fn new(source: UncertaintySource, open: Vec<(Coordinate, f64)>) -> Self {
         Self { source, open }
     }
 
@@ -68,12 +68,12 @@ impl Further {
 
     /// Its row, of a joint fit of so many methods.
     fn row(&self, estimated: &[(usize, Coordinate)], methods: usize) -> Row {
-        let by_methods = self.source == Source::BetweenMethods;
+        let by_methods = self.source == UncertaintySource::BetweenMethods;
         let (evaluation, freedom) = match by_methods {
             true => (Evaluation::A, Some(methods.saturating_sub(1).max(1) as f64)),
             false => (Evaluation::B, None),
         };
-        let of_clock = (self.source == Source::Clock).then_some(1.0);
+        let of_clock = (self.source == UncertaintySource::Clock).then_some(1.0);
         Row {
             source: self.source,
             evaluation,
@@ -113,7 +113,7 @@ pub struct Contribution {
 pub struct Row {
     /// The source.
     #[serde(flatten)]
-    pub source: Source,
+    pub source: UncertaintySource,
     /// How it was evaluated.
     pub evaluation: Evaluation,
     /// Standard uncertainty of the source as stated, in the unit of its coordinate; `None` of noise.
@@ -174,7 +174,7 @@ pub fn budget(
         .map(|s| s.freedom)
         .fold(f64::INFINITY, f64::min);
     rows.push(Row {
-        source: Source::BetweenGroups {
+        source: UncertaintySource::BetweenGroups {
             groups: found.scatter.groups,
         },
         evaluation: Evaluation::A,
@@ -185,7 +185,7 @@ pub fn budget(
         }),
     });
     rows.push(Row {
-        source: Source::FirstOrder,
+        source: UncertaintySource::FirstOrder,
         evaluation: Evaluation::B,
         standard_uncertainty: None,
         degrees_of_freedom: None,
@@ -226,7 +226,7 @@ fn noise_rows(
     for (method, part) in methods.iter().zip(&found.parts) {
         let spread = &fit.covariance * &part.matrix * &covariance;
         rows.push(Row {
-            source: Source::Noise { method: *method },
+            source: UncertaintySource::Noise { method: *method },
             evaluation: Evaluation::A,
             standard_uncertainty: None,
             degrees_of_freedom: finite(part.count.saturating_sub(fit.free.len()).max(1) as f64),
@@ -257,7 +257,7 @@ fn stated_rows(
         let sensitivity = |i: usize| covariance[(i, k)] / prior.deviation.powi(2) / found.factor;
         let size = prior.deviation * found.factor.sqrt();
         rows.push(Row {
-            source: Source::Stated {
+            source: UncertaintySource::Stated {
                 coordinate: prior.coordinate,
                 clearance_m: match prior.coordinate {
                     Coordinate::Gap(i) => blocks.gaps_m.get(i).copied(),
@@ -300,21 +300,27 @@ impl Budget {
         let number = |v: Option<f64>| v.map(|v| format!("{v:.6e}")).unwrap_or_default();
         for row in &self.rows {
             let (source, item) = match row.source {
-                Source::Noise { method } => ("noise", method.name().to_owned()),
-                Source::BetweenGroups { groups } => ("between_groups", groups.to_string()),
-                Source::FirstOrder => ("first_order", String::new()),
-                Source::RestitutionOverSpeed => ("restitution_over_speed", String::new()),
-                Source::BetweenMethods => ("between_methods", String::new()),
-                Source::Clock => ("clock", String::new()),
-                Source::InstrumentOff => ("instrument_off", String::new()),
-                Source::Stated {
+                UncertaintySource::Noise { method } => ("noise", method.name().to_owned()),
+                UncertaintySource::BetweenGroups { groups } => {
+                    ("between_groups", groups.to_string())
+                }
+                UncertaintySource::FirstOrder => ("first_order", String::new()),
+                UncertaintySource::RestitutionOverSpeed => {
+                    ("restitution_over_speed", String::new())
+                }
+                UncertaintySource::BetweenMethods => ("between_methods", String::new()),
+                UncertaintySource::Clock => ("clock", String::new()),
+                UncertaintySource::InstrumentOff => ("instrument_off", String::new()),
+                UncertaintySource::Stated {
                     coordinate,
                     clearance_m: Some(m),
                 } => (
                     "stated",
                     format!("{} at {:.6} mm", coordinate.name(), 1e3 * m),
                 ),
-                Source::Stated { coordinate, .. } => ("stated", coordinate.name().to_owned()),
+                UncertaintySource::Stated { coordinate, .. } => {
+                    ("stated", coordinate.name().to_owned())
+                }
             };
             for c in &row.contributions {
                 text += &format!(

@@ -20,7 +20,7 @@ use crate::identify::evidence::jump::{Jump, Tilt, density, mills_ratio, normal};
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::Prior;
 use crate::identify::uncertainty::propagation::{Factors, Propagation};
-use crate::identify::uncertainty::surroundings::{Boundary, Surroundings};
+use crate::identify::uncertainty::surroundings::{SimulatedBoundary, Surroundings};
 use impact_records::motion::{BoundaryKind, Bracket};
 
 /// What brackets say of R.
@@ -164,7 +164,7 @@ type Family = (&'static str, bool);
 /// A bracket and where its boundary lies.
 struct Held<'a> {
     bracket: &'a Bracket,
-    boundary: &'a Boundary,
+    boundary: &'a SimulatedBoundary,
 }
 
 /// Log-likelihood of all brackets at R. Each family of boundaries has its own scale of early jumps, which is

@@ -13,7 +13,7 @@ use impact_records::motion::Bracket;
 
 /// Where a boundary lies, and how far each deviate moves it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Boundary {
+pub struct SimulatedBoundary {
     /// Drive frequency with all deviates zero, Hz.
     pub frequency_hz: f64,
     /// Hz per unit of each deviate.
@@ -101,7 +101,11 @@ impl Surroundings {
     }
 
     /// Where the boundaries of all brackets lie at R; `None` of one that does not reach its clearance.
-    pub fn boundaries(&self, block: &BoundaryBlock, restitution: f64) -> Vec<Option<Boundary>> {
+    pub fn boundaries(
+        &self,
+        block: &BoundaryBlock,
+        restitution: f64,
+    ) -> Vec<Option<SimulatedBoundary>> {
         let about = Parameters {
             restitution,
             ..self.about
@@ -124,7 +128,7 @@ impl Surroundings {
         block: &BoundaryBlock,
         bracket: &Bracket,
         about: &Parameters,
-    ) -> Option<Boundary> {
+    ) -> Option<SimulatedBoundary> {
         let frequency_hz = predicted_hz(bracket, about, block.rig)?;
         let place = BoundaryPlace::of(bracket, about, block.rig);
         let step_hz = FREQUENCY_STEP * frequency_hz;
@@ -153,7 +157,7 @@ impl Surroundings {
             DVector::from_iterator(self.deviates.len(), self.deviates.iter().map(moved));
         let known = direction.iter().all(|d| d.is_finite());
         let at_mean = self.length.map_or(0.0, |i| direction[i] * MEAN_OF_POSITIVE);
-        known.then_some(Boundary {
+        known.then_some(SimulatedBoundary {
             frequency_hz: frequency_hz - at_mean,
             direction,
         })

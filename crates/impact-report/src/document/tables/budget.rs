@@ -9,7 +9,7 @@ use crate::locale::Locale;
 use crate::phrase::Phrase;
 use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::uncertainty::budget::{
-    Budget, Combined, Contribution, Row, Source,
+    Budget, Combined, Contribution, Row, UncertaintySource,
 };
 
 /// Size of the table's type, points.
@@ -78,34 +78,34 @@ fn source_row(row: &Row, locale: Locale<'_>) -> Vec<Rich> {
     cells
 }
 
-fn source(source: Source, locale: Locale<'_>) -> String {
+fn source(source: UncertaintySource, locale: Locale<'_>) -> String {
     match source {
-        Source::Noise { method } => {
+        UncertaintySource::Noise { method } => {
             let method = locale.message(&method);
             locale.translate_with(Phrase::NoiseOf, &[("method", &method)])
         }
-        Source::BetweenGroups { groups } => locale.translate_with(
+        UncertaintySource::BetweenGroups { groups } => locale.translate_with(
             Phrase::ScatterBetweenGroups,
             &[("count", &groups.to_string())],
         ),
-        Source::Stated {
+        UncertaintySource::Stated {
             clearance_m: Some(m),
             ..
         } => {
             let clearance = locale.significant(1e3 * m, 3);
             locale.translate_with(Phrase::StatedClearance, &[("clearance", &clearance)])
         }
-        Source::Stated { coordinate, .. } => name(coordinate, locale),
-        Source::FirstOrder => locale.translate(Phrase::BeyondFirstOrder),
-        Source::RestitutionOverSpeed => locale.translate(Phrase::ChangeOverSpeed),
-        Source::BetweenMethods => locale.translate(Phrase::DisagreementOfMethods),
-        Source::Clock => locale.translate(Phrase::ClockOfSampler),
-        Source::InstrumentOff => locale.translate(Phrase::InstrumentThatIsOff),
+        UncertaintySource::Stated { coordinate, .. } => name(coordinate, locale),
+        UncertaintySource::FirstOrder => locale.translate(Phrase::BeyondFirstOrder),
+        UncertaintySource::RestitutionOverSpeed => locale.translate(Phrase::ChangeOverSpeed),
+        UncertaintySource::BetweenMethods => locale.translate(Phrase::DisagreementOfMethods),
+        UncertaintySource::Clock => locale.translate(Phrase::ClockOfSampler),
+        UncertaintySource::InstrumentOff => locale.translate(Phrase::InstrumentThatIsOff),
     }
 }
 
 /// The name of a source of uncertainty in English.
-pub fn budget_source(of: Source) -> String {
+pub fn budget_source(of: UncertaintySource) -> String {
     plain(&source(of, Locale::default()))
 }
 
@@ -115,8 +115,8 @@ fn stated(row: &Row, locale: Locale<'_>) -> String {
         return "–".into();
     };
     let coordinate = match row.source {
-        Source::Stated { coordinate, .. } => coordinate,
-        Source::Clock => return format!("{} ppm", locale.significant(1e6 * u, 2)),
+        UncertaintySource::Stated { coordinate, .. } => coordinate,
+        UncertaintySource::Clock => return format!("{} ppm", locale.significant(1e6 * u, 2)),
         _ => return "–".into(),
     };
     let (factor, unit) = match coordinate {

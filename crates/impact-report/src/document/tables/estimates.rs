@@ -134,9 +134,10 @@ fn method_row(name: String, method: &MethodResult, locale: Locale<'_>) -> Vec<Ri
 
 /// A p-value as printed.
 pub(super) fn p_value(p: f64, locale: Locale<'_>) -> String {
-    match p < LEAST_P {
-        true => format!("< {}", locale.fixed(LEAST_P, 3)),
-        false => locale.fixed(p, 3),
+    if p < LEAST_P {
+        format!("< {}", locale.fixed(LEAST_P, 3))
+    } else {
+        locale.fixed(p, 3)
     }
 }
 

@@ -52,14 +52,15 @@ pub(crate) fn records(content: &ReportContent, locale: Locale<'_>) -> Option<Tab
             .translate_with(signs, &[("records", &which(content, locale))])
             .into()
     } else {
-        match content
+        if content
             .compared
             .records
             .iter()
             .any(|r| r.frequency_hz.is_some())
         {
-            true => Phrase::TableRecords,
-            false => Phrase::TableRecordsByMethod,
+            Phrase::TableRecords
+        } else {
+            Phrase::TableRecordsByMethod
         }
         .into()
     };

@@ -3,6 +3,7 @@
 mod data;
 mod portraits;
 mod rows;
+mod sheet;
 
 pub(crate) use data::name;
 
@@ -21,6 +22,7 @@ use impact_identification::replay::{ReplayedRecord, Signal};
 use impact_records::record::Role;
 use impact_records::signal::robust::range;
 use rows::{Row, rows, shown, symbol};
+use sheet::{Sheet, TOP, TimeAxis};
 
 /// Room left of the first column, for numbers and titles, points.
 const LEFT: f64 = 40.0;
@@ -28,20 +30,12 @@ const LEFT: f64 = 40.0;
 const COLUMNS: [f64; 2] = [136.0, 201.0];
 /// Room between the columns of panels, points.
 const COLUMN_GAP: f64 = 35.0;
-/// Left edge of the phase portraits, points.
-const PORTRAIT_LEFT: f64 = 387.0;
 /// Distance of the titles of upward axes from their frames.
 const TITLE_REACH: f64 = 22.0;
-/// Width of a phase portrait, points.
-const PORTRAIT_WIDTH: f64 = look::FULL_WIDTH - PORTRAIT_LEFT - 2.0;
 /// Room between the rows of panels, points.
 const ROW_GAP: f64 = 5.0;
-/// Room above the panels, for letter and titles, points.
-const TOP: f64 = 13.0;
 /// Room below the panels, for numbers and title, points.
 const BOTTOM: f64 = 22.0;
-/// Width of the simulated curve behind the measured one, points.
-const BACK_WIDTH: f64 = 1.7;
 
 /// Draws one comparison; `None` if it has no trace at all.
 pub(crate) fn draw<'a>(comparison: &'a ReplayedRecord, locale: Locale<'a>) -> Option<Figure> {
@@ -95,34 +89,10 @@ fn time_axis(comparison: &ReplayedRecord, rows: &[Row<'_>]) -> TimeAxis {
     }
 }
 
-struct TimeAxis {
-    start: f64,
-    period: f64,
-    shown: (f64, f64),
-}
-
-impl TimeAxis {
-    fn axis(&self) -> Axis {
-        Axis::new(self.shown.0, self.shown.1, Phrase::TimeInDrivePeriods).with_ticks(5)
-    }
-
-    fn of(&self, time_s: f64) -> f64 {
-        (time_s - self.start) / self.period
-    }
-}
-
 #[derive(Clone, Copy, PartialEq)]
 enum Side {
     Simulated,
     Measured,
-}
-
-struct Sheet<'a> {
-    comparison: &'a ReplayedRecord,
-    locale: Locale<'a>,
-    canvas: Canvas,
-    time: TimeAxis,
-    column: f64,
 }
 
 impl Sheet<'_> {

@@ -1,6 +1,6 @@
 //! The phase portraits of a comparison.
 
-use super::{BACK_WIDTH, PORTRAIT_LEFT, PORTRAIT_WIDTH, Sheet, TOP};
+use super::sheet::{BACK_WIDTH, PORTRAIT_LEFT, PORTRAIT_WIDTH, Sheet, TOP};
 use crate::kit::axis::Axis;
 use crate::kit::canvas::{Anchor, Stroke, TextLook};
 use crate::kit::panel::{Panel, Sides};

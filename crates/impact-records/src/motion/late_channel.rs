@@ -1,0 +1,17 @@
+//! A channel that is later than stated.
+
+use serde::{Deserialize, Serialize};
+
+use crate::record::{LowPass, Role};
+
+/// A channel that is later than stated.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LateChannel {
+    /// The channel.
+    pub role: Role,
+    /// By how much it is later than stated, s, beside the delay of the low-pass.
+    pub delay_s: f64,
+    /// The low-pass that its jumps show and that is not stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub low_pass: Option<LowPass>,
+}
