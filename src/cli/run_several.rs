@@ -20,9 +20,9 @@ pub(super) fn expanded(typed: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     for path in typed {
         let text = path.to_string_lossy();
         if text.contains(['*', '?', '[']) && !path.exists() {
-            all.extend(matching(&text)?)
+            all.extend(matching(&text)?);
         } else {
-            all.push(path.clone())
+            all.push(path.clone());
         }
     }
     let mut seen = HashSet::new();

@@ -78,9 +78,9 @@ impl Screen {
     /// Lines that are longer than those of the terminal are cut there: the number of lines must be known.
     fn put_cut(&self, text: &str) {
         if self.is_terminal {
-            self.put(&format!("\x1b[?7l{text}\x1b[?7h"))
+            self.put(&format!("\x1b[?7l{text}\x1b[?7h"));
         } else {
-            self.put(text)
+            self.put(text);
         }
     }
 

@@ -146,9 +146,9 @@ impl Record<'_> {
         let points = values.len() / if complex { 2 } else { 1 };
         self.header(name, info, (points, complex), out)?;
         if self.text {
-            self.text(values, out)?
+            self.text(values, out)?;
         } else {
-            self.binary(values, out)?
+            self.binary(values, out)?;
         }
         writeln!(out, "    -1")
     }
@@ -226,9 +226,9 @@ impl Record<'_> {
     fn binary(&self, values: &[f64], out: &mut dyn Write) -> std::io::Result<()> {
         for value in values {
             if self.single {
-                out.write_all(&to_f32(*value).to_le_bytes())?
+                out.write_all(&to_f32(*value).to_le_bytes())?;
             } else {
-                out.write_all(&value.to_le_bytes())?
+                out.write_all(&value.to_le_bytes())?;
             }
         }
         writeln!(out)
