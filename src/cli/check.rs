@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use serde::Serialize;
 
 use super::failure::print_diagnostics;
 use super::read_log::ReadLog;
+use super::stdout::print_json;
 use super::{Exit, Failure, Progress, Verbosity};
 use impact_campaign::campaign::check;
 use impact_campaign::campaign::diagnostic::{Code, Diagnostic, Diagnostics, Place, Severity};
@@ -19,6 +21,17 @@ pub(super) struct Check {
     /// The campaign's description
     #[arg(value_name = "CAMPAIGN.TOML", default_value = "campaign.toml")]
     campaign: PathBuf,
+    /// Print JSON: how many records can be used, and every problem
+    #[arg(long)]
+    json: bool,
+}
+
+/// What was found, as JSON.
+#[derive(Serialize)]
+struct Found<'a> {
+    records: u64,
+    usable_records: usize,
+    problems: &'a [Diagnostic],
 }
 
 const EXAMPLE: &str = "\
@@ -50,6 +63,14 @@ impl Check {
             usable = Some((checked.usable, total));
         }
         print_diagnostics(&outcome.diagnostics, verbosity);
+        if self.json {
+            let (usable_records, records) = usable.unwrap_or_default();
+            print_json(&Found {
+                records,
+                usable_records,
+                problems: &outcome.diagnostics.0,
+            })?;
+        }
         print_counts(&outcome.diagnostics, usable, verbosity);
         let all = outcome.diagnostics.0.len();
         Ok(match outcome.diagnostics.count(Severity::Note) == all {

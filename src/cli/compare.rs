@@ -3,11 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::load::load_campaign;
 use super::progress::Progress;
-use super::report_args::{paper_parser, quoted};
+use super::report_args::{language_parser, paper_parser, quoted};
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
@@ -55,12 +54,6 @@ pub(super) struct Compare {
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
-}
-
-/// The languages of the program, by their codes.
-fn language_parser() -> impl TypedValueParser<Value = Language> {
-    let each = Language::all().map(|l| PossibleValue::new(l.code()).help(l.name()));
-    PossibleValuesParser::new(each).map(|code| Language::of_code(&code).unwrap_or_default())
 }
 
 const EXAMPLE: &str = "\

@@ -113,18 +113,19 @@ fn print_settings(found: &plan::MeasurementPlan) {
         return;
     }
     println!(
-        "{:>4} {:>12} {:>13} {:>8} {:>8} {:>6} {:>15}",
-        "", "drive, Hz", "clearance, mm", "η", "ρ", "z", "error of R then"
+        "{:>4} {:>12} {:>13} {:>8} {:>8} {:>6} {:>10} {:>15}",
+        "", "drive, Hz", "clearance, mm", "η", "ρ", "z", "approach", "error of R then"
     );
     for (i, p) in found.proposals.iter().enumerate() {
         let motion = Motion::periodic(1, p.periods_n).label();
         println!(
-            "{:>4} {:>12.3} {:>13.4} {:>8.4} {:>8.4} {motion:>6} {:>15.2e}",
-            i + 1,
+            "{:>4} {:>12.3} {:>13.4} {:>8.4} {:>8.4} {motion:>6} {:>10} {:>15.2e}",
+            format!("P{}", i + 1),
             p.frequency_hz,
             1e3 * p.clearance_m,
             p.frequency_ratio,
             p.clearance_ratio,
+            p.approach.name(),
             p.restitution_error_after
         );
     }

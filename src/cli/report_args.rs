@@ -2,6 +2,7 @@
 //! campaign.toml.
 
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -9,7 +10,9 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use super::{Failure, Verbosity};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
 use impact_campaign::campaign::sections::report::ReportSettings;
+use impact_campaign::campaign::values::LanguageCode;
 use impact_campaign::pipeline;
+use impact_records::language::Language;
 use impact_report::Format;
 use impact_report::Paper;
 
@@ -33,9 +36,21 @@ pub(super) struct ReportArgs {
     /// Paper size; us-letter is the same as letter
     #[arg(long, value_name = "PAPER", value_parser = paper_parser())]
     paper: Option<Paper>,
-    /// Print numbers with a decimal comma
+    /// Title of the report
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+    /// Language of the report
+    #[arg(long, value_name = "LANGUAGE", value_parser = language_parser())]
+    language: Option<Language>,
+    /// Print numbers with a decimal comma; some languages always do
     #[arg(long)]
     decimal_comma: bool,
+}
+
+/// The languages of the program, by their codes.
+pub(super) fn language_parser() -> impl TypedValueParser<Value = Language> {
+    let each = Language::all().map(|l| PossibleValue::new(l.code()).help(l.name()));
+    PossibleValuesParser::new(each).map(|code| Language::of_code(&code).unwrap_or_default())
 }
 
 /// Reads the name of a paper on the command line.
@@ -82,6 +97,15 @@ impl ReportArgs {
         if let Some(paper) = self.paper {
             report.paper = paper;
         }
+        if let Some(title) = &self.title {
+            report.title.clone_from(title);
+        }
+        let other = self.language.filter(|l| l.code() != report.language.0);
+        if let Some(language) = other {
+            report.language = LanguageCode(language.code().to_owned());
+            report.decimal_comma = language.decimal_comma();
+        }
+        report.date = Some(today());
         report.decimal_comma |= self.decimal_comma;
         if let Some(catalog) = pipeline::report::catalog(report)? {
             for remark in catalog.remarks() {
@@ -111,11 +135,46 @@ impl ReportArgs {
         if let Some(paper) = self.paper {
             add("paper", paper.name().trim_start_matches("us-"));
         }
+        if let Some(title) = &self.title {
+            add("title", &quoted(Path::new(title)));
+        }
+        if let Some(language) = self.language {
+            add("language", language.code());
+        }
         if self.decimal_comma {
             text.push_str(" --decimal-comma");
         }
         text
     }
+}
+
+/// Seconds of a day.
+const DAY: u64 = 86_400;
+
+/// The day, in UTC; with `SOURCE_DATE_EPOCH` that one, so that a report can be made again byte for byte.
+fn today() -> String {
+    let stated = std::env::var("SOURCE_DATE_EPOCH").ok();
+    let now = || SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+    let seconds = stated.and_then(|s| s.parse().ok());
+    let seconds = seconds.unwrap_or_else(|| now().map_or(0, |d| d.as_secs()));
+    let (year, month, day) = civil(seconds / DAY);
+    format!("{year:04}-{month:02}-{day:02}")
+}
+
+/// Year, month and day of a number of days since 1 January 1970.
+fn civil(days: u64) -> (u64, u64, u64) {
+    // eras of 400 years that begin on 1 March
+    let shifted = days + 719_468;
+    let (era, day) = (shifted / 146_097, shifted % 146_097);
+    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * day + 2) / 153;
+    let next_year = u64::from(month >= 10);
+    (
+        400 * era + year + next_year,
+        if month < 10 { month + 3 } else { month - 9 },
+        day - (153 * month + 2) / 5 + 1,
+    )
 }
 
 /// Formats without those that are there before.
@@ -193,6 +252,15 @@ mod tests {
     }
 
     #[test]
+    fn days_are_those_of_the_calendar() {
+        assert_eq!(civil(0), (1970, 1, 1));
+        assert_eq!(civil(11_016), (2000, 2, 29));
+        assert_eq!(civil(20_783), (2026, 11, 26));
+        assert_eq!(civil(47_540), (2100, 2, 28));
+        assert_eq!(civil(47_541), (2100, 3, 1));
+    }
+
+    #[test]
     fn options_are_typed_as_they_were_given() {
         let options = ReportArgs {
             format: vec![Format::Pdf, Format::Html],
@@ -200,11 +268,14 @@ mod tests {
             words: Some("de.toml".into()),
             logo: None,
             paper: Some(Paper::UsLetter),
+            title: Some("Our rig".into()),
+            language: Language::of_code("de"),
             decimal_comma: true,
         };
         assert_eq!(
             options.typed(),
-            " --format pdf,html --template 'my template.typ' --words de.toml --paper letter --decimal-comma"
+            " --format pdf,html --template 'my template.typ' --words de.toml --paper letter --title 'Our rig' --language de \
+             --decimal-comma"
         );
         assert_eq!(ReportArgs::default().typed(), "");
     }

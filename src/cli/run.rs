@@ -6,7 +6,9 @@ use clap::Args;
 
 use super::report_args::{ReportArgs, refuse_formats};
 use super::run_one::RunOptions;
+use super::stdout::print_json_file;
 use super::{Exit, Failure, Verbosity, run_several};
+use impact_campaign::pipeline::{identify, summary};
 
 /// Arguments of `impactid run`.
 #[derive(Debug, Args)]
@@ -21,6 +23,9 @@ pub(super) struct Run {
     /// Resume an interrupted run in DIR (from 2,000 records on; a shorter one starts again)
     #[arg(long)]
     resume: bool,
+    /// Print identification.json too; of several campaigns summary.json
+    #[arg(long)]
+    json: bool,
     #[command(flatten)]
     options: ReportArgs,
 }
@@ -49,12 +54,19 @@ impl Run {
         };
         let campaigns = run_several::expanded(&self.campaigns)?;
         refuse_formats(&campaigns)?;
-        match &campaigns[..] {
+        let (exit, file) = match &campaigns[..] {
             [alone] => {
                 let done = options.run(alone, &self.out, verbosity)?;
-                Ok(Exit::of(done.identification.verdict.kind))
+                (Exit::of(done.identification.verdict.kind), identify::FILE)
             }
-            several => run_several::run(several, &self.out, options, verbosity),
+            several => {
+                let exit = run_several::run(several, &self.out, options, verbosity)?;
+                (exit, summary::JSON)
+            }
+        };
+        if self.json {
+            print_json_file(&self.out.join(file))?;
         }
+        Ok(exit)
     }
 }

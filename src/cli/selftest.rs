@@ -2,14 +2,18 @@
 
 use clap::Args;
 
-use super::stdout::print;
+use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity};
 use impact_workbench::selftest::{Check, checks};
 
 /// Arguments of `impactid selftest`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
-pub(super) struct SelfTest {}
+pub(super) struct SelfTest {
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
 
 const EXAMPLE: &str = "\
 Example:
@@ -25,7 +29,9 @@ impl SelfTest {
                 "please report it with the version of the program",
             )
         })?;
-        if !verbosity.is_quiet() {
+        if self.json {
+            print_json(&all)?;
+        } else if !verbosity.is_quiet() {
             print(&table(&all))?;
         }
         let missed = all.iter().filter(|c| !c.agrees()).count();

@@ -12,7 +12,7 @@ use super::load::load_campaign;
 use super::progress::Progress;
 use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::run_one::{command_line, print_verdict};
-use super::stdout::print;
+use super::stdout::{print, print_json_file};
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_campaign::pipeline::{self, store};
 use impact_report::catalog::Catalog;
@@ -85,6 +85,9 @@ boundaries.csv. With -vv it lists the classification of each record.";
 pub(super) struct Identify {
     #[command(flatten)]
     folder: Folder,
+    /// Print identification.json too
+    #[arg(long)]
+    json: bool,
 }
 
 const IDENTIFY: &str = "\
@@ -175,6 +178,9 @@ impl Identify {
         print_fits(&found.identification, verbosity);
         print_left_out(&observed.observations, verbosity);
         print_verdict(&found.identification, verbosity);
+        if self.json {
+            print_json_file(&folder.join(pipeline::identify::FILE))?;
+        }
         Ok(Exit::of(found.identification.verdict.kind))
     }
 }

@@ -15,6 +15,15 @@ pub(super) fn print_json(result: &impl serde::Serialize) -> Result<(), Failure> 
     print(&format!("{text}\n"))
 }
 
+/// Write a JSON file that was written to the standard output too.
+///
+/// # Errors
+/// As [`print()`], and where the file cannot be read.
+pub(super) fn print_json_file(path: &Path) -> Result<(), Failure> {
+    let text = std::fs::read_to_string(path).map_err(|e| Failure::io(path, &e))?;
+    print(&text)
+}
+
 /// Write a result to the standard output; a reader that has closed it ends the program quietly.
 ///
 /// # Errors

@@ -138,7 +138,7 @@ fn valid_a_drive_that_was_not_recorded_is_named_and_r_holds() {
         "{low} {high}"
     );
     // of all records with impacts, none taken for one of the wrong sign
-    let records = found["methods"]["impacts"]["records"].as_u64();
+    let records = found["methods"]["speeds_at_impact"]["records"].as_u64();
     assert!(records > Some(30), "{records:?}");
 }
 

@@ -1,5 +1,6 @@
 //! The commands as a user meets them.
 
+mod json;
 mod keys;
 mod several;
 mod verbosity;

@@ -34,7 +34,7 @@ const FAULTS: &str = "(() => { const faults = [], box = (e) => e.getBoundingClie
          const across = Math.min(p.right, q.right) - Math.max(p.left, q.left), down = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top); \
          if (across > 1 && down > 1) faults.push(`${name(a)} and ${name(b)} overlap`); })); } \
      const map = box(document.getElementById('mapbox')).height; \
-     if (map < Math.max(250, 0.42 * innerHeight)) faults.push(`the map is ${map} px high`); \
+     if (map < Math.max(250, 0.5 * innerHeight)) faults.push(`the map is ${map} px high`); \
      return faults; })()";
 
 fn without_faults(browser: &mut Chromium, where_: &str) {

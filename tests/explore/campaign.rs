@@ -159,7 +159,7 @@ fn results_that_are_spoiled_are_refused_or_shown_with_a_note() {
     std::fs::write(
         &identification,
         text.replace(
-            "\"identification.json\": \"5\"",
+            "\"identification.json\": \"6\"",
             "\"identification.json\": \"1\"",
         ),
     )

@@ -79,6 +79,42 @@ fn every_link_of_the_documents_leads_somewhere() {
     assert!(seen > 10, "{seen} links only");
 }
 
+/// Markdown files of a folder.
+fn pages(folder: &Path) -> Vec<PathBuf> {
+    let all = fs::read_dir(folder).expect("a folder");
+    let paths = all.map(|entry| entry.expect("an entry").path());
+    paths
+        .filter(|path| path.extension().is_some_and(|e| e == "md"))
+        .collect()
+}
+
+#[cfg(unix)]
+#[test]
+fn the_book_has_every_document_and_no_link_out_of_it() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let made = std::process::Command::new(root.join("scripts/make-book"))
+        .arg("--source")
+        .arg(folder.path())
+        .status();
+    assert!(made.expect("sh").success());
+    let docs = folder.path().join("docs");
+    let summary = fs::read_to_string(docs.join("SUMMARY.md")).expect("a summary");
+    let listed = targets(&summary);
+    for page in pages(&docs) {
+        let name = page.file_name().expect("a name").to_string_lossy();
+        assert!(
+            name == "SUMMARY.md" || listed.contains(&name.as_ref()),
+            "{name} is not in docs/SUMMARY.md"
+        );
+        for target in targets(&fs::read_to_string(&page).expect("a page")) {
+            let out_of_it = target.starts_with("..").then(|| target.to_owned());
+            let fault = fault(&page, target).or(out_of_it);
+            assert_eq!(fault, None, "in {name} of the book");
+        }
+    }
+}
+
 #[test]
 fn a_broken_link_is_seen() {
     let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");

@@ -61,7 +61,7 @@ fn valid_real_data_restitution_of_two_carts_run_by_run() {
     });
     let (found, _) = identified(campaign, &table);
     for (specimen, low, high) in [("elastico", 0.955, 1.015), ("ana500ros", -0.012, 0.015)] {
-        let impacts = &found["specimens"][specimen]["methods"]["impacts"];
+        let impacts = &found["specimens"][specimen]["methods"]["speeds_at_impact"];
         let each = impacts["impact_groups"]["by_record"]
             .as_array()
             .expect("runs");
@@ -125,7 +125,7 @@ fn valid_real_data_marbles_on_paper_bounce_by_bounce() {
     let (found, _) = identified(campaign, &table);
     for (sheets, first, second) in KNOWN {
         let specimen = &found["specimens"][sheets];
-        let bounces = &specimen["methods"]["impacts"]["impact_groups"]["by_bounce"];
+        let bounces = &specimen["methods"]["speeds_at_impact"]["impact_groups"]["by_bounce"];
         for (i, truth) in [first, second].into_iter().enumerate() {
             let r = bounces[i]["restitution"].as_f64().expect("R");
             let error = bounces[i]["standard_error"].as_f64().expect("an error");

@@ -156,7 +156,7 @@ fn valid_forced_runs_of_masses_3_and_4_are_no_single_degree_of_freedom() {
             found["specimens"][mass]["verdict"]["kind"], "does_not_fit",
             "{mass}"
         );
-        let remarks = found["specimens"][mass]["methods"]["resonance"]["remarks"].to_string();
+        let remarks = found["specimens"][mass]["methods"]["resonance_curve"]["remarks"].to_string();
         assert!(remarks.contains("one degree of freedom"), "{remarks}");
     }
 }
@@ -188,6 +188,7 @@ fn valid_restitution_of_the_cart_and_the_long_contact_of_the_magnet() {
         found["specimens"]["magnet"]["verdict"]["kind"],
         "does_not_fit"
     );
-    let remarks = found["specimens"]["magnet"]["methods"]["impacts"]["remarks"].to_string();
+    let remarks =
+        found["specimens"]["magnet"]["methods"]["speeds_at_impact"]["remarks"].to_string();
     assert!(remarks.contains("not an instantaneous impact"), "{remarks}");
 }

@@ -5,6 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// The day of the example's report.
+const DAY: &str = "1795651200";
+
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
@@ -12,6 +15,7 @@ fn root() -> PathBuf {
 fn impactid(arguments: &[&str]) -> (i32, String) {
     let done = Command::new(env!("CARGO_BIN_EXE_impactid"))
         .current_dir(root())
+        .env("SOURCE_DATE_EPOCH", DAY)
         .args(arguments)
         .output()
         .expect("the program runs");

@@ -304,7 +304,7 @@ fn folders() -> Vec<Case> {
             },
             &["compare", "old", "campaign.toml", "--out", "out"],
             &[
-                "old/identification.json has layout 1; this program reads and writes layout 5",
+                "old/identification.json has layout 1; this program reads and writes layout 6",
                 "run the campaign with this version of impactid into another folder",
             ],
         ),

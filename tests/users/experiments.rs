@@ -135,7 +135,7 @@ fn valid_two_carts_from_init_to_the_report() {
     );
     assert!(!campaign.contains("[channels.drive]"), "{campaign}");
     assert!(holds(&found, "restitution", 0.9), "{}", found["joint"]);
-    let impacts = &found["methods"]["impacts"];
+    let impacts = &found["methods"]["speeds_at_impact"];
     assert_eq!(impacts["records"], 4);
     let remarks = impacts["remarks"].to_string();
     assert!(remarks.contains("conservation of momentum"), "{remarks}");
@@ -302,14 +302,14 @@ fn valid_a_ball_on_paper_is_not_one_number() {
         "{}",
         found["verdict"]
     );
-    let bounces = &found["methods"]["impacts"]["impact_groups"]["by_bounce"];
+    let bounces = &found["methods"]["speeds_at_impact"]["impact_groups"]["by_bounce"];
     for (i, truth) in [0.41, 0.50].into_iter().enumerate() {
         let r = bounces[i]["restitution"].as_f64().expect("R");
         let error = bounces[i]["standard_error"].as_f64().expect("an error");
         assert!((r - truth).abs() < 2.5 * error, "{i}: {r} ± {error}");
         assert!(error < 0.02, "{error}");
     }
-    let remarks = found["methods"]["impacts"]["remarks"].to_string();
+    let remarks = found["methods"]["speeds_at_impact"]["remarks"].to_string();
     assert!(
         remarks.contains("bounce to bounce") || remarks.contains("depends on"),
         "{remarks}"

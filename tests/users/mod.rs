@@ -2,6 +2,7 @@
 //! results, the manual pages and the shell completions.
 
 mod experiments;
+mod labview;
 
 use std::fs;
 use std::path::{Path, PathBuf};

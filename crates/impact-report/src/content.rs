@@ -27,6 +27,8 @@ pub struct ReportContent {
     pub tables: Vec<DataTable>,
     /// The command that makes this report again.
     pub command_line: String,
+    /// Day of the report, where it is to be printed.
+    pub date: Option<String>,
 }
 
 /// What the report of several campaigns shows.

@@ -24,6 +24,7 @@
 //!     proposals: Vec::new(),
 //!     tables: Vec::new(),
 //!     command_line: String::new(),
+//!     date: None,
 //! };
 //! let report = Report::new(&content, &ReportOptions::default());
 //! let page = report.html()?;

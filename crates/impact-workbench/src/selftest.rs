@@ -8,7 +8,7 @@ use impact_oscillator::model::params::{Initial, Machine, ModelError, Setting};
 use impact_oscillator::model::simulate::simulate;
 
 /// One published number and the computed one.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Check {
     /// The figure and the quantity.
     pub what: String,

@@ -1,6 +1,7 @@
 //! Problems of a campaign's description and records: each with its place and its remedy, all of
 //! them at once, those that are alike in one group.
 
+use serde::Serialize;
 use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::fmt;
@@ -10,7 +11,8 @@ use super::names::natural_key;
 use impact_records::record::{Flag, FlagCode};
 
 /// What a problem prevents.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Severity {
     /// Worth knowing; nothing is left out.
     Note,
@@ -21,7 +23,8 @@ pub enum Severity {
 }
 
 /// What kind of problem it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Code {
     /// A file that is named cannot be found or read.
     UnreadableFile,
@@ -52,7 +55,7 @@ pub enum Code {
 }
 
 /// Where a problem is.
-#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Place {
     /// The file.
     pub file: PathBuf,
@@ -85,7 +88,7 @@ impl fmt::Display for Place {
 }
 
 /// One problem: where, what, and what to do about it.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Diagnostic {
     /// What kind of problem it is.
     pub code: Code,

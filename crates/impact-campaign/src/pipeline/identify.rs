@@ -167,7 +167,7 @@ pub(super) fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value,
 pub fn versions() -> BTreeMap<String, String> {
     [
         ("impactid", env!("CARGO_PKG_VERSION")),
-        ("identification.json", "5"),
+        ("identification.json", "6"),
         ("records.parquet", "1"),
     ]
     .into_iter()

@@ -75,7 +75,7 @@ mod tests {
             let PipelineError::Layout { path, expected, .. } = &refused else {
                 panic!("{refused}")
             };
-            assert!(path.ends_with(identify::FILE) && expected == "5");
+            assert!(path.ends_with(identify::FILE) && expected == "6");
             assert!(refused.remedy().contains("--out"));
         }
     }

@@ -75,18 +75,19 @@ pub fn plan(
 
 fn csv(proposals: &[Proposal]) -> String {
     let mut text = String::from(
-        "rank,drive_frequency_hz,clearance_m,frequency_ratio,clearance_ratio,motion,\
+        "rank,drive_frequency_hz,clearance_m,frequency_ratio,clearance_ratio,motion,approach,\
          restitution_error_after\n",
     );
     for (i, p) in proposals.iter().enumerate() {
         let motion = Motion::periodic(1, p.periods_n).label();
         text.push_str(&format!(
-            "{},{:.4},{:.7},{:.5},{:.5},{motion},{:.3e}\n",
+            "{},{:.4},{:.7},{:.5},{:.5},{motion},{},{:.3e}\n",
             i + 1,
             p.frequency_hz,
             p.clearance_m,
             p.frequency_ratio,
             p.clearance_ratio,
+            p.approach.name(),
             p.restitution_error_after
         ));
     }

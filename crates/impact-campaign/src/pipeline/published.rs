@@ -42,6 +42,7 @@ pub fn run(
         proposals: Vec::new(),
         tables: vec![table(&speeds, damping_ratio, published)],
         command_line: command_line.to_owned(),
+        date: campaign.report.date.clone(),
     };
     let report = report::render(&content, campaign, None)?;
     store::write_resolved(campaign, out)?;

@@ -149,6 +149,7 @@ pub fn content(
         proposals: Vec::new(),
         tables: Vec::new(),
         command_line: command_line.to_owned(),
+        date: campaign.report.date.clone(),
     })
 }
 

@@ -29,16 +29,22 @@ pub enum Method {
     #[default]
     Boundaries,
     /// Multiple shooting: records followed from impact to impact.
+    #[serde(rename = "multiple_shooting")]
+    #[strum(serialize = "multiple_shooting")]
     Flights,
     /// Times between impacts under a constant force.
     FlightTimes,
     /// Free decays.
     FreeDecay,
     /// Speeds at impacts.
+    #[serde(rename = "speeds_at_impact")]
+    #[strum(serialize = "speeds_at_impact")]
     Impacts,
     /// Approach speeds as a paper prints them.
     PublishedSpeeds,
     /// The resonance curve of the records without impacts.
+    #[serde(rename = "resonance_curve")]
+    #[strum(serialize = "resonance_curve")]
     Resonance,
     /// Waveforms of periodic records.
     Trajectories,
@@ -54,7 +60,7 @@ impl Method {
         Self::Flights,
     ];
 
-    /// Name in `identification.json`.
+    /// Name in `identification.json`: that of the report.
     pub fn name(self) -> &'static str {
         self.into()
     }

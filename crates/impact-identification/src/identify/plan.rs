@@ -14,6 +14,7 @@ use crate::identify::parameters::{Coordinate, GAIN_ROLES, Parameters};
 use crate::identify::solver::normal::inverse;
 use crate::identify::solver::{Fit, Problem};
 use impact_oscillator::model::orbit::{Orbit, stable_orbit};
+use impact_oscillator::{Machine, Setting, rho_grazing};
 use impact_records::motion::Observation;
 use impact_records::motion::{Folded, FoldedChannel, FoldedPoint};
 use impact_records::record::Role;
@@ -34,10 +35,68 @@ pub struct Proposal {
     pub clearance_ratio: f64,
     /// The motion to expect, z = 1/n.
     pub periods_n: u32,
+    /// How the rig comes to it.
+    pub approach: Approach,
     /// Standard error of R, by all that its interval allows for, once this setting and those before it in
     /// the list are measured.
     pub restitution_error_after: f64,
 }
+
+/// How a rig comes to a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Approach {
+    /// From rest, at the setting itself.
+    FromRest,
+    /// Carried along in a rising frequency, from where no motion without impacts exists.
+    Rising,
+    /// Carried along in a falling frequency.
+    Falling,
+    /// By a blow: no sweep of the frequency at this clearance leads to it.
+    Blow,
+}
+
+impl Approach {
+    /// The name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::FromRest => "from rest",
+            Self::Rising => "rising f",
+            Self::Falling => "falling f",
+            Self::Blow => "by a blow",
+        }
+    }
+
+    /// How a machine comes to its stable z = 1/n at a setting: where z = 0 exists beside it, from the nearer of the
+    /// frequencies at which it does not and up to which z = 1/n goes on.
+    fn of(machine: &Machine, setting: Setting, n: u32) -> Self {
+        let alone = |eta: f64| setting.clearance < rho_grazing(machine, eta);
+        if alone(setting.frequency_ratio) {
+            return Self::FromRest;
+        }
+        let lasts = |eta: f64| {
+            let at = Setting::new(eta, setting.clearance);
+            matches!(stable_orbit(machine, at, n), Ok(Some(_)))
+        };
+        let steps_to = |ratio: f64| {
+            let next = |eta: &f64| Some(eta * ratio);
+            let etas = std::iter::successors(Some(setting.frequency_ratio * ratio), next);
+            let mut etas = etas.take(MOST_APPROACH).take_while(|eta| lasts(*eta));
+            etas.position(alone)
+        };
+        match (steps_to(1.0 / APPROACH_STEP), steps_to(APPROACH_STEP)) {
+            (None, None) => Self::Blow,
+            (Some(below), Some(above)) if above < below => Self::Falling,
+            (None, Some(_)) => Self::Falling,
+            _ => Self::Rising,
+        }
+    }
+}
+
+/// Ratio of two frequencies on the way to a setting.
+const APPROACH_STEP: f64 = 1.005;
+/// Most steps of that way: a factor of four in the frequency.
+const MOST_APPROACH: usize = 280;
 
 /// Why no setting can be proposed.
 #[derive(
@@ -114,6 +173,7 @@ pub fn propose(
     let beyond = allowed.map_or(0.0, |a| {
         (a.standard_uncertainty.powi(2) - variance_of(&covariance)).max(0.0)
     });
+    let machine = joint.fit.parameters.machine(evidence.rig);
     let mut chosen: Vec<Proposal> = Vec::new();
     while chosen.len() < count {
         let best = candidates
@@ -127,7 +187,9 @@ pub fn propose(
         let Some((place, variance, after)) = best else {
             break;
         };
+        let at = Setting::new(place.frequency_ratio, place.clearance_ratio);
         chosen.push(Proposal {
+            approach: Approach::of(&machine, at, place.periods_n),
             restitution_error_after: (variance.max(0.0) + beyond).sqrt(),
             ..place.clone()
         });
@@ -187,6 +249,8 @@ fn candidates(
                 frequency_ratio: setting.frequency_ratio,
                 clearance_ratio: setting.clearance,
                 periods_n: n,
+                // of those that are chosen
+                approach: Approach::FromRest,
                 restitution_error_after: f64::NAN,
             };
             Some((place, information))

@@ -6,10 +6,11 @@ use super::input::Input;
 use crate::identify::parameters::Coordinate;
 use crate::identify::replay::LIVELY_SPEED;
 use crate::identify::uncertainty::band::Spread;
+use impact_oscillator::SettledMotion;
+use impact_oscillator::atlas::coexisting::beside;
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::atlas::{MapGrid, MapSettings, region_map as simulate_map};
 use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
-use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::params::{Initial, Machine};
 use impact_records::motion::{BoundaryKind, Motion};
 use impact_records::signal::robust::range;
@@ -206,44 +207,21 @@ pub(super) fn region_map(input: &Input<'_>) -> Option<RegionMap> {
         (view.eta.0, view.eta.1, MAP.0),
         (view.rho.0.max(0.02), view.rho.1, MAP.1),
     );
-    let from = |settings: &MapSettings| -> Option<Vec<Motion>> {
-        let map = simulate_map(&machine, &grid, settings).ok()?;
-        Some(map.cells.iter().map(|cell| Motion::from(*cell)).collect())
+    let from = |start| {
+        let settings = MapSettings {
+            start,
+            ..MapSettings::default()
+        };
+        simulate_map(&machine, &grid, &settings).map(|map| map.cells)
     };
-    let rest = from(&MapSettings::default())?;
-    let lively = from(&MapSettings {
-        start: Initial::both(0.0, LIVELY_SPEED),
-        ..MapSettings::default()
-    })?;
-    let branches: Vec<Vec<Branch>> = grid
-        .eta
-        .iter()
-        .map(|eta| branches(&machine, *eta))
-        .collect();
-    let other = |i: usize| match rest[i] == lively[i] {
-        true => {
-            let column = &branches[i % branches.len()];
-            let found = coexisting(&machine, column, grid.at(i).1, &rest[i]);
-            found.unwrap_or_else(|| rest[i].clone())
-        }
-        false => lively[i].clone(),
+    let rest = from(Initial::rest()).ok()?;
+    let lively = from(Initial::both(0.0, LIVELY_SPEED)).ok()?;
+    let other = beside(&machine, &grid, &[&rest, &lively]).ok()?;
+    let motions = |cells: Vec<SettledMotion>| -> Vec<Motion> {
+        cells.into_iter().map(Motion::from).collect()
     };
-    let second: Vec<Motion> = (0..grid.len()).into_par_iter().map(other).collect();
-    Some(RegionMap::new(grid.eta, grid.rho, &rest, &second))
-}
-
-/// z = 1/n at η, for every n that is looked for.
-fn branches(machine: &Machine, eta: f64) -> Vec<Branch> {
-    let of = |n| Branch::new(machine, eta, n);
-    (1..=MOST_PERIODS).map(of).collect()
-}
-
-/// A stable z = 1/n motion that exists beside another one.
-fn coexisting(machine: &Machine, branches: &[Branch], rho: f64, beside: &Motion) -> Option<Motion> {
-    let motions = branches.iter().map(|b| (b, Motion::periodic(1, b.n)));
-    let mut others = motions.filter(|(_, motion)| motion != beside);
-    let stable = others.find(|(branch, _)| branch.stable_orbit(machine, rho).is_some());
-    stable.map(|(_, motion)| motion)
+    let (first, second) = (motions(rest), motions(other));
+    Some(RegionMap::new(grid.eta, grid.rho, &first, &second))
 }
 
 #[cfg(test)]
@@ -302,20 +280,5 @@ mod tests {
         assert!((rho(1.6, BoundaryKind::SaddleNode) - 1.812_702).abs() < 1e-6);
         assert!((rho(0.9, BoundaryKind::PeriodDoubling) - 1.760_461).abs() < 1e-6);
         assert_eq!(boundary_rho(&machine, 1.1, BoundaryKind::Other, 1), None);
-    }
-
-    #[test]
-    fn beside_rest_the_stable_orbit_of_period_one_exists_in_the_hysteresis_region() {
-        let machine = Machine::symmetric(0.07, 0.9);
-        let at = (1.3, 3.0);
-        let branches = branches(&machine, at.0);
-        assert_eq!(
-            coexisting(&machine, &branches, at.1, &Motion::Impactless),
-            Some(Motion::periodic(1, 1))
-        );
-        assert_eq!(
-            coexisting(&machine, &branches, at.1, &Motion::periodic(1, 1)),
-            None
-        );
     }
 }

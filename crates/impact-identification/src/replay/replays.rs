@@ -8,9 +8,9 @@ use super::input::{Input, place};
 use super::traces::{Cut, Trace, largest_residual, traces};
 use crate::identify::parameters::Parameters;
 use crate::identify::replay::{Replay, Stretch};
-use impact_records::event::{DetectSettings, DriveTone, detect};
+use impact_records::event::{DetectSettings, DetectionSource, DriveTone, Impact, detect};
 use impact_records::motion::{Motion, Observation};
-use impact_records::record::Record;
+use impact_records::record::{Record, Role};
 
 /// A record compared with its simulation, from a zero phase of the drive on.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +31,8 @@ pub struct ReplayedRecord {
     pub simulated_motion: Option<Motion>,
     /// The channels.
     pub traces: Vec<Trace>,
+    /// Of how many of the impacts shown the contact has no pulse; `None` without a contact.
+    pub missed_by_contact: Option<usize>,
     /// Times of the measured impacts, s on the traces' axis.
     pub impacts_s: Vec<f64>,
     /// Times of the simulated impacts, s on the traces' axis.
@@ -122,7 +124,10 @@ pub(super) fn comparison(
         let same = largest_residual(&traces) < SAME_MOTION;
         if same { motion } else { &s.motion }.clone()
     });
-    let impacts = o.impacts.iter().map(|i| i.time_s - stretch.start_s);
+    let shown = |i: &&Impact| (0.0..stretch.length_s).contains(&(i.time_s - stretch.start_s));
+    let impacts: Vec<&Impact> = o.impacts.iter().filter(shown).collect();
+    let without = |i: &&&Impact| i.source == DetectionSource::Velocity;
+    let missed = impacts.iter().filter(without).count();
     Some(ReplayedRecord {
         letter,
         record: o.record.clone(),
@@ -132,9 +137,8 @@ pub(super) fn comparison(
         motion: motion.clone(),
         simulated_motion,
         traces,
-        impacts_s: impacts
-            .filter(|t| (0.0..stretch.length_s).contains(t))
-            .collect(),
+        missed_by_contact: record.channel(Role::Contact).map(|_| missed),
+        impacts_s: impacts.iter().map(|i| i.time_s - stretch.start_s).collect(),
         simulated_impacts_s: simulation.map(|s| s.impacts_s).unwrap_or_default(),
     })
 }

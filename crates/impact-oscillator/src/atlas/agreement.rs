@@ -90,7 +90,7 @@ impl Regions<'_> {
         match motion {
             SettledMotion::Impactless => Some(rho >= grazing * (1.0 - 1e-9)),
             SettledMotion::Sticking => Some(rho < 0.0),
-            SettledMotion::Beat | SettledMotion::Chaotic => None,
+            SettledMotion::Beat | SettledMotion::Chaotic | SettledMotion::NotSettled => None,
             SettledMotion::Periodic {
                 p,
                 n,

@@ -8,7 +8,7 @@ use super::map::{
     End, MapGrid, MapSettings, Start, UnitMass, available, check, march_from, march_grid,
 };
 use super::watched::watch_again;
-use crate::model::{Initial, Machine, ModelError};
+use crate::model::{Initial, Machine, ModelError, patience};
 use crate::parallel;
 
 /// How the cells of a map are started.
@@ -52,7 +52,7 @@ pub fn brute_maps(
     check(machine, grid, settings)?;
     let start = march_grid(machine, grid, settings)?;
     // both directions in one march, so that all lanes have work
-    let [rising, falling] = carried(machine, grid, settings)?;
+    let [rising, falling] = carried_maps(machine, grid, settings)?;
     Ok([start, rising, falling])
 }
 
@@ -80,7 +80,7 @@ fn place(grid: &MapGrid, number: usize) -> (usize, usize) {
 
 impl Feed for Chains<'_> {
     fn next(&mut self) -> Option<(usize, Cell)> {
-        self.ready.pop()
+        self.ready.pop().filter(|_| !patience::is_over())
     }
     fn done(&mut self, number: usize, outcome: Outcome) {
         self.done.push((number, outcome));
@@ -98,7 +98,11 @@ impl Feed for Chains<'_> {
 }
 
 /// Continue motions from column to column in the marching kernel.
-fn carried_in_lanes(unit: UnitMass, grid: &MapGrid, settings: &MapSettings) -> [Vec<End>; 2] {
+fn carried_in_lanes(
+    unit: UnitMass,
+    grid: &MapGrid,
+    settings: &MapSettings,
+) -> Result<[Vec<End>; 2], ModelError> {
     let (columns, course) = (grid.eta.len(), unit.course(settings));
     let kernel = available(settings.kernel);
     let first = |number: usize| Start {
@@ -122,16 +126,22 @@ fn carried_in_lanes(unit: UnitMass, grid: &MapGrid, settings: &MapSettings) -> [
     };
     let chunks: Vec<&[(usize, Cell)]> = rows.chunks(share).collect();
     let mut done: Vec<(usize, Outcome)> = parallel::map(&chunks, march).concat();
+    if patience::is_over() {
+        return Err(ModelError::GivenUp);
+    }
     done.sort_unstable_by_key(|d| place(grid, d.0));
     let mut outcomes: Vec<Outcome> = done.into_iter().map(|d| d.1).collect();
     watch_again(&unit, &mut outcomes, settings);
     let mut rising: Vec<End> = outcomes.iter().map(|o| unit.end(o)).collect();
     let falling = rising.split_off(grid.len());
-    [rising, falling]
+    Ok([rising, falling])
 }
 
 /// Motions carried from column to column in rising and in falling η, both at once.
-fn carried(
+///
+/// # Errors
+/// [`ModelError`] where a parameter is out of range, or nobody wants the cells any longer.
+pub fn carried_maps(
     machine: &Machine,
     grid: &MapGrid,
     settings: &MapSettings,
@@ -139,7 +149,7 @@ fn carried(
     let (columns, rows) = (grid.eta.len(), grid.rho.len());
     let together = |i: &Initial| machine.y.is_none() || (i.x == i.y && i.vx == i.vy);
     if let Some(unit) = UnitMass::of(machine).filter(|_| together(&settings.start)) {
-        return Ok(carried_in_lanes(unit, grid, settings));
+        return carried_in_lanes(unit, grid, settings);
     }
     let mut maps = [0, 1].map(|_| vec![None; grid.len()]);
     let mut before: Option<Vec<End>> = None;

@@ -14,6 +14,17 @@ use crate::model::{Impact, ImpactKind, Machine, Restitution};
 /// Stretches from whose scatter an exponent's error is taken.
 const STRETCHES: usize = 20;
 
+/// What becomes of a motion's variations, beyond the error of its exponent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Variations {
+    /// They grow: chaos.
+    Grow,
+    /// They decay: it converges.
+    Decay,
+    /// The exponent is not known well enough.
+    Open,
+}
+
 /// Follows a variation along a simulation; pass it to [`Simulator::advance`].
 ///
 /// [`Simulator::advance`]: crate::Simulator::advance
@@ -72,10 +83,43 @@ impl<'a> Lyapunov<'a> {
         }
     }
 
-    /// Whether variations decay, beyond the exponent's error.
-    pub(super) fn decays(&self) -> bool {
+    /// What becomes of variations, beyond the exponent's error.
+    pub(super) fn variations(&self) -> Variations {
+        let exponent = self.exponent();
         let error = self.standard_error().unwrap_or(f64::INFINITY);
-        self.exponent() + 2.0 * error < 0.0
+        if exponent == f64::NEG_INFINITY || exponent + 2.0 * error < 0.0 {
+            Variations::Decay
+        } else if exponent - 2.0 * error > 0.0 {
+            Variations::Grow
+        } else {
+            Variations::Open
+        }
+    }
+
+    /// A free flight of one mass and the impact at its end on the stop, which is at x.
+    pub(super) fn strike(&mut self, x: f64, impact: &Impact) {
+        let drive = Drive {
+            eta: self.eta,
+            phase: impact.phase,
+        };
+        self.before = State {
+            x,
+            vx: impact.vx_before,
+            ..State::default()
+        };
+        (self.before.ax, _) = free_accelerations(self.machine, drive, &self.before);
+        let flight = impact.tau - self.time;
+        self.pass(flight);
+        self.apply(&free_flow(self.machine, flight));
+        self.impact(impact);
+    }
+
+    /// Time passes; at the end of a drive period the growth is noted.
+    fn pass(&mut self, duration: f64) {
+        if self.time * self.eta >= TAU * (self.periods.len() + 1) as f64 {
+            self.periods.push((self.time, self.growth));
+        }
+        self.time += duration;
     }
 
     /// Standard error of [`Lyapunov::exponent`]: from the scatter of its mean over stretches of some drive periods;
@@ -133,10 +177,7 @@ impl<'a> Lyapunov<'a> {
 
 impl Sink for Lyapunov<'_> {
     fn arc(&mut self, arc: &Arc) {
-        if self.time * self.eta >= TAU * (self.periods.len() + 1) as f64 {
-            self.periods.push((self.time, self.growth));
-        }
-        self.time += arc.duration;
+        self.pass(arc.duration);
         self.before = arc.paths.at(arc.duration);
         if !arc.sticking {
             self.apply(&free_flow(self.machine, arc.duration));

@@ -3,6 +3,7 @@
 mod agreement;
 pub mod basins;
 mod brute;
+pub mod coexisting;
 mod continuation;
 pub mod curves;
 mod edge;
@@ -24,7 +25,7 @@ mod watched;
 
 pub use agreement::{Agreement, Cause, Differing};
 pub use basins::{BasinGrid, Basins, Starts, basins};
-pub use brute::{Maps, Seeding, brute_maps};
+pub use brute::{Maps, Seeding, brute_maps, carried_maps};
 pub use curves::Curve;
 pub use edge::{Edge, EdgeKind};
 pub use line::Slice;

@@ -1,11 +1,14 @@
-//! A motion that still converges is no chaos: it settles on until it recurs.
+//! A motion that does not recur is chaos only where its variations grow: else it settles on.
 
-use super::lyapunov::Lyapunov;
+use super::lyapunov::{Lyapunov, Variations};
 use crate::model::recurrence::observe;
 use crate::model::{Impact, Machine, Setting, SettledMotion, Simulator, Watch};
 
-/// How often a converging motion settles on, each time twice as long as before.
+/// How often a motion that is no chaos settles on, each time twice as long as before.
 const MOST_ROUNDS: i32 = 5;
+
+/// Drive periods that the exponent of a motion is followed that may be chaotic.
+pub(super) const CHAOTIC_PERIODS: f64 = 1000.0;
 
 /// A motion that was settled and watched.
 pub(super) struct Settled {
@@ -17,7 +20,8 @@ pub(super) struct Settled {
     pub impacts: Vec<Impact>,
 }
 
-/// Settle a motion and watch it; one without recurrence whose variations decay is still converging and settles on.
+/// Settle a motion and watch it; one without recurrence whose variations do not grow settles on. A watch without
+/// settling is of what is now, which is not judged.
 pub(super) fn settle_on(
     machine: &Machine,
     simulator: &mut Simulator,
@@ -30,8 +34,15 @@ pub(super) fn settle_on(
         simulator.advance(settle * setting.period(), &mut |_: &Impact| {});
         let begin = simulator.clone();
         let (motion, impacts) = observe(simulator, setting, watch);
-        let last = round == MOST_ROUNDS || settle <= 0.0 || motion != SettledMotion::Chaotic;
-        if last || !converges(machine, begin.clone(), setting, watch) {
+        let open = motion == SettledMotion::Chaotic
+            && settle > 0.0
+            && variations(machine, begin.clone(), setting, watch) != Variations::Grow;
+        if !open || round == MOST_ROUNDS {
+            let motion = if open {
+                SettledMotion::NotSettled
+            } else {
+                motion
+            };
             return Settled {
                 begin,
                 motion,
@@ -42,9 +53,18 @@ pub(super) fn settle_on(
     }
 }
 
-/// Whether variations decay while a motion is watched.
-fn converges(machine: &Machine, mut from: Simulator, setting: Setting, watch: &Watch) -> bool {
+/// What becomes of a motion's variations while it is watched, and longer where that leaves it open.
+fn variations(
+    machine: &Machine,
+    mut from: Simulator,
+    setting: Setting,
+    watch: &Watch,
+) -> Variations {
     let mut lyapunov = Lyapunov::new(machine, setting.frequency_ratio);
     from.advance(watch.watch_periods * setting.period(), &mut lyapunov);
-    lyapunov.decays()
+    if lyapunov.variations() == Variations::Open {
+        let more = (CHAOTIC_PERIODS - watch.watch_periods).max(0.0);
+        from.advance(more * setting.period(), &mut lyapunov);
+    }
+    lyapunov.variations()
 }

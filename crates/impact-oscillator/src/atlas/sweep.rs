@@ -3,8 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::lyapunov::Lyapunov;
-use super::settling::{Settled, settle_on};
+use super::lyapunov::{Lyapunov, Variations};
+use super::settling::{CHAOTIC_PERIODS, Settled, settle_on};
 use crate::model::flight::{Drive, FlightPaths, forced_amplitude};
 use crate::model::motion::count;
 use crate::model::path::Path;
@@ -77,8 +77,6 @@ fn maximum(path: &Path, duration: f64, sign: f64) -> f64 {
     best
 }
 
-/// Drive periods that the exponent of a chaotic motion is followed.
-const CHAOTIC_PERIODS: f64 = 1000.0;
 /// Greatest number of impacts reported of a motion without a period.
 const MOST_IMPACTS: usize = 64;
 
@@ -204,6 +202,11 @@ impl<'a> Carried<'a> {
         };
         let mut lyapunov = Lyapunov::new(self.machine, setting.frequency_ratio);
         follower.advance(followed * period, &mut lyapunov);
+        let judged = watch.settle_periods > 0.0 && motion == SettledMotion::Chaotic;
+        let motion = match lyapunov.variations() {
+            Variations::Decay | Variations::Open if judged => SettledMotion::NotSettled,
+            _ => motion,
+        };
         let exponent = Some(lyapunov.exponent()).filter(|l| l.is_finite());
         let greatest = |of: fn(&FlightPaths) -> &Path, sign: f64| {
             let arcs = watched.arcs.iter();

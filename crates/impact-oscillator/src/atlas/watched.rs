@@ -2,7 +2,9 @@
 //! converge slowly, beat, or be chaotic.
 
 use super::kernel::{Cell, Course, Feed, Outcome, Strike, run};
+use super::lyapunov::{Lyapunov, Variations};
 use super::map::{MapSettings, Shared, UnitMass, available, on_all_threads};
+use super::settling::{CHAOTIC_PERIODS, settle_on};
 use crate::model::recurrence::{Return, observe, of_returns};
 use crate::model::{
     Impact, ImpactKind, Initial, Machine, Setting, SettledMotion, Simulator, Watch,
@@ -15,7 +17,18 @@ struct Watching<'a> {
     machine: &'a Machine,
     watch: &'a Watch,
     open: Vec<Open>,
-    done: Vec<(usize, Option<SettledMotion>)>,
+    done: Vec<(usize, Seen)>,
+}
+
+/// What a watch has shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Seen {
+    /// The motion.
+    Motion(SettledMotion),
+    /// No recurrence, and it is open whether variations grow.
+    Open,
+    /// A mass rested, which the kernel's impacts do not tell, or variations decay.
+    Inexact,
 }
 
 /// A cell that is being watched.
@@ -31,19 +44,34 @@ impl Watching<'_> {
         self.open.iter_mut().find(|cell| cell.index == index)
     }
 
-    /// The motion of a cell; `None` where the mass rested, which the kernel's impacts do not tell.
-    fn motion(&self, cell: &Open) -> Option<SettledMotion> {
+    fn seen(&self, cell: &Open) -> Seen {
         let setting = Setting::new(cell.start.eta, cell.start.rho);
         let interval = (0.0, self.watch.watch_periods * setting.period());
-        if cell.rests {
-            return None;
-        }
-        let restitution = self.machine.restitution().constant()?;
+        let Some(restitution) = self
+            .machine
+            .restitution()
+            .constant()
+            .filter(|_| !cell.rests)
+        else {
+            return Seen::Inexact;
+        };
         let strikes = cell.strikes.iter();
         let returns = strikes.map(|strike| bounce(&cell.start, restitution, *strike));
         let returns: Vec<Return> = returns.collect();
         let at = (setting, interval);
-        Some(of_returns(&returns, self.machine, at, self.watch))
+        let motion = of_returns(&returns, self.machine, at, self.watch);
+        if motion != SettledMotion::Chaotic {
+            return Seen::Motion(motion);
+        }
+        let mut lyapunov = Lyapunov::new(self.machine, setting.frequency_ratio);
+        for strike in &returns {
+            lyapunov.strike(strike.x, &strike.impact);
+        }
+        match lyapunov.variations() {
+            Variations::Grow => Seen::Motion(motion),
+            Variations::Decay => Seen::Inexact,
+            Variations::Open => Seen::Open,
+        }
     }
 }
 
@@ -74,7 +102,7 @@ impl Feed for Watching<'_> {
     fn done(&mut self, index: usize, _: Outcome) {
         if let Some(place) = self.open.iter().position(|cell| cell.index == index) {
             let cell = self.open.swap_remove(place);
-            self.done.push((index, self.motion(&cell)));
+            self.done.push((index, self.seen(&cell)));
         }
     }
 }
@@ -101,44 +129,64 @@ fn bounce(start: &Cell, restitution: f64, strike: Strike) -> Return {
     }
 }
 
-/// Watch the outcomes without a recognised motion once more, in the kernel, and where a mass comes to
-/// rest in the exact simulator.
+/// Watch the outcomes without a recognised motion once more, in the kernel, longer where it stays open whether they
+/// are chaotic, and where a mass comes to rest or variations decay in the exact simulator.
 pub(super) fn watch_again(unit: &UnitMass, outcomes: &mut [Outcome], settings: &MapSettings) {
     let is_open = |o: &Outcome| o.motion == SettledMotion::Chaotic;
     let mut open: Vec<&mut Outcome> = outcomes.iter_mut().filter(|o| is_open(o)).collect();
-    let ends: Vec<Cell> = open.iter().map(|o| o.end).collect();
-    let (machine, watch) = (unit.machine(), &settings.watch);
-    let found = if machine.restitution().constant() > Some(0.0) {
-        let course = Course {
-            leave_early: false,
-            every_impact: true,
-            ..unit.course(settings)
+    let (machine, watch) = (unit.machine(), settings.watch);
+    let mut inexact: Vec<&mut Outcome> = Vec::new();
+    for periods in [watch.watch_periods, CHAOTIC_PERIODS] {
+        let watch_periods = watch.watch_periods.max(periods);
+        let ends: Vec<Cell> = open.iter().map(|o| o.end).collect();
+        let watch = Watch {
+            watch_periods,
+            ..watch
         };
-        let kernel = available(settings.kernel);
-        on_all_threads(&ends, |cells| {
-            let mut watching = Watching {
-                cells,
-                machine: &machine,
-                watch,
-                open: Vec::new(),
-                done: Vec::new(),
-            };
-            run(kernel, &course, &mut watching);
-            watching.done
-        })
-    } else {
-        vec![None; ends.len()]
-    };
-    let ends: Vec<(Cell, Option<SettledMotion>)> = ends.into_iter().zip(found).collect();
-    let motion = |(end, found): &(Cell, Option<SettledMotion>)| {
-        found.unwrap_or_else(|| observed(&machine, end, watch))
-    };
-    for (outcome, motion) in open.iter_mut().zip(parallel::map(&ends, motion)) {
+        let found = watched(unit, &ends, &MapSettings { watch, ..*settings });
+        let seen = std::mem::take(&mut open).into_iter().zip(found);
+        for (outcome, seen) in seen {
+            match seen {
+                Seen::Motion(motion) => outcome.motion = motion,
+                Seen::Open => open.push(outcome),
+                Seen::Inexact => inexact.push(outcome),
+            }
+        }
+    }
+    inexact.append(&mut open);
+    let ends: Vec<Cell> = inexact.iter().map(|o| o.end).collect();
+    let motion = |end: &Cell| observed(&machine, end, &watch);
+    for (outcome, motion) in inexact.iter_mut().zip(parallel::map(&ends, motion)) {
         outcome.motion = motion;
     }
 }
 
-/// The motion from a cell's end on, in the exact simulator.
+/// What the kernel's watch shows of cells.
+fn watched(unit: &UnitMass, ends: &[Cell], settings: &MapSettings) -> Vec<Seen> {
+    let machine = &unit.machine();
+    if machine.restitution().constant() <= Some(0.0) {
+        return vec![Seen::Inexact; ends.len()];
+    }
+    let course = Course {
+        leave_early: false,
+        every_impact: true,
+        ..unit.course(settings)
+    };
+    let kernel = available(settings.kernel);
+    on_all_threads(ends, |cells| {
+        let mut watching = Watching {
+            cells,
+            machine,
+            watch: &settings.watch,
+            open: Vec::new(),
+            done: Vec::new(),
+        };
+        run(kernel, &course, &mut watching);
+        watching.done
+    })
+}
+
+/// The motion from a cell's end on, in the exact simulator; it settles on where it is no chaos.
 fn observed(machine: &Machine, end: &Cell, watch: &Watch) -> SettledMotion {
     let setting = Setting::new(end.eta, end.rho).at_phase(end.phase);
     let start = Initial {
@@ -146,9 +194,13 @@ fn observed(machine: &Machine, end: &Cell, watch: &Watch) -> SettledMotion {
         vx: end.v,
         ..Initial::rest()
     };
-    Simulator::new(machine, setting, start).map_or(SettledMotion::Chaotic, |mut simulator| {
-        observe(&mut simulator, setting, watch).0
-    })
+    let Ok(mut simulator) = Simulator::new(machine, setting, start) else {
+        return SettledMotion::NotSettled;
+    };
+    match observe(&mut simulator, setting, watch).0 {
+        SettledMotion::Chaotic => settle_on(machine, &mut simulator, setting, watch).motion,
+        motion => motion,
+    }
 }
 
 #[cfg(test)]

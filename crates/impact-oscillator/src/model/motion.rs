@@ -25,8 +25,11 @@ pub enum SettledMotion {
     },
     /// Impacts whose speeds grow and decay again, with many impactless drive periods between.
     Beat,
-    /// Impacts that do not recur within the observed time.
+    /// Impacts that do not recur within the observed time, while variations of the motion grow.
     Chaotic,
+    /// Impacts that do not recur within the observed time, though variations of the motion do not grow: it settles
+    /// too slowly to be told.
+    NotSettled,
     /// The masses stick together all the time.
     #[serde(rename = "joined")]
     Sticking,
@@ -57,10 +60,10 @@ impl SettledMotion {
     /// Whether it repeats itself after a whole number of drive periods.
     #[must_use]
     pub fn is_periodic(self) -> bool {
-        !matches!(self, Self::Beat | Self::Chaotic)
+        !matches!(self, Self::Beat | Self::Chaotic | Self::NotSettled)
     }
 
-    /// The paper's label: `0`, `1`, `1j`, `1/2`, `2/2`, `2/1`, `beat`, `chaotic`, `joined`.
+    /// The paper's label: `0`, `1`, `1j`, `1/2`, `2/2`, `2/1`, `beat`, `chaotic`, `not settled`, `joined`.
     #[must_use]
     pub fn label(self) -> String {
         match self {
@@ -70,6 +73,7 @@ impl SettledMotion {
             } => periodic_label(p, n, dead_zone),
             Self::Beat => "beat".into(),
             Self::Chaotic => "chaotic".into(),
+            Self::NotSettled => "not settled".into(),
             Self::Sticking => "joined".into(),
         }
     }

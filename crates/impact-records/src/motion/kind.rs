@@ -90,6 +90,9 @@ impl From<SettledMotion> for Motion {
             },
             SettledMotion::Beat => Self::Beat,
             SettledMotion::Chaotic => Self::Chaotic,
+            SettledMotion::NotSettled => Self::Undetermined {
+                reason: Undetermined::NotSettled,
+            },
             SettledMotion::Sticking => Self::Sticking,
         }
     }

@@ -39,6 +39,13 @@ pub(super) fn comparison(comparison: &ReplayedRecord, locale: Locale<'_>) -> Str
     }
     let record = [("record", comparison.record.as_str())];
     text.push_str(&locale.translate_with(Phrase::CaptionRecord, &record));
+    let count = comparison.impacts_s.len();
+    if let Some(missed) = comparison.missed_by_contact.filter(|m| *m > 0) {
+        let (seen, count) = ((count - missed).to_string(), count.to_string());
+        let values = [("seen", seen.as_str()), ("count", count.as_str())];
+        let said = locale.translate_with(Phrase::CaptionMissedContacts, &values);
+        text.push_str(&format!(" {said}"));
+    }
     let simulated = comparison.simulated_motion.as_ref();
     if let Some(other) = simulated.filter(|m| **m != comparison.motion) {
         let label = locale.motion(other);

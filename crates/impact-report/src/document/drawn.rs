@@ -3,6 +3,7 @@
 use super::model::{Block, FigureRef, Rich};
 use crate::kit::{Figure, richtext};
 use crate::locale::Locale;
+use crate::phrase::Phrase;
 
 /// The figures as drawn, to be referred to by name.
 pub(super) struct Drawn<'a> {
@@ -16,6 +17,14 @@ impl Drawn<'_> {
     /// Refers to a figure by its name; `None` if it was not drawn.
     pub(super) fn figure(&self, name: &str, caption: &str) -> Option<FigureRef> {
         let figure = self.figures.iter().find(|f| f.name == name)?;
+        let file = format!("figures/{name}.csv");
+        let data = self
+            .locale
+            .translate_with(Phrase::CaptionData, &[("file", &file)]);
+        let caption = match caption.is_empty() || figure.csv.is_empty() {
+            true => caption.to_owned(),
+            false => format!("{caption} {data}"),
+        };
         Some(FigureRef {
             name: figure.name.clone(),
             width: figure.drawing.width,

@@ -30,6 +30,7 @@ pub(super) fn facts(content: &ReportContent, locale: Locale<'_>) -> Vec<(Rich, R
         campaign.laboratory.clone().unwrap_or_default(),
     );
     add(Phrase::Measured, dates(campaign, locale));
+    add(Phrase::ReportOf, content.date.clone().unwrap_or_default());
     add(Phrase::Records, records(overview, campaign.files, locale));
     add(Phrase::Sampling, sampling(overview, locale));
     add(Phrase::Drive, drive(overview, locale));

@@ -6,7 +6,8 @@ use crate::locale::Locale;
 use crate::phrase::Phrase;
 
 /// Those of template.typ, of the page and of its script.
-const PHRASES: [Phrase; 13] = [
+const PHRASES: [Phrase; 14] = [
+    Phrase::Contents,
     Phrase::SyntheticData,
     Phrase::MethodsAgree,
     Phrase::MethodsDisagree,

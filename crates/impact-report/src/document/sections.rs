@@ -34,11 +34,10 @@ pub(super) fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Sectio
     sections
 }
 
-/// Letters before the titles of the appendices, in the order in which they come; the first begins a page.
+/// Letters before the titles of the appendices, in the order in which they come.
 fn letter_appendices(sections: &mut [Section], locale: Locale<'_>) {
     let appendices = sections.iter_mut().filter(|s| s.appendix);
     for (section, letter) in appendices.zip('A'..='Z') {
-        section.new_page = letter == 'A';
         let (letter, title) = (letter.to_string(), section.title.plain());
         let values = [("letter", letter.as_str()), ("title", title.as_str())];
         section.title = Rich::from(locale.translate_with(Phrase::Appendix, &values));
@@ -73,11 +72,26 @@ fn regions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     blocks.extend(drawn.figures_block(&[("map", &map_caption(content, drawn.locale))]));
     blocks.extend(boundaries_alone(content, drawn.locale).map(paragraph));
     blocks.extend(tables::brackets(content, drawn.locale).map(|t| t.block("brackets")));
+    blocks.extend(far_brackets(content, drawn.locale).map(paragraph));
     section(
         drawn.locale.translate(Phrase::RegionsOfMotion),
         true,
         blocks,
     )
+}
+
+/// Why brackets may be far off the simulated boundary, where some that are used are.
+fn far_brackets(content: &ReportContent, locale: Locale<'_>) -> Option<String> {
+    let brackets = content.compared.brackets.iter();
+    let far = brackets.filter(|b| {
+        let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
+        let off = b.simulated_hz.map(|f| (low - f).max(f - high));
+        b.left_out.is_none() && off > Some(high - low)
+    });
+    let count = far.count();
+    let values = [("count", count.to_string())];
+    let values = values.each_ref().map(|(name, text)| (*name, text.as_str()));
+    (count > 0).then(|| locale.translate_with(Phrase::FarBrackets, &values))
 }
 
 /// R of the boundaries beside that of all methods together.
@@ -198,7 +212,10 @@ fn uncertainty(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks: Vec<Block> = beyond
         .map(|finding| paragraph(drawn.locale.sentence(finding)))
         .collect();
-    blocks.extend(tables::budget(content, drawn.locale).map(|t| t.block("budget")));
+    if let Some(table) = tables::budget(content, drawn.locale) {
+        blocks.push(table.block("budget"));
+        blocks.push(paragraph(drawn.locale.translate(Phrase::ExpandedMeans)));
+    }
     let title = Phrase::UncertaintyAndEffects;
     section(drawn.locale.translate(title), false, blocks)
 }

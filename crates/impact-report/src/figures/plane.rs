@@ -196,7 +196,7 @@ fn union(a: Range, b: Range) -> Range {
 }
 
 /// Outer edges of evenly spaced cells.
-fn edges(centres: &[f64]) -> Range {
+pub(super) fn edges(centres: &[f64]) -> Range {
     let n = centres.len();
     if n < 2 {
         return None;

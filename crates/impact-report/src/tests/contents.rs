@@ -55,6 +55,7 @@ fn content(title: &str, of: &Identified, subject: Subject) -> ReportContent {
         proposals: Vec::new(),
         tables: Vec::new(),
         command_line: "impactid run campaign.toml --out out".into(),
+        date: Some("2026-11-26".into()),
     }
 }
 

@@ -7,14 +7,16 @@ use super::frame::Frame;
 use super::jobs::Job;
 use super::state::MAP_CELLS;
 use super::{ExploreError, State};
+use impact_oscillator::atlas::carried_maps;
+use impact_oscillator::atlas::coexisting::{MOST_PERIODS, beside};
 use impact_oscillator::atlas::map::{UnitMass, even};
 use impact_oscillator::model::boundary::{rho_sticking, s1_of_branch, s2_of_branch};
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::patience::carry;
 use impact_oscillator::model::range;
 use impact_oscillator::{
-    BoundaryPoint, Initial, Machine, MapGrid, SettledMotion, region_map, rho_grazing, rho_s1,
-    rho_s2,
+    BoundaryPoint, Initial, Machine, MapGrid, MapSettings, SettledMotion, region_map, rho_grazing,
+    rho_s1, rho_s2,
 };
 use impact_records::motion::Motion;
 use impact_report::style::MotionStyle;
@@ -29,8 +31,6 @@ const STRIP_CELLS: usize = 12_288;
 const SLOW_STRIP_CELLS: usize = 192;
 /// X' and Y' of the lively start.
 const LIVELY_SPEED: f64 = 3.0;
-/// Greatest n of the boundaries of z = 1/n.
-const MOST_PERIODS: u32 = 5;
 /// Most points of a boundary that a page may ask for.
 const MOST_POINTS: usize = 2000;
 
@@ -52,12 +52,19 @@ pub(super) fn cells<'a>(
         u16::try_from(index).unwrap_or(BEYOND - 1)
     };
     let cells = motions.map(index).collect();
-    let style = |m: &SettledMotion| MotionStyle::of(&Motion::from(*m));
     (known.iter().map(style).collect(), cells)
 }
 
-/// The region map of what the page shows: 32 × 24, 128 × 96, then strips of 384 × 288; of fast machines then 128 × 96
-/// from another start, which shows what coexists.
+/// How a simulated motion is shown.
+pub(super) fn style(motion: &SettledMotion) -> MotionStyle {
+    MotionStyle {
+        label: motion.label(),
+        ..MotionStyle::of(&Motion::from(*motion))
+    }
+}
+
+/// The region map of what the page shows: 32 × 24, 128 × 96, of fast machines then strips of 384 × 288; at last
+/// for each cell of 128 × 96 a motion that coexists with its own.
 pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
     let before_boundaries = job.first_tiles();
     let machine = state.machine();
@@ -66,32 +73,27 @@ pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
         true => &[COARSE, MAP_CELLS, FINE],
         false => &[COARSE, MAP_CELLS],
     };
-    let strip_cells = if fast { STRIP_CELLS } else { SLOW_STRIP_CELLS };
-    let finest = levels.len() - 1;
-    let first = if fast { finest } else { 0 };
-    let tiles = levels.iter().enumerate().map(|(level, &size)| Tile {
-        level,
-        size,
-        strip_cells,
-        finest: level == finest,
-        is_first: level < first,
-        start: state.map_start,
-    });
-    let send = |tile: Tile| tile.send(state, &machine, job);
-    tiles.clone().take(first).try_for_each(send)?;
-    drop(before_boundaries);
-    tiles.skip(first).try_for_each(send)?;
-    match fast {
-        true => send(Tile {
-            level: levels.len(),
-            size: MAP_CELLS,
-            strip_cells,
-            finest: false,
-            is_first: false,
-            start: other_start(state),
-        }),
-        false => Ok(()),
+    let tiles = Tiles {
+        state,
+        machine: &machine,
+        strip_cells: if fast { STRIP_CELLS } else { SLOW_STRIP_CELLS },
+        finest: levels.len() - 1,
+        first: if fast { levels.len() - 1 } else { 0 },
+        job,
+    };
+    let mut waiting = Some(before_boundaries);
+    let mut shown = Vec::new();
+    for (level, &size) in levels.iter().enumerate() {
+        if level >= tiles.first {
+            waiting = None;
+        }
+        let cells = tiles.send(level, size)?;
+        if size == MAP_CELLS {
+            shown = cells;
+        }
     }
+    drop(waiting);
+    tiles.send_coexisting(&shown)
 }
 
 /// The start from which motions are sought that coexist with those of the map: lively where the map is from rest.
@@ -104,54 +106,97 @@ fn other_start(state: &State) -> Initial {
     }
 }
 
-/// One level of the map.
-struct Tile {
-    level: usize,
-    /// Columns and rows.
-    size: (usize, usize),
+/// The levels of a map.
+struct Tiles<'a> {
+    state: &'a State,
+    machine: &'a Machine,
     /// Cells of a strip at most.
     strip_cells: usize,
-    /// Whether no finer level follows.
-    finest: bool,
-    /// Whether it is one of the first tiles.
-    is_first: bool,
-    /// Start of its cells.
-    start: Initial,
+    /// The last level.
+    finest: usize,
+    /// The first level that is not of the first tiles.
+    first: usize,
+    job: &'a Job,
 }
 
-impl Tile {
-    /// Send it strip by strip, each a frame.
-    fn send(&self, state: &State, machine: &Machine, job: &Job) -> Result<(), Stop> {
-        let mut plan = state.map_plan(self.size);
-        plan.map.start = self.start;
+impl Tiles<'_> {
+    /// Send a level strip by strip, each a frame; returns its motions.
+    fn send(&self, level: usize, size: (usize, usize)) -> Result<Vec<SettledMotion>, Stop> {
+        let settings = self.settings(self.state.map_start);
+        let mut all = Vec::with_capacity(size.0 * size.1);
+        self.strips(size, |grid, first_row, last| {
+            let march = || region_map(self.machine, grid, &settings);
+            let map = match level < self.first {
+                true => self.job.pools.first_tiles(march),
+                false => self.job.pools.work(march),
+            }?;
+            let last = last && level == self.finest;
+            let frame = self.frame("map", size, first_row).with("level", level);
+            let (motions, cells) = cells(map.cells.iter());
+            let frame = frame.with("last", last).with("motions", motions);
+            self.job.send(frame.cells(cells))?;
+            all.extend(map.cells);
+            Ok(())
+        })?;
+        Ok(all)
+    }
+
+    /// Send what coexists with the motions of 128 × 96 cells: what another start or sweeps in rising and falling η
+    /// settle on, or a stable motion in closed form.
+    fn send_coexisting(&self, shown: &[SettledMotion]) -> Result<(), Stop> {
+        let (from, other) = (
+            self.settings(self.state.map_start),
+            self.settings(other_start(self.state)),
+        );
+        self.strips(MAP_CELLS, |grid, first_row, _| {
+            let first = &shown[first_row * MAP_CELLS.0..][..grid.len()];
+            let found = self.job.pools.work(|| {
+                let other = region_map(self.machine, grid, &other)?.cells;
+                let carried = carried_maps(self.machine, grid, &from)?;
+                let [up, down] =
+                    carried.map(|ends| ends.iter().map(|e| e.motion).collect::<Vec<_>>());
+                beside(self.machine, grid, &[first, &other, &up, &down])
+            })?;
+            let (motions, cells) = cells(found.iter());
+            let frame = self.frame("beside", MAP_CELLS, first_row);
+            Ok(self.job.send(frame.with("motions", motions).cells(cells))?)
+        })
+    }
+
+    fn settings(&self, start: Initial) -> MapSettings {
+        MapSettings {
+            start,
+            ..self.state.map_settings()
+        }
+    }
+
+    fn frame(&self, kind: &str, size: (usize, usize), first_row: usize) -> Frame {
+        let frame = self.job.frame(kind).with("size", size);
+        let frame = frame.with("first_row", first_row);
+        frame
+            .with("eta", self.state.view.eta)
+            .with("rho", self.state.view.rho)
+    }
+
+    /// Work on strips of rows, each with the number of its first row and whether it is the last.
+    fn strips(
+        &self,
+        size: (usize, usize),
+        mut work: impl FnMut(&MapGrid, usize, bool) -> Result<(), Stop>,
+    ) -> Result<(), Stop> {
+        let plan = self.state.map_plan(size);
         let (eta, rho) = (even(plan.eta), even(plan.rho));
-        let rows = (self.strip_cells / self.size.0).max(1);
+        let rows = (self.strip_cells / size.0).max(1);
         let last = (rho.len() - 1) / rows;
         for (number, strip) in rho.chunks(rows).enumerate() {
-            if job.is_stale() {
+            if self.job.is_stale() {
                 return Err(Stop::Stale);
             }
             let grid = MapGrid {
                 eta: eta.clone(),
                 rho: strip.to_vec(),
             };
-            let march = || region_map(machine, &grid, &plan.map);
-            let map = match self.is_first {
-                true => job.pools.first_tiles(march),
-                false => job.pools.work(march),
-            }?;
-            let (motions, cells) = cells(map.cells.iter());
-            let frame = job
-                .frame("map")
-                .with("level", self.level)
-                .with("other", self.start != state.map_start)
-                .with("size", self.size)
-                .with("first_row", number * rows)
-                .with("last", self.finest && number == last)
-                .with("eta", state.view.eta)
-                .with("rho", state.view.rho)
-                .with("motions", motions);
-            job.send(frame.cells(cells))?;
+            work(&grid, number * rows, number == last)?;
         }
         Ok(())
     }

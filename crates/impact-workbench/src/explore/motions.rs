@@ -7,7 +7,7 @@ use serde_json::json;
 use super::answer::Stop;
 use super::frame::Frame;
 use super::jobs::Job;
-use super::maps::{BEYOND, cells};
+use super::maps::{BEYOND, cells, style};
 use super::state::Cursor;
 use super::{ExploreError, State};
 use impact_oscillator::atlas::BasinGrid;
@@ -21,9 +21,7 @@ use impact_oscillator::model::simulate::Snapshot;
 use impact_oscillator::{
     Machine, MapSettings, Setting, SettledMotion, Simulator, Trajectory, Watch,
 };
-use impact_records::motion::Motion;
 use impact_records::signal::whole;
-use impact_report::style::MotionStyle;
 
 /// Time after which steps of a sweep are sent together.
 const BATCH: Duration = Duration::from_millis(40);
@@ -114,12 +112,8 @@ pub(super) fn motion(
 /// With the motion and its characteristics.
 fn with_facts(frame: Frame, machine: &Machine, point: &SweepPoint) -> Frame {
     let free = impactless(machine, point.eta);
-    let mut style = MotionStyle::of(&Motion::from(point.motion));
-    if point.motion == SettledMotion::Chaotic && point.lyapunov < Some(0.0) {
-        style.label = "not settled".into();
-    }
     frame
-        .with("motion", style)
+        .with("motion", style(&point.motion))
         .with("lyapunov_error", point.lyapunov_error)
         .with("x_max", point.x_max)
         .with("x_min", point.x_min)
@@ -181,7 +175,7 @@ fn now(
         ..state.portrait()
     };
     let seen = portrait(machine, &plan)?;
-    let mut style = MotionStyle::of(&Motion::from(point.motion));
+    let mut style = style(&point.motion);
     if !point.motion.is_periodic() {
         style.label = "not periodic".into();
     }

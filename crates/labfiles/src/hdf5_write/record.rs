@@ -40,7 +40,7 @@ pub enum Stored {
         counts: Vec<i16>,
         /// Unit per count.
         scale: f64,
-        /// AttributeValue of count zero.
+        /// Value of count zero.
         offset: f64,
     },
 }

@@ -75,6 +75,9 @@ pub struct ReportSettings {
     /// An image for the first page.
     #[serde(default, serialize_with = "slashes::serialize_option")]
     pub logo: Option<PathBuf>,
+    /// Day that is printed as that of the report.
+    #[serde(skip)]
+    pub date: Option<String>,
 }
 
 /// What the report of a campaign refers to.
@@ -116,6 +119,7 @@ pub(crate) fn resolve(
         paper: value(&table.paper).unwrap_or(Paper::A4),
         language,
         decimal_comma: value(&table.decimal_comma).unwrap_or(comma),
+        date: None,
         formats: value(&table.formats)
             .filter(|formats| !formats.is_empty())
             .unwrap_or_else(|| vec![Format::Pdf]),

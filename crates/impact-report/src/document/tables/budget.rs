@@ -6,6 +6,7 @@ use crate::document::model::{Rich, Table};
 use crate::figures::correlation::name;
 use crate::kit::richtext::plain;
 use crate::locale::Locale;
+use crate::parameters::{PARAMETERS, ParameterLook, decimals_for};
 use crate::phrase::Phrase;
 use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::uncertainty::budget::{
@@ -16,8 +17,6 @@ use impact_identification::identify::uncertainty::budget::{
 const SIZE: f64 = 7.5;
 /// Least share of a parameter's variance from which a source has a row of its own.
 const LEAST_SHARE: f64 = 0.01;
-/// Unit of the contributions.
-const UNIT: f64 = 1e-4;
 /// More degrees of freedom than this are printed as infinitely many.
 const MANY: f64 = 1e4;
 
@@ -27,25 +26,71 @@ pub(crate) fn budget(content: &ReportContent, locale: Locale<'_>) -> Option<Tabl
     if budget.rows.is_empty() {
         return None;
     }
+    let units = Units::of(content);
     let (mut main, minor): (Vec<&Row>, Vec<&Row>) =
         budget.rows.iter().partition(|row| matters(row, budget));
     main.sort_by(|a, b| greatest_share(b, budget).total_cmp(&greatest_share(a, budget)));
-    let mut rows: Vec<Vec<Rich>> = main.iter().map(|row| source_row(row, locale)).collect();
+    let mut rows: Vec<Vec<Rich>> = main
+        .iter()
+        .map(|row| source_row(row, &units, locale))
+        .collect();
     if !minor.is_empty() {
-        rows.push(others(&minor, locale));
+        rows.push(others(&minor, &units, locale));
     }
-    rows.extend(sums(budget, locale));
-    let columns = vec![
+    rows.extend(sums(budget, &units, locale));
+    let columns = [
         Column::wide(Phrase::UncertaintySource, 1),
         Column::center(Phrase::EvaluationType),
         Column::right(Phrase::StandardUncertainty),
-        Column::right("$R$"),
-        Column::right("$f_0$"),
-        Column::right("$β$"),
-        Column::right("$x_st$"),
-        Column::right(Phrase::DegreesOfFreedom),
     ];
+    let columns = columns.into_iter().chain(units.columns());
+    let columns = columns
+        .chain([Column::right(Phrase::DegreesOfFreedom)])
+        .collect();
     table(Phrase::UncertaintyBudget, columns, rows, locale).map(|t| Table { size: SIZE, ..t })
+}
+
+/// The units in which the contributions to the parameters are printed, and with how many decimals.
+struct Units(Vec<(&'static ParameterLook, f64, usize)>);
+
+impl Units {
+    /// Those in which the joint estimate is printed: a contribution to R is absolute, to the others relative.
+    fn of(content: &ReportContent) -> Self {
+        let id = &content.identification;
+        let combined = &id.uncertainty.budget.combined;
+        let unit = |look: &'static ParameterLook| {
+            let value = id
+                .joint
+                .parameters
+                .get(look.parameter)
+                .and_then(|e| e.value);
+            let factor = match look.parameter {
+                Coordinate::Restitution => 1.0,
+                _ => look.factor * value.unwrap_or(f64::NAN).abs(),
+            };
+            let sum = combined.iter().find(|c| c.parameter == look.parameter);
+            let size = sum.map_or(f64::NAN, |c| factor * c.standard_uncertainty);
+            (look, factor, decimals_for(size) + 1)
+        };
+        Self(PARAMETERS.iter().map(unit).collect())
+    }
+
+    fn columns(&self) -> impl Iterator<Item = Column> {
+        self.0.iter().map(|(look, ..)| match look.unit {
+            "" => Column::right(look.symbol),
+            unit => Column::right(format!("{} ({unit})", look.symbol)),
+        })
+    }
+
+    /// What is known of each parameter, in its unit.
+    fn cells(&self, of: impl Fn(Coordinate) -> Option<f64>, locale: Locale<'_>) -> Vec<Rich> {
+        let cell = |(look, factor, decimals): &(&ParameterLook, f64, usize)| {
+            let size = of(look.parameter).map(|u| u * factor);
+            let size = size.filter(|u| u.is_finite());
+            Rich::from(size.map_or("–".into(), |u| locale.fixed(u, *decimals)))
+        };
+        self.0.iter().map(cell).collect()
+    }
 }
 
 fn matters(row: &Row, budget: &Budget) -> bool {
@@ -67,13 +112,13 @@ fn contribution(row: &Row, parameter: Coordinate) -> Option<f64> {
         .map(|c: &Contribution| c.uncertainty)
 }
 
-fn source_row(row: &Row, locale: Locale<'_>) -> Vec<Rich> {
+fn source_row(row: &Row, units: &Units, locale: Locale<'_>) -> Vec<Rich> {
     let mut cells = vec![
         Rich::from(source(row.source, locale)),
         Rich::from(format!("{:?}", row.evaluation)),
         Rich::from(stated(row, locale)),
     ];
-    cells.extend(per_parameter(|c| contribution(row, c), locale));
+    cells.extend(units.cells(|c| contribution(row, c), locale));
     cells.push(Rich::from(freedom(row.degrees_of_freedom, locale)));
     cells
 }
@@ -128,24 +173,13 @@ fn stated(row: &Row, locale: Locale<'_>) -> String {
     format!("{} {unit}", locale.significant(factor * u, 2))
 }
 
-fn per_parameter(
-    of: impl Fn(Coordinate) -> Option<f64>,
-    locale: Locale<'_>,
-) -> impl Iterator<Item = Rich> {
-    let cell = move |c| of(c).map_or("–".into(), |u| locale.fixed(u / UNIT, 2));
-    Coordinate::PHYSICAL
-        .into_iter()
-        .map(cell)
-        .map(|text: String| Rich::from(text))
-}
-
 fn freedom(freedom: Option<f64>, locale: Locale<'_>) -> String {
     let few = freedom.filter(|n| *n < MANY);
     few.map_or("∞".into(), |n| locale.fixed(n, 0))
 }
 
 /// The sources that matter little, together.
-fn others(minor: &[&Row], locale: Locale<'_>) -> Vec<Rich> {
+fn others(minor: &[&Row], units: &Units, locale: Locale<'_>) -> Vec<Rich> {
     let count = minor.len().to_string();
     let together = |c: Coordinate| {
         let squares = minor.iter().filter_map(|row| contribution(row, c));
@@ -157,13 +191,13 @@ fn others(minor: &[&Row], locale: Locale<'_>) -> Vec<Rich> {
         Rich::from("A, B"),
         Rich::from("–"),
     ];
-    cells.extend(per_parameter(together, locale));
+    cells.extend(units.cells(together, locale));
     cells.push(Rich::from("–"));
     cells
 }
 
 /// Combined standard uncertainty, degrees of freedom, coverage factor, expanded uncertainty.
-fn sums(budget: &Budget, locale: Locale<'_>) -> [Vec<Rich>; 4] {
+fn sums(budget: &Budget, units: &Units, locale: Locale<'_>) -> [Vec<Rich>; 4] {
     let of = |c: Coordinate| budget.combined.iter().find(|sum| sum.parameter == c);
     let line = |name: Phrase, cells: Vec<Rich>| {
         let head = [locale.translate(name), String::new(), "–".into()];
@@ -179,7 +213,7 @@ fn sums(budget: &Budget, locale: Locale<'_>) -> [Vec<Rich>; 4] {
     [
         line(
             Phrase::CombinedUncertainty,
-            per_parameter(|c| of(c).map(|sum| sum.standard_uncertainty), locale).collect(),
+            units.cells(|c| of(c).map(|sum| sum.standard_uncertainty), locale),
         ),
         line(
             Phrase::EffectiveDegreesOfFreedom,
@@ -191,7 +225,7 @@ fn sums(budget: &Budget, locale: Locale<'_>) -> [Vec<Rich>; 4] {
         ),
         line(
             Phrase::ExpandedUncertainty,
-            per_parameter(|c| of(c).map(|sum| sum.expanded_uncertainty), locale).collect(),
+            units.cells(|c| of(c).map(|sum| sum.expanded_uncertainty), locale),
         ),
     ]
 }

@@ -1,7 +1,9 @@
 //! The map's keys.
 
+use crate::content::ReportContent;
 use crate::figures::boundaries;
-use crate::figures::plane::Plane;
+use crate::figures::plane::{Plane, edges};
+use crate::kit::axis::Axis;
 use crate::kit::legend::{Key, Sign};
 use crate::kit::{look, marks};
 use crate::phrase::{Phrase, motion_text};
@@ -17,7 +19,8 @@ pub(super) fn motions(compared: &Compared) -> Vec<Key> {
 }
 
 /// All keys of the large map.
-pub(super) fn full(compared: &Compared, plane: Plane) -> Vec<Key> {
+pub(super) fn full(content: &ReportContent, plane: Plane) -> Vec<Key> {
+    let compared = &content.compared;
     let mut keys = vec![Key::new(Sign::Nothing, Phrase::MeasuredMotions)];
     keys.extend(motions(compared));
     if !compared.brackets.is_empty() {
@@ -32,7 +35,27 @@ pub(super) fn full(compared: &Compared, plane: Plane) -> Vec<Key> {
     if plane.dimensionless {
         keys.extend(curve_keys(compared));
     }
+    if is_wider(content, plane) {
+        keys.push(Key::new(Sign::Patch(look::BLANK), Phrase::NotComputed));
+    }
+    if !content.proposals.is_empty() {
+        keys.push(Key::new(Sign::Nothing, Phrase::ProposedSetting));
+    }
     keys
+}
+
+/// Whether the map shows more than was simulated.
+fn is_wider(content: &ReportContent, plane: Plane) -> bool {
+    let map = content.compared.region_map.as_ref();
+    let Some(map) = map.filter(|_| plane.dimensionless) else {
+        return false;
+    };
+    let view = plane.view(content);
+    let beyond = |axis: &Axis, cells: &[f64]| {
+        let room = 0.005 * (axis.high - axis.low);
+        edges(cells).is_some_and(|(low, high)| axis.low < low - room || axis.high > high + room)
+    };
+    beyond(&view.x, &map.x) || beyond(&view.y, &map.y)
 }
 
 fn curve_keys(compared: &Compared) -> Vec<Key> {

@@ -72,7 +72,7 @@ impl Map<'_> {
             let (x, y) = self.plane.proposed(proposed);
             if self.panel.shows(x, y) {
                 let at = self.panel.at(x, y);
-                self.letter(at, &format!("{}", i + 1), &bounds);
+                self.letter(at, &format!("P{}", i + 1), &bounds);
             }
         }
     }

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashSet};
 
 use crate::content::ReportContent;
 use crate::figures::boundaries;
-use crate::figures::plane::{Plane, View, same};
+use crate::figures::plane::{Plane, View, edges, same};
 use crate::figures::regions::Regions;
 use crate::kit::canvas::{Canvas, Point};
 use crate::kit::figure::Figure;
@@ -36,6 +36,8 @@ pub(crate) enum MapSize {
 
 /// Height of a strip with its gap, points.
 const STRIP_STEP: f64 = 15.0;
+/// Least width of what is drawn as not simulated, points.
+const LEAST_BLANK: f64 = 1.0;
 /// Half the height of a strip's frame, points.
 const STRIP_HALF: f64 = 5.5;
 
@@ -43,7 +45,7 @@ const STRIP_HALF: f64 = 5.5;
 pub(crate) fn draw(content: &ReportContent, size: MapSize, locale: Locale<'_>) -> Option<Figure> {
     let plane = Plane::of(content)?;
     let keys = if size == MapSize::Full {
-        keys::full(&content.compared, plane)
+        keys::full(content, plane)
     } else {
         keys::motions(&content.compared)
     };
@@ -161,10 +163,32 @@ impl<'a> Map<'a> {
             return;
         };
         self.canvas.layer(0);
+        self.blank_around(map);
         regions.draw(&mut self.canvas);
         let size = if self.full() { 10.0 } else { 8.0 };
         self.canvas.layer(6);
         regions.draw_labels(&mut self.canvas, &mut self.occupancy, size, locale);
+    }
+
+    /// What the simulated grid does not reach is grey: white is z = 0.
+    fn blank_around(&mut self, map: &RegionMap) {
+        let r = self.panel.rect;
+        let Some(((x0, x1), (y0, y1))) = edges(&map.x).zip(edges(&map.y)) else {
+            return;
+        };
+        let (left, low) = self.panel.at(x0, y0);
+        let (right, high) = self.panel.at(x1, y1);
+        let around = [
+            ((r.left, r.top), (left, r.bottom)),
+            ((right, r.top), (r.right, r.bottom)),
+            ((left, r.top), (right, high)),
+            ((left, low), (right, r.bottom)),
+        ];
+        for (from, to) in around {
+            if to.0 - from.0 > LEAST_BLANK && to.1 - from.1 > LEAST_BLANK {
+                self.canvas.rectangle(from, to, look::BLANK);
+            }
+        }
     }
 
     fn take_records_and_curves(&mut self) {

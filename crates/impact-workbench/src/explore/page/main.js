@@ -174,7 +174,7 @@ class App {
     if (frame.kind === "refused") { this.refused(frame); return; }
     if (asked) this.good = asked;
     const time = (kind, level) => this.timed(kind, level, since);
-    if (frame.kind === "map" && frame.other) this.map.coexisting(frame);
+    if (frame.kind === "beside") this.map.coexisting(frame);
     else if (frame.kind === "map") {
       const tile = this.map.tile(frame);
       this.progress(tile);
@@ -468,7 +468,7 @@ class App {
     }
     const { vx } = this.state.map_start, from = document.createElement("span");
     from.textContent = vx === 0 ? "cells: from rest" : `cells: from X′ = Y′ = ${number(vx)}`;
-    if (this.map.other && this.map.other.id === this.wire.newest.map) from.textContent += "; striped: another start, another motion";
+    if (this.map.other && this.map.other.id === this.wire.newest.map) from.textContent += "; striped: another motion coexists";
     element("legend").replaceChildren(...items, from);
   }
 

@@ -1,5 +1,5 @@
 // The (η, ρ) map: tiles, boundaries, records, brackets, bands, cursor, line.
-import { Frame, colour, isDark, mark, markColour, rich, tint, FONT } from "./draw.js";
+import { Frame, colour, isDark, mark, markColour, named, rich, tint, FONT } from "./draw.js";
 
 const KINDS = {
   s2: { text: "saddle-node *s*₂", colour: "ink", width: 1.6 },
@@ -73,7 +73,7 @@ export class MapView {
     this.redraw("tiles", "lines");
   }
 
-  /** A strip of the map from another start: where its motions differ, two coexist. */
+  /** A strip of motions that coexist with those of the map's cells. */
   coexisting(frame) {
     const [columns, rows] = frame.size, known = this.cells128;
     if (known?.id !== frame.id) return;
@@ -91,6 +91,19 @@ export class MapView {
     this.labels = placeLabels(b);
     this.app.legend(this.app.legendStyles ?? []);
     this.redraw("tiles", "lines");
+  }
+
+  /** The motion at a place by name, and the one that coexists with it. */
+  named(eta, rho) {
+    const label = (t) => {
+      const at = (v, [a, b], n) => Math.min(n - 1, Math.max(0, Math.round((v - a) / (b - a) * (n - 1))));
+      return t.styles[t.cells[at(rho, t.rho, t.size[1]) * t.size[0] + at(eta, t.eta, t.size[0])]]?.label;
+    };
+    const { other } = this, tile = this.tiles.at(-1);
+    if (!tile || this.isOld(tile)) return "";
+    const both = other?.id === tile.id ? label(other) : label(tile);
+    const names = (both ?? "").split(" · ").filter(Boolean).map((l) => named({ label: l }));
+    return names.length > 1 ? `${names.join(" and ")} coexist` : names[0] ?? "";
   }
 
   /** Stripes in the colour of the motion that coexists with that of the cells. */
@@ -352,7 +365,7 @@ export class MapView {
     canvas.addEventListener("pointermove", (event) => {
       const [p, q] = this.place(event);
       if (mode) this.moved(mode, p, q, from, view);
-      else if (this.frame) canvas.title = app.campaign?.near(this.frame, p, q)?.id ?? "";
+      else if (this.frame) canvas.title = app.campaign?.near(this.frame, p, q)?.id ?? (this.frame.holds(p, q) ? this.named(this.frame.ux(p), this.frame.uy(q)) : "");
     });
     const end = () => {
       if (mode === "line") { this.drawing = false; app.panel("line"); app.said("characteristics along the line"); }
