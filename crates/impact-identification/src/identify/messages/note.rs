@@ -59,6 +59,11 @@ pub enum Note {
     Drifts,
     /// The damping ratio changes over the decay.
     DampingChanges,
+    /// The record ends after too few periods for a test of the decay.
+    FewPeriods {
+        /// How many.
+        periods: f64,
+    },
     /// Nothing damps the motion that stands out of the noise.
     Undamped {
         /// Damping ratio that is not exceeded, at 97.5 %.
@@ -164,6 +169,12 @@ message_table! { Note;
          its values; see the remark",
         "der Dämpfungsgrad ändert sich beim Ausschwingen und ist nicht ein $β$: Das Intervall \
          enthält seine Werte; siehe die Anmerkung";
+    Self::FewPeriods { periods } =>
+        "the record ends after {periods} periods of the decay, too few to test whether one frequency \
+         and one damping ratio hold along it: record three or more",
+        "die Aufnahme endet nach {periods} Perioden des Ausschwingens, zu wenigen für die Prüfung, ob \
+         eine Frequenz und ein Dämpfungsgrad gelten: drei oder mehr aufnehmen",
+        periods = Value::Number(*periods, 1);
     Self::Undamped { most } =>
         "the amplitude does not fall by more than its noise: an upper limit, $β$ < {most}",
         "die Amplitude fällt nicht stärker als ihr Rauschen: eine obere Grenze, $β$ < {most}",

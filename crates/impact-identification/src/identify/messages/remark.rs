@@ -215,6 +215,15 @@ pub enum Remark {
         /// How many.
         count: usize,
     },
+    /// Impacts are missing among times: a flight is two.
+    ImpactsMissed {
+        /// How many.
+        count: usize,
+        /// The record of the first one.
+        record: String,
+        /// When it was, s.
+        time_s: f64,
+    },
     /// Impacts whose speeds are far from those of the others were left out.
     OutlyingImpacts {
         /// How many.
@@ -273,6 +282,17 @@ pub enum Remark {
         /// Frequency of the strongest, Hz.
         frequency_hz: f64,
         /// Its amplitude over that of the decay.
+        ratio: f64,
+    },
+    /// Two modes of near frequencies beat, which one decay does not explain.
+    DecaysBeat {
+        /// Number of decays that do.
+        count: usize,
+        /// Frequency of the stronger one, Hz.
+        first_hz: f64,
+        /// Of the weaker one, Hz.
+        second_hz: f64,
+        /// Amplitude of the weaker over that of the stronger.
         ratio: f64,
     },
     /// A drift under the decays, fitted with them.
@@ -463,6 +483,14 @@ message_table! { Remark;
          {count}",
         "Flüge, die nicht aus dem vorigen folgen, etwa wo ein Stoß fehlt, ausgelassen: {count}",
         count = Value::Count(*count);
+    Self::ImpactsMissed { count, record, time_s } =>
+        "impacts missing among the times: {count}, the first in {record} at about {time} s; the \
+         flights over them are left out: see why they were not heard",
+        "unter den Zeiten fehlende Stöße: {count}, der erste in {record} bei etwa {time} s; die Flüge \
+         darüber sind ausgelassen: prüfen, warum sie nicht gehört wurden",
+        count = Value::Count(*count),
+        record = Value::Name(record),
+        time = Value::Number(*time_s, 3);
     Self::OutlyingImpacts { count, first } =>
         "impacts with speeds far from those of the others, left out: {count} ({which})",
         "Stöße mit Geschwindigkeiten weit von denen der übrigen, ausgelassen: {count} ({which})",
@@ -512,6 +540,17 @@ message_table! { Remark;
          {frequency} Hz und {share} der Amplitude, ist mit angepasst",
         count = Value::Count(*count),
         frequency = Value::Number(*frequency_hz, 1),
+        share = Value::Percent(*ratio, 0);
+    Self::DecaysBeat { count, first_hz, second_hz, ratio } =>
+        "two modes beat in {count} of the decays, of {first} Hz and of {second} Hz with {share} of its \
+         amplitude: $f_0$ and $β$ are those of neither; hold the mass so that it moves in one \
+         direction alone",
+        "zwei Eigenschwingungen schweben in {count} der Ausschwingversuche, eine mit {first} Hz und \
+         eine mit {second} Hz und {share} ihrer Amplitude: $f_0$ und $β$ sind keiner von beiden \
+         eigen; die Masse so führen, dass sie sich nur in einer Richtung bewegt",
+        count = Value::Count(*count),
+        first = Value::Number(*first_hz, 3),
+        second = Value::Number(*second_hz, 3),
         share = Value::Percent(*ratio, 0);
     Self::DecaysBackground { count, ratio } =>
         "a drift under {count} of the decays, by up to {share} of the amplitude, is fitted with \

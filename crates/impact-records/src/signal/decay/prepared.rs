@@ -1,11 +1,11 @@
 //! A decay made ready for its fit: where it begins and ends, what lies under it, the noise about it.
 
-use super::blows;
 use super::least_squares::{Point, Series};
 use super::modes::{self, Mode, STEADY};
 use super::noise::Noise;
 use super::shape::{Rates, Shape};
 use super::{LEAST_PERIODS, STANDS_OUT};
+use super::{beat, blows};
 use crate::signal::columns::dot;
 use crate::signal::{robust, spectrum, whole};
 
@@ -177,9 +177,15 @@ impl Prepared {
             let found = of_kind.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
             found.map(|m| [m.frequency * rate_hz, m.amplitude / amplitude])
         };
+        let beat = beat::find(&self.series, &self.free).map(|found| {
+            let hz = rate_hz / self.factor as f64 / std::f64::consts::TAU;
+            let [strong, weak] = found.frequencies.map(|f| f * hz);
+            [strong, weak, found.ratio]
+        });
         super::Beside {
             hum: strongest(true),
             mode: strongest(false),
+            beat,
             drift_ratio: self.free.drift() / amplitude,
             slow_noise: self.series.noise.slow(self.free.rates[0]),
         }
