@@ -8,8 +8,8 @@ use crate::signal::local_fit::LocalFit;
 const MOST: usize = 1500;
 /// Samples beside a fall that may still belong to the contact, beside its own.
 const BESIDE: usize = 4;
-/// How many times as many samples may ring before a flight.
-const RINGS: usize = 6;
+/// How many times as long as a contact its bumpers ring before a flight.
+const RINGS: usize = 3;
 /// Relative scatter of a speed beside the noise: wheels, rails and rolling friction are uneven.
 const UNEVEN: f64 = 4e-3;
 /// Scatter about a flight, in standard deviations of the noise, above which it is none.
@@ -176,9 +176,13 @@ pub(super) fn find(
     let velocity = body.velocity.as_ref()?;
     let middle = 0.5 * (fall.first + fall.last) as f64;
     let beside = BESIDE + (fall.last - fall.first) / 2;
-    // what rings goes on for several times as long as the contact
+    // what rings after the contact goes on for several times as long
+    let ringing = match side {
+        Side::Before => beside,
+        Side::After => beside.max(RINGS * (fall.last - fall.first)),
+    };
     let later = std::iter::successors(Some(0), |s| Some(s + s / 4 + 1));
-    let later = later.take_while(|s| *s <= RINGS * beside);
+    let later = later.take_while(|s| *s <= ringing);
     let stretches = later.filter_map(|skipped| {
         let (first, last) = window(&velocity.values, side, fall, bounds, skipped, greatest_m_s)?;
         let mut count = last - first;
@@ -215,11 +219,14 @@ pub(super) fn find(
     })
 }
 
-/// How far the speeds of stretches are from the best one's beyond their errors: bumpers that ring and friction
-/// that changes make flights that look straight but are not the same.
+/// How far the speeds of the stretches that overlap the best one are from its own beyond their errors: bumpers that
+/// ring and friction that changes make flights that look straight but are not the same. What a hand does before or
+/// after is no part of the flight.
 fn unlike(stretches: &[Stretch], best: &Stretch, time: f64) -> f64 {
     let (mut weights, mut squares) = (0.0, 0.0);
-    for one in stretches {
+    let overlaps =
+        |one: &&Stretch| one.samples.0 < best.samples.1 && best.samples.0 < one.samples.1;
+    for one in stretches.iter().filter(overlaps) {
         let variance = one.error(time).powi(2);
         let apart = (one.speed(time) - best.speed(time)).powi(2);
         weights += variance.recip();

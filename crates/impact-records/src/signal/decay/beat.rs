@@ -1,11 +1,12 @@
 //! Two decays whose frequencies are so near that they beat.
 
 use super::least_squares::{Point, Series, equations};
+use super::prepared::structured;
 use super::shape::{Rates, Shape};
 use crate::signal::columns::dot;
 use crate::signal::robust;
 
-/// Share of the decay that one shape must leave before two are tried.
+/// Share of the decay that one shape must leave, beside noise, before two are tried.
 const LEFT: f64 = 0.03;
 /// Squares that two decays leave over those that one leaves, at most.
 const EXPLAINED: f64 = 0.25;
@@ -45,7 +46,7 @@ pub(super) fn find(series: &Series, one: &Point) -> Option<Beat> {
         degree: series.degree,
         noise: super::noise::Noise::default(),
     };
-    if robust::rms(&left) < LEFT * one.level(series.values.len()) {
+    if structured(&left) < LEFT * one.level(series.values.len()) {
         return None;
     }
     let line = std::f64::consts::TAU / series.values.len() as f64;
