@@ -1,7 +1,7 @@
 //! Two decays whose frequencies are so near that they beat.
 
 use super::least_squares::{Point, Series, equations};
-use super::prepared::structured;
+use super::noise::{Noise, structured};
 use super::shape::{Rates, Shape};
 use crate::signal::columns::dot;
 use crate::signal::robust;
@@ -44,7 +44,7 @@ pub(super) fn find(series: &Series, one: &Point) -> Option<Beat> {
     let plain = Series {
         values: series.values.clone(),
         degree: series.degree,
-        noise: super::noise::Noise::default(),
+        noise: Noise::default(),
     };
     if structured(&left) < LEFT * one.level(series.values.len()) {
         return None;

@@ -207,6 +207,15 @@ fn burg(residuals: &[f64], highest: usize) -> Vec<f64> {
     partial
 }
 
+/// Root mean square of the part of residuals that neighbours share. White noise has a mean squared
+/// difference of neighbours of twice its variance (von Neumann's ratio); what is above that is structure.
+pub(super) fn structured(residuals: &[f64]) -> f64 {
+    let count = residuals.len().max(2) as f64;
+    let all = dot(residuals, residuals) / count;
+    let steps: f64 = residuals.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
+    (all - 0.5 * steps / (count - 1.0)).max(0.0).sqrt()
+}
+
 /// Greatest partial autocorrelation.
 const GREATEST: f64 = 0.9999;
 

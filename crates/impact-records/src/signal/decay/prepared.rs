@@ -2,11 +2,10 @@
 
 use super::least_squares::{Point, Series};
 use super::modes::{self, Mode, STEADY};
-use super::noise::Noise;
+use super::noise::{Noise, structured};
 use super::shape::{Rates, Shape};
 use super::{LEAST_PERIODS, STANDS_OUT};
 use super::{beat, blows};
-use crate::signal::columns::dot;
 use crate::signal::{robust, spectrum, whole};
 
 /// Means that a period is fitted by, at least, where it has as many samples.
@@ -453,13 +452,4 @@ fn fitted(series: &mut Series, shape: Shape, start: &Point) -> Option<Point> {
         point = series.descend(shape, point.rates)?;
     }
     Some(point)
-}
-
-/// Root mean square of the part of residuals that neighbours share. White noise has a mean squared
-/// difference of neighbours of twice its variance (von Neumann's ratio); what is above that is structure.
-pub(super) fn structured(residuals: &[f64]) -> f64 {
-    let count = residuals.len().max(2) as f64;
-    let all = dot(residuals, residuals) / count;
-    let steps: f64 = residuals.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
-    (all - 0.5 * steps / (count - 1.0)).max(0.0).sqrt()
 }
