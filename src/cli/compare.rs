@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::load::load_campaign;
 use super::progress::Progress;
@@ -13,7 +14,9 @@ use impact_campaign::campaign::resolved::ResolvedCampaign;
 use impact_campaign::pipeline::campaigns;
 use impact_campaign::pipeline::{self, Observed};
 use impact_identification::compare::{self, Campaign, Comparison};
-use impact_records::message::Message;
+use impact_records::language::Language;
+use impact_records::message::{Message, Value};
+use impact_records::message_table;
 use impact_report::catalog::Catalog;
 use impact_report::locale::Locale;
 use impact_report::{CampaignsContent, Format, Paper, ReportOptions};
@@ -41,12 +44,12 @@ pub(super) struct Compare {
     #[arg(long, value_name = "TEXT")]
     title: Option<String>,
     /// Language of the report
-    #[arg(long, value_name = "LANGUAGE", value_enum, default_value = "en")]
+    #[arg(long, value_name = "LANGUAGE", value_parser = language_parser(), default_value = Language::default().code())]
     language: Language,
     /// Paper size; us-letter is the same as letter
     #[arg(long, value_name = "PAPER", value_parser = paper_parser())]
     paper: Option<Paper>,
-    /// Print numbers with a decimal comma; German always does
+    /// Print numbers with a decimal comma; some languages always do
     #[arg(long)]
     decimal_comma: bool,
     /// Print JSON instead of a table
@@ -54,13 +57,10 @@ pub(super) struct Compare {
     json: bool,
 }
 
-/// Language of the report.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Language {
-    /// English
-    En,
-    /// German
-    De,
+/// The languages of the program, by their codes.
+fn language_parser() -> impl TypedValueParser<Value = Language> {
+    let each = Language::all().map(|l| PossibleValue::new(l.code()).help(l.name()));
+    PossibleValuesParser::new(each).map(|code| Language::of_code(&code).unwrap_or_default())
 }
 
 const EXAMPLE: &str = "\
@@ -134,26 +134,19 @@ impl Compare {
         Ok(())
     }
 
-    fn is_german(&self) -> bool {
-        self.language == Language::De
-    }
-
     fn title(&self) -> String {
-        let usual = match self.is_german() {
-            true => "Messreihen im Vergleich",
-            false => "Campaigns compared",
-        };
-        self.title.clone().unwrap_or_else(|| usual.to_owned())
+        let usual = || Word::Title.template(self.language).to_owned();
+        self.title.clone().unwrap_or_else(usual)
     }
 
     /// The look of the documents.
     fn options(&self) -> ReportOptions {
-        let german = self.is_german();
+        let translated = self.language != Language::default();
         ReportOptions {
             paper: self.paper.unwrap_or_default(),
-            language: if german { "de" } else { "en" }.to_owned(),
-            catalog: german.then(|| Catalog::german().clone()),
-            decimal_comma: self.decimal_comma || german,
+            language: self.language.code().to_owned(),
+            catalog: translated.then(|| Catalog::of(self.language)),
+            decimal_comma: self.decimal_comma || self.language.decimal_comma(),
             ..ReportOptions::default()
         }
     }
@@ -171,8 +164,8 @@ impl Compare {
         if let Some(title) = &self.title {
             text += &format!(" --title {}", quoted(Path::new(title)));
         }
-        if self.language == Language::De {
-            text.push_str(" --language de");
+        if self.language != Language::default() {
+            text += &format!(" --language {}", self.language.code());
         }
         if let Some(paper) = self.paper {
             text += &format!(" --paper {}", paper.name().trim_start_matches("us-"));
@@ -254,68 +247,46 @@ fn p_equals(p: f64, locale: Locale<'_>) -> String {
     format!("p {equals}{}", p_value(p, locale))
 }
 
-/// What the table is written with in a language.
-struct Words {
-    heads: [&'static str; 6],
-    to: &'static str,
-    corrected: [&'static str; 2],
-    together: &'static str,
-    shared: [&'static str; 2],
-    note: &'static str,
+/// Words of the table, and the report's usual title.
+#[derive(Debug, Clone, Copy, strum::EnumIter, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
+enum Word {
+    Title,
+    Campaign,
+    Parameter,
+    Difference,
+    Interval,
+    Independent,
+    P,
+    RangeTo,
+    CorrectedFor(usize),
+    Together,
+    Shared,
+    Named,
+    Note,
 }
 
-const ENGLISH: Words = Words {
-    heads: [
-        "campaign",
-        "parameter",
-        "difference",
-        "95 % interval",
-        "independent",
-        "p",
-    ],
-    to: "to",
-    corrected: ["corrected for", "differences"],
-    together: "all together",
-    shared: [
-        "Shared errors",
-        "comparison.json names each with its reason",
-    ],
-    note: "note",
-};
-
-const GERMAN: Words = Words {
-    heads: [
-        "Messreihe",
-        "Parameter",
-        "Unterschied",
-        "95-%-Intervall",
-        "unabhängig",
-        "p",
-    ],
-    to: "bis",
-    corrected: ["berichtigt für", "Unterschiede"],
-    together: "alle zusammen",
-    shared: [
-        "Gemeinsame Fehler",
-        "comparison.json nennt jeden mit seinem Grund",
-    ],
-    note: "Hinweis",
-};
+message_table! { "compare_table": Word;
+    Self::CorrectedFor(count) => count = Value::Count(*count);
+}
 
 /// By which tests the outcome is decided, in parentheses.
-fn decided_by(comparison: &Comparison, words: &Words, locale: Locale<'_>) -> String {
+fn decided_by(comparison: &Comparison, locale: Locale<'_>) -> String {
     let count = comparison.differences.len();
-    let [corrected, differences] = words.corrected;
+    let word = |word: Word| locale.message(&word);
     let corrected = comparison.p_value().map(|p| match count {
         1 => p_equals(p, locale),
-        _ => format!("{}, {corrected} {count} {differences}", p_equals(p, locale)),
+        _ => {
+            let corrected = word(Word::CorrectedFor(count));
+            format!("{}, {corrected}", p_equals(p, locale))
+        }
     });
     let together = comparison.unchanged.filter(|_| count > 1).map(|test| {
         let (f, p) = (
             locale.fixed(test.statistic, 3),
             p_equals(test.p_value, locale),
         );
-        format!("{}: F = {f}, {p}", words.together)
+        format!("{}: F = {f}, {p}", word(Word::Together))
     });
     let all: Vec<String> = corrected.into_iter().chain(together).collect();
     match all.is_empty() {
@@ -326,17 +297,23 @@ fn decided_by(comparison: &Comparison, words: &Words, locale: Locale<'_>) -> Str
 
 /// The differences as lines.
 fn table(comparison: &Comparison, locale: Locale<'_>) -> String {
-    let words = match locale.is_english() {
-        true => &ENGLISH,
-        false => &GERMAN,
-    };
+    let word = |word: Word| locale.message(&word);
     // a terminal sets no symbols
     let said = |message: &dyn Message| locale.message(message).replace(['$', '_', '{', '}'], "");
     let mut text = String::new();
     for (i, campaign) in comparison.campaigns.iter().enumerate() {
         text += &format!("{:>3}  {}\n", i + 1, campaign.name);
     }
-    let [campaign, parameter, difference, interval, independent, p] = words.heads;
+    let heads = [
+        Word::Campaign,
+        Word::Parameter,
+        Word::Difference,
+        Word::Interval,
+        Word::Independent,
+        Word::P,
+    ];
+    let [campaign, parameter, difference, interval, independent, p] = heads.map(word);
+    let to = word(Word::RangeTo);
     text += &format!(
         "\n{campaign:>9} {parameter:>21} {difference:>12} {interval:>28} {independent:>12} {p:>8}\n"
     );
@@ -351,20 +328,20 @@ fn table(comparison: &Comparison, locale: Locale<'_>) -> String {
             d.campaign + 1,
             d.parameter.name(),
             number(d.value),
-            format!("{low} {} {high}", words.to),
+            format!("{low} {to} {high}"),
             format!("± {half}"),
             p_value(d.p_value, locale)
         );
     }
-    let [shared, named] = words.shared;
+    let [shared, named] = [Word::Shared, Word::Named].map(word);
     text += &format!(
         "\n{}{}.\n{shared}: {}; {named}.\n",
         said(&comparison.outcome()),
-        decided_by(comparison, words, locale),
+        decided_by(comparison, locale),
         comparison.shared.len()
     );
     for remark in &comparison.remarks {
-        text += &format!("{}: {}\n", words.note, said(remark));
+        text += &format!("{}: {}\n", word(Word::Note), said(remark));
     }
     text
 }
@@ -372,6 +349,7 @@ fn table(comparison: &Comparison, locale: Locale<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impact_records::message::{boxed, faults};
 
     #[test]
     fn a_p_value_is_never_printed_as_zero() {
@@ -379,11 +357,17 @@ mod tests {
         assert_eq!(p_value(0.0, english), "< 0.0001");
         assert_eq!(p_value(0.000_12, english), "0.0001");
         assert_eq!(p_value(0.25, english), "0.2500");
+        let catalog = Catalog::of(Language::of_code("de").expect("German"));
         let german = Locale {
             decimal_comma: true,
-            catalog: Some(Catalog::german()),
+            catalog: Some(&catalog),
         };
         assert_eq!(p_value(0.25, german), "0,2500");
         assert_eq!(p_equals(0.0, german), "p < 0,0001");
+    }
+    #[test]
+    fn every_word_has_its_texts() {
+        let words = boxed(<Word as strum::IntoEnumIterator>::iter());
+        assert_eq!(faults(&words.collect::<Vec<_>>()), Vec::<String>::new());
     }
 }

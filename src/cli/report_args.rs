@@ -7,10 +7,11 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::{Failure, Verbosity};
-use impact_campaign::campaign::resolved::{Report, ResolvedCampaign};
-use impact_campaign::campaign::written::Paper;
+use impact_campaign::campaign::resolved::ResolvedCampaign;
+use impact_campaign::campaign::sections::report::Report;
 use impact_campaign::pipeline;
 use impact_report::Format;
+use impact_report::Paper;
 
 /// Options of the report.
 #[derive(Debug, Clone, Default, Args)]

@@ -17,7 +17,7 @@ const MODULES: [(&str, &[&str]); 5] = [
     ("impact-oscillator", &["model", "parallel", "atlas"]),
     (
         "impact-records",
-        &["message", "signal", "record", "event", "motion"],
+        &["language", "message", "signal", "record", "event", "motion"],
     ),
     ("impact-identification", &["identify", "compare", "replay"]),
     ("impact-campaign", &["campaign", "pipeline"]),

@@ -4,7 +4,8 @@
 //! what `labfiles` reads into it. [`event`] finds the impacts, their speeds and the drive. [`motion`]
 //! names the motion z = p/n with the evidence for it, and brackets the boundaries between motions.
 //! [`signal`] is the arithmetic on plain slices that they share; [`message`] is how this and the
-//! crates that build on it state findings as values, with the text made where it is printed. No
+//! crates that build on it state findings as values, with the text of the reader's [`language`] made
+//! where it is printed. No
 //! parameter of the oscillator enters.
 //!
 //! A contact that closes once in each of ten drive periods is the motion z = 1:
@@ -52,6 +53,7 @@
 //! ```
 
 pub mod event;
+pub mod language;
 pub mod message;
 pub mod motion;
 pub mod record;

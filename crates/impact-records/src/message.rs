@@ -1,48 +1,40 @@
 //! Messages: what a module states, as a kind with values instead of a sentence.
 //!
-//! A type whose variants are messages implements [`Message`]: a template for each variant in each
-//! [`Language`], with names in braces for its values and symbols between dollars. The macro
-//! [`message_table!`](crate::message_table) lists each variant with its templates and values; a
-//! variant that is missing, or has no translation, does not compile. The macro
+//! A type whose variants are messages implements [`Message`]: a table of texts, a key for each variant,
+//! and the values that its text has. The texts are templates in the files of the [`Language`]s, with names
+//! in braces for the values and symbols between dollars. The macro
+//! [`message_table!`](crate::message_table) lists the values of each variant. The macro
 //! [`messages!`](crate::messages) adds `Display` (English) and the JSON form: the variant as
-//! `kind`, its numbers in SI, and the English sentence as `text`.
+//! `kind`, its numbers in SI, and the English sentence as `text`. [`faults`] lists the messages without a
+//! text of the same values, and texts without a message; a test of each crate requires that there are none.
 
+use std::collections::BTreeMap;
 use std::fmt::Display;
 
-/// A language in which every message is available.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Language {
-    /// English.
-    #[default]
-    English,
-    /// German.
-    German,
-}
+use crate::language::{Language, names};
 
 /// Something that a module states, to be printed in the language of the reader.
 pub trait Message {
+    /// Table of its texts in the file of a language.
+    fn table(&self) -> &'static str;
+
     /// Name of the kind, `kind` in JSON.
     fn kind(&self) -> &'static str;
 
-    /// Key in a table of translations: the kind, extended if the kind has several templates.
+    /// Key in the table of texts: the kind, or another if the kind has several texts.
     fn key(&self) -> String {
         self.kind().to_owned()
     }
 
-    /// The English and the German template: names in braces are replaced by the values, symbols are
-    /// between dollars.
-    fn texts(&self) -> [&'static str; 2];
-
-    /// The template in a language.
+    /// The template in a language: names in braces are replaced by the values, symbols are between
+    /// dollars.
     fn template(&self, language: Language) -> &'static str {
-        let [english, german] = self.texts();
-        match language {
-            Language::English => english,
-            Language::German => german,
-        }
+        let text = |of: Language| of.own_text(self.table(), &self.key());
+        let text = text(language).or_else(|| text(Language::default()));
+        text.unwrap_or_else(|| self.kind())
     }
 
-    /// The values by the names that the templates use, the same names in both; none by default.
+    /// The values by the names that the templates use; none by default.
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {
         Vec::new()
     }
@@ -135,12 +127,46 @@ pub fn filled(template: &str, value: impl Fn(&str) -> Option<String>) -> String 
     text
 }
 
+/// What is wrong with the texts of messages: a message without a text, a text whose names in braces are
+/// not its values, or a text in one of their tables that none of them has.
+pub fn faults(messages: &[Box<dyn Message>]) -> Vec<String> {
+    let mut faults = Vec::new();
+    let mut unused: BTreeMap<&str, Vec<&str>> = Language::default().tables().collect();
+    let tables: Vec<&str> = messages.iter().map(|m| m.table()).collect();
+    unused.retain(|table, _| tables.contains(table));
+    for message in messages {
+        let (table, key) = (message.table(), message.key());
+        for language in Language::all() {
+            let place = format!("[text.{table}] {key} in {}", language.name());
+            let Some(text) = language.own_text(table, &key) else {
+                faults.push(format!("there is no {place}"));
+                continue;
+            };
+            let mut wanted: Vec<&str> = message.values().iter().map(|v| v.0).collect();
+            let mut found: Vec<&str> = names(text).collect();
+            for list in [&mut wanted, &mut found] {
+                list.sort_unstable();
+                list.dedup();
+            }
+            if wanted != found {
+                faults.push(format!("{place} has {found:?}, its values are {wanted:?}"));
+            }
+        }
+        if let Some(keys) = unused.get_mut(table) {
+            keys.retain(|k| *k != key);
+        }
+    }
+    let each = unused.iter().filter(|(_, keys)| !keys.is_empty());
+    faults.extend(each.map(|(table, keys)| format!("no message has [text.{table}] {keys:?}")));
+    faults
+}
+
 /// English without markup.
 struct Plain;
 
 impl Print for Plain {
     fn template(&self, message: &dyn Message) -> String {
-        let template = message.template(Language::English);
+        let template = message.template(Language::default());
         template.replace("$f_0$", "f0").replace('$', "")
     }
 
@@ -197,39 +223,39 @@ pub fn plain_all(messages: &[impl Display]) -> String {
 }
 
 /// Implements [`Message`](crate::message::Message) for an enum that derives `strum::IntoStaticStr`,
-/// whose names are the kinds.
+/// whose names are the kinds and the keys of the texts.
 ///
-/// Each variant is listed once: its pattern, its English text, its German text, and the values by
-/// the names that the texts use, as in `format!`. `key = function` after the type gives the key
-/// where it is not the kind.
+/// First the table of texts and the type; then each variant whose text has values: its pattern, and the
+/// values by the names that the text uses, as in `format!`. `key = function` after the type gives the
+/// key where it is not the kind.
 ///
 /// ```
 /// use impact_records::message::{Value, plain};
 /// use impact_records::message_table;
 ///
 /// #[derive(strum::IntoStaticStr)]
+/// #[strum(serialize_all = "snake_case")]
 /// enum Doubt {
 ///     NoDrive,
-///     Drift { count: usize, share: f64 },
+///     NearlyCloses { periods: usize },
 /// }
 ///
-/// message_table! { Doubt;
-///     Self::NoDrive => "no drive was measured", "keine Erregung wurde gemessen";
-///     Self::Drift { count, share } =>
-///         "in {count} decays the frequency drifts by {share}",
-///         "in {count} Ausschwingversuchen wandert die Frequenz um {share}",
-///         count = Value::Count(*count), share = Value::Percent(*share, 1);
+/// message_table! { "undetermined": Doubt;
+///     Self::NearlyCloses { periods } => periods = Value::Count(*periods);
 /// }
 ///
-/// let drift = Doubt::Drift { count: 2, share: 0.03 };
-/// assert_eq!(plain(&drift), "in 2 decays the frequency drifts by 3.0 %");
+/// assert_eq!(plain(&Doubt::NoDrive), "no drive was measured, so no period is known");
+/// assert!(plain(&Doubt::NearlyCloses { periods: 3 }).contains("nearly closes after 3 drive periods"));
 /// ```
 #[macro_export]
 macro_rules! message_table {
-    ($message:ty $(, key = $key:path)?;
-     $($variant:pat => $english:expr, $german:expr $(, $name:ident = $value:expr)*;)+) => {
-        #[allow(unused_variables, reason = "texts and values use different fields")]
+    ($table:literal: $message:ty $(, key = $key:path)?;
+     $($variant:pat => $($name:ident = $value:expr),+;)*) => {
         impl $crate::message::Message for $message {
+            fn table(&self) -> &'static str {
+                $table
+            }
+
             fn kind(&self) -> &'static str {
                 self.into()
             }
@@ -238,26 +264,13 @@ macro_rules! message_table {
                 $key(self)
             })?
 
-            fn texts(&self) -> [&'static str; 2] {
-                $crate::texts! { self; $($variant => $english, $german;)+ }
-            }
-
+            #[allow(unreachable_patterns, reason = "there may be no variant without values")]
             fn values(&self) -> Vec<(&'static str, $crate::message::Value<'_>)> {
                 match self {
-                    $($variant => vec![$((stringify!($name), $value)),*],)+
+                    $($variant => vec![$((stringify!($name), $value)),+],)*
+                    _ => Vec::new(),
                 }
             }
-        }
-    };
-}
-
-/// The English and the German text of the first pattern that matches; a value without a text does
-/// not compile.
-#[macro_export]
-macro_rules! texts {
-    ($of:expr; $($pattern:pat => $english:expr, $german:expr;)+) => {
-        match $of {
-            $($pattern => [$english, $german],)+
         }
     };
 }

@@ -2,12 +2,12 @@
 //! reader's, and from each kind of message of the identification to its template.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::LazyLock;
 
 use super::phrase::Phrase;
 use impact_identification::compare;
 use impact_identification::identify;
-use impact_records::message::{Language, Message};
+use impact_records::language::{Language, names};
+use impact_records::message::Message;
 
 /// Phrases and messages, and what is printed instead of their English.
 #[derive(Debug, Clone, Default, PartialEq, Eq, serde::Deserialize)]
@@ -66,13 +66,12 @@ impl Catalog {
         Ok(catalog)
     }
 
-    /// The German catalog of the program: no words of its own, as all texts have German ones.
-    pub fn german() -> &'static Self {
-        static CATALOG: LazyLock<Catalog> = LazyLock::new(|| Catalog {
-            language: Some("de".to_owned()),
-            ..Catalog::default()
-        });
-        &CATALOG
+    /// The catalog of a language of the program: it has no words of its own, as the language has all.
+    pub fn of(language: Language) -> Self {
+        Self {
+            language: Some(language.code().to_owned()),
+            ..Self::default()
+        }
     }
 
     /// Every English phrase of a report, in order.
@@ -82,10 +81,8 @@ impl Catalog {
 
     /// The language of texts that the catalog does not have.
     fn fallback(&self) -> Language {
-        match self.language.as_deref() {
-            Some("de") => Language::German,
-            _ => Language::English,
-        }
+        let code = self.language.as_deref();
+        code.and_then(Language::of_code).unwrap_or_default()
     }
 
     /// A catalog to be filled in: every phrase and every message with its English.
@@ -102,10 +99,7 @@ impl Catalog {
     /// What is printed for a phrase: the catalog's words, else those of the program.
     pub fn get(&self, phrase: Phrase) -> &str {
         let own = self.words.get(phrase.english()).map(String::as_str);
-        own.unwrap_or_else(|| match self.fallback() {
-            Language::English => phrase.english(),
-            Language::German => phrase.german(),
-        })
+        own.unwrap_or_else(|| phrase.text(self.fallback()))
     }
 
     /// The template of a message: that of its key in the catalog, else the translation of its English
@@ -115,7 +109,7 @@ impl Catalog {
             true => None,
             false => self.findings.get(&message.key()),
         };
-        let own = keyed.or_else(|| self.words.get(message.template(Language::English)));
+        let own = keyed.or_else(|| self.words.get(message.template(Language::default())));
         own.map_or_else(|| message.template(self.fallback()), String::as_str)
     }
 
@@ -124,10 +118,10 @@ impl Catalog {
         let phrases = Self::phrases();
         let here: BTreeSet<&str> = self.words.keys().map(String::as_str).collect();
         let messages = messages();
-        let lacking: Vec<&str> = match self.fallback() {
-            Language::English => phrases.difference(&here).copied().collect(),
-            Language::German => Vec::new(),
-        };
+        let lacking = phrases.difference(&here).copied();
+        let lacking: Vec<&str> = lacking
+            .filter(|_| self.fallback() == Language::default())
+            .collect();
         let unknown = self.findings.keys().map(String::as_str);
         let unknown = unknown.filter(|key| !messages.contains_key(*key));
         let templates: BTreeSet<&str> = messages.values().copied().collect();
@@ -158,12 +152,13 @@ impl Catalog {
 fn messages() -> BTreeMap<String, &'static str> {
     let identified = identify::messages::kinds();
     let each = identified.into_iter().chain(compare::kinds());
-    each.map(|m| (m.key(), m.template(Language::English)))
+    each.map(|m| (m.key(), m.template(Language::default())))
         .collect()
 }
 
 /// Checks that a translation has the values of its phrase, and whole symbols.
 fn check(name: &str, phrase: &str, translation: &str) -> Result<(), CatalogError> {
+    let places = |text| names(text).collect::<BTreeSet<&str>>();
     let (wanted, found) = (places(phrase), places(translation));
     if wanted != found {
         return Err(CatalogError::Values {
@@ -176,13 +171,6 @@ fn check(name: &str, phrase: &str, translation: &str) -> Result<(), CatalogError
         0 => Ok(()),
         _ => Err(CatalogError::Symbol(name.to_owned())),
     }
-}
-
-/// The names in braces; between dollars braces belong to the symbol.
-pub(super) fn places(phrase: &str) -> BTreeSet<&str> {
-    let texts = phrase.split('$').step_by(2);
-    let pieces = texts.flat_map(|text| text.split('{').skip(1));
-    pieces.filter_map(|p| Some(p.split_once('}')?.0)).collect()
 }
 
 /// The first few phrases.
@@ -212,11 +200,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn german_is_a_catalog_and_blank_lists_its_phrases_and_all_messages() {
-        let german = Catalog::german();
+    fn every_phrase_has_its_texts_and_blank_lists_phrases_and_all_messages() {
+        let german = Catalog::of(Language::of_code("de").expect("German"));
         assert_eq!(german.get(Phrase::Drive), "Erregung");
-        for phrase in Phrase::ALL {
-            check(phrase.english(), phrase.english(), phrase.german()).expect("the same values");
+        let mut own: Vec<&str> = Phrase::ALL.iter().map(|p| p.into()).collect();
+        own.sort_unstable();
+        for language in Language::all() {
+            let mut tables = language.tables();
+            let keys = tables.find(|(table, _)| *table == "phrase");
+            assert_eq!(keys.expect("phrases").1, own, "{}", language.name());
         }
         let blank = Catalog::read(&Catalog::blank()).expect("a catalog");
         assert!(blank.words.iter().all(|(a, b)| a == b));

@@ -3,7 +3,8 @@
 
 use super::catalog::Catalog;
 use super::phrase::{Phrase, Text, motion_text, role_text};
-use impact_records::message::{Language, Message, Print, filled, sentence};
+use impact_records::language::Language;
+use impact_records::message::{Message, Print, filled, sentence};
 use impact_records::motion::Motion;
 use impact_records::record::Role;
 use impact_records::signal::whole;
@@ -73,10 +74,12 @@ impl Locale<'_> {
         each.collect::<Vec<_>>().join(" ")
     }
 
-    /// Whether the texts are English.
-    pub fn is_english(self) -> bool {
-        let language = self.catalog.and_then(|c| c.language.as_deref());
-        language.is_none_or(|l| l == "en")
+    /// The language of the texts, if it is one of the program's.
+    pub(crate) fn language(self) -> Option<Language> {
+        match self.catalog.and_then(|c| c.language.as_deref()) {
+            Some(code) => Language::of_code(code),
+            None => Some(Language::default()),
+        }
     }
 
     /// A range in words.
@@ -124,7 +127,7 @@ impl Print for Locale<'_> {
     fn template(&self, message: &dyn Message) -> String {
         let template = match self.catalog {
             Some(catalog) => catalog.template(message),
-            None => message.template(Language::English),
+            None => message.template(Language::default()),
         };
         template.to_owned()
     }
@@ -201,9 +204,10 @@ mod tests {
 
     #[test]
     fn messages_are_printed_in_the_reader_s_language_and_decimal_sign() {
+        let catalog = Catalog::of(Language::of_code("de").expect("German"));
         let german = Locale {
             decimal_comma: true,
-            catalog: Some(Catalog::german()),
+            catalog: Some(&catalog),
         };
         let remark = Remark::WaveformsUnexplained { share: 0.0123 };
         assert_eq!(

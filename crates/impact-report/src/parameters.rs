@@ -68,9 +68,9 @@ pub(super) fn parameter(coordinate: Coordinate) -> Option<&'static ParameterLook
 /// Name of a method inside a sentence or a list.
 pub(super) fn method_inline(method: Method, locale: Locale<'_>) -> String {
     let name = locale.message(&method);
-    match locale.is_english() {
-        true => name.to_lowercase(),
-        false => name,
+    match locale.language() {
+        Some(language) if !language.capital_nouns() => name.to_lowercase(),
+        _ => name,
     }
 }
 

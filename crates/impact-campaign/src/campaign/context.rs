@@ -3,13 +3,14 @@
 use toml::Spanned;
 
 use super::diagnostic::{Code, FaultCollector};
-use super::read::Text;
-use super::written::{Placed, Quantity};
+use super::lines::Text;
+use super::nearest::nearest;
+use super::values::{Placed, Quantity};
 use labfiles::units::{self, Dimension, QuantityError};
 
 /// The lines of campaign.toml and the problems found so far.
 #[derive(Debug)]
-pub(super) struct ResolveContext<'a> {
+pub(crate) struct ResolveContext<'a> {
     pub(super) text: Text<'a>,
     pub(super) faults: FaultCollector,
 }
@@ -74,6 +75,25 @@ impl ResolveContext<'_> {
             self.fault(Code::OutOfRange, placed, key, message, &remedy);
         }
         None
+    }
+
+    /// Note a name of a record that there is not.
+    pub(super) fn unknown_record<T>(
+        &mut self,
+        placed: &Spanned<T>,
+        key: &str,
+        name: &str,
+        records: &[&str],
+    ) {
+        let what = format!("no record is called '{name}'");
+        let remedy = match nearest(name, records) {
+            Some(near) => format!("did you mean '{near}'?"),
+            None => format!(
+                "the first records are {}",
+                records[..records.len().min(4)].join(", ")
+            ),
+        };
+        self.fault(Code::UnknownRecord, placed, key, what, &remedy);
     }
 
     /// A positive quantity.

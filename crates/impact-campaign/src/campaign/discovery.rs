@@ -11,7 +11,7 @@ use super::diagnostic::{Code, Diagnostic, FaultCollector, Place, Severity, first
 use super::names::natural_key;
 use super::run_table::{self, Row};
 use super::sources::Sources;
-use super::written::OneOrMany;
+use super::values::OneOrMany;
 use impact_records::record::calibrate::{self, ChannelKey, ChannelSetup};
 use impact_records::record::{Flag, FlagCode};
 use labfiles::{DatasetInfo, ReadError, Source, StoredType};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::diagnostic::{Code, Diagnostics, FaultCollector};
 use super::discovery::expand;
-use super::written::value;
+use super::values::value;
 use super::{read, run_table};
 
 /// Where the records of a campaign are.

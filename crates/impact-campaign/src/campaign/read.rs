@@ -5,38 +5,12 @@ use std::ops::Range;
 use std::path::Path;
 
 use serde::Deserialize;
-use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue, Deserializer};
 
 use super::diagnostic::{Code, FaultCollector};
+use super::lines::Text;
+use super::nearest::nearest;
 use super::written::WrittenCampaign;
-
-/// The text of campaign.toml with the lines' places.
-#[derive(Debug)]
-pub(super) struct Text<'a> {
-    text: &'a str,
-}
-
-impl<'a> Text<'a> {
-    /// Wrap a text.
-    pub(super) fn new(text: &'a str) -> Self {
-        Self { text }
-    }
-
-    /// Line, counted from 1, of a byte offset.
-    pub(super) fn line(&self, offset: usize) -> usize {
-        let end = offset.min(self.text.len());
-        1 + self.text.as_bytes()[..end]
-            .iter()
-            .filter(|b| **b == b'\n')
-            .count()
-    }
-
-    /// Line of a placed value.
-    pub(super) fn line_of<T>(&self, placed: &Spanned<T>) -> Option<usize> {
-        Some(self.line(placed.span().start))
-    }
-}
 
 /// The text of campaign.toml; `None`, and a fault, where it cannot be read.
 pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
@@ -163,18 +137,6 @@ fn remedy_for_unknown(name: &str, expected: &[&str]) -> String {
         Some(near) => format!("did you mean '{near}'? Otherwise remove it"),
         None => "remove it, or use one of the names listed".to_owned(),
     }
-}
-
-/// The candidate nearest to a name, where one is near enough to be meant.
-pub fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
-    let limit = 1 + name.chars().count() / 3;
-    let small = name.to_lowercase();
-    candidates
-        .iter()
-        .map(|c| (strsim::levenshtein(&small, &c.to_lowercase()), *c))
-        .filter(|(d, c)| *d <= limit || c.starts_with(name) || name.starts_with(c))
-        .min_by_key(|(d, _)| *d)
-        .map(|(_, c)| c)
 }
 
 /// Remove the innermost entry whose key or value covers `span`; gives its dotted path.

@@ -5,14 +5,14 @@ use super::diagnostic::Code;
 use super::discovery::{self, Discovered, Opener, Shared};
 use super::names::{self, Known};
 use super::resolved::RecordEntry;
-use super::settings::{Wanted, defaults, note_settings, setting};
-use super::written::{Attributes, Records};
+use super::sections::records::{AttributesTable, RecordsTable, defaults};
+use super::settings::{Wanted, note_settings, setting};
 use impact_records::record::Setting;
 
 /// List all records in the order of acquisition: the rows of the run table, else the files'
 /// names with numbers in order.
 pub(super) fn resolve(
-    records: &Records,
+    records: &RecordsTable,
     shared: Shared<'_>,
     open: Opener<'_>,
     context: &mut ResolveContext<'_>,
@@ -58,7 +58,7 @@ pub(super) fn resolve(
 
 fn entries(
     listed: &[Discovered],
-    attributes: &Attributes,
+    attributes: &AttributesTable,
     defaults: &Setting,
     context: &mut ResolveContext<'_>,
 ) -> Vec<RecordEntry> {

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::sections::analysis::Analysis;
+use super::sections::published::Published;
+use super::sections::report::Report;
+use super::sections::rig::NominalValues;
 use super::slashes;
 use super::sources::Sources;
-use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
-use impact_identification::compare::Common;
-use impact_identification::identify::evidence::options::IntervalMethod;
-use impact_identification::identify::parameters::effect::EffectKind;
+use super::values::{Excitation, Flight, Machine};
 use impact_records::event::DetectSettings;
 use impact_records::motion::{ClassifySettings, LateChannel};
 use impact_records::record::Setting;
@@ -59,94 +60,10 @@ pub struct ResolvedCampaign {
     pub report: Report,
     /// Published speeds to be identified from, instead of records.
     #[serde(default)]
-    pub published: Option<super::written::Published>,
+    pub published: Option<Published>,
     /// Opens the files of the records.
     #[serde(skip)]
     pub sources: Sources,
-}
-
-/// Nominal values of the rig (`None`: not stated) and their standard uncertainties.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct NominalValues {
-    /// Natural frequency f0, Hz.
-    pub natural_frequency_hz: Option<f64>,
-    /// Damping ratio β.
-    pub damping_ratio: Option<f64>,
-    /// Static deflection `x_st`, m.
-    pub static_deflection_m: Option<f64>,
-    /// Coefficient of restitution R.
-    pub restitution: Option<f64>,
-    /// Mass x, kg.
-    pub mass_x_kg: Option<f64>,
-    /// Mass y, kg.
-    pub mass_y_kg: Option<f64>,
-    /// Standard uncertainty of the channels' scales, relative.
-    pub gain_uncertainty: f64,
-    /// Standard uncertainty of the corners of the channels' high-pass, relative.
-    pub corner_uncertainty: f64,
-    /// Standard uncertainty of the sampler's clock, relative.
-    #[serde(default)]
-    pub clock_uncertainty: f64,
-    /// Standard uncertainty of the clearances, m.
-    pub clearance_uncertainty_m: f64,
-    /// Standard uncertainty of the masses, relative.
-    #[serde(default)]
-    pub mass_uncertainty: f64,
-    /// Effects beyond the model that the fit allows; `None`: all.
-    #[serde(default)]
-    pub effects: Option<Vec<EffectKind>>,
-    /// Which rig it is, in words.
-    #[serde(default)]
-    pub name: Option<String>,
-    /// What stays the same in all campaigns on the rig.
-    #[serde(default)]
-    pub shared: Vec<Common>,
-}
-
-/// Settings of the analysis.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Analysis {
-    /// Part of each record skipped at its start, s.
-    pub skip_s: f64,
-    /// Longest motion searched, in drive periods.
-    pub longest_period_n: u32,
-    /// Most impacts searched in one period of a motion.
-    pub most_impacts_p: u32,
-    /// Seed of everything random.
-    pub seed: u64,
-    /// Method of the intervals, in addition to the covariance.
-    #[serde(default)]
-    pub uncertainty: IntervalMethod,
-    /// Replicas of a bootstrap.
-    #[serde(default)]
-    pub replicas: usize,
-}
-
-/// Settings of the report.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Report {
-    /// Title.
-    pub title: String,
-    /// Records whose time series and phase portraits are drawn; empty: chosen by the program.
-    pub points: Vec<String>,
-    /// Paper size.
-    pub paper: Paper,
-    /// Language.
-    pub language: Language,
-    /// Whether numbers are printed with a decimal comma.
-    pub decimal_comma: bool,
-    /// Formats; the data of the figures are always written.
-    #[serde(default)]
-    pub formats: Vec<Format>,
-    /// A typst template instead of the built-in one.
-    #[serde(default, serialize_with = "slashes::serialize_option")]
-    pub template: Option<PathBuf>,
-    /// A table of the report's words in another language.
-    #[serde(default, serialize_with = "slashes::serialize_option")]
-    pub words: Option<PathBuf>,
-    /// An image for the first page.
-    #[serde(default, serialize_with = "slashes::serialize_option")]
-    pub logo: Option<PathBuf>,
 }
 
 /// One record of the campaign.

@@ -1,6 +1,6 @@
 //! The run table: a CSV file with one row per record, units in its header.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 use std::str::FromStr;
 
@@ -8,8 +8,9 @@ use strum::VariantNames;
 
 use super::context::Wrong;
 use super::diagnostic::{Code, FaultCollector, first_of};
-use super::read::nearest;
-use super::written::Excitation;
+use super::nearest::nearest;
+use super::values::Excitation;
+use impact_records::language::{Language, RunTableWords};
 use impact_records::record::Sweep;
 use labfiles::units::{self, Dimension};
 
@@ -26,65 +27,27 @@ const COLUMNS: [&str; 9] = [
     "specimen",
 ];
 
-/// Other headings, lower case, and the columns that they are.
-const OTHER_NAMES: [(&str, &str); 22] = [
-    ("datei", "file"),
-    ("dateiname", "file"),
-    ("filename", "file"),
-    ("datensatz", "dataset"),
-    ("blatt", "dataset"),
-    ("sheet", "dataset"),
-    ("frequenz", "drive_frequency"),
-    ("erregerfrequenz", "drive_frequency"),
-    ("anregungsfrequenz", "drive_frequency"),
-    ("frequency", "drive_frequency"),
-    ("spalt", "clearance"),
-    ("spiel", "clearance"),
-    ("abstand", "clearance"),
-    ("gap", "clearance"),
-    ("richtung", "sweep"),
-    ("direction", "sweep"),
-    ("amplitude", "drive_amplitude"),
-    ("erregeramplitude", "drive_amplitude"),
-    ("anregung", "excitation"),
-    ("probe", "specimen"),
-    ("prüfling", "specimen"),
-    ("prüfkörper", "specimen"),
-];
-
-/// German words for directions and excitations, lower case.
-const WORDS: [(&str, &str); 9] = [
-    ("auf", "up"),
-    ("aufwärts", "up"),
-    ("steigend", "up"),
-    ("ab", "down"),
-    ("abwärts", "down"),
-    ("fallend", "down"),
-    ("unbekannt", "unknown"),
-    ("harmonisch", "harmonic"),
-    ("ausschwingen", "free_decay"),
-];
-
-/// Beginnings of the headings of remarks, lower case.
-const REMARKS: [&str; 7] = [
-    "note", "notiz", "remark", "comment", "bemerk", "komment", "anmerk",
-];
+/// What a word of any language is called in this program.
+fn called<'a>(
+    word: &str,
+    of: impl Fn(&'static RunTableWords) -> &'static BTreeMap<String, Vec<String>> + 'a,
+) -> Option<&'static str> {
+    let lower = word.trim().to_lowercase();
+    let mut each = Language::all().flat_map(|language| of(language.run_table()));
+    let found = each.find(|(_, others)| others.contains(&lower));
+    found.map(|(name, _)| name.as_str())
+}
 
 /// A word of a cell as this program writes it.
 pub(super) fn in_english(word: &str) -> String {
-    let lower = word.trim().to_lowercase();
-    let known = WORDS.iter().find(|(german, _)| *german == lower);
-    known.map_or(lower, |(_, english)| (*english).to_owned())
+    let known = called(word, |table| &table.words);
+    known.map_or_else(|| word.trim().to_lowercase(), str::to_owned)
 }
 
 /// The column of a heading without its unit.
 fn column_of(bare: &str) -> Option<usize> {
     let place = |name: &str| COLUMNS.iter().position(|c| *c == name);
-    place(bare).or_else(|| {
-        let lower = bare.to_lowercase();
-        let other = OTHER_NAMES.iter().find(|(name, _)| *name == lower);
-        other.and_then(|(_, column)| place(column))
-    })
+    place(bare).or_else(|| place(called(bare, |table| &table.columns)?))
 }
 
 /// The columns that hold numbers.
@@ -279,7 +242,8 @@ fn note_unknown(name: &str, bare: &str, faults: &mut FaultCollector) {
         ),
     };
     let lower = bare.to_lowercase();
-    if !REMARKS.iter().any(|r| lower.starts_with(r)) {
+    let mut remarks = Language::all().flat_map(|language| &language.run_table().remarks);
+    if !remarks.any(|r| lower.starts_with(r)) {
         faults.fault(
             Code::UnknownEntry,
             Some(1),

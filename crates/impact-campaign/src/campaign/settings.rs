@@ -4,50 +4,10 @@ use super::context::ResolveContext;
 use super::diagnostic::{Code, Diagnostic, Place, Severity};
 use super::discovery::Discovered;
 use super::resolved::RecordEntry;
-use super::written::{Attributes, Placed, Records, value};
+use super::sections::records::AttributesTable;
+use super::values::{Placed, value};
 use impact_records::record::{Setting, Sweep};
 use labfiles::units::{self, Dimension};
-
-/// The setting of records that state none.
-pub(super) fn defaults(records: &Records, context: &mut ResolveContext<'_>) -> Setting {
-    let frequency = context.positive(
-        &records.drive_frequency,
-        "records.drive_frequency",
-        Dimension::Frequency,
-    );
-    let clearance = context.quantity(&records.clearance, "records.clearance", Dimension::Length);
-    if clearance.is_some_and(|c| c.abs() > 1.0) {
-        let what = "a clearance of more than 1 m".to_owned();
-        context.faults.fault(
-            Code::OutOfRange,
-            None,
-            "records.clearance",
-            what,
-            "check its unit: mm?",
-        );
-    }
-    let amplitude = value(&records.drive_amplitude);
-    if let (Some(placed), Some(value)) = (&records.drive_amplitude, amplitude)
-        && (!value.is_finite() || value < 0.0)
-    {
-        let what = format!("a drive amplitude of {value}");
-        context.fault(
-            Code::OutOfRange,
-            placed,
-            "records.drive_amplitude",
-            what,
-            "write it relative to the nominal one: 1",
-        );
-    }
-    Setting {
-        stated_frequency_hz: frequency,
-        clearance_m: clearance,
-        sweep: value(&records.sweep).unwrap_or_default(),
-        drive_amplitude: amplitude.unwrap_or(1.0),
-        excitation: value(&records.excitation).unwrap_or_default(),
-        ..Setting::default()
-    }
-}
 
 /// Attributes to look for: full name, name without unit, factor to SI.
 #[derive(Debug, Default)]
@@ -75,7 +35,7 @@ impl Attribute {
 }
 
 impl Wanted {
-    pub(super) fn of(written: &Attributes, context: &mut ResolveContext<'_>) -> Self {
+    pub(super) fn of(written: &AttributesTable, context: &mut ResolveContext<'_>) -> Self {
         Self {
             clearance: attribute(&written.clearance, "clearance", Dimension::Length, context),
             frequency: attribute(

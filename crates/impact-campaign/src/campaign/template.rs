@@ -4,6 +4,11 @@ use std::fmt::Write;
 
 use super::diagnostic::first_of;
 use super::infer::{self, Experiment, FolderContents, InferredChannel};
+use super::keys::{Key, init_lines};
+use super::sections::analysis::AnalysisTable;
+use super::sections::records::RecordsTable;
+use super::sections::report::ReportTable;
+use super::sections::rig::RigTable;
 use impact_records::message::counted;
 use impact_records::record::{ContactContent, Role};
 use labfiles::units::{self, Dimension};
@@ -14,10 +19,24 @@ pub fn campaign_toml(name: &str, found: &FolderContents) -> String {
     // writing to a String cannot fail
     let _ = head(&mut text, name, found)
         .and_then(|()| records(&mut text, found))
-        .and_then(|()| text.write_str(RIG))
+        .and_then(|()| {
+            section(
+                &mut text,
+                "# Nominal values of the rig, all optional: where the fit starts\n[rig]",
+                RigTable::KEYS,
+            )
+        })
+        .and_then(|()| writeln!(text))
         .and_then(|()| channels(&mut text, found))
-        .and_then(|()| text.write_str(TAIL));
+        .and_then(|()| section(&mut text, "[analysis]", AnalysisTable::KEYS))
+        .and_then(|()| section(&mut text, "\n[report]", ReportTable::KEYS));
     text
+}
+
+/// A section whose lines are those of its keys.
+fn section(text: &mut String, head: &str, keys: &[Key]) -> std::fmt::Result {
+    writeln!(text, "{head}")?;
+    text.write_str(&init_lines(keys))
 }
 
 /// A text in TOML's quotes.
@@ -108,7 +127,7 @@ fn records(text: &mut String, found: &FolderContents) -> std::fmt::Result {
             "excitation = \"free_decay\"    # the records look like free decays after a release or a blow"
         )?;
     } else {
-        text.write_str(RECORD_DEFAULTS)?;
+        text.write_str(&init_lines(RecordsTable::KEYS))?;
     }
     if !attributes.is_empty() && found.run_table.is_none() {
         writeln!(
@@ -328,52 +347,7 @@ const RUN_TABLE: &str = "\
 #                             # drive_frequency_hz, clearance_mm, sweep (up, down), drive_amplitude
 ";
 
-const RECORD_DEFAULTS: &str = "\
-# sweep = \"up\"               # of records that state none: up, down or unknown
-# drive_frequency = \"12 Hz\"  # measured from the drive channel; a stated one is compared with it
-# excitation = \"free_decay\"  # if the records are free decays after a blow
-";
-
-const RIG: &str = "\
-# Nominal values of the rig, all optional: where the fit starts
-[rig]
-# natural_frequency = \"12.6 Hz\"
-# damping_ratio = 0.07
-# static_deflection = \"1.0 mm\"   # x_st = F0/k
-# restitution = 0.9
-gain_uncertainty = \"0.5 %\"       # of the channels' scales
-corner_uncertainty = \"5 %\"       # of the corners of the channels' high-pass
-clock_uncertainty = \"50 ppm\"     # of the clock of the sampler, in f0
-clearance_uncertainty = \"10 um\"  # of each stated clearance, and of the zero that all share
-# mass_x = \"1.50 kg\"             # both masses, if weighed, with mass_uncertainty = \"0.5 %\"
-# effects = [\"harmonics\", \"force_frequency\", \"hardening\", \"friction\", \"drift\", \"contact_duration\",
-#            \"drag\", \"spring_asymmetry\", \"hysteretic_damping\", \"pickup\"]
-#                                # what springs, drive and contact may add to the model; all by default
-# name = \"rig 1\"                 # which rig it is, where campaigns are compared (impactid compare)
-# shared = [\"clearances\"]        # errors that stay the same in all campaigns on it
-
-";
-
 const CHANNELS: &str = "\
 # One table per role: drive, contact, velocity_x, velocity_y, displacement_x, displacement_y,
 # acceleration_x, acceleration_y, frame_x, frame_y. x and y are positive toward the other mass.
-";
-
-const TAIL: &str = "\
-[analysis]
-# exclude = [\"record_12\"]    # records to leave out, by name; * and ? are wildcards
-# skip = \"0.1 s\"             # part of each record to leave out at its start
-longest_period_n = 6         # longest motion z = p/n looked for
-uncertainty = \"profile\"      # beside the covariance: profile, bootstrap or covariance
-seed = 1
-
-[report]
-paper = \"a4\"                 # or \"letter\"
-language = \"en\"              # en or de
-# decimal_comma = true       # numbers with a decimal comma; as the language has it
-formats = [\"pdf\"]            # any of pdf, html, svg, png, figure-pdf, tex; the data of the figures are always written as CSV
-# points = [\"record_12\"]     # records to draw; chosen by the program if not given
-# logo = \"logo.svg\"          # an image for the first page (svg, png or jpg)
-# template = \"report.typ\"    # a typst template instead of the built-in one
-# words = \"words.toml\"       # the report's words in another language
 ";

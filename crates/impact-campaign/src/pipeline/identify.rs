@@ -5,7 +5,8 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::campaign::resolved::{NominalValues, ResolvedCampaign};
+use crate::campaign::resolved::ResolvedCampaign;
+use crate::campaign::sections::rig::NominalValues;
 use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs};
 use impact_identification::identify::evidence::options::UncertaintyOptions;

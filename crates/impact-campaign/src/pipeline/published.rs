@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::campaign::written::Published;
+use crate::campaign::sections::published::Published;
 use crate::pipeline::identify::{IdentificationFile, provenance};
 use crate::pipeline::{PipelineError, report, store};
 use impact_identification::identify::Identification;

@@ -3,14 +3,15 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crate::campaign::resolved::{Report as StatedOptions, ResolvedCampaign};
-use crate::campaign::written::Language;
+use crate::campaign::resolved::ResolvedCampaign;
+use crate::campaign::sections::report::Report as StatedOptions;
 use crate::pipeline::identify::{IdentificationFile, settings};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::{Observed, PipelineError};
 use impact_identification::identify::Provenance;
 use impact_identification::replay::{self, Input};
 use impact_records::event::RigKind;
+use impact_records::language::Language;
 use impact_report::Phrase;
 use impact_report::catalog::Catalog;
 use impact_report::{
@@ -158,8 +159,9 @@ pub fn content(
 /// If the table cannot be read, or is none.
 pub fn catalog(stated: &StatedOptions) -> Result<Option<Catalog>, PipelineError> {
     let Some(path) = &stated.words else {
-        let german = stated.language == Language::De;
-        return Ok(german.then(|| Catalog::german().clone()));
+        let language = Language::of_code(&stated.language.0);
+        let translated = language.filter(|l| *l != Language::default());
+        return Ok(translated.map(Catalog::of));
     };
     let unusable = |reason: String| PipelineError::ReportFile {
         path: path.display().to_string(),
@@ -189,7 +191,7 @@ fn options(stated: &StatedOptions) -> Result<ReportOptions, PipelineError> {
         catalog: catalog(stated)?,
         paper: stated.paper,
         decimal_comma: stated.decimal_comma,
-        language: <&str>::from(stated.language).to_owned(),
+        language: stated.language.0.clone(),
         template: stated.template.as_ref().map(template).transpose()?,
         logo: stated.logo.as_ref().map(logo).transpose()?,
         live: None,

@@ -99,62 +99,24 @@ pub enum Outcome {
 
 messages!(WhyShared, NotShared, Remark, Outcome);
 
-message_table! { Outcome;
-    Self::NothingChanged => "No change found", "Keine Änderung gefunden";
-    Self::Changed { parameters } =>
-        "Changed: {parameters}",
-        "Geändert: {parameters}",
-        parameters = Value::list(parameters);
-    Self::ChangedTogether =>
-        "Something changed, though no parameter alone shows it",
-        "Etwas hat sich geändert, auch wenn es kein Parameter allein zeigt";
-    Self::Undetermined =>
-        "Whether anything changed cannot be determined",
-        "Ob sich etwas geändert hat, ist nicht zu entscheiden";
+message_table! { "outcome": Outcome;
+    Self::Changed { parameters } => parameters = Value::list(parameters);
 }
 
-message_table! { WhyShared;
-    Self::StatedAsShared => "stated under shared", "unter shared angegeben";
-    Self::SameInstrument { instrument } =>
-        "the same instrument: {instrument}",
-        "dasselbe Gerät: {instrument}",
-        instrument = Value::Name(instrument);
-    Self::OneCampaign => "measured in one campaign", "in einer Messreihe gemessen";
+message_table! { "why_shared": WhyShared;
+    Self::SameInstrument { instrument } => instrument = Value::Name(instrument);
 }
 
-message_table! { NotShared;
+message_table! { "not_shared": NotShared;
     Self::OtherInstrument { first, second } =>
-        "the instruments differ: {first}, {second}",
-        "verschiedene Geräte: {first}, {second}",
-        first = Value::Name(first), second = Value::Name(second);
-    Self::OtherRig { first, second } =>
-        "the rigs differ: {first}, {second}",
-        "verschiedene Prüfstände: {first}, {second}",
-        first = Value::Name(first), second = Value::Name(second);
-    Self::StatedOtherwise =>
-        "the value that it is an error of is stated otherwise",
-        "der Wert, dessen Fehler es ist, ist verschieden angegeben";
-    Self::StatedByOne =>
-        "stated under shared by one of the campaigns alone",
-        "nur von einer der Messreihen unter shared angegeben";
+        first = Value::Name(first),
+        second = Value::Name(second);
+    Self::OtherRig { first, second } => first = Value::Name(first), second = Value::Name(second);
 }
 
-message_table! { Remark;
-    Self::CampaignDoesNotFit { campaign, .. } =>
-        "the model does not describe the data of {campaign}: its differences may be off by more \
-         than their intervals; read its own report first",
-        "das Modell beschreibt die Daten von {campaign} nicht: die Unterschiede können um mehr als \
-         ihre Intervalle falsch sein; zuerst den Bericht dazu lesen",
-        campaign = Value::Name(campaign);
-    Self::NoJointFit { campaign } =>
-        "{campaign} rests on no joint fit: its errors are taken as independent",
-        "{campaign} beruht auf keiner gemeinsamen Anpassung: die Fehler gelten als unabhängig",
-        campaign = Value::Name(campaign);
-    Self::NothingShared =>
-        "nothing is shared, so the campaigns' errors add: state shared under [rig] what stayed the \
-         same, or the instruments' serial numbers",
-        "nichts ist gemeinsam, daher addieren sich die Fehler der Messreihen: unter [rig] mit \
-         shared angeben, was gleich geblieben ist, oder die Seriennummern der Geräte";
+message_table! { "compare_remark": Remark;
+    Self::CampaignDoesNotFit { campaign, .. } => campaign = Value::Name(campaign);
+    Self::NoJointFit { campaign } => campaign = Value::Name(campaign);
 }
 
 /// One message of each kind of a comparison, its values at their defaults.
@@ -164,4 +126,15 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         .chain(boxed(Remark::iter()))
         .chain(boxed(Outcome::iter()))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impact_records::message::faults;
+
+    #[test]
+    fn every_message_has_its_texts() {
+        assert_eq!(faults(&kinds()), Vec::<String>::new());
+    }
 }

@@ -98,25 +98,15 @@ impl Agreement {
 }
 
 impl Message for Agreement {
-    fn kind(&self) -> &'static str {
-        match self.agree {
-            None => "nothing_to_compare",
-            Some(true) => "agreement",
-            Some(false) => "pair",
-        }
+    fn table(&self) -> &'static str {
+        "agreement"
     }
 
-    fn texts(&self) -> [&'static str; 2] {
+    fn kind(&self) -> &'static str {
         match (self.disagreement(), self.agree) {
-            (Some(pair), _) => pair.texts(),
-            (None, None) => [
-                "there is nothing to compare",
-                "es ist nichts zu vergleichen",
-            ],
-            (None, Some(_)) => [
-                "none of the {count} comparisons differs by more than its uncertainty allows",
-                "keiner der {count} Vergleiche weicht um mehr ab, als seine Unsicherheit erlaubt",
-            ],
+            (Some(pair), _) => pair.kind(),
+            (None, None) => "nothing_to_compare",
+            (None, Some(_)) => "agreement",
         }
     }
 

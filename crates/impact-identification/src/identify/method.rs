@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize, Serializer};
 
+use impact_records::language::Language;
 use impact_records::message::Message;
 use impact_records::message_table;
 
@@ -84,19 +85,10 @@ impl Serialize for Estimator {
     }
 }
 
-message_table! { Method;
-    Self::Boundaries => "Boundaries", "Grenzen";
-    Self::Flights => "Multiple shooting", "Mehrfachschießen";
-    Self::FlightTimes => "Flight times", "Flugzeiten";
-    Self::FreeDecay => "Free decay", "Ausschwingen";
-    Self::Impacts => "Speeds at impact", "Einzelne Stöße";
-    Self::PublishedSpeeds => "Published speeds", "Veröffentlichte Geschwindigkeiten";
-    Self::Resonance => "Resonance curve", "Resonanzkurve";
-    Self::Trajectories => "Trajectories", "Verläufe";
-}
+message_table! { "method": Method; }
 
 impl std::fmt::Display for Method {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.texts()[0])
+        f.write_str(self.template(Language::default()))
     }
 }

@@ -60,26 +60,7 @@ pub enum Obstacle {
 
 messages!(Obstacle);
 
-message_table! { Obstacle;
-    Self::NoFrequency =>
-        "no record has a drive frequency, measured or stated",
-        "keine Aufzeichnung hat eine Erregerfrequenz, gemessen oder angegeben";
-    Self::NoClearance =>
-        "no record states a clearance",
-        "keine Aufzeichnung gibt ein Spiel an";
-    Self::NoWaveform =>
-        "no record shows a motion with one impact in n drive periods by its velocity or \
-         displacement",
-        "keine Aufzeichnung zeigt mit Geschwindigkeit oder Weg eine Bewegung mit einem Stoß in n \
-         Erregerperioden";
-    Self::RestitutionNotFitted =>
-        "$R$ was not fitted",
-        "$R$ wurde nicht angepasst";
-    Self::NothingGained =>
-        "within the frequencies and clearances of the campaign no record would tell more about $R$",
-        "innerhalb der Frequenzen und Spiele der Messreihe würde keine Aufzeichnung mehr über $R$ \
-         aussagen";
-}
+message_table! { "obstacle": Obstacle; }
 
 /// The settings that a rig can reach.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -66,73 +66,14 @@ pub enum Undetermined {
 
 messages!(Undetermined);
 
-message_table! { Undetermined;
-    Self::DecayWithoutDrive =>
-        "a free decay, without drive",
-        "ein Ausschwingversuch, ohne Erregung";
-    Self::NoDrive =>
-        "no drive was measured, so no period is known",
-        "keine Erregung wurde gemessen, daher ist keine Periode bekannt";
-    Self::FewerThanTwoPeriods =>
-        "the record holds fewer than two drive periods",
-        "die Aufzeichnung enthält weniger als zwei Erregerperioden";
-    Self::NotComparable =>
-        "the waveform could not be compared with itself",
-        "der Verlauf ließ sich nicht mit sich selbst vergleichen";
-    Self::NearlyCloses { periods_n } =>
-        "the motion nearly closes after {periods} drive periods but not within the noise: still \
-         settling, or of a longer period",
-        "die Bewegung schließt sich nach {periods} Erregerperioden beinahe, aber nicht innerhalb \
-         des Rauschens: noch nicht eingeschwungen, oder von längerer Periode",
-        periods = count(*periods_n);
-    Self::NoMotion =>
-        "neither velocity nor contact shows any motion",
-        "weder Geschwindigkeit noch Kontakt zeigt eine Bewegung";
-    Self::NoPeriodOfImpacts =>
-        "the impact times alone show no period",
-        "die Stoßzeiten allein zeigen keine Periode";
-    Self::NoWholePeriod =>
-        "no whole period of the motion fits into the record",
-        "keine ganze Periode der Bewegung passt in die Aufzeichnung";
+message_table! { "undetermined": Undetermined;
+    Self::NearlyCloses { periods_n } => periods = count(*periods_n);
     Self::TooManyImpacts { periods_n, impacts_p, most } =>
-        "the waveform closes after {periods} drive periods with {impacts} impacts, more than the \
-         {most} that are looked for (analysis.most_impacts_p)",
-        "der Verlauf schließt sich nach {periods} Erregerperioden mit {impacts} Stößen, mehr als \
-         den {most}, nach denen gesucht wird (analysis.most_impacts_p)",
-        periods = count(*periods_n), impacts = count(*impacts_p), most = count(*most);
-    Self::ImpactsDoNotRepeat { periods_n } =>
-        "the waveform closes after {periods} drive periods, but the impacts found do not repeat \
-         with it: some were missed or are too slow to see",
-        "der Verlauf schließt sich nach {periods} Erregerperioden, aber die gefundenen Stöße \
-         wiederholen sich nicht mit ihm: einige fehlen oder sind zu langsam, um sichtbar zu sein",
-        periods = count(*periods_n);
-    Self::RepeatsWithoutImpact { periods_n } =>
-        "no impact was found, yet the motion repeats only after {periods} drive periods: impacts \
-         too slow to see, or still settling",
-        "kein Stoß wurde gefunden, doch wiederholt sich die Bewegung erst nach {periods} \
-         Erregerperioden: Stöße, die zu langsam sind, oder noch nicht eingeschwungen",
-        periods = count(*periods_n);
-    Self::HarmonicsWithoutImpact =>
-        "no impact was found, yet the waveform has the harmonics of a motion with impacts: they are \
-         too slow to see in these channels",
-        "kein Stoß wurde gefunden, doch hat der Verlauf die Oberschwingungen einer Bewegung mit Stößen: \
-         sie sind in diesen Kanälen zu langsam, um sichtbar zu sein";
-    Self::SettlingWithoutImpact =>
-        "no impact was found, yet the motion does not repeat: still settling",
-        "kein Stoß wurde gefunden, doch wiederholt sich die Bewegung nicht: noch nicht \
-         eingeschwungen";
-    Self::NotSettled =>
-        "not settled: the record begins before the disturbance of the start, or of the last change \
-         of a setting, has died away",
-        "nicht eingeschwungen: die Aufzeichnung beginnt, bevor die Störung vom Anfang oder von der \
-         letzten Änderung einer Einstellung abgeklungen ist";
-    Self::FewImpacts =>
-        "too few impacts to recognise an irregular motion",
-        "zu wenige Stöße, um eine unregelmäßige Bewegung zu erkennen";
-    Self::NotPeriodic =>
-        "the noiseless simulation is not periodic",
-        "die rauschfreie Simulation ist nicht periodisch";
-    Self::BeyondContact => "starts beyond the contact", "beginnt jenseits des Kontakts";
+        periods = count(*periods_n),
+        impacts = count(*impacts_p),
+        most = count(*most);
+    Self::ImpactsDoNotRepeat { periods_n } => periods = count(*periods_n);
+    Self::RepeatsWithoutImpact { periods_n } => periods = count(*periods_n);
 }
 
 fn count(n: u32) -> Value<'static> {

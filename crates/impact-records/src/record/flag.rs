@@ -6,10 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::message::Message;
 
-/// Defines [`FlagCode`] with the name of each code in files and tables, and its text in English and
-/// German.
+/// Defines [`FlagCode`] with the name of each code in files and tables, which is the key of its text.
 macro_rules! flag_codes {
-    ($($(#[$doc:meta])* $code:ident = $name:literal, $english:literal, $german:literal,)*) => {
+    ($($(#[$doc:meta])* $code:ident = $name:literal,)*) => {
         /// Kind of a problem.
         #[derive(
             Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
@@ -31,14 +30,12 @@ macro_rules! flag_codes {
         }
 
         impl Message for FlagCode {
-            fn kind(&self) -> &'static str {
-                self.name()
+            fn table(&self) -> &'static str {
+                "flag"
             }
 
-            fn texts(&self) -> [&'static str; 2] {
-                match self {
-                    $(Self::$code => [$english, $german],)*
-                }
+            fn kind(&self) -> &'static str {
+                self.name()
             }
         }
     };
@@ -46,99 +43,99 @@ macro_rules! flag_codes {
 
 flag_codes! {
     /// The file or the dataset cannot be read.
-    Unreadable = "unreadable", "unreadable", "nicht lesbar",
+    Unreadable = "unreadable",
     /// There are no samples.
-    Empty = "empty", "empty", "leer",
+    Empty = "empty",
     /// The dataset has no channel of the stated name.
-    MissingChannel = "missing_channel", "missing channel", "fehlender Kanal",
+    MissingChannel = "missing_channel",
     /// The file has no such dataset.
-    MissingDataset = "missing_dataset", "missing dataset", "fehlender Datensatz",
+    MissingDataset = "missing_dataset",
     /// Unit, scale or threshold do not suit the channel's role.
-    WrongUnit = "wrong_unit", "wrong unit", "falsche Einheit",
+    WrongUnit = "wrong_unit",
     /// Neither the file nor the campaign states a unit.
-    UnitMissing = "unit_missing", "unit missing", "fehlende Einheit",
+    UnitMissing = "unit_missing",
     /// The channel holds no real numbers.
-    NotNumbers = "not_numbers", "not numbers", "keine Zahlen",
+    NotNumbers = "not_numbers",
     /// Some values are NaN or infinite.
-    NotANumber = "not_a_number", "not a number", "keine Zahl",
+    NotANumber = "not_a_number",
     /// The channels differ in length.
-    UnequalLengths = "unequal_lengths", "unequal lengths", "ungleiche Längen",
+    UnequalLengths = "unequal_lengths",
     /// Samples without a value were cut off at the ends.
-    Trimmed = "trimmed", "trimmed", "beschnitten",
+    Trimmed = "trimmed",
     /// A channel is constant.
-    DeadChannel = "dead_channel", "dead channel", "toter Kanal",
+    DeadChannel = "dead_channel",
     /// A channel reaches the limits of its converter.
-    Clipped = "clipped", "clipped", "übersteuert",
+    Clipped = "clipped",
     /// The rows are changes of the contact, of which those that close it count.
-    ContactChanges = "contact_changes", "changes of the contact", "Wechsel des Kontakts",
+    ContactChanges = "contact_changes",
     /// The rows are neither impacts nor changes of the contact.
-    ContactUnclear = "contact_unclear", "contact unclear", "Kontakt unklar",
+    ContactUnclear = "contact_unclear",
     /// A camera's picture stood still, then jumped.
-    FrozenFrames = "frozen_frames", "frozen frames", "stehende Bilder",
+    FrozenFrames = "frozen_frames",
     /// Samples are missing.
-    DroppedSamples = "dropped_samples", "dropped samples", "fehlende Abtastwerte",
+    DroppedSamples = "dropped_samples",
     /// Time stamps are repeated.
-    RepeatedSamples = "repeated_samples", "repeated samples", "wiederholte Abtastwerte",
+    RepeatedSamples = "repeated_samples",
     /// The time axis holds no numbers.
-    TimeUnreadable = "time_unreadable", "time unreadable", "Zeit nicht lesbar",
+    TimeUnreadable = "time_unreadable",
     /// The time runs backward.
-    TimeBackward = "time_backward", "time backward", "Zeit läuft zurück",
+    TimeBackward = "time_backward",
     /// The time axis is not uniform.
-    TimeNotUniform = "time_not_uniform", "time not uniform", "Zeit nicht gleichmäßig",
+    TimeNotUniform = "time_not_uniform",
     /// The time is printed too coarsely to tell the rate.
-    TimeCoarse = "time_coarse", "time printed coarsely", "Zeit grob gerundet",
+    TimeCoarse = "time_coarse",
     /// The time axis states another unit than campaign.toml does.
-    TimeUnitWrong = "time_unit_wrong", "wrong unit of time", "falsche Einheit der Zeit",
+    TimeUnitWrong = "time_unit_wrong",
     /// The unit of the time axis is not known.
-    TimeUnitMissing = "time_unit_missing", "unit of time missing", "Einheit der Zeit fehlt",
+    TimeUnitMissing = "time_unit_missing",
     /// The unit of the time axis was assumed.
-    TimeUnitAssumed = "time_unit_assumed", "unit of time assumed", "Einheit der Zeit angenommen",
+    TimeUnitAssumed = "time_unit_assumed",
     /// Channels that begin at unlike times were put in place.
-    ChannelsShifted = "channels_shifted", "channels shifted", "Kanäle verschoben",
+    ChannelsShifted = "channels_shifted",
     /// A channel does not state when it begins, others do.
-    StartMissing = "start_missing", "start missing", "Beginn fehlt",
+    StartMissing = "start_missing",
     /// Channels were not recorded at the same time.
-    ChannelsApart = "channels_apart", "channels apart", "Kanäle nicht gleichzeitig",
+    ChannelsApart = "channels_apart",
     /// No sample rate is known.
-    NoSampleRate = "no_sample_rate", "no sample rate", "keine Abtastrate",
+    NoSampleRate = "no_sample_rate",
     /// The rate that the file states is not that of its time axis.
-    RateContradicts = "rate_contradicts", "rate contradicts", "Abtastrate widerspricht",
+    RateContradicts = "rate_contradicts",
     /// The channels differ in sample rate.
-    UnequalSampleRates = "unequal_sample_rates", "unequal sample rates", "ungleiche Abtastraten",
+    UnequalSampleRates = "unequal_sample_rates",
     /// Channels of the two masses are swapped.
-    SwappedMasses = "swapped_masses", "swapped masses", "vertauschte Massen",
+    SwappedMasses = "swapped_masses",
     /// Two channels have opposite signs.
-    OppositeSign = "opposite_sign", "opposite sign", "entgegengesetzte Vorzeichen",
+    OppositeSign = "opposite_sign",
     /// The scales of two channels contradict each other.
-    ScalesContradict = "scales_contradict", "scales contradict", "Maßstäbe widersprechen sich",
+    ScalesContradict = "scales_contradict",
     /// The drive channel holds no harmonic tone.
-    DriveNotHarmonic = "drive_not_harmonic", "drive not harmonic", "Erregung nicht harmonisch",
+    DriveNotHarmonic = "drive_not_harmonic",
     /// Measured and stated drive frequency differ.
-    DriveFrequencyContradicts = "drive_frequency_contradicts", "drive frequency contradicts", "Erregerfrequenz widerspricht",
+    DriveFrequencyContradicts = "drive_frequency_contradicts",
     /// A displacement goes beyond the stop without an impact.
-    BeyondStop = "beyond_stop", "beyond the stop", "jenseits des Anschlags",
+    BeyondStop = "beyond_stop",
     /// Jumps of the approach velocity go up.
-    JumpsPointTheWrongWay = "jumps_point_the_wrong_way", "jumps point the wrong way", "Sprünge in falscher Richtung",
+    JumpsPointTheWrongWay = "jumps_point_the_wrong_way",
     /// A channel is positive away from the stop or the other mass; the record was turned around.
-    MeasuredAway = "measured_away", "measured away", "in Gegenrichtung gemessen",
+    MeasuredAway = "measured_away",
     /// Two masses fly freely and one alone is measured.
-    OneMassAlone = "one_mass_alone", "one mass alone", "nur eine Masse",
+    OneMassAlone = "one_mass_alone",
     /// Part of the approach before an impact is no free flight.
-    ApproachCut = "approach_cut", "approach cut", "Anflug gekürzt",
+    ApproachCut = "approach_cut",
     /// Falls of the velocity without a free flight beside them.
-    NoFreeFlight = "no_free_flight", "no free flight", "kein freier Flug",
+    NoFreeFlight = "no_free_flight",
     /// An impact's approach speed would be above any that was measured.
-    SpeedNeverMeasured = "speed_never_measured", "speed never measured", "nie gemessene Geschwindigkeit",
+    SpeedNeverMeasured = "speed_never_measured",
     /// Under constant force no impact was found.
-    NoImpact = "no_impact", "no impact", "kein Stoß",
+    NoImpact = "no_impact",
     /// No free decay was found.
-    NoFreeDecay = "no_free_decay", "no free decay", "kein Ausschwingen",
+    NoFreeDecay = "no_free_decay",
     /// Contact pulses without a jump of velocity, of a record that is identified.
-    ContactWithoutVelocityJump = "contact_without_velocity_jump", "contact without velocity jump", "Kontakt ohne Sprung der Geschwindigkeit",
+    ContactWithoutVelocityJump = "contact_without_velocity_jump",
     /// Contact pulses without a jump of velocity, of a record that is checked.
-    ContactWithoutJump = "contact_without_jump", "contact without jump", "Kontakt ohne Sprung",
+    ContactWithoutJump = "contact_without_jump",
     /// The campaign excludes the record.
-    Excluded = "excluded", "excluded", "ausgeschlossen",
+    Excluded = "excluded",
 }
 
 impl fmt::Display for FlagCode {

@@ -14,16 +14,20 @@ use impact_identification::identify::uncertainty::budget::{
 };
 use impact_identification::identify::{Finding, Identification, Method, Reason};
 use impact_identification::replay::{BracketRow, Correlation, Unusable, UnusableReason};
+use impact_records::language::Language;
 use impact_records::motion::{Motion, Undetermined};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
 use impact_records::record::{Role, Sweep};
+
+fn german() -> catalog::Catalog {
+    catalog::Catalog::of(Language::of_code("de").expect("German"))
+}
 
 /// A catalog that prints each phrase and each message as its number in brackets, with its values.
 fn marks_for_phrases() -> catalog::Catalog {
     let mut text = String::from("[words]\n");
     for (i, phrase) in catalog::Catalog::phrases().into_iter().enumerate() {
-        let values: String = catalog::places(phrase)
-            .iter()
+        let values: String = impact_records::language::names(phrase)
             .map(|n| format!("{{{n}}}"))
             .collect();
         let key = toml::Value::from(phrase);
@@ -323,7 +327,7 @@ fn all_words_of_figures_and_headings_are_the_reader_s() {
 #[test]
 fn a_german_report_is_german() {
     let options = ReportOptions {
-        catalog: Some(catalog::Catalog::german().clone()),
+        catalog: Some(german()),
         ..ReportOptions::default()
     };
     for (name, content) in kinds().iter().filter(|k| k.0 != "whole") {
@@ -377,7 +381,7 @@ fn with_other_sentences(identification: &Identification) -> Identification {
 #[test]
 fn a_report_is_made_from_kinds_and_numbers_alone() {
     let german = ReportOptions {
-        catalog: Some(catalog::Catalog::german().clone()),
+        catalog: Some(german()),
         decimal_comma: true,
         ..ReportOptions::default()
     };
@@ -408,7 +412,7 @@ fn a_german_report_has_german_findings_and_no_english_ones() {
     let findings: Vec<Finding> = <Finding as strum::IntoEnumIterator>::iter().collect();
     id.verdict.findings.clone_from(&findings);
     let german = ReportOptions {
-        catalog: Some(catalog::Catalog::german().clone()),
+        catalog: Some(german()),
         ..ReportOptions::default()
     };
     let text = |options: &ReportOptions| {
@@ -426,8 +430,8 @@ fn a_german_report_has_german_findings_and_no_english_ones() {
             rest.replace('"', "\\\"")
         };
         let (en, de) = (
-            words(impact_records::message::Language::English),
-            words(impact_records::message::Language::German),
+            words(Language::default()),
+            words(Language::of_code("de").expect("German")),
         );
         // only templates with words of their own
         if en.len() > 12 {

@@ -28,7 +28,8 @@ use spacing::Spacing;
 use super::run::{Completed, Destination, complete};
 use super::{Observed, PipelineError, Progress, identify};
 use crate::campaign::diagnostic::{Diagnostic, Diagnostics};
-use crate::campaign::resolved::{Report, ResolvedCampaign};
+use crate::campaign::resolved::ResolvedCampaign;
+use crate::campaign::sections::report::Report;
 use crate::campaign::{NamedFiles, load_taken};
 use impact_records::motion::{Bracket, Observation, brackets, scale_drives};
 

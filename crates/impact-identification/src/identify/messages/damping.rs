@@ -31,12 +31,12 @@ impl DampingPoint {
 }
 
 impl Message for DampingPoint {
-    fn kind(&self) -> &'static str {
-        "damping_point"
+    fn table(&self) -> &'static str {
+        "value"
     }
 
-    fn texts(&self) -> [&'static str; 2] {
-        ["{value} ± {half} ({share})"; 2]
+    fn kind(&self) -> &'static str {
+        "damping_point"
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {

@@ -4,9 +4,9 @@ use impact_records::message::Value;
 use impact_records::message_table;
 
 /// Whether something is too high or too low.
-#[derive(Debug, Clone, Copy, strum::IntoStaticStr)]
+#[derive(Debug, Clone, Copy, strum::EnumIter, strum::IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
-enum Direction {
+pub(super) enum Direction {
     High,
     Low,
 }
@@ -19,7 +19,4 @@ pub(super) fn direction(deviation: f64) -> Value<'static> {
     }
 }
 
-message_table! { Direction;
-    Self::High => "high", "hoch";
-    Self::Low => "low", "tief";
-}
+message_table! { "direction": Direction; }

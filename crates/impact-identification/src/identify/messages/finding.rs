@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::beyond::beyond;
 use super::direction::direction;
 use super::{Note, PairAgreement, Reason, Remark, Sentence, StatedValue};
 use crate::identify::messages::cause::Cause;
@@ -288,228 +287,93 @@ impl Finding {
     }
 }
 
-message_table! { Finding, key = template_key;
+message_table! { "finding": Finding, key = template_key;
     Self::WrongClearance { stated_m, fitting_m, .. } =>
-        "the gap stated with a clearance of {stated_mm} mm moves like one of {fitting_mm} mm: \
-         measure it again and correct the run table; its records stay out of the fit",
-        "der mit einem Spiel von {stated_mm} mm angegebene Abstand bewegt sich wie einer von \
-         {fitting_mm} mm: nachmessen und die Versuchstabelle richtigstellen; seine Aufzeichnungen \
-         bleiben außerhalb der Anpassung",
-        stated_mm = millimetres(*stated_m), fitting_mm = millimetres(*fitting_m);
+        stated_mm = millimetres(*stated_m),
+        fitting_mm = millimetres(*fitting_m);
     Self::WrongGain { channel, deviation, .. } =>
-        "{channel} reads {share} too {direction}: correct scale in [channels.{channel}], or state \
-         a larger gain_uncertainty in [rig]",
-        "{channel} zeigt {share} zu {direction}: scale in [channels.{channel}] richtigstellen, \
-         oder eine größere gain_uncertainty in [rig] angeben",
         channel = Value::Name(channel.name()),
         share = Value::Percent(deviation.abs(), 1),
         direction = direction(*deviation);
     Self::GainsApart { channels: [high, low], deviation, .. } =>
-        "{high} reads {share} more than {low} for the same motion, and the data do not tell which \
-         is off: calibrate both, correct scale in [channels.{high}] or [channels.{low}], or state a \
-         larger gain_uncertainty in [rig]",
-        "{high} zeigt bei gleicher Bewegung {share} mehr als {low}; welcher Kanal falsch zeigt, \
-         sagen die Daten nicht: beide kalibrieren, scale in [channels.{high}] oder [channels.{low}] \
-         richtigstellen, oder eine größere gain_uncertainty in [rig] angeben",
         high = Value::Name(high.name()),
         low = Value::Name(low.name()),
         share = Value::Percent(*deviation, 1);
     Self::LateChannel { channel, later_ms, .. } =>
-        match *later_ms > 0.0 {
-            true => "{channel} shows the motion {time} ms later than stated: measure its delay and \
-                     state it as delay in [channels.{channel}]; all is corrected by it here",
-            false => "{channel} shows the motion {time} ms earlier than stated: check the delays of \
-                      it and of the drive's channel, and state it as delay in [channels.{channel}]; \
-                      all is corrected by it here",
-        },
-        match *later_ms > 0.0 {
-            true => "{channel} zeigt die Bewegung {time} ms später als angegeben: die Verzögerung \
-                     messen und als delay in [channels.{channel}] angeben; hier ist alles um sie \
-                     berichtigt",
-            false => "{channel} zeigt die Bewegung {time} ms früher als angegeben: die Verzögerungen \
-                      dieses Kanals und der Erregung prüfen und als delay in [channels.{channel}] \
-                      angeben; hier ist alles um sie berichtigt",
-        },
         channel = Value::Name(channel.name()),
         time = Value::Number(later_ms.abs(), 2);
     Self::WrongCorner { channel, deviation, .. } =>
-        "the corner of the high-pass of {channel} is {share} too {direction} for the stated one: \
-         correct high_pass in [channels.{channel}], or state a larger corner_uncertainty in [rig]",
-        "die Grenzfrequenz des Hochpasses von {channel} liegt {share} zu {direction} gegen die \
-         angegebene: high_pass in [channels.{channel}] richtigstellen, oder eine größere \
-         corner_uncertainty in [rig] angeben",
         channel = Value::Name(channel.name()),
         share = Value::Percent(deviation.abs(), 0),
         direction = direction(*deviation);
     Self::UndeclaredHighPass { channel, corner_hz, .. } =>
-        "{channel} fits far better behind a high-pass of about {corner} Hz, and none is stated: look \
-         up what sensors, amplifiers and converters of all channels have, and state it as high_pass \
-         in [channels.{channel}] and theirs",
-        "{channel} passt weit besser hinter einem Hochpass von etwa {corner} Hz, und keiner ist \
-         angegeben: nachsehen, was Aufnehmer, Verstärker und Wandler aller Kanäle haben, und als \
-         high_pass in [channels.{channel}] und den anderen angeben",
         channel = Value::Name(channel.name()),
         corner = Value::Shortest(two_digits(*corner_hz));
     Self::UndeclaredLowPass { channel, corner_hz } =>
-        "{channel} takes longer for a jump than the contact is closed, as behind a low-pass of about \
-         {corner} Hz, and none is stated: look up the filters of vibrometer, amplifier and converter, \
-         and state low_pass and low_pass_order in [channels.{channel}]; here that corner is used, and \
-         the speeds at impacts are not",
-        "{channel} braucht für einen Sprung länger, als der Kontakt geschlossen ist, wie hinter einem \
-         Tiefpass von etwa {corner} Hz, und keiner ist angegeben: die Filter von Vibrometer, \
-         Verstärker und Wandler nachsehen und als low_pass und low_pass_order in \
-         [channels.{channel}] angeben; hier wird diese Grenzfrequenz verwendet, und die \
-         Geschwindigkeiten an Stößen werden es nicht",
         channel = Value::Name(channel.name()),
         corner = Value::Shortest(two_digits(*corner_hz));
     Self::SidesUnlike { coordinate, difference, deviations } =>
-        "the fit needs a {coordinate} of {share}, {deviations} times its uncertainty off what is \
-         stated or assumed: weigh both masses and state mass_x and mass_y in [rig], and check springs, \
-         dashpots and drives of both sides",
-        "die Anpassung braucht {coordinate} = {share}, um das {deviations}-Fache der Unsicherheit neben \
-         dem, was angegeben oder angenommen ist: beide Massen wiegen und mass_x und mass_y in [rig] \
-         angeben, und Federn, Dämpfer und Antriebe beider Seiten prüfen",
         coordinate = Value::Message(coordinate),
         share = Value::Percent(*difference, 1),
         deviations = Value::Number(deviations.abs(), 1);
-    Self::SwappedChannels { .. } =>
-        "all data fit far better with the velocities of both masses swapped: swap \
-         [channels.velocity_x] and [channels.velocity_y], or the displacements",
-        "alle Daten passen weit besser, wenn die Geschwindigkeiten beider Massen vertauscht sind: \
-         [channels.velocity_x] und [channels.velocity_y] tauschen, oder die Wege";
     Self::FrequenciesOffAlike { ratio, records, of } =>
-        "the drive runs at {ratio} times the stated frequency in {records} of {of} records: check \
-         the sample rate and the time axis of the files, from which $f_0$ follows, or correct the \
-         run table",
-        "die Erregung hat das {ratio}-fache der angegebenen Frequenz in {records} von {of} \
-         Aufzeichnungen: Abtastrate und Zeitachse der Dateien prüfen, aus denen $f_0$ folgt, oder \
-         die Versuchstabelle richtigstellen",
         ratio = Value::Number(*ratio, 4),
         records = Value::Count(*records),
         of = Value::Count(*of);
     Self::ClockOrGenerator { ratio, clock_uncertainty, records, .. } =>
-        "the measured drive is at {ratio} times the stated frequencies on average over {records} \
-         records, which the clock's {clock} ppm do not explain: the sampler's clock or the generator \
-         is off; measure both with a frequency counter and correct sample_rate or the stated \
-         frequencies: until then $f_0$ is known no better than that",
-        "die gemessene Erregung hat im Mittel über {records} Aufzeichnungen das {ratio}-fache der \
-         angegebenen Frequenzen, was die {clock} ppm des Taktes nicht erklären: der Abtasttakt oder \
-         der Generator ist falsch; beide mit einem Frequenzzähler messen und sample_rate oder die \
-         angegebenen Frequenzen richtigstellen: bis dahin ist $f_0$ nicht besser bekannt",
         ratio = Value::Number(*ratio, 5),
         clock = Value::Shortest(two_digits(1e6 * clock_uncertainty)),
         records = Value::Count(*records);
     Self::FrequenciesOff { records, of } =>
-        "the drive's frequency is not the stated one in {records} of {of} records: check that \
-         each row of the run table names its own file",
-        "die Frequenz der Erregung ist nicht die angegebene in {records} von {of} Aufzeichnungen: \
-         prüfen, ob jede Zeile der Versuchstabelle ihre eigene Datei nennt",
-        records = Value::Count(*records), of = Value::Count(*of);
-    Self::DriveNotMeasured { records } =>
-        "no drive was measured in the {records} records that state its frequency, so no motion is \
-         named, and neither $f_0$, $β$ nor $x_st$ follow: record the generator or its current, and \
-         name that channel in [channels.drive]",
-        "in den {records} Aufzeichnungen, die ihre Frequenz angeben, ist keine Erregung gemessen; \
-         daher wird keine Bewegung benannt, und weder $f_0$ noch $β$ noch $x_st$ folgen: den \
-         Generator oder seinen Strom aufzeichnen und den Kanal in [channels.drive] nennen",
-        records = Value::Count(*records);
-    Self::PhaseNotMeasured { records } =>
-        "no record shows its drive: $f_0$, $β$ and $x_st$ rest on the amplitudes of the resonance \
-         curve at the frequencies that the motions of {records} records have, and no waveform is \
-         fitted: record the generator or its current, and name that channel in [channels.drive]",
-        "keine Aufzeichnung zeigt ihre Erregung: $f_0$, $β$ und $x_st$ beruhen auf den Amplituden der \
-         Resonanzkurve bei den Frequenzen, die die Bewegungen in {records} Aufzeichnungen haben, und \
-         kein Verlauf wird angepasst: den Generator oder seinen Strom aufzeichnen und den Kanal in \
-         [channels.drive] nennen",
-        records = Value::Count(*records);
+        records = Value::Count(*records),
+        of = Value::Count(*of);
+    Self::DriveNotMeasured { records } => records = Value::Count(*records);
+    Self::PhaseNotMeasured { records } => records = Value::Count(*records);
     Self::RigChanged { record, number, of, before, after } =>
-        "the records are not of one rig: before {record} (number {number} of {of}) they have {before}, \
-         from it on {after}: look for what was changed there (masses, springs, clamps, bumpers, \
-         amplifier, sensors), and identify both parts by themselves",
-        "die Aufzeichnungen sind nicht von einem Prüfstand: vor {record} (Nummer {number} von {of}) \
-         haben sie {before}, von da an {after}: suchen, was dort geändert wurde (Massen, Federn, \
-         Einspannungen, Puffer, Verstärker, Aufnehmer), und beide Teile für sich identifizieren",
-        record = Value::Name(record), number = Value::Count(*number), of = Value::Count(*of),
-        before = Value::list(before), after = Value::list(after);
+        record = Value::Name(record),
+        number = Value::Count(*number),
+        of = Value::Count(*of),
+        before = Value::list(before),
+        after = Value::list(after);
     Self::RecordsNotSettled { records, of, wait_s } =>
-        "{records} of {of} records begin before their motion has settled, so that their motions are \
-         not known, or named less surely: wait at least {wait} s after each change of a setting \
-         before recording",
-        "{records} von {of} Aufzeichnungen beginnen, bevor ihre Bewegung eingeschwungen ist, so dass \
-         ihre Bewegungen nicht oder weniger sicher bestimmt sind: nach jeder Änderung einer \
-         Einstellung mindestens {wait} s warten, ehe aufgezeichnet wird",
-        records = Value::Count(*records), of = Value::Count(*of),
+        records = Value::Count(*records),
+        of = Value::Count(*of),
         wait = Value::Shortest(two_digits(*wait_s));
     Self::WholeGapsStated { ratio, records } =>
-        "the masses hit as if the clearances were {ratio} times the stated ones in {records} \
-         records: whole gaps are stated, a clearance is half of one; no clearance is used until the \
-         run table is corrected",
-        "die Massen stoßen in {records} Aufzeichnungen, als wären die Spiele das {ratio}-fache der \
-         angegebenen: Angegeben sind ganze Abstände, ein Spiel ist die Hälfte davon; bis die \
-         Versuchstabelle richtiggestellt ist, wird kein Spiel verwendet",
-        ratio = Value::Number(*ratio, 2), records = Value::Count(*records);
+        ratio = Value::Number(*ratio, 2),
+        records = Value::Count(*records);
     Self::ClearancesOffAlike { ratio, records } =>
-        "the masses hit as if the clearances were {ratio} times the stated ones in {records} \
-         records: check their unit in the run table, that each is half of the gap between the \
-         masses, and the scales of the motion channels; no clearance is used until then",
-        "die Massen stoßen in {records} Aufzeichnungen, als wären die Spiele das {ratio}-fache der \
-         angegebenen: prüfen, welche Einheit sie in der Versuchstabelle haben, ob jedes die Hälfte \
-         des Abstands der Massen ist, und die Maßstäbe der Bewegungskanäle; bis dahin wird kein \
-         Spiel verwendet",
-        ratio = Value::Shortest(two_digits(*ratio)), records = Value::Count(*records);
+        ratio = Value::Shortest(two_digits(*ratio)),
+        records = Value::Count(*records);
     Self::ClearancesShifted { added_m, records } =>
-        "the masses hit as if {added_mm} mm had to be added to every clearance in {records} \
-         records: count them from where the masses touch; no clearance is used until the run table \
-         is corrected",
-        "die Massen stoßen in {records} Aufzeichnungen, als wäre zu jedem Spiel {added_mm} mm zu \
-         addieren: von der Berührung der Massen an zählen; bis die Versuchstabelle \
-         richtiggestellt ist, wird kein Spiel verwendet",
-        added_mm = Value::Number(1e3 * added_m, 2), records = Value::Count(*records);
+        added_mm = Value::Number(1e3 * added_m, 2),
+        records = Value::Count(*records);
     Self::MomentumNotConserved { measured, stated, .. } =>
-        "the speeds of both masses change as if $m_y$/$m_x$ were {measured}, the stated masses \
-         give {stated}: weigh them again, check the scales of both velocities, and that nothing \
-         else touches the masses",
-        "die Geschwindigkeiten beider Massen ändern sich, als wäre $m_y$/$m_x$ = {measured}; die \
-         angegebenen Massen geben {stated}: nachwiegen, die Maßstäbe beider Geschwindigkeiten \
-         prüfen, und dass sonst nichts die Massen berührt",
-        measured = Value::Number(*measured, 3), stated = Value::Number(*stated, 3);
+        measured = Value::Number(*measured, 3),
+        stated = Value::Number(*stated, 3);
     Self::BeyondModel { effect, strength, standard_error, .. } =>
-        beyond(*effect, *strength > 0.0)[0],
-        beyond(*effect, *strength > 0.0)[1],
         strength = Value::Number(scale(*effect) * strength.abs(), 3),
         error = Value::Number(1.96 * scale(*effect) * standard_error, 3);
     Self::Misfit { method, remark } | Self::Noticed { method, remark } =>
-        "{method}: {remark}",
-        "{method}: {remark}",
-        method = Value::Message(method), remark = Value::Message(remark);
+        method = Value::Message(method),
+        remark = Value::Message(remark);
     Self::Parameter { parameter, note } =>
-        "{parameter}: {note}",
-        "{parameter}: {note}",
-        parameter = Value::Message(parameter), note = Value::Message(note);
-    Self::Disagreement { pair } =>
-        "the methods do not agree on {pair}",
-        "die Verfahren stimmen nicht überein bei {pair}",
-        pair = Value::Message(pair);
+        parameter = Value::Message(parameter),
+        note = Value::Message(note);
+    Self::Disagreement { pair } => pair = Value::Message(pair);
     Self::Specimen { specimen, verdict } =>
-        "{specimen}: {verdict}",
-        "{specimen}: {verdict}",
-        specimen = Value::Name(specimen), verdict = sentences(verdict);
+        specimen = Value::Name(specimen),
+        verdict = sentences(verdict);
     Self::MisfiledRecord { record, reason } =>
-        "{record}: {reason}",
-        "{record}: {reason}",
-        record = Value::Name(record), reason = Value::Message(reason);
-    Self::PrintedDampingFits { printed } =>
-        "The printed $β$ = {value} fits the speeds.",
-        "Das gedruckte $β$ = {value} passt zu den Geschwindigkeiten.",
-        value = Value::Shortest(*printed);
+        record = Value::Name(record),
+        reason = Value::Message(reason);
+    Self::PrintedDampingFits { printed } => value = Value::Shortest(*printed);
     Self::PrintedDampingDoesNotFit { printed, deviation } =>
-        "The printed $β$ = {value} does not fit: a speed is off by {share}.",
-        "Das gedruckte $β$ = {value} passt nicht: Eine Geschwindigkeit liegt um {share} daneben.",
-        value = Value::Shortest(*printed), share = Value::Percent(*deviation, 1);
+        value = Value::Shortest(*printed),
+        share = Value::Percent(*deviation, 1);
     Self::PrintedDampingWithoutMotion { printed, settings, .. } =>
-        "The printed $β$ = {value} does not fit: the motion for {settings} does not exist with it.",
-        "Das gedruckte $β$ = {value} passt nicht: Die Bewegung bei {settings} gibt es damit nicht.",
-        value = Value::Shortest(*printed), settings = Value::list(settings);
+        value = Value::Shortest(*printed),
+        settings = Value::list(settings);
 }
 
 /// The kind or, of an effect beyond the model, its name and sign, which have texts of their own.
@@ -557,15 +421,12 @@ pub struct PublishedSetting {
 }
 
 impl Message for PublishedSetting {
-    fn kind(&self) -> &'static str {
-        "published_setting"
+    fn table(&self) -> &'static str {
+        "value"
     }
 
-    fn texts(&self) -> [&'static str; 2] {
-        [
-            "$R$ = {restitution} at $η$ = {frequency_ratio}",
-            "$R$ = {restitution} und $η$ = {frequency_ratio}",
-        ]
+    fn kind(&self) -> &'static str {
+        "published_setting"
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {

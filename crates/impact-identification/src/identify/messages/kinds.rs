@@ -7,7 +7,7 @@ use crate::identify::method::Method;
 use crate::identify::parameters::effect::Effect;
 use impact_records::message::{Message, boxed};
 use impact_records::motion::Undetermined;
-use impact_records::record::FlagCode;
+use impact_records::record::{FlagCode, Role};
 use impact_records::signal::decay::DampingLaw;
 
 /// One message of each kind of an identification.
@@ -20,12 +20,19 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
             z_score: 0.0,
         })
     });
+    // an early channel has a text of its own
+    let late = Finding::LateChannel {
+        channel: Role::default(),
+        later_ms: 1.0,
+        z_score: 0.0,
+    };
     let findings = Finding::iter().filter(|f| !matches!(f, Finding::BeyondModel { .. }));
     boxed(Method::iter())
         .chain(boxed(Note::iter()))
         .chain(boxed(Remark::iter()))
         .chain(boxed(Reason::iter()))
         .chain(boxed(findings))
+        .chain(boxed([late].into_iter()))
         .chain(boxed(beyond))
         .chain(boxed(Undetermined::iter()))
         .chain(boxed(FlagCode::ALL.into_iter()))
@@ -41,30 +48,58 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::identify::messages::StatedValue;
+    use crate::identify::answer::Agreement;
+    use crate::identify::messages::direction::Direction;
+    use crate::identify::messages::{DampingPoint, GroupPoint, PublishedSetting, StatedValue};
     use crate::identify::parameters::Coordinate;
-    use impact_records::message::{Language, plain};
-    use impact_records::record::Role;
+    use crate::identify::plan::Obstacle;
+    use impact_records::message::{faults, plain};
 
-    /// The names in braces of a template.
-    fn names(template: &str) -> BTreeSet<&str> {
-        let pieces = template.split('{').skip(1);
-        pieces.filter_map(|p| Some(p.split_once('}')?.0)).collect()
+    /// The messages of an identification that are part of others or of no result.
+    fn parts() -> Vec<Box<dyn Message>> {
+        let point = GroupPoint {
+            group: "r1".into(),
+            restitution: 0.8,
+            half_width: 0.1,
+        };
+        let damping = DampingPoint {
+            amplitude_ratio: 1.0,
+            damping_ratio: 0.01,
+            half_width: 0.001,
+        };
+        let setting = PublishedSetting {
+            restitution: 0.5,
+            frequency_ratio: 0.6,
+        };
+        let stated = StatedValue {
+            parameter: Coordinate::Deflection,
+            value: 1e-3,
+            half_width: 1e-5,
+        };
+        let agreements = [None, Some(true)].map(|agree| Agreement {
+            agree,
+            pairs: Vec::new(),
+        });
+        boxed([point].into_iter())
+            .chain(boxed([damping].into_iter()))
+            .chain(boxed([setting].into_iter()))
+            .chain(boxed([stated].into_iter()))
+            .chain(boxed(agreements.into_iter()))
+            .chain(boxed(Direction::iter()))
+            .chain(boxed(Obstacle::iter()))
+            .collect()
     }
 
     #[test]
-    fn every_kind_has_its_own_name_and_templates_of_the_same_values() {
+    fn every_kind_has_its_own_name_and_its_texts() {
         let mut keys = BTreeSet::new();
         for message in kinds() {
             let kind = message.key();
             assert!(!kind.is_empty() && keys.insert(kind.clone()), "{kind}");
-            let english = message.template(Language::English);
-            let german = message.template(Language::German);
-            assert_eq!(names(english), names(german), "{kind}");
-            let values: BTreeSet<&str> = message.values().iter().map(|v| v.0).collect();
-            assert_eq!(names(english), values, "{kind}");
             assert!(!plain(message.as_ref()).contains(['{', '}', '$']), "{kind}");
         }
+        let all: Vec<_> = kinds().into_iter().chain(parts()).collect();
+        assert_eq!(faults(&all), Vec::<String>::new());
     }
 
     #[test]

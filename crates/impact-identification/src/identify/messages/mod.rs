@@ -1,7 +1,6 @@
 //! What an identification states: notes on parameters, remarks of methods, reasons why something was
 //! left out, findings, and the sentences of the verdict; each a variant with its numbers in SI.
 
-mod beyond;
 pub mod cause;
 mod damping;
 mod direction;
@@ -23,21 +22,20 @@ pub use remark::{GroupPoint, Remark, SpeedPoint};
 pub use sentence::{Sentence, StatedValue};
 
 use crate::identify::parameters::Coordinate;
+use impact_records::language::Language;
 use impact_records::message::Message;
 
 impl Message for Coordinate {
+    fn table(&self) -> &'static str {
+        "coordinate"
+    }
+
     fn kind(&self) -> &'static str {
         self.name()
     }
 
-    fn texts(&self) -> [&'static str; 2] {
-        let symbol = match self {
-            Self::Restitution => "$R$",
-            Self::Frequency => "$f_0$",
-            Self::Damping => "$β$",
-            Self::Deflection => "$x_st$",
-            other => other.name(),
-        };
-        [symbol; 2]
+    /// Its symbol, or its name, in every language.
+    fn template(&self, _: Language) -> &'static str {
+        self.symbol()
     }
 }

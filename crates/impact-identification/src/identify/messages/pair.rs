@@ -22,18 +22,12 @@ pub struct PairAgreement {
 }
 
 impl Message for PairAgreement {
-    fn kind(&self) -> &'static str {
-        "pair"
+    fn table(&self) -> &'static str {
+        "agreement"
     }
 
-    fn texts(&self) -> [&'static str; 2] {
-        [
-            "{parameter}: {value} ({first}) and {other} ({second}) are {distance} standard errors \
-             apart; trust neither interval until the cause is found",
-            "{parameter}: {value} ({first}) und {other} ({second}) liegen {distance} \
-             Standardfehler auseinander; keinem der beiden Intervalle ist zu trauen, bis die \
-             Ursache gefunden ist",
-        ]
+    fn kind(&self) -> &'static str {
+        "pair"
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {

@@ -132,71 +132,30 @@ pub struct LeftOut {
 
 messages!(Item, Reason);
 
-message_table! { Item;
-    Self::Record { record, .. } => "{record}", "{record}", record = Value::Name(record);
+message_table! { "item": Item;
+    Self::Record { record, .. } => record = Value::Name(record);
     Self::Bracket { boundary, frequency_low_hz, frequency_high_hz, clearance_m, .. } =>
-        "bracket {boundary} {low}–{high} Hz at {clearance} mm",
-        "Schranke {boundary} {low}–{high} Hz bei {clearance} mm",
         boundary = Value::Name(boundary.name()),
         low = Value::Number(*frequency_low_hz, 2),
         high = Value::Number(*frequency_high_hz, 2),
         clearance = Value::Number(1e3 * clearance_m, 3);
     Self::Impact { record, time_s, .. } =>
-        "{record} at {time} s",
-        "{record} bei {time} s",
-        record = Value::Name(record), time = Value::Number(*time_s, 3);
+        record = Value::Name(record),
+        time = Value::Number(*time_s, 3);
 }
 
-message_table! { Reason;
-    Self::ResponseUnlikeOthers { times_worse } =>
-        "its response fits {ratio} times worse than the others (still settling?): left out of the \
-         resonance curve",
-        "ihre Antwort passt {ratio}-mal schlechter als die anderen (noch nicht eingeschwungen?): \
-         aus der Resonanzkurve ausgelassen",
-        ratio = Value::Number(*times_worse, 0);
-    Self::WaveformUnlikeOthers { times_worse } =>
-        "its waveform fits {ratio} times worse than the others: left out of the trajectories",
-        "ihr Verlauf passt {ratio}-mal schlechter als die anderen: aus den Verläufen ausgelassen",
-        ratio = Value::Number(*times_worse, 1);
-    Self::NoSuchMotion =>
-        "the model has no such periodic motion at the fitted parameters: left out of the \
-         trajectories",
-        "das Modell hat mit den angepassten Parametern keine solche periodische Bewegung: aus den \
-         Verläufen ausgelassen";
-    Self::FarFromBoundary =>
-        "the motion changed far from the simulated boundary: a disturbance, or another boundary",
-        "die Bewegung wechselte weit von der simulierten Grenze: eine Störung, oder eine andere \
-         Grenze";
-    Self::GapNotAsStated =>
-        "its gap is not as stated: left out of trajectories and boundaries",
-        "ihr Abstand ist nicht der angegebene: aus Verläufen und Grenzen ausgelassen";
-    Self::ImpactsDoNotFollow =>
-        "its impacts do not follow from each other (one missed?): left out of multiple shooting",
-        "ihre Stöße folgen nicht auseinander (einer nicht erkannt?): aus dem Mehrfachschießen \
-         ausgelassen";
-    Self::Influential { method } =>
-        "it draws the fit away from what all other records state: left out of {method}",
-        "sie zieht die Anpassung von dem fort, was alle anderen Aufzeichnungen sagen: ausgelassen \
-         aus {method}",
-        method = Value::Message(method);
+message_table! { "reason": Reason;
+    Self::ResponseUnlikeOthers { times_worse } => ratio = Value::Number(*times_worse, 0);
+    Self::WaveformUnlikeOthers { times_worse } => ratio = Value::Number(*times_worse, 1);
+    Self::Influential { method } => method = Value::Message(method);
     Self::OutlyingImpact { before_m_s, after_m_s } =>
-        "its speeds, {before} m/s before and {after} m/s after, are far from those of the others",
-        "seine Geschwindigkeiten, {before} m/s davor und {after} m/s danach, liegen weit von denen \
-         der übrigen",
-        before = Value::Number(*before_m_s, 3), after = Value::Number(*after_m_s, 3);
+        before = Value::Number(*before_m_s, 3),
+        after = Value::Number(*after_m_s, 3);
     Self::Misfiled { specimen, specimen_hz, frequency_hz } =>
-        "filed under {specimen} ({own} Hz) but its natural frequency is {frequency} Hz; it looks \
-         misfiled",
-        "unter {specimen} ({own} Hz) abgelegt, aber die Eigenfrequenz ist {frequency} Hz; sie \
-         sieht falsch abgelegt aus",
         specimen = Value::Name(specimen),
         own = Value::Number(*specimen_hz, 2),
         frequency = Value::Number(*frequency_hz, 2);
     Self::MisfiledLike { specimen, specimen_hz, frequency_hz, like, like_hz } =>
-        "filed under {specimen} ({own} Hz) but its natural frequency is {frequency} Hz: it behaves \
-         as {like} ({other} Hz); it looks misfiled",
-        "unter {specimen} ({own} Hz) abgelegt, aber die Eigenfrequenz ist {frequency} Hz: Sie \
-         verhält sich wie {like} ({other} Hz); sie sieht falsch abgelegt aus",
         specimen = Value::Name(specimen),
         own = Value::Number(*specimen_hz, 2),
         frequency = Value::Number(*frequency_hz, 2),

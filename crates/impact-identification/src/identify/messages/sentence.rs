@@ -19,12 +19,12 @@ pub struct StatedValue {
 }
 
 impl Message for StatedValue {
-    fn kind(&self) -> &'static str {
-        "stated_value"
+    fn table(&self) -> &'static str {
+        "value"
     }
 
-    fn texts(&self) -> [&'static str; 2] {
-        ["{parameter} = {value} ± {half}{unit}"; 2]
+    fn kind(&self) -> &'static str {
+        "stated_value"
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {
@@ -121,57 +121,24 @@ pub enum Sentence {
 
 messages!(Sentence);
 
-message_table! { Sentence;
-    Self::Identified { values } =>
-        "The rig has {values} (95 %).",
-        "Der Prüfstand hat {values} (95 %).",
-        values = Value::list(values);
+message_table! { "sentence": Sentence;
+    Self::Identified { values } => values = Value::list(values);
     Self::Weak { values, parameters } =>
-        "The rig has {values} (95 %); {parameters} only weakly.",
-        "Der Prüfstand hat {values} (95 %); {parameters} nur schwach bestimmt.",
-        values = Value::list(values), parameters = Value::list(parameters);
-    Self::PartlyIdentifiable { values, parameters } =>
-        "The rig has {values} (95 %), but these data do not determine {parameters}.",
-        "Der Prüfstand hat {values} (95 %), aber {parameters} ist aus diesen Daten nicht zu bestimmen.",
-        values = Value::list(values), parameters = Value::list(parameters);
-    Self::NotIdentifiable { parameters } =>
-        "These data do not determine {parameters}.",
-        "Aus diesen Daten ist {parameters} nicht zu bestimmen.",
+        values = Value::list(values),
         parameters = Value::list(parameters);
-    Self::NothingUsable =>
-        "Nothing could be identified: no record is usable for any method.",
-        "Nichts war zu identifizieren: Keine Aufzeichnung ist für ein Verfahren brauchbar.";
-    Self::DoesNotFit =>
-        "The model does not describe these data: see the findings.",
-        "Das Modell beschreibt diese Daten nicht: siehe die Befunde.";
-    Self::MethodsAgree => "The methods agree.", "Die Verfahren stimmen überein.";
-    Self::MethodsDoNotAgree => "The methods do not agree.", "Die Verfahren stimmen nicht überein.";
-    Self::OneMethod =>
-        "Each parameter is determined by one method only.",
-        "Jeden Parameter bestimmt nur ein Verfahren.";
-    Self::Specimens { count } =>
-        "The campaign has {count} specimens; each is identified by itself.",
-        "Die Messreihe hat {count} Prüflinge; jeder ist für sich identifiziert.",
-        count = Value::Count(*count);
+    Self::PartlyIdentifiable { values, parameters } =>
+        values = Value::list(values),
+        parameters = Value::list(parameters);
+    Self::NotIdentifiable { parameters } => parameters = Value::list(parameters);
+    Self::Specimens { count } => count = Value::Count(*count);
     Self::SpecimensFit { fitting, count } =>
-        "The model fits {some} of {count}.",
-        "Das Modell passt zu {some} von {count}.",
-        some = Value::Count(*fitting), count = Value::Count(*count);
-    Self::SpecimensPoorlyKnown { parameter, count } =>
-        "{parameter} is poorly known in {count}.",
-        "{parameter} ist in {count} schlecht bekannt.",
-        parameter = Value::Message(parameter), count = Value::Count(*count);
-    Self::MisfiledRecords { count } =>
-        "Records that look misfiled: {count}.",
-        "Aufzeichnungen, die falsch abgelegt aussehen: {count}.",
+        some = Value::Count(*fitting),
         count = Value::Count(*count);
-    Self::PublishedDamping { damping_ratio } =>
-        "The published speeds belong to a damping ratio $β$ of {value}.",
-        "Die veröffentlichten Geschwindigkeiten gehören zu einem Dämpfungsgrad $β$ von {value}.",
-        value = Value::Number(*damping_ratio, 4);
-    Self::NoPublishedDamping =>
-        "No damping ratio gives the published speeds.",
-        "Kein Dämpfungsgrad ergibt die veröffentlichten Geschwindigkeiten.";
+    Self::SpecimensPoorlyKnown { parameter, count } =>
+        parameter = Value::Message(parameter),
+        count = Value::Count(*count);
+    Self::MisfiledRecords { count } => count = Value::Count(*count);
+    Self::PublishedDamping { damping_ratio } => value = Value::Number(*damping_ratio, 4);
 }
 
 impl Sentence {

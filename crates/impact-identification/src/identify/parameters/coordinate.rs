@@ -98,6 +98,17 @@ impl Coordinate {
         }
     }
 
+    /// Symbol between dollars, or the name of what has no symbol.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Restitution => "$R$",
+            Self::Frequency => "$f_0$",
+            Self::Damping => "$β$",
+            Self::Deflection => "$x_st$",
+            other => other.name(),
+        }
+    }
+
     /// All coordinates.
     pub fn all() -> impl Iterator<Item = Self> {
         let single = [

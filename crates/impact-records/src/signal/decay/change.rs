@@ -45,21 +45,7 @@ pub enum DampingLaw {
     Unknown,
 }
 
-message_table! { DampingLaw;
-    Self::Friction =>
-        "dry friction explains it, which adds to $β$ what grows as the amplitude falls",
-        "trockene Reibung erklärt es; sie fügt $β$ hinzu, was mit fallender Amplitude wächst";
-    Self::Drag =>
-        "drag in proportion to the square of the velocity explains it, which adds to $β$ in \
-         proportion to the amplitude",
-        "ein Widerstand mit dem Quadrat der Geschwindigkeit erklärt es; er fügt $β$ etwas \
-         proportional zur Amplitude hinzu";
-    Self::Unknown =>
-        "neither dry friction nor drag alone explains it: the damping depends on the amplitude or \
-         on time in another way",
-        "weder trockene Reibung noch Widerstand allein erklärt es: Die Dämpfung hängt anders von \
-         der Amplitude oder der Zeit ab";
-}
+message_table! { "damping_law": DampingLaw; }
 
 /// Frequency at the beginning and at the end of a decay.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

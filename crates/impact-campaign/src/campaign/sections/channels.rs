@@ -1,16 +1,82 @@
 //! `[channels]` as written to channel set-ups.
 
+use serde::Deserialize;
 use toml::Spanned;
 
-use super::context::{ResolveContext, remedy};
-use super::diagnostic::Code;
-use super::written::{Channel, Channels, Flight, Machine, Placed, Quantity, value};
+use crate::campaign::context::{ResolveContext, remedy};
+use crate::campaign::diagnostic::Code;
+use crate::campaign::keys::keys;
+use crate::campaign::resolved::RecordEntry;
+use crate::campaign::values::{Flight, Machine, Placed, Quantity, WrittenKey, value};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
 use impact_records::record::{ContactContent, LowPass, Role};
 use labfiles::units::{self, Dimension, Scale, Unit};
 
-impl Channels {
-    pub(super) fn of(&self, role: Role) -> &Placed<Channel> {
+keys! {
+    /// `[channels.<role>]`.
+    #[serde(default)]
+    pub struct ChannelTable {
+        /// its name in the file, with or without its unit (`Position (m) Run #1` and `Position Run #1` are the same),
+        /// the label of its signal, or its index from 0; required
+        channel: Placed<WrittenKey>;
+        /// of the numbers in the file; required if the file states none
+        unit: Placed<String>;
+        /// from the unit of the numbers to the quantity: `"50 mm/s per V"`, `"0.05 m/s/V"`, a sensor's sensitivity
+        /// `"100 mV/g"`, or a plain factor
+        scale: Placed<Quantity>;
+        /// value at rest, in the unit of the file
+        offset: Placed<Quantity>;
+        /// 1, or -1 if the sensor is positive away from the other mass
+        sign: Placed<f64>;
+        /// corner of the first-order high-pass in the signal: of an integrator or an AC coupling; `"0 Hz"`: none
+        high_pass: Placed<Quantity>;
+        /// corner of the low-pass that the signal has passed: of an anti-alias filter, a vibrometer, an amplifier;
+        /// `"0 Hz"`: none. The model is filtered, values near impacts are left out until the filter has settled, and
+        /// the speeds at impacts are not used
+        low_pass: Placed<Quantity>;
+        /// number of its poles, 1 to 8 (Butterworth); 2 if not given
+        low_pass_order: Placed<u32>;
+        /// of the channel relative to the drive channel, less than a period; 0 if not given
+        delay: Placed<Quantity>;
+        /// standard uncertainty of the delay; half a sample if not given
+        delay_uncertainty: Placed<Quantity>;
+        /// of the contact: the level between open and closed
+        threshold: Placed<Quantity>;
+        /// of the contact: `"signal"` (default); `"times"` or `"intervals"` of impacts, one in each row, or of changes
+        /// of the contact, closed, open, closed …, with or without a column of its state; `"sound"` of a microphone. R
+        /// then follows from the flight times, under `flight = "constant_force"`
+        content: Placed<ContactContent>;
+        /// full scale of the converter; samples there are clipped. Of an acceleration, spikes at impacts may be, and
+        /// equal greatest values show it without this key
+        range: Placed<Quantity>;
+        /// `true` if the file states a wrong unit
+        ignore_file_unit: Placed<bool>;
+        /// what recorded it, as text: sensor, amplifier, serial number; in `impactid compare` campaigns with the same
+        /// text share the errors of the channel's gain and corner, as long as `scale`, `unit` and `high_pass` are the
+        /// same
+        instrument: Placed<String>;
+    }
+}
+
+/// `[channels]`: one table a role.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[allow(missing_docs, reason = "the roles are documented at `record::Role`")]
+pub struct ChannelTables {
+    pub drive: Placed<ChannelTable>,
+    pub contact: Placed<ChannelTable>,
+    pub velocity_x: Placed<ChannelTable>,
+    pub velocity_y: Placed<ChannelTable>,
+    pub displacement_x: Placed<ChannelTable>,
+    pub displacement_y: Placed<ChannelTable>,
+    pub acceleration_x: Placed<ChannelTable>,
+    pub acceleration_y: Placed<ChannelTable>,
+    pub frame_x: Placed<ChannelTable>,
+    pub frame_y: Placed<ChannelTable>,
+}
+
+impl ChannelTables {
+    pub(crate) fn of(&self, role: Role) -> &Placed<ChannelTable> {
         match role {
             Role::Drive => &self.drive,
             Role::Contact => &self.contact,
@@ -27,8 +93,8 @@ impl Channels {
 }
 
 /// All channels that campaign.toml names, in the order of the roles.
-pub(super) fn resolve(
-    channels: &Channels,
+pub(crate) fn resolve(
+    channels: &ChannelTables,
     (machine, flight): (Machine, Flight),
     context: &mut ResolveContext<'_>,
 ) -> Vec<ChannelSetup> {
@@ -59,7 +125,7 @@ pub(super) fn resolve(
 fn refuse_driven_events(
     setups: &[ChannelSetup],
     flight: Flight,
-    channels: &Channels,
+    channels: &ChannelTables,
     context: &mut ResolveContext<'_>,
 ) {
     let events = setups.iter().any(|s| s.content != ContactContent::Signal);
@@ -94,7 +160,11 @@ fn demand_motion(setups: &[ChannelSetup], flight: Flight, context: &mut ResolveC
     );
 }
 
-fn refuse_twice(setups: &[ChannelSetup], channels: &Channels, context: &mut ResolveContext<'_>) {
+fn refuse_twice(
+    setups: &[ChannelSetup],
+    channels: &ChannelTables,
+    context: &mut ResolveContext<'_>,
+) {
     for (i, one) in setups.iter().enumerate() {
         let Some(other) = setups[..i].iter().find(|o| o.source == one.source) else {
             continue;
@@ -118,7 +188,7 @@ fn refuse_twice(setups: &[ChannelSetup], channels: &Channels, context: &mut Reso
 
 fn resolve_one(
     role: Role,
-    placed: &Spanned<Channel>,
+    placed: &Spanned<ChannelTable>,
     context: &mut ResolveContext<'_>,
 ) -> Option<ChannelSetup> {
     let written = placed.get_ref();
@@ -159,7 +229,7 @@ fn resolve_one(
 
 fn source(
     role: Role,
-    placed: &Spanned<Channel>,
+    placed: &Spanned<ChannelTable>,
     context: &mut ResolveContext<'_>,
 ) -> Option<ChannelKey> {
     let key = format!("channels.{}.channel", role.name());
@@ -183,7 +253,7 @@ const MOST_POLES: u32 = 8;
 
 /// The low-pass; at 0 Hz there is none.
 fn low_pass(
-    written: &Channel,
+    written: &ChannelTable,
     key: &dyn Fn(&str) -> String,
     context: &mut ResolveContext<'_>,
 ) -> Option<LowPass> {
@@ -369,4 +439,31 @@ fn of_contact<'a, T>(
     let remedy = "move it to [channels.contact]";
     context.fault(Code::Conflict, placed, key, what, remedy);
     None
+}
+
+/// The delay of a channel must be less than a period of the drive.
+pub(crate) fn refuse_long_delays(
+    channels: &[ChannelSetup],
+    records: &[RecordEntry],
+    written: &ChannelTables,
+    context: &mut ResolveContext<'_>,
+) {
+    let stated = records.iter().filter_map(|r| r.setting.stated_frequency_hz);
+    let fastest = stated.fold(0.0, f64::max);
+    for channel in channels.iter().filter(|c| c.delay_s.abs() * fastest >= 1.0) {
+        let Some(placed) = written.of(channel.role) else {
+            continue;
+        };
+        let what = format!(
+            "{:.4} s is longer than a period of the drive at {fastest} Hz",
+            channel.delay_s
+        );
+        context.fault(
+            Code::OutOfRange,
+            placed,
+            &format!("channels.{}.delay", channel.role.name()),
+            what,
+            "state the delay against the drive's channel, with its unit",
+        );
+    }
 }

@@ -1,0 +1,100 @@
+//! The keys of campaign.toml: each is a row of its section's table.
+//!
+//! From a row come the field that is read, the row of docs/campaign.md and the line that `impactid init`
+//! writes.
+
+use std::fmt::Write;
+
+/// What is known of a key apart from its value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Key {
+    /// Name.
+    pub name: &'static str,
+    /// What it states, in Markdown.
+    pub meaning: &'static [&'static str],
+    /// What holds without it, in Markdown; `None` where its meaning states that.
+    pub default: Option<&'static str>,
+    /// What `impactid init` writes, if it does.
+    pub init: Option<&'static str>,
+}
+
+/// Defines a section of campaign.toml as a struct and lists its keys.
+///
+/// A row is the meaning of a key as its doc comment, which is also the cell of docs/campaign.md, the
+/// key's name and type, then its default in words and what `impactid init` writes, if any.
+macro_rules! keys {
+    (
+        $(#[$attribute:meta])*
+        pub struct $section:ident {
+            $(
+                $(#[doc = $meaning:literal])+
+                $(#[serde($($serde:tt)*)])?
+                $key:ident: $value:ty $(, default $default:literal)? $(, init $init:literal)?;
+            )+
+        }
+    ) => {
+        #[derive(Debug, Clone, Default, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        $(#[$attribute])*
+        #[allow(clippy::doc_markdown, reason = "the comments are cells of docs/campaign.md")]
+        pub struct $section {
+            $(
+                $(#[doc = $meaning])+
+                $(#[serde($($serde)*)])?
+                pub $key: $value,
+            )+
+        }
+
+        impl $section {
+            /// Its keys.
+            pub const KEYS: &'static [$crate::campaign::keys::Key] = &[
+                $(
+                    $crate::campaign::keys::Key {
+                        name: stringify!($key),
+                        meaning: &[$($meaning),+],
+                        default: $crate::campaign::keys::optional!($($default)?),
+                        init: $crate::campaign::keys::optional!($($init)?),
+                    },
+                )+
+            ];
+        }
+    };
+}
+
+/// `Some` of what is there.
+macro_rules! optional {
+    () => {
+        None
+    };
+    ($text:literal) => {
+        Some($text)
+    };
+}
+
+pub(super) use {keys, optional};
+
+/// The lines of `impactid init` for the keys of a section.
+pub(super) fn init_lines(keys: &[Key]) -> String {
+    let mut text = String::new();
+    for line in keys.iter().filter_map(|key| key.init) {
+        // writing to a String cannot fail
+        let _ = writeln!(text, "{line}");
+    }
+    text
+}
+
+/// The table of docs/campaign.md for the keys of a section; `heading` is that of the second column.
+pub fn markdown(keys: &[Key], heading: &str) -> String {
+    let defaults = keys.iter().any(|key| key.default.is_some());
+    let row = |cells: &[&str]| format!("| {} |\n", cells.join(" | "));
+    let width = if defaults { 3 } else { 2 };
+    let mut text = row(&["key", heading, "default"][..width]);
+    text += &row(&["---"; 3][..width]);
+    for key in keys {
+        let name = format!("`{}`", key.name);
+        let meaning: Vec<&str> = key.meaning.iter().map(|line| line.trim()).collect();
+        let meaning = meaning.join(" ");
+        text += &row(&[&name, &meaning, key.default.unwrap_or("none")][..width]);
+    }
+    text
+}
