@@ -27,7 +27,7 @@ use crate::hdf5::store::{Array, StoreError, Tree};
 use crate::numbers::Spacing;
 use crate::rate;
 use crate::source::{ChannelInfo, DatasetInfo, ReadError, Reader, Samples, Source, opened};
-use crate::timing::AxisUnit;
+use crate::timing::{self, AxisUnit};
 
 /// The first bytes of an HDF5 file.
 pub(crate) const SIGNATURE: [u8; 8] = [0x89, b'H', b'D', b'F', b'\r', b'\n', 0x1A, b'\n'];
@@ -67,6 +67,7 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         store,
         plans,
     };
+    notes.extend(reader.take_unnamed_times(&mut datasets));
     reader.measure_rates(&mut datasets);
     opened("hdf5", &path, datasets, notes, reader)
 }
@@ -147,6 +148,28 @@ impl Hdf5Reader {
             })?);
         }
         Ok(())
+    }
+
+    /// Take the first column of tables without names that climbs evenly for their time; gives what was assumed.
+    fn take_unnamed_times(&self, datasets: &mut [DatasetInfo]) -> Vec<String> {
+        let mut notes = Vec::new();
+        for (number, set) in datasets.iter_mut().enumerate() {
+            let unnamed = set.channels.len() > 1 && set.channels[0].name == "column_1";
+            let timed = set.time_axis.is_some() || set.sample_rate_hz().is_some();
+            if timed || !unnamed {
+                continue;
+            }
+            let first = self.read(number, &[0]).ok().and_then(|mut r| r.pop());
+            let first = first.and_then(Samples::into_real);
+            if first.is_some_and(|values| timing::climbs_evenly(&values)) {
+                set.time_axis = Some(0);
+                notes.push(format!(
+                    "the first column of {} climbs evenly and has no name: taken as time in seconds",
+                    set.name
+                ));
+            }
+        }
+        notes
     }
 
     /// Take the rates that no attribute states from the ends of the time axes.

@@ -391,6 +391,19 @@ fn epoch_unit(name: &str, first: f64) -> Option<Unit> {
     (counts || split).then(|| of_time(unit))
 }
 
+/// Whether values without a name climb evenly, as a time axis does, and are no mere count of rows.
+pub(crate) fn climbs_evenly(values: &[f64]) -> bool {
+    let head = &values[..values.len().min(crate::rate::HEAD_SAMPLES)];
+    let Some(step) = crate::rate::median_step(head) else {
+        return false;
+    };
+    let mut steps = head.windows(2).map(|w| w[1] - w[0]);
+    let even = steps.all(|own| (own - step).abs() < 0.5 * step);
+    let counts = head.iter().all(|v| v.fract() == 0.0);
+    let on = values.windows(2).all(|w| w[1] >= w[0]);
+    head.len() > 2 && even && on && !counts
+}
+
 /// Days of the years 1950 to 2100 since the year 0, as MATLAB counts, and since 1900, as spreadsheets do.
 const DAYS: [[f64; 2]; 2] = [[712_224.0, 767_376.0], [18_264.0, 73_416.0]];
 /// Steps below this are of no time in s since a start so long ago: 80 kHz and more, after hours or days.
@@ -558,6 +571,20 @@ mod tests {
             stated_unit(Some("ticks"), "Time"),
             StatedUnit::Other("ticks".into())
         );
+    }
+
+    #[test]
+    fn a_column_without_a_name_is_time_where_it_climbs_evenly_by_parts() {
+        let column = |step: f64| (0..600).map(|i| f64::from(i) * step).collect::<Vec<f64>>();
+        assert!(climbs_evenly(&column(2e-3)));
+        // a count of rows, a signal, a time that goes back
+        assert!(!climbs_evenly(&column(1.0)));
+        let wave: Vec<f64> = column(0.1).iter().map(|t| t.sin()).collect();
+        assert!(!climbs_evenly(&wave));
+        let mut twice = column(2e-3);
+        twice.extend(column(2e-3));
+        assert!(!climbs_evenly(&twice));
+        assert!(!climbs_evenly(&[0.5, 0.5]));
     }
 
     #[test]

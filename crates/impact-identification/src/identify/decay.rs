@@ -34,8 +34,12 @@ const NO_SINGLE: f64 = 5.0;
 const DAMPING_MATTERS: f64 = 0.15;
 /// Amplitude beside a decay, over its own, that is told: of a tone, and of a drift.
 const TELLING: [f64; 2] = [0.02, 0.1];
-/// Widening of an interval by slow noise that is told.
-const WIDENING: f64 = 10.0;
+/// Widening of an interval by slow noise that is told: nine tenths of its variance are that noise.
+const WIDENING: f64 = 3.0;
+/// Periods from which parts of a decay show whether one frequency and one damping ratio hold along it.
+const TESTED_PERIODS: f64 = 3.0;
+/// Share of its first amplitude at the end of a record beyond which it was cut off.
+const CUT_OFF: f64 = 0.02;
 
 /// All free decays of a campaign, pooled; `None` without any.
 pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
@@ -66,9 +70,38 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     let apart = frequencies.iter().map(|p| (p.0 - f).abs());
     let apart = apart.fold(0.0, f64::max);
     judge(&mut result, &decays, apart);
+    if let Some(periods) = too_short(&decays) {
+        leave_weak(&mut result, Note::FewPeriods { periods });
+    }
     let fits = result.fits == Some(true);
     result.remarks.extend(beside(&decays, fits));
     Some(result)
+}
+
+/// Periods of the longest of decays that all were cut off too early for a test whether they are viscous; `None` if
+/// one was not.
+fn too_short(decays: &[&Decay]) -> Option<f64> {
+    let cut_off = |d: &&Decay| {
+        let turns = std::f64::consts::TAU * d.periods;
+        d.periods < TESTED_PERIODS && (-d.damping_ratio * turns).exp() > CUT_OFF
+    };
+    let longest = decays.iter().map(|d| d.periods).fold(0.0, f64::max);
+    decays.iter().all(|d| cut_off(&d)).then_some(longest)
+}
+
+/// Make f0 and β weak for a reason, if they are no weaker.
+fn leave_weak(result: &mut MethodResult, why: Note) {
+    let parameters = &mut result.parameters;
+    let both = [
+        &mut parameters.natural_frequency_hz,
+        &mut parameters.damping_ratio,
+    ];
+    for estimate in both.into_iter().flatten() {
+        if estimate.status == Status::Identified {
+            estimate.status = Status::Weak;
+            estimate.note = Some(why.clone());
+        }
+    }
 }
 
 /// β with its interval, which begins at zero where an undamped motion is within it.
@@ -114,6 +147,22 @@ fn judge(result: &mut MethodResult, decays: &[&Decay], spread: f64) {
         false => Remark::DecaysHaveStructure { share, structure },
     };
     result.remarks.insert(0, of_residuals);
+    if !fits {
+        result.remarks.extend(beat(decays));
+    }
+}
+
+/// The two frequencies of decays that beat.
+fn beat(decays: &[&Decay]) -> Option<Remark> {
+    let beating: Vec<[f64; 3]> = decays.iter().filter_map(|d| d.beside.beat).collect();
+    let strongest = beating.iter().max_by(|a, b| a[2].total_cmp(&b[2]))?;
+    let [first_hz, second_hz, ratio] = *strongest;
+    Some(Remark::DecaysBeat {
+        count: beating.len(),
+        first_hz,
+        second_hz,
+        ratio,
+    })
 }
 
 /// Whether one damping ratio does not hold along most of the decays.

@@ -15,6 +15,8 @@ use crate::identify::evidence::structure::{
 };
 use crate::identify::messages::Remark;
 use crate::identify::parameters::Coordinate;
+use crate::identify::statistics::distribution::student_tail;
+use crate::identify::statistics::scatter::Spread;
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
 
@@ -27,8 +29,13 @@ const GREATEST: f64 = 1.05;
 const USUAL_ERROR_S: f64 = 2e-3;
 /// Differences from which the scatter states the error of the times.
 const ENOUGH: usize = 3;
-/// Normal deviate from which a trend of R, or the R of one record, is no chance.
-const NO_CHANCE: f64 = 3.3;
+/// Questions among which the false alarms are shared: a trend over bounces, and differences between records.
+const QUESTIONS: f64 = 2.0;
+/// Differences of a row's logarithms for each independent one: 1 + 2Σρ² of third differences of flights, fourth of
+/// the times, whose correlations are −56, 28, −8 and 1 over 70.
+const PER_INDEPENDENT: f64 = 2.63;
+/// Probability from which the record furthest off is none of the others (Grubbs 1969, at his 5 %).
+const ODD: f64 = 0.05;
 /// Change of R over the bounces of a record, or of one record from the others, that matters.
 const MATTERS: f64 = 0.005;
 /// Records from which one is told from the others.
@@ -62,7 +69,11 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     let timed = |(_, o): &(usize, &Observation)| !o.excluded() && is_timed(o);
     let records: Vec<(usize, &Observation)> =
         observations.iter().enumerate().filter(timed).collect();
-    let (rows, left_out) = rows(&records);
+    let Rows {
+        rows,
+        left_out,
+        missed,
+    } = rows(&records);
     let fits: Vec<(&Row, Fitted)> = rows
         .iter()
         .filter_map(|row| Some((row, fitted(&row.times_s)?)))
@@ -70,7 +81,8 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     if fits.is_empty() {
         return None;
     }
-    let error_s = time_error_s(&fits, &records);
+    let noise = time_noise(&fits, &records);
+    let error_s = noise.error;
     let all: Vec<ImpactGroup> = fits
         .iter()
         .map(|(row, fit)| ImpactGroup {
@@ -98,7 +110,8 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         fits: Some(true),
         ..MethodResult::default()
     };
-    let restitution = estimate::estimate(Coordinate::Restitution, value, error);
+    let spread = Spread { error, ..noise };
+    let restitution = estimate::estimate_within(Coordinate::Restitution, value, spread, None);
     result.parameters.restitution = Some(restitution);
     result.impact_groups = Some(ImpactGroups {
         by_record: all.clone(),
@@ -110,6 +123,13 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
             .remarks
             .push(Remark::FlightsLeftOut { count: left_out });
     }
+    if let Some((record, time_s)) = missed.first() {
+        result.remarks.push(Remark::ImpactsMissed {
+            count: missed.len(),
+            record: observations[*record].record.clone(),
+            time_s: *time_s,
+        });
+    }
     if let Some(odd) = odd {
         result.remarks.push(Remark::OddRecord {
             record: all[odd].group.clone(),
@@ -118,7 +138,7 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         });
     }
     let scatter = ratios.len() > 1 && !rows.is_empty();
-    let grouping = match trend(&rows, error_s) {
+    let grouping = match trend(&rows, noise) {
         true => Some(Grouping::Bounce),
         false => between_records(&groups).or_else(|| structure::structure(&ratios)),
     };
@@ -157,13 +177,13 @@ fn error_of_contacts(
 }
 
 /// Whether R changes along the bounces, by its logarithm as a line over their number in all records.
-fn trend(rows: &[(&Row, Fitted)], error_s: f64) -> bool {
+fn trend(rows: &[(&Row, Fitted)], noise: Spread) -> bool {
     let (mut weight, mut sum, mut longest) = (0.0, 0.0, 0);
     for (row, _) in rows {
         let Some((slope, error_per_s)) = slope(&row.times_s) else {
             continue;
         };
-        let own = (error_per_s * error_s).powi(-2);
+        let own = (error_per_s * noise.error).powi(-2);
         weight += own;
         sum += own * slope;
         longest = longest.max(row.times_s.len());
@@ -173,7 +193,8 @@ fn trend(rows: &[(&Row, Fitted)], error_s: f64) -> bool {
     }
     let slope = sum / weight;
     let change = (slope * (longest as f64 - 3.0)).abs();
-    slope.abs() * weight.sqrt() > NO_CHANCE && change > MATTERS
+    let chance = student_tail(slope * weight.sqrt(), noise.freedom);
+    chance < structure::FALSE_ALARMS / QUESTIONS && change > MATTERS
 }
 
 /// Change of R from bounce to bounce along a row, with its standard error for a standard error of 1 s of each
@@ -238,48 +259,60 @@ fn odd_record(groups: &[ImpactGroup]) -> Option<usize> {
     let chance = group
         .standard_error
         .hypot(spread * (1.0 + 1.0 / off.len() as f64).sqrt());
-    (apart > FAR * chance && apart > STRANGE).then_some(odd)
+    // any of them might have been the furthest
+    let probability = groups.len() as f64 * student_tail(apart / chance, (off.len() - 1) as f64);
+    (probability < ODD && apart > STRANGE).then_some(odd)
 }
 
-/// Deviations of chance from which the record furthest off is none of the others: its tail is heavy where few
-/// records tell the spread.
-const FAR: f64 = 6.0;
 /// Difference of R from the other records' that is looked at.
 const STRANGE: f64 = 0.02;
 
-/// The rows of all records, and how many flights belong to none.
-fn rows(records: &[(usize, &Observation)]) -> (Vec<Row>, usize) {
+/// The rows of all records.
+#[derive(Default)]
+struct Rows {
+    rows: Vec<Row>,
+    /// Flights that belong to none.
+    left_out: usize,
+    /// Where an impact is missing: the record's index and the time, s.
+    missed: Vec<(usize, f64)>,
+}
+
+/// The rows of all records, parted where a flight does not follow from the one before.
+fn rows(records: &[(usize, &Observation)]) -> Rows {
     let flights = |o: &Observation| -> Vec<f64> {
         let times = o.impacts.windows(2);
         times.map(|w| w[1].time_s - w[0].time_s).collect()
     };
-    let all: Vec<f64> = records
-        .iter()
-        .flat_map(|(_, o)| {
-            flights(o)
-                .windows(2)
-                .map(|w| w[1] / w[0])
-                .collect::<Vec<_>>()
-        })
-        .filter(|r| *r < GREATEST)
-        .collect();
+    let ratios = |o: &Observation| -> Vec<f64> {
+        let flights = flights(o);
+        flights.windows(2).map(|w| w[1] / w[0]).collect()
+    };
+    let all = records.iter().flat_map(|(_, o)| ratios(o));
+    let all: Vec<f64> = all.filter(|r| *r < GREATEST).collect();
+    let mut found = Rows::default();
     let Some(median) = robust::median(&all) else {
-        return (Vec::new(), 0);
+        return found;
     };
     let plausible = |r: f64| r > PLAUSIBLE[0] * median && r < (PLAUSIBLE[1] * median).min(GREATEST);
-    let (mut rows, mut left_out) = (Vec::new(), 0);
     for (record, o) in records {
         let flights = flights(o);
+        let ratios = ratios(o);
+        let missed: Vec<usize> = (1..flights.len())
+            .filter(|k| two_in_one(&ratios, *k, median))
+            .collect();
+        let first = |k: &usize| (*record, o.impacts[*k].time_s + flights[*k] / (1.0 + median));
+        found.missed.extend(missed.iter().map(first));
         let mut begin = 0;
         for end in 1..=flights.len() {
-            let goes_on = end < flights.len() && plausible(flights[end] / flights[end - 1]);
+            let beside = missed.contains(&end) || missed.contains(&(end - 1));
+            let goes_on = end < flights.len() && !beside && plausible(ratios[end - 1]);
             if goes_on {
                 continue;
             }
             if end - begin < 2 {
-                left_out += end - begin;
+                found.left_out += end - begin;
             } else {
-                rows.push(Row {
+                found.rows.push(Row {
                     record: *record,
                     first: begin,
                     times_s: o.impacts[begin..=end].iter().map(|i| i.time_s).collect(),
@@ -288,7 +321,18 @@ fn rows(records: &[(usize, &Observation)]) -> (Vec<Row>, usize) {
             begin = end;
         }
     }
-    (rows, left_out)
+    found
+}
+
+/// Whether a flight is two, the impact between them missing: the ratios to the flight before and of the one
+/// after are R(1 + R) and R²/(1 + R), nearer to that than to R both.
+fn two_in_one(ratios: &[f64], flight: usize, restitution: f64) -> bool {
+    let (Some(to), Some(from)) = (ratios.get(flight - 1), ratios.get(flight)) else {
+        return false;
+    };
+    let (sum, half) = (1.0 + restitution, 0.5 * (1.0 + restitution).ln());
+    let near = |ratio: f64, two: f64| (ratio / two).ln().abs() < half;
+    near(*to, restitution * sum) && near(*from, restitution.powi(2) / sum)
 }
 
 /// Gauss–Newton for `t_0`, `T_0` and R from the ratio of the first two flights.
@@ -325,28 +369,34 @@ fn fitted(times_s: &[f64]) -> Option<Fitted> {
 }
 
 /// Standard error of the times, s: by what no R and no steady change of it explains, at least as their source
-/// states.
-fn time_error_s(fits: &[(&Row, Fitted)], records: &[(usize, &Observation)]) -> f64 {
+/// states; and how well it is known.
+fn time_noise(fits: &[(&Row, Fitted)], records: &[(usize, &Observation)]) -> Spread {
     let errors: Vec<f64> = records
         .iter()
         .flat_map(|(_, o)| o.impacts.iter().map(|i| i.time_error_s))
         .collect();
     let stated = robust::median(&errors).unwrap_or(0.0);
-    let third: Vec<f64> = fits
-        .iter()
-        .flat_map(|(row, _)| differences(&row.times_s, &[-1.0, 3.0, -3.0, 1.0]))
-        .collect();
+    let of = |factors: &[f64]| -> Vec<f64> {
+        let rows = fits.iter();
+        rows.flat_map(|(row, _)| differences(&row.times_s, factors))
+            .collect()
+    };
+    let third = of(&[-1.0, 3.0, -3.0, 1.0]);
     let differences = match third.len() < ENOUGH {
-        true => fits
-            .iter()
-            .flat_map(|(row, _)| differences(&row.times_s, &[1.0, -2.0, 1.0]))
-            .collect(),
+        true => of(&[1.0, -2.0, 1.0]),
         false => third,
     };
     if differences.len() < ENOUGH {
-        return stated.max(USUAL_ERROR_S);
+        return Spread::known(stated.max(USUAL_ERROR_S));
     }
-    stated.max(robust::rms(&differences))
+    let scatter = robust::rms(&differences);
+    if stated >= scatter {
+        return Spread::known(stated);
+    }
+    Spread {
+        freedom: (differences.len() as f64 / PER_INDEPENDENT).max(1.0),
+        ..Spread::known(scatter)
+    }
 }
 
 /// Differences of the logarithms of a row's flights, each over its standard error for one of 1 s of each time.
@@ -490,6 +540,30 @@ mod tests {
             "{:?}",
             found.remarks
         );
+        // four flights of 0.5 s, 0.4 s … before it: 1 + 0.5 (1 + 0.8 + 0.64 + 0.512) s
+        let missed = |r: &&Remark| matches!(r, Remark::ImpactsMissed { .. });
+        let text = found.remarks.iter().find(missed).expect("a remark");
+        assert_eq!(
+            text.to_string(),
+            "impacts missing among the times: 1, the first in a at about 2.476 s; the flights over them are left \
+             out: see why they were not heard"
+        );
+    }
+
+    #[test]
+    fn an_impact_missing_at_a_low_restitution_is_told_from_a_change_of_it() {
+        // merged flights are 0.75 of the one before, which alone would pass beside R = 0.5
+        let mut times = row(0.5, 8);
+        times.remove(4);
+        let found = pooled(&[timed("a", &times)]).expect("a result");
+        let missed = |r: &Remark| matches!(r, Remark::ImpactsMissed { count: 1, .. });
+        assert!(found.remarks.iter().any(missed), "{:?}", found.remarks);
+        let r = found.parameters.restitution.and_then(|r| r.value);
+        assert!((r.expect("R") - 0.5).abs() < 1e-6);
+        // R that rises from 0.41 to 0.53, and each impact there
+        let found = pooled(&[timed("a", &changing(0.41, 0.03, 5, 0.0, 0))]).expect("a result");
+        let missed = |r: &Remark| matches!(r, Remark::ImpactsMissed { .. });
+        assert!(!found.remarks.iter().any(missed), "{:?}", found.remarks);
     }
 
     #[test]

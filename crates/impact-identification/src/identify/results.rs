@@ -68,7 +68,7 @@ pub fn impacts(
     let law = contact_law::contact_law(block);
     let gained = law.as_ref().and_then(ContactLaw::gained);
     result.contact_law = law.filter(|_| gained.is_none()).map(ContactLaw::within_one);
-    let ratios = structure::ratios(block, &blocks.impact_outliers, evidence.observations);
+    let ratios = structure::ratios(block, evidence.observations);
     if !ratios.is_empty() {
         result.impact_groups = Some(structure::groups(&ratios, evidence.observations));
     }

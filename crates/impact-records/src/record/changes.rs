@@ -66,7 +66,7 @@ pub fn levels(times: &[f64], states: &[f64]) -> Option<Levels> {
 }
 
 /// As [`levels`], of a line among several, any of which changes with a row.
-pub(super) fn line_levels(times: &[f64], states: &[f64]) -> Option<Levels> {
+pub fn line_levels(times: &[f64], states: &[f64]) -> Option<Levels> {
     if times.len() != states.len() {
         return None;
     }
@@ -160,6 +160,13 @@ fn grouped(times: &[f64], limit: f64) -> Option<Closings> {
         times_s: all.iter().map(|g| g[0]).collect(),
         closed_s: robust::median(&lasting)?,
     })
+}
+
+/// Whether each row after the first changes one of several lines.
+pub fn all_change(lines: &[Vec<f64>]) -> bool {
+    let rows = lines.iter().map(Vec::len).min().unwrap_or(0);
+    let changes = |row: usize| lines.iter().any(|line| line[row] != line[row - 1]);
+    rows > 1 && (1..rows).all(changes)
 }
 
 /// The columns of a dataset that may hold the states beside the times of its changes.

@@ -5,7 +5,7 @@ use crate::csv::header::Header;
 use crate::rate;
 use crate::text::table::{Kind, Layout};
 use crate::text::{clock, decode};
-use crate::timing::{AxisUnit, StatedUnit, is_time_name, stated_unit};
+use crate::timing::{AxisUnit, StatedUnit, climbs_evenly, is_time_name, stated_unit};
 use crate::units::symbol_of;
 
 /// The time axis of a table.
@@ -94,13 +94,7 @@ fn unnamed(header: &Header, layout: &Layout, rows: &HeadRows<'_>) -> Option<Time
     {
         return None;
     }
-    let head = head_of(layout, rows, 0);
-    let step = rate::median_step(&head)?;
-    let even = head
-        .windows(2)
-        .all(|w| (w[1] - w[0] - step).abs() < 0.5 * step);
-    let counts = head.iter().all(|v| v.fract() == 0.0);
-    (head.len() > 2 && even && !counts).then(|| {
+    climbs_evenly(&head_of(layout, rows, 0)).then(|| {
         let note = "first column climbs evenly and has no name: taken as time in seconds";
         TimeAxis {
             column: 0,

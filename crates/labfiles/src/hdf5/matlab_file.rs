@@ -41,9 +41,9 @@ pub(crate) fn open(path: &Path, store: Store, tree: &Tree) -> Result<Box<dyn Sou
         return Err(ReadError::new(path, "arrays of numbers", left, remedy));
     }
     let Arranged {
-        datasets,
+        mut datasets,
         origins,
-        notes,
+        mut notes,
     } = arrange::arrange(&found.variables);
     let reader = MatlabReader {
         path: path.to_path_buf(),
@@ -51,6 +51,12 @@ pub(crate) fn open(path: &Path, store: Store, tree: &Tree) -> Result<Box<dyn Sou
         found,
         origins,
     };
+    let values = |dataset: usize, channel: usize| {
+        let mut read = reader.read(dataset, &[channel]).ok()?;
+        read.pop()?.into_real()
+    };
+    let places = (&reader.found.variables, &reader.origins[..]);
+    notes.extend(arrange::take_unnamed_times(places, &mut datasets, values));
     opened("mat", path, datasets, notes, reader)
 }
 

@@ -98,6 +98,47 @@ pub(crate) fn arrange(tree: &Tree) -> Arranged {
     builder.arranged
 }
 
+/// Take the first columns of matrices that climb evenly for times, in datasets that have none; `values` reads a
+/// channel of a dataset. Gives what was assumed.
+pub(crate) fn take_unnamed_times(
+    (tree, origins): (&Tree, &[Vec<Origin>]),
+    datasets: &mut [DatasetInfo],
+    values: impl Fn(usize, usize) -> Option<Vec<f64>>,
+) -> Vec<String> {
+    let mut notes = Vec::new();
+    for (number, (set, origins)) in datasets.iter_mut().zip(origins).enumerate() {
+        let rated = set.channels.iter().any(|c| c.sample_rate_hz.is_some());
+        if set.time_axis.is_some() || rated {
+            continue;
+        }
+        let climbs = |i: &usize| values(number, *i).is_some_and(|v| timing::climbs_evenly(&v));
+        let firsts = (0..origins.len()).filter(|i| is_first_of_several(tree, origins[*i]));
+        let times: Vec<usize> = firsts.filter(climbs).collect();
+        for &time in &times {
+            let own = |i: &usize| *i != time && origins[*i].leaf == origins[time].leaf;
+            for i in (0..origins.len()).filter(own) {
+                set.channels[i].clock = Clock::Axis(time);
+            }
+            let name = &set.channels[time].name;
+            let note = format!("{name} climbs evenly and has no name: taken as time in seconds");
+            notes.push(note);
+        }
+        set.time_axis = times.first().copied();
+    }
+    notes
+}
+
+/// Whether an array's part is the first column, or row, of a matrix of several.
+fn is_first_of_several(tree: &Tree, origin: Origin) -> bool {
+    let leaf = &tree.leaves[origin.leaf];
+    let first = match origin.slice {
+        Slice::Column(0) => leaf.dims[1] > 1,
+        Slice::Row(0) => leaf.dims[0] > 1,
+        _ => false,
+    };
+    leaf.dims.len() == 2 && first && matches!(leaf.content, Content::Real(_))
+}
+
 /// Whether a variable has several elements of which each looks like a record: a struct with at
 /// least one numeric vector, or a matrix of several channels.
 fn holds_records(tree: &Tree, leaves: &[usize]) -> bool {

@@ -71,12 +71,13 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
 fn arranged(file: FileBytes, tree: Tree) -> Result<Box<dyn Source>, ReadError> {
     refuse_if_nothing_left(&file, &tree)?;
     let Arranged {
-        datasets,
+        mut datasets,
         origins,
-        notes,
+        mut notes,
     } = arrange::arrange(&tree);
     let path = file.path().to_path_buf();
     let reader = samples::MatFile::new(file, tree, origins);
+    notes.extend(reader.take_unnamed_times(&mut datasets));
     opened("mat", &path, datasets, notes, reader)
 }
 

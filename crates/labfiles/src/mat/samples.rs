@@ -2,13 +2,13 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::arrange::{Origin, Slice};
+use super::arrange::{self, Origin, Slice};
 use super::inflate;
 use super::text;
 use super::tree::{Content, Leaf, Part, Tree};
 use crate::bytes::{FileBytes, to_usize};
 use crate::numbers::{self, ByteOrder};
-use crate::source::{ReadError, Reader, Samples};
+use crate::source::{DatasetInfo, ReadError, Reader, Samples};
 
 /// An inflated variable is kept for the next request up to this multiple of the file's size.
 const KEPT_MULTIPLE: u64 = 8;
@@ -62,6 +62,15 @@ impl MatFile {
             leaves_of,
             kept: Mutex::new(None),
         }
+    }
+
+    /// Take unnamed columns that climb evenly for times; gives what was assumed.
+    pub(super) fn take_unnamed_times(&self, datasets: &mut [DatasetInfo]) -> Vec<String> {
+        let values = |dataset: usize, channel: usize| {
+            let mut read = self.read(dataset, &[channel]).ok()?;
+            read.pop()?.into_real()
+        };
+        arrange::take_unnamed_times((&self.tree, &self.origins), datasets, values)
     }
 
     /// A variable's inflated bytes; `None` if it is not compressed.

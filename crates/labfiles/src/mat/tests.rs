@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::*;
 use crate::conformance::{self, Random, Statistics};
-use crate::source::StoredType;
+use crate::source::{Clock, StoredType};
 
 // ---- writing small files ----
 
@@ -590,4 +590,33 @@ fn valid_a_matrix_of_time_and_signal_has_the_name_and_unit_beside_it() {
         .into_real()
         .unwrap();
     assert!((samples[9] - conformance::wave(9)).abs() < 1e-15);
+}
+
+#[test]
+fn a_matrix_without_names_whose_first_column_climbs_evenly_has_its_time_there() {
+    let columns = |first: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        let signal = (0..50).map(|i| (i as f64 * 0.3).cos());
+        (0..50).map(first).chain(signal).collect()
+    };
+    let even = matrix("data", 50, 2, &columns(&|i| i as f64 * 2e-3));
+    let source = opened(&file(&[even], false)).unwrap();
+    let set = &source.datasets()[0];
+    assert_eq!(set.time_axis, Some(0));
+    assert_eq!(set.channels[1].clock, Clock::Axis(0));
+    assert!(
+        source.notes()[0].contains("data(:,1) climbs evenly"),
+        "{:?}",
+        source.notes()
+    );
+    // counts of samples, two signals, a rate that is stated
+    let counts = matrix("data", 50, 2, &columns(&|i| i as f64));
+    let signals = matrix("data", 50, 2, &columns(&|i| (i as f64 * 0.3).sin()));
+    let rated = [
+        matrix("data", 50, 2, &columns(&|i| i as f64 * 2e-3)),
+        matrix("fs", 1, 1, &[500.0]),
+    ];
+    for variables in [&[counts][..], &[signals], &rated] {
+        let source = opened(&file(variables, false)).unwrap();
+        assert_eq!(source.datasets()[0].time_axis, None);
+    }
 }

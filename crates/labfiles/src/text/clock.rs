@@ -103,19 +103,31 @@ fn parse_time(text: &str) -> Option<f64> {
         [m, s] if s.contains(['.', ',']) => ("0", m, s),
         [h, m] => (h, m, "0"),
         [h, m, s] => (h, m, s),
+        [h, m, s, fraction] => {
+            let seconds = with_fraction(s, fraction)?;
+            return parse_clock(h, m, &seconds, twelve.then_some(half_day));
+        }
         _ => return None,
     };
+    parse_clock(hours, minutes, seconds, twelve.then_some(half_day))
+}
+
+/// Seconds after a third colon, as `12:00:07:250` has them: three digits are milliseconds, six microseconds. Fewer
+/// may be a film's frames.
+fn with_fraction(seconds: &str, fraction: &str) -> Option<String> {
+    let counted = is_digits(fraction, 6) && matches!(fraction.len(), 3 | 6);
+    (counted && is_digits(seconds, 2)).then(|| format!("{seconds}.{fraction}"))
+}
+
+/// Seconds of hours, minutes and seconds; `half_day`: the hours to add to a clock of twelve, `None` of one of 24.
+fn parse_clock(hours: &str, minutes: &str, seconds: &str, half_day: Option<f64>) -> Option<f64> {
     let whole = seconds.split(['.', ',']).next()?;
     if !is_digits(hours, 5) || !is_digits(minutes, 2) || !is_digits(whole, 2) {
         return None;
     }
     let seconds: f64 = seconds.replace(',', ".").parse().ok()?;
     let (hours, minutes): (f64, f64) = (hours.parse().ok()?, minutes.parse().ok()?);
-    let hours = if twelve {
-        hours % 12.0 + half_day
-    } else {
-        hours
-    };
+    let hours = half_day.map_or(hours, |half_day| hours % 12.0 + half_day);
     (minutes < 60.0 && seconds < 61.0).then_some(hours * 3600.0 + minutes * 60.0 + seconds)
 }
 
@@ -153,6 +165,17 @@ mod tests {
         assert_eq!(parse("05/01/2024 1:00 PM", true).unwrap().days, may);
         assert_eq!(parse("00:01.5", false).unwrap().seconds, 1.5);
         assert_eq!(parse("10:45:47.25", false).unwrap().seconds, 38_747.25);
+        // milliseconds and microseconds after a third colon; two digits are frames of a film
+        assert_eq!(parse("10:45:47:250", false).unwrap().seconds, 38_747.25);
+        assert_eq!(
+            parse("10:45:47:000250", false).unwrap().seconds,
+            38_747.00025
+        );
+        assert_eq!(
+            parse("2024-05-01 1:45:47:250 PM", false).unwrap().seconds,
+            49_547.25
+        );
+        assert_eq!(parse("10:45:47:12", false), None);
         for text in ["1.5", "12", "", "a:b", "2024-13-01", "12:61:00", "-1:00:00"] {
             assert_eq!(parse(text, false), None, "{text}");
         }

@@ -53,8 +53,11 @@ pub(super) fn changes_at(place: Place<'_>) -> Option<usize> {
     let set = place.set();
     let time = set.time_axis?;
     let times = place.numbers(time);
-    let mut states = changes::candidates(set, time);
-    let found = states.any(|state| changes::levels(&times, &place.numbers(state)).is_some());
+    let states = changes::candidates(set, time).map(|state| place.numbers(state));
+    // an analyser lists the rows of all its lines, those too that never change
+    let lines: Vec<Vec<f64>> = states.filter(|s| s.len() == times.len()).collect();
+    let mut levels = lines.iter().map(|line| changes::line_levels(&times, line));
+    let found = changes::all_change(&lines) && levels.any(|found| found.is_some());
     // a square wave that is sampled at even times changes with each row too
     let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
     let (least, greatest) = columns::extremes(&steps);

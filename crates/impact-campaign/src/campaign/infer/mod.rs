@@ -517,6 +517,34 @@ mod tests {
     }
 
     #[test]
+    fn a_list_of_changes_of_several_lines_is_one_of_times() {
+        let folder = tempfile::tempdir().unwrap();
+        // a contact on the second line, a slow clock on the third, the first idle
+        let closings = (0..10).scan(0.5, |at, k| {
+            let closed = *at;
+            *at += 0.5 * 0.8f64.powi(k);
+            Some([(closed, 1), (closed + 2e-3, 0)])
+        });
+        let mut rows: Vec<(f64, usize, i32)> = closings.flatten().map(|(t, s)| (t, 1, s)).collect();
+        rows.extend((0..9).map(|k| (0.31 + 0.3 * f64::from(k), 2, k % 2)));
+        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut state = [0, 0, 1];
+        let mut list = String::from("Time [s],Channel 0,Channel 1,Channel 2\n0.0,0,0,1\n");
+        for (time, line, level) in rows {
+            state[line] = level;
+            list += &format!("{time:.9},{},{},{}\n", state[0], state[1], state[2]);
+        }
+        std::fs::write(folder.path().join("digital.csv"), list).unwrap();
+        let found = inspect_folder(folder.path(), &labfiles::open);
+        assert_eq!(
+            found.experiment,
+            Experiment::Events(impact_records::record::ContactContent::Times)
+        );
+        let time = found.channels.iter().find(|c| c.name == "Time").unwrap();
+        assert_eq!(time.role, Some(Role::Contact));
+    }
+
+    #[test]
     fn a_decay_on_an_oscilloscope_is_ready_to_run() {
         let folder = tempfile::tempdir().unwrap();
         let row = |i: i32| {

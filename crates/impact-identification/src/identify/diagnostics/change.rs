@@ -71,7 +71,7 @@ pub fn change(
     let ranks = ranks(evidence.observations);
     let of_rank = |rank: usize| ranks.iter().position(|r| *r == rank);
     let suspects = [
-        by_impacts(&ranks, &selection.blocks),
+        by_impacts(&ranks, evidence.observations, &selection.blocks),
         by_rows(&ranks, problem, present, (&selection.blocks, at, factor)),
         by_lost_records(&ranks, selection),
     ];
@@ -213,12 +213,25 @@ fn by_lost_records(ranks: &[usize], selection: &Selection<'_>) -> Option<usize> 
     furthest(&mut records, (share * (1.0 - share)).sqrt())
 }
 
-/// The rank from which on R of the records' impacts is another, by their medians.
-fn by_impacts(ranks: &[usize], blocks: &Blocks) -> Option<usize> {
+/// The rank from which on R of the records' impacts is another, by their medians. What its line over the speed
+/// explains of masses without a drive, which hit as fast as a hand pushes them, is no change of the rig.
+fn by_impacts(ranks: &[usize], observations: &[Observation], blocks: &Blocks) -> Option<usize> {
     let mut of_records: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-    for pair in &blocks.impact.pairs {
+    let pairs = &blocks.impact.pairs;
+    let driven = |i: usize| observations[i].drive.is_some();
+    let speeds: Vec<[f64; 2]> = pairs
+        .iter()
+        .filter(|p| !driven(p.observation))
+        .map(|p| [p.before_m_s, p.after_m_s / p.before_m_s])
+        .collect();
+    let slope = slope(&speeds);
+    for pair in pairs {
         let own = of_records.entry(ranks[pair.observation]).or_default();
-        own.push(pair.after_m_s / pair.before_m_s);
+        let by_speed = match driven(pair.observation) {
+            true => 0.0,
+            false => slope * pair.before_m_s,
+        };
+        own.push(pair.after_m_s / pair.before_m_s - by_speed);
     }
     let medians = of_records.into_iter();
     let mut records: Vec<(usize, f64)> = medians
@@ -232,6 +245,15 @@ fn by_impacts(ranks: &[usize], blocks: &Blocks) -> Option<usize> {
         .collect();
     let typical = 1.4826 * robust::median(&steps)? / std::f64::consts::SQRT_2;
     furthest(&mut records, typical.max(0.5 * LEAST_OF_R))
+}
+
+/// Slope of the line of least squares through points; zero where all have one place.
+fn slope(points: &[[f64; 2]]) -> f64 {
+    let count = points.len().max(1) as f64;
+    let [x, y] = [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / count);
+    let width: f64 = points.iter().map(|p| (p[0] - x).powi(2)).sum();
+    let along: f64 = points.iter().map(|p| (p[0] - x) * (p[1] - y)).sum();
+    if width > 0.0 { along / width } else { 0.0 }
 }
 
 /// The rank from which on the mean of values differs most from that before, if that is beyond chance, the

@@ -313,6 +313,7 @@ fn is_to_be_mended(remark: &Remark) -> bool {
         remark,
         Remark::EarlyJumps { .. }
             | Remark::OddRecord { .. }
+            | Remark::ImpactsMissed { .. }
             | Remark::DecaysHum { .. }
             | Remark::DecaysMode { .. }
             | Remark::DecaysBackground { .. }

@@ -187,8 +187,10 @@ fn impacts(
     scatter: f64,
 ) -> (ImpactBlock, Vec<SpeedPair>) {
     let mut block = ImpactBlock::new(rig, observations, scatter);
+    // Where R differs between bounces or records, an impact far from the others is one of that structure.
+    let structure = structure::structure(&structure::ratios(&block, observations));
     // Such ratios differ from record to record.
-    let outliers = match block.first_value_only.is_some() {
+    let outliers = match block.first_value_only.is_some() || structure.is_some() {
         true => Vec::new(),
         false => block.extract_outliers(OUTLYING_IMPACT),
     };

@@ -6,8 +6,10 @@ use serde::{Deserialize, Serialize};
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use impact_records::motion::Observation;
 
+/// Share of campaigns of one R in which chance may look like a structure: that of three standard deviations.
+pub const FALSE_ALARMS: f64 = 0.0027;
 /// Normal deviate from which scatter beyond the stated errors, or what a grouping explains of it, is no
-/// chance.
+/// chance: [`FALSE_ALARMS`] on the upper side, shared by the two groupings.
 const SIGNIFICANT: f64 = 3.0;
 /// Range of R from which a structure matters.
 const MATTERS: f64 = 0.02;
@@ -64,18 +66,9 @@ pub struct GroupedRatio {
 
 /// The impacts of records without a drive, with their place among all impacts of the record; empty for
 /// driven rigs, whose bounces have no order.
-pub fn ratios(
-    block: &ImpactBlock,
-    outliers: &[SpeedPair],
-    observations: &[Observation],
-) -> Vec<GroupedRatio> {
+pub fn ratios(block: &ImpactBlock, observations: &[Observation]) -> Vec<GroupedRatio> {
     let undriven = |p: &&SpeedPair| observations[p.observation].drive.is_none();
-    let mut pairs: Vec<&SpeedPair> = block
-        .pairs
-        .iter()
-        .chain(outliers)
-        .filter(undriven)
-        .collect();
+    let mut pairs: Vec<&SpeedPair> = block.pairs.iter().filter(undriven).collect();
     pairs.sort_by(|a, b| {
         let key = |p: &SpeedPair| p.observation;
         key(a).cmp(&key(b)).then(a.time_s.total_cmp(&b.time_s))
@@ -243,6 +236,16 @@ mod tests {
         bold.iter_mut().for_each(|r| r.error = 0.002);
         bold.swap(0, 6);
         assert_ne!(structure(&bold), Some(Grouping::Record));
+    }
+
+    #[test]
+    fn valid_the_limit_is_that_of_the_false_alarms_shared_by_the_groupings() {
+        // both are one-sided: half of the two-sided tail of the normal distribution
+        let tail = crate::identify::statistics::distribution::normal_tail(SIGNIFICANT);
+        assert!(
+            (0.5 * tail * 2.0 / FALSE_ALARMS - 1.0).abs() < 0.01,
+            "{tail}"
+        );
     }
 
     #[test]

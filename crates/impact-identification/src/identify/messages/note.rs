@@ -59,6 +59,11 @@ pub enum Note {
     Drifts,
     /// The damping ratio changes over the decay.
     DampingChanges,
+    /// The record ends after too few periods for a test of the decay.
+    FewPeriods {
+        /// How many.
+        periods: f64,
+    },
     /// Nothing damps the motion that stands out of the noise.
     Undamped {
         /// Damping ratio that is not exceeded, at 97.5 %.
@@ -112,6 +117,7 @@ message_table! { "note": Note;
         parameter = Value::Message(parameter),
         correlation = Value::Number(*correlation, 2);
     Self::ByMethodAlone { method } => method = Value::Message(method);
+    Self::FewPeriods { periods } => periods = Value::Number(*periods, 1);
     Self::Undamped { most } => most = Value::Number(*most, digits(*most));
     Self::NoStart { observations } => count = Value::Count(*observations);
 }

@@ -215,6 +215,15 @@ pub enum Remark {
         /// How many.
         count: usize,
     },
+    /// Impacts are missing among times: a flight is two.
+    ImpactsMissed {
+        /// How many.
+        count: usize,
+        /// The record of the first one.
+        record: String,
+        /// When it was, s.
+        time_s: f64,
+    },
     /// Impacts whose speeds are far from those of the others were left out.
     OutlyingImpacts {
         /// How many.
@@ -273,6 +282,17 @@ pub enum Remark {
         /// Frequency of the strongest, Hz.
         frequency_hz: f64,
         /// Its amplitude over that of the decay.
+        ratio: f64,
+    },
+    /// Two modes of near frequencies beat, which one decay does not explain.
+    DecaysBeat {
+        /// Number of decays that do.
+        count: usize,
+        /// Frequency of the stronger one, Hz.
+        first_hz: f64,
+        /// Of the weaker one, Hz.
+        second_hz: f64,
+        /// Amplitude of the weaker over that of the stronger.
         ratio: f64,
     },
     /// A drift under the decays, fitted with them.
@@ -378,6 +398,10 @@ message_table! { "remark": Remark;
         own = Value::Number(*restitution, 3),
         others = Value::Number(*others, 3);
     Self::FlightsLeftOut { count } => count = Value::Count(*count);
+    Self::ImpactsMissed { count, record, time_s } =>
+        count = Value::Count(*count),
+        record = Value::Name(record),
+        time = Value::Number(*time_s, 3);
     Self::OutlyingImpacts { count, first } =>
         count = Value::Count(*count),
         which = abridged(first, *count);
@@ -403,6 +427,11 @@ message_table! { "remark": Remark;
     Self::DecaysMode { count, frequency_hz, ratio } =>
         count = Value::Count(*count),
         frequency = Value::Number(*frequency_hz, 1),
+        share = Value::Percent(*ratio, 0);
+    Self::DecaysBeat { count, first_hz, second_hz, ratio } =>
+        count = Value::Count(*count),
+        first = Value::Number(*first_hz, 3),
+        second = Value::Number(*second_hz, 3),
         share = Value::Percent(*ratio, 0);
     Self::DecaysBackground { count, ratio } =>
         count = Value::Count(*count),

@@ -1,7 +1,10 @@
 //! Falls of the approach velocity: where it drops faster than any flight changes it.
+//!
+//! The velocity goes down from a turning point to the next one; the fall is the part of that leg which is
+//! steep beside its steepest quarter, however many samples a contact takes, whatever noise is on it.
 
 use crate::event::kinematics::Series;
-use crate::signal::robust;
+use crate::signal::{robust, whole};
 
 /// Drop that makes a fall, in changes that are usual over as many samples.
 const IN_USUAL: f64 = 2.5;
@@ -9,8 +12,16 @@ const IN_USUAL: f64 = 2.5;
 const IN_NOISE: f64 = 6.0;
 /// Drop that makes a fall, as a share of the greatest speed.
 const OF_GREATEST: f64 = 0.04;
-/// Longest lag over which drops are looked for, samples.
+/// Longest lag over which the usual changes are looked for, samples.
 const LONGEST_LAG: usize = 64;
+/// Part of a drop by which its steepest part is told.
+const STEEPEST: f64 = 0.25;
+/// Rate, over that of the steepest part, which still belongs to a fall: a contact as a half-sine of force is
+/// above it but for 3 % of its duration.
+const STEEP: f64 = 0.1;
+
+/// Parts of a fall, in none of which it stands still.
+const PARTS: f64 = 4.0;
 
 /// A fall of the approach velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,57 +34,122 @@ pub(super) struct Fall {
 
 /// All falls that begin while the bodies approach, in order of time.
 ///
-/// A positive velocity is an approach. Drops are looked for over one sample, then over two, four …,
-/// so that a contact of any duration is found, and one that noise hides between neighbours.
-pub(super) fn find(velocity: &Series) -> Vec<Fall> {
+/// A positive velocity is an approach. `greatest_m_s`: the greatest speed, but for faults.
+pub(super) fn find(velocity: &Series, greatest_m_s: f64) -> Vec<Fall> {
     let values = &velocity.values;
-    let greatest = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    let mut falling = vec![false; values.len().saturating_sub(1)];
-    let mut lag = 1;
-    while lag <= LONGEST_LAG && 8 * lag < values.len().max(9) {
-        mark(values, lag, (velocity.noise, greatest), &mut falling);
-        lag *= 2;
+    let least = (IN_NOISE * velocity.noise * std::f64::consts::SQRT_2)
+        .max(OF_GREATEST * greatest_m_s)
+        .max(f64::MIN_POSITIVE);
+    let usual = usual(values);
+    let mut falls: Vec<Fall> = Vec::new();
+    let mut parts = legs(values, least);
+    while let Some(part) = parts.pop() {
+        let Some(fall) = steep(values, part) else {
+            continue;
+        };
+        let drop = values[fall.first] - values[fall.last];
+        if drop <= least {
+            continue;
+        }
+        if let Some(middle) = flat(values, fall).filter(|_| drop > PARTS * least) {
+            parts.extend([(part.0, middle), (middle, part.1)]);
+            continue;
+        }
+        if drop > usual_over(&usual, fall.last - fall.first) && values[fall.first] > 0.0 {
+            falls.push(fall);
+        }
+        let beside = [(part.0, fall.first), (fall.last, part.1)];
+        parts.extend(
+            beside
+                .iter()
+                .filter(|(a, b)| values[*a] - values[*b] > least),
+        );
     }
-    runs(&falling)
-        .into_iter()
-        .filter(|fall| values[fall.first] > 0.0)
-        .collect()
+    falls.sort_by_key(|fall| fall.first);
+    falls
 }
 
-/// Mark the steps of drops over a lag that touch none that is marked already.
-fn mark(values: &[f64], lag: usize, (noise, greatest): (f64, f64), falling: &mut [bool]) {
-    let drops: Vec<f64> = (lag..values.len())
-        .map(|i| values[i - lag] - values[i])
-        .collect();
-    let sizes: Vec<f64> = drops.iter().map(|d| d.abs()).filter(|d| *d > 0.0).collect();
-    let Some(usual) = robust::median(&sizes) else {
-        return;
-    };
-    let least = (IN_USUAL * usual)
-        .max(IN_NOISE * noise * std::f64::consts::SQRT_2)
-        .max(OF_GREATEST * greatest);
-    let known = falling.to_vec();
-    for (i, drop) in drops.iter().enumerate() {
-        let beside = i.saturating_sub(2)..(i + lag + 2).min(known.len());
-        if *drop > least && !known[beside].contains(&true) {
-            falling[i..i + lag].fill(true);
+/// Legs that go down, from a turning point to the next: between them the velocity rises by more than a least
+/// change.
+fn legs(values: &[f64], least: f64) -> Vec<(usize, usize)> {
+    let mut out = Vec::new();
+    let (mut top, mut bottom, mut falling) = (0, 0, false);
+    for (i, value) in values.iter().enumerate() {
+        if falling {
+            if *value < values[bottom] {
+                bottom = i;
+            } else if value - values[bottom] > least {
+                out.push((top, bottom));
+                (top, falling) = (i, false);
+            }
+        } else if *value >= values[top] {
+            top = i;
+        } else if values[top] - value > least {
+            (bottom, falling) = (i, true);
         }
     }
-}
-
-/// Runs of falling steps; one step between two of them belongs to both.
-fn runs(falling: &[bool]) -> Vec<Fall> {
-    let mut out: Vec<Fall> = Vec::new();
-    for i in (0..falling.len()).filter(|i| falling[*i]) {
-        match out.last_mut() {
-            Some(fall) if i <= fall.last + 1 => fall.last = i + 1,
-            _ => out.push(Fall {
-                first: i,
-                last: i + 1,
-            }),
-        }
+    if falling {
+        out.push((top, bottom));
     }
     out
+}
+
+/// The part of a leg whose drop, less what a slow change takes in as many samples, is the greatest.
+fn steep(values: &[f64], (top, bottom): (usize, usize)) -> Option<Fall> {
+    let own = values.get(top..=bottom)?;
+    let drop = own.first()? - own.last()?;
+    let mut lags = std::iter::successors(Some(1), |lag| Some(lag + lag / 4 + 1));
+    let shortest = lags.find(|lag| {
+        let mut drops = own.windows(lag + 1).map(|w| w[0] - w[*lag]);
+        *lag >= own.len() || drops.any(|d| d >= STEEPEST * drop)
+    })?;
+    let slow = STEEP * STEEPEST * drop / shortest as f64;
+    let (mut begin, mut highest) = (0, own[0]);
+    let (mut best, mut found) = (0.0, None);
+    for (i, value) in own.iter().enumerate() {
+        let level = value + slow * i as f64;
+        if level >= highest {
+            (begin, highest) = (i, level);
+        } else if highest - level > best {
+            best = highest - level;
+            found = Some((begin, i));
+        }
+    }
+    found.map(|(first, last)| Fall {
+        first: top + first,
+        last: top + last,
+    })
+}
+
+/// Where a fall hardly falls over a part of its samples: it is two, one after the other.
+fn flat(values: &[f64], fall: Fall) -> Option<usize> {
+    let part = (fall.last - fall.first) / whole::index(PARTS);
+    let own = values.get(fall.first..=fall.last).filter(|_| part > 1)?;
+    let usual = (own.first()? - own.last()?) / PARTS;
+    let drops = own.windows(part + 1).map(|w| w[0] - w[part]);
+    let (at, least) = drops.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (least < STEEP * usual).then_some(fall.first + at + part / 2)
+}
+
+/// Drops that are no falls over lags of 1, 2, 4 … samples: by the changes usual over them, and by their noise.
+fn usual(values: &[f64]) -> Vec<f64> {
+    let lags = std::iter::successors(Some(1), |lag| Some(2 * lag));
+    let lags = lags.take_while(|lag| *lag <= LONGEST_LAG && 8 * lag < values.len().max(9));
+    let of = |lag: usize| {
+        let drops: Vec<f64> = values.windows(lag + 1).map(|w| w[0] - w[lag]).collect();
+        let sizes: Vec<f64> = drops.iter().map(|d| d.abs()).collect();
+        let usual = IN_USUAL * robust::median(&sizes).unwrap_or(0.0);
+        usual.max(IN_NOISE * robust::robust_deviation(&drops).unwrap_or(0.0))
+    };
+    lags.map(of).collect()
+}
+
+/// The same over any number of samples: beyond the longest lag in proportion.
+fn usual_over(usual: &[f64], samples: usize) -> f64 {
+    let place = whole::index((samples.max(1) as f64).log2().floor());
+    let place = place.min(usual.len().saturating_sub(1));
+    let longer = samples as f64 / (1usize << place) as f64;
+    usual.get(place).map_or(0.0, |u| u * longer.max(1.0))
 }
 
 #[cfg(test)]
@@ -87,7 +163,7 @@ mod tests {
             40 => 0.0,
             k => -0.4 + 0.02 * k as f64,
         };
-        let found = find(&Series::clean((0..164).map(value).collect()));
+        let found = find(&Series::clean((0..164).map(value).collect()), 0.4);
         let ends: Vec<_> = found.iter().map(|f| (f.first, f.last)).collect();
         // The last sample is one of contact too.
         assert_eq!(ends, [(39, 41), (80, 82), (121, 123), (162, 163)]);
@@ -96,9 +172,9 @@ mod tests {
     #[test]
     fn flights_without_a_fall_and_a_body_that_brakes_hold_none() {
         let climbing = Series::clean((0..80).map(|i| 0.02 * f64::from(i) - 0.4).collect());
-        assert!(find(&climbing).is_empty());
+        assert!(find(&climbing, 1.2).is_empty());
         let rolling = Series::clean((0..80).map(|i| 0.5 - 1e-3 * f64::from(i)).collect());
-        assert!(find(&rolling).is_empty());
+        assert!(find(&rolling, 0.5).is_empty());
     }
 
     #[test]
@@ -108,7 +184,7 @@ mod tests {
         let value = |i: usize| 0.1 - 0.2 * ((i as f64 - 96.0) / 8.0).clamp(0.0, 1.0);
         let mut series = Series::clean((0..200).map(|i| value(i) + scatter(i)).collect());
         series.noise = 0.02;
-        let found = find(&series);
+        let found = find(&series, 0.1);
         assert_eq!(found.len(), 1, "{found:?}");
         assert!(found[0].first.abs_diff(96) <= 8 && found[0].last.abs_diff(104) <= 8);
     }

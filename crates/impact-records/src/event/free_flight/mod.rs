@@ -24,10 +24,15 @@ const BEYOND: f64 = 0.1;
 const ADDED: f64 = 0.6;
 /// Acceleration after an impact over that before it, at most: friction turns around.
 const TURNED: f64 = 2.0;
+/// How many times as long as the falls beside it a flight lasts that is none of a ringing, whose velocity rises for
+/// as long as it falls.
+const LONG: usize = 2;
 /// Fewest samples of a mean of the separation speed.
 const LEAST_MEAN: usize = 3;
 /// Greatest ratio of separation to approach speed that an impact can have.
 const GREATEST_RATIO: f64 = 1.3;
+/// Part of the drop of a fall that the flights beside it explain, else something else made it.
+const EXPLAINED: f64 = 0.5;
 /// Standard errors by which each mass's speed must change.
 const CHANGED: f64 = 3.0;
 /// Standard error of the time of a crossing of two parabolas, samples: what the contact takes.
@@ -36,6 +41,8 @@ const BLUR: f64 = 0.25;
 const STEP_SPREAD: f64 = 0.29;
 /// Least standard error of the time of an impact between two lines of velocity, samples.
 const LEAST_SPREAD: f64 = 0.1;
+/// Samples of a fall of differences of a displacement at a jump of the velocity.
+const IN_AN_INSTANT: usize = 3;
 /// Share of the approach that must be free flight, else what is left out is noted.
 const USED: f64 = 0.85;
 
@@ -64,7 +71,8 @@ pub(super) fn detect(kinematics: &Kinematics, rig: RigKind, closed: &[Closed]) -
     if !plain.impacts.is_empty() {
         return plain;
     }
-    orientation::search(kinematics, rig, closed).unwrap_or(plain)
+    let seen = !plain.flags.is_empty();
+    orientation::search(kinematics, rig, closed, seen).unwrap_or(plain)
 }
 
 fn one_mass_alone() -> Flag {
@@ -85,6 +93,26 @@ struct Search<'a> {
     greatest_m_s: f64,
 }
 
+/// What a flight shows of the force on the bodies.
+#[derive(Debug, Clone, Copy)]
+struct Force {
+    /// Samples of the flight.
+    samples: usize,
+    /// Size of the change of the approach velocity per sample, as far as it stands out of the noise, m/s.
+    step: f64,
+}
+
+impl Force {
+    fn of(flights: &[Stretch]) -> Self {
+        let samples = flights.iter().map(|s| s.samples.1 - s.samples.0).min();
+        let at = |s: &Stretch| s.sure_step(s.samples.0 as f64, CHANGED);
+        Self {
+            samples: samples.unwrap_or(0),
+            step: flights.iter().map(at).sum::<f64>().abs(),
+        }
+    }
+}
+
 /// An impact, or why a fall is none.
 enum Found {
     Impact(Box<Impact>, Option<usize>),
@@ -103,13 +131,41 @@ impl<'a> Search<'a> {
         };
         let velocity = kinematics.relative.velocity.as_ref();
         let relative = velocity.map_or(&[][..], |v| v.values.as_slice());
-        Self {
+        let greatest_m_s = typical_greatest(relative);
+        let mut search = Self {
             bodies,
             rate_hz: kinematics.rate_hz,
-            falls: velocity.map_or_else(Vec::new, fall::find),
+            falls: velocity.map_or_else(Vec::new, |v| fall::find(v, greatest_m_s)),
             relative,
-            greatest_m_s: typical_greatest(relative),
-        }
+            greatest_m_s,
+        };
+        search.falls = search.after_flights();
+        search
+    }
+
+    /// The falls but those of a ringing: the flight between one of them and the fall before it is as short as they
+    /// are, and steeper than any flight that is longer than the falls beside it. A constant force is the same in
+    /// all flights.
+    fn after_flights(&self) -> Vec<Fall> {
+        let count = self.falls.len();
+        let flight = |i: usize| self.stretches(i, Side::Before).map(|own| Force::of(&own));
+        let before: Vec<Option<Force>> = (0..count).map(flight).collect();
+        let last = count.checked_sub(1);
+        let last = last.and_then(|i| self.stretches(i, Side::After));
+        let duration = |i: usize| self.falls.get(i).map_or(0, |f| f.last - f.first);
+        let beside = |i: usize| LONG * duration(i).max(i.checked_sub(1).map_or(0, duration));
+        let long = before.iter().enumerate();
+        let long = long.filter_map(|(i, force)| force.filter(|f| f.samples > beside(i)));
+        let long = long.chain(last.map(|own| Force::of(&own)));
+        let most = TURNED * long.map(|f| f.step).fold(0.0, f64::max);
+        let rings = |i: usize| {
+            let own = before[i].filter(|f| i > 0 && f.samples <= beside(i));
+            own.is_some_and(|f| f.step > most)
+        };
+        (0..count)
+            .filter(|i| !rings(*i))
+            .map(|i| self.falls[i])
+            .collect()
     }
 
     fn impacts(&self, closed: &[Closed]) -> FreeFlights {
@@ -180,14 +236,16 @@ impl<'a> Search<'a> {
             return Found::NoFlight(middle_s, Side::After);
         };
         let (time, time_error) = self.instant(fall, &before, &after);
-        let half = half_contact(&before, &after);
-        let approach: f64 = before.iter().map(|s| s.speed(time - half)).sum();
-        let separation: f64 = -after.iter().map(|s| s.speed(time + half)).sum::<f64>();
+        let half = half_contact(fall, &before, &after);
+        let (begin, end) = (time - half, time + half);
+        let approach: f64 = before.iter().map(|s| s.speed(begin)).sum();
+        let separation: f64 = -after.iter().map(|s| s.speed(end)).sum::<f64>();
         let [low, high] = self.separation_measured(index, &before, &after);
         let beyond = separation - separation.clamp(low, high);
         let separation = separation - beyond;
         let error = speed_error(&before, &after, (time, time_error))
             .hypot(beyond)
+            .hypot(self.ringing(fall, &after))
             .hypot(friction_in_contact(fall, &before, &after));
         if self.is_beyond(index, &before, approach, error) {
             return Found::Beyond(time / self.rate_hz);
@@ -197,19 +255,20 @@ impl<'a> Search<'a> {
             _ => separation > -CHANGED * error.max(0.02 * approach),
         };
         let changed = before.iter().zip(&after).all(|(b, a)| {
-            let drop = b.speed(time) - a.speed(time);
+            let drop = b.speed(begin) - a.speed(end);
             drop > (CHANGED * b.error(time).hypot(a.error(time))).max(0.02 * approach)
         });
         if approach < CHANGED * error
             || !rebounds
             || !changed
             || separation > GREATEST_RATIO * approach
+            || approach + separation < EXPLAINED * self.drop(fall)
         {
             return Found::Nothing;
         }
         let of_body = |body: usize| MassSpeeds {
-            before_m_s: before[body].speed(time),
-            after_m_s: after[body].speed(time),
+            before_m_s: before[body].speed(begin),
+            after_m_s: after[body].speed(end),
         };
         let touched = closed
             .iter()
@@ -318,10 +377,31 @@ impl<'a> Search<'a> {
         };
         let high = means.iter().copied().fold(low, f64::max);
         let middle = 0.5 * (fall.first + fall.last) as f64;
-        let steps = |flights: &[Stretch]| flights.iter().map(|s| s.step(middle)).sum::<f64>();
-        let own = steps(after).abs().min(TURNED * steps(before).abs());
+        let steps = |flights: &[Stretch]| {
+            let each = flights.iter().map(|s| s.sure_step(middle, CHANGED));
+            each.sum::<f64>()
+        };
+        let own = steps(after).abs().min(steps(before).abs());
         let way = begin as f64 + 0.5 * width as f64 - middle;
         [low - own * way, high + own * way]
+    }
+
+    /// What the speed between the fall and the flight after it is in the mean beside that flight: ringing of the
+    /// bumpers, friction that fades. How much of it the impact did is not known.
+    fn ringing(&self, fall: Fall, after: &[Stretch]) -> f64 {
+        let begin = after.iter().map(|s| s.samples.0).max();
+        let between = fall.last..begin.unwrap_or(fall.last).min(self.relative.len());
+        if between.len() < LEAST_MEAN {
+            return 0.0;
+        }
+        let flight = |i: usize| after.iter().map(|s| s.speed(i as f64)).sum::<f64>();
+        let off: Vec<f64> = between.map(|i| self.relative[i] - flight(i)).collect();
+        robust::mean(&off).abs()
+    }
+
+    /// Drop of the velocity over a fall.
+    fn drop(&self, fall: Fall) -> f64 {
+        self.relative[fall.first] - self.relative[fall.last]
     }
 
     /// Samples of the approach that are no free flight, if they are many.
@@ -341,15 +421,18 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Half of what a contact between two lines of velocity takes, samples. The gap between the flights is the
+/// Half of what a contact takes, samples. Between two lines of velocity the gap between the flights is the
 /// contact and what smooths the velocity, of which neither is known: a contact of anything up to half of the
-/// gap is taken as one of a quarter. A displacement is not smoothed, and its contact an instant.
-fn half_contact(before: &[Stretch], after: &[Stretch]) -> f64 {
-    let of_displacement = before.iter().any(|s| s.displacement().is_some());
+/// gap is taken as one of a quarter. A displacement is not smoothed; its differences are, over a jump in an
+/// instant they fall in three samples.
+fn half_contact(fall: Fall, before: &[Stretch], after: &[Stretch]) -> f64 {
+    if before.iter().any(|s| s.displacement().is_some()) {
+        return (fall.last - fall.first).saturating_sub(IN_AN_INSTANT) as f64 / 2.0;
+    }
     let from = before.iter().map(|s| s.samples.1.saturating_sub(1)).min();
     let to = after.iter().map(|s| s.samples.0).max();
     match (from, to) {
-        (Some(from), Some(to)) if !of_displacement => to.saturating_sub(from) as f64 / 8.0,
+        (Some(from), Some(to)) => to.saturating_sub(from) as f64 / 8.0,
         _ => 0.0,
     }
 }

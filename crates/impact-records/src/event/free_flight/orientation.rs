@@ -6,10 +6,13 @@ use crate::event::kinematics::{Body, Kinematics, RigKind, Series};
 use crate::record::{Flag, FlagCode};
 
 /// The impacts of a record that is measured the other way round; `None` if it has none then either.
+///
+/// Where falls of the approach were `seen` as it is measured, which only lack a flight, its signs are right.
 pub(super) fn search(
     kinematics: &Kinematics,
     rig: RigKind,
     closed: &[Closed],
+    seen: bool,
 ) -> Option<FreeFlights> {
     let with = |signs: [f64; 2]| {
         let turned = turned(kinematics, rig, signs);
@@ -20,7 +23,7 @@ pub(super) fn search(
         found.flags.insert(0, away(rig));
         return Some(found);
     }
-    if rig == RigKind::Single {
+    if rig == RigKind::Single || seen {
         return None;
     }
     let along_one_axis = with([1.0, -1.0]).is_some() || with([-1.0, 1.0]).is_some();

@@ -8,6 +8,8 @@ use crate::signal::local_fit::LocalFit;
 const MOST: usize = 1500;
 /// Samples beside a fall that may still belong to the contact, beside its own.
 const BESIDE: usize = 4;
+/// How many times as long as a contact its bumpers ring before a flight.
+const RINGS: usize = 3;
 /// Relative scatter of a speed beside the noise: wheels, rails and rolling friction are uneven.
 const UNEVEN: f64 = 4e-3;
 /// Scatter about a flight, in standard deviations of the noise, above which it is none.
@@ -36,6 +38,9 @@ pub(super) struct Stretch {
     rate_hz: f64,
     /// Standard deviation of the fitted signal about the flight, as far as independent.
     deviation: f64,
+    /// Standard deviation of the speed beside the fall between stretches that begin elsewhere, beyond their
+    /// errors, m/s.
+    unlike: f64,
     /// First sample and the one after the last.
     pub samples: (usize, usize),
 }
@@ -54,13 +59,34 @@ impl Stretch {
         self.speed(time + 0.5) - self.speed(time - 0.5)
     }
 
+    /// Change of the velocity per sample where it stands out of the noise by a number of standard errors: of the
+    /// slope of a line, 12/(n(n² − 1)), or of twice the square's factor of a parabola, 720/(n(n² − 1)(n² − 4)),
+    /// times the variance of the noise.
+    pub(super) fn sure_step(&self, time: f64, deviates: f64) -> f64 {
+        let count = (self.samples.1 - self.samples.0) as f64;
+        let squared = count * count;
+        let (factor, rate_hz) = match self.of_displacement {
+            true => (720.0 / (squared - 4.0), self.rate_hz),
+            false => (12.0, 1.0),
+        };
+        let error = self.deviation * rate_hz * (factor / (count * (squared - 1.0))).sqrt();
+        let step = self.step(time);
+        if step.abs() > deviates * error {
+            step
+        } else {
+            0.0
+        }
+    }
+
     /// Standard error of the velocity at a time, m/s.
     pub(super) fn error(&self, time: f64) -> f64 {
         let factor = match self.of_displacement {
             true => self.fit.slope_error_factor(time) * self.rate_hz,
             false => self.fit.error_factor(time),
         };
-        (self.deviation * factor).hypot(SPEED_SCATTER * self.speed(time).abs())
+        (self.deviation * factor)
+            .hypot(SPEED_SCATTER * self.speed(time).abs())
+            .hypot(self.unlike)
     }
 
     /// The fitted displacement, if it is the one that is fitted.
@@ -150,7 +176,14 @@ pub(super) fn find(
     let velocity = body.velocity.as_ref()?;
     let middle = 0.5 * (fall.first + fall.last) as f64;
     let beside = BESIDE + (fall.last - fall.first) / 2;
-    let stretches = (0..=beside).filter_map(|skipped| {
+    // what rings after the contact goes on for several times as long
+    let ringing = match side {
+        Side::Before => beside,
+        Side::After => beside.max(RINGS * (fall.last - fall.first)),
+    };
+    let later = std::iter::successors(Some(0), |s| Some(s + s / 4 + 1));
+    let later = later.take_while(|s| *s <= ringing);
+    let stretches = later.filter_map(|skipped| {
         let (first, last) = window(&velocity.values, side, fall, bounds, skipped, greatest_m_s)?;
         let mut count = last - first;
         while count >= signal.least {
@@ -164,6 +197,7 @@ pub(super) fn find(
                     of_displacement: signal.of_displacement,
                     rate_hz,
                     deviation,
+                    unlike: 0.0,
                     samples,
                 });
             }
@@ -171,7 +205,34 @@ pub(super) fn find(
         }
         None
     });
-    stretches.min_by(|a, b| a.error(middle).total_cmp(&b.error(middle)))
+    let stretches: Vec<Stretch> = stretches.collect();
+    let best = stretches
+        .iter()
+        .min_by(|a, b| a.error(middle).total_cmp(&b.error(middle)))?;
+    let edge = match side {
+        Side::Before => fall.first,
+        Side::After => fall.last,
+    };
+    Some(Stretch {
+        unlike: unlike(&stretches, best, edge as f64),
+        ..best.clone()
+    })
+}
+
+/// How far the speeds of the stretches that overlap the best one are from its own beyond their errors: bumpers that
+/// ring and friction that changes make flights that look straight but are not the same. What a hand does before or
+/// after is no part of the flight.
+fn unlike(stretches: &[Stretch], best: &Stretch, time: f64) -> f64 {
+    let (mut weights, mut squares) = (0.0, 0.0);
+    let overlaps =
+        |one: &&Stretch| one.samples.0 < best.samples.1 && best.samples.0 < one.samples.1;
+    for one in stretches.iter().filter(overlaps) {
+        let variance = one.error(time).powi(2);
+        let apart = (one.speed(time) - best.speed(time)).powi(2);
+        weights += variance.recip();
+        squares += apart / variance - 1.0;
+    }
+    (squares.max(0.0) / weights).sqrt()
 }
 
 /// Samples beside a fall on which the body moves in one direction: friction changes where it turns.

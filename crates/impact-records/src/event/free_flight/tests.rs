@@ -134,61 +134,141 @@ fn valid_a_ball_followed_by_a_camera_gives_its_restitution() {
     }
 }
 
-#[test]
-fn prop_no_separation_speed_is_outside_what_was_measured_whatever_rings_or_lasts() {
-    use rand::{Rng, SeedableRng};
-    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(741);
-    let (mut impacts, rate_hz) = (0, 500.0);
-    for _ in 0..80 {
-        let restitution: f64 = rng.random_range(0.05..0.95);
+/// Two riders with bumpers that last and ring, friction, and a noise, drawn at random.
+struct Bumpers {
+    restitution: f64,
+    approach: f64,
+    contact_s: f64,
+    friction: f64,
+    ringing: f64,
+    ring_hz: f64,
+    ring_s: f64,
+}
+
+impl Bumpers {
+    /// When the contact begins, s.
+    const HIT_S: f64 = 0.6;
+
+    fn random(rng: &mut impl rand::Rng) -> Self {
         let approach: f64 = rng.random_range(0.2..1.5);
-        let contact_s: f64 = rng.random_range(0.004..0.06);
-        let friction: f64 = rng.random_range(0.0..0.05);
-        let ringing: f64 = rng.random_range(0.0..0.25) * approach;
-        let ring_hz: f64 = rng.random_range(12.0..80.0);
-        let noise: f64 = rng.random_range(1e-3..5e-3);
-        let value = |i: usize| {
-            let t = i as f64 / rate_hz - 0.6;
-            let after = (t - contact_s).max(0.0);
-            let free = match t {
-                t if t < 0.0 => approach - friction * (t + 0.6),
-                t if t < contact_s => {
-                    let share = 0.5 - 0.5 * (std::f64::consts::PI * t / contact_s).cos();
-                    approach * (1.0 - (1.0 + restitution) * share)
-                }
-                _ => -restitution * approach + friction * after,
-            };
-            let rings =
-                ringing * (-after / 0.08).exp() * (std::f64::consts::TAU * ring_hz * after).sin();
-            free + if after > 0.0 { rings } else { 0.0 }
-        };
-        let x: Vec<f64> = (0..800)
-            .map(|i| value(i) + noise * rng.random_range(-1.7..1.7))
-            .collect();
-        // each mass has half of it, beside a motion of both
-        let of_mass = |both: f64| x.iter().map(|v| 0.5 * v + both).collect::<Vec<f64>>();
-        let (own, other) = (of_mass(0.1), of_mass(-0.1));
-        let record = Record::of(
-            rate_hz,
-            &[(Role::VelocityX, &own), (Role::VelocityY, &other)],
-        );
-        let kinematics = Kinematics::of(&record, RigKind::Double, 1);
-        for impact in detect(&kinematics, RigKind::Double, &[]).impacts {
-            let separation = -impact.approach_speed_after_m_s.unwrap();
-            let before = impact.approach_speed_before_m_s.unwrap();
-            // over means of 6 ms after the impact, up to what friction changes on the way
-            let from = crate::signal::whole::index(impact.time_s * rate_hz);
-            let means = x[from..]
-                .windows(3)
-                .map(|w| -crate::signal::robust::mean(w));
-            let fastest = means.fold(0.0f64, f64::max);
-            assert!(
-                separation <= fastest + 0.01 * approach,
-                "{separation} of {fastest}"
-            );
-            assert!(separation <= 1.3 * before);
-            impacts += 1;
+        Self {
+            restitution: rng.random_range(0.05..0.95),
+            approach,
+            contact_s: rng.random_range(0.004..0.06),
+            friction: rng.random_range(0.0..0.05),
+            ringing: rng.random_range(0.0..0.25) * approach,
+            ring_hz: rng.random_range(12.0..80.0),
+            ring_s: rng.random_range(0.02..0.1),
         }
     }
-    assert!(impacts > 40, "{impacts}");
+
+    /// Relative velocity, m/s, some time after the contact began.
+    fn velocity(&self, t: f64) -> f64 {
+        let after = t - self.contact_s;
+        if t < 0.0 {
+            return self.approach - self.friction * t;
+        }
+        if after < 0.0 {
+            let share = 0.5 - 0.5 * (std::f64::consts::PI * t / self.contact_s).cos();
+            return self.approach * (1.0 - (1.0 + self.restitution) * share);
+        }
+        let rings = (std::f64::consts::TAU * self.ring_hz * after).sin();
+        self.friction * after - self.restitution * self.approach
+            + self.ringing * (-after / self.ring_s).exp() * rings
+    }
+
+    /// Samples of the velocity and of its integral over 1.6 s.
+    fn sampled(&self, rate_hz: f64) -> [Vec<f64>; 2] {
+        let fine = 20;
+        let count = crate::signal::whole::index(1.6 * rate_hz);
+        let (mut place, mut places, mut speeds) = (0.0, Vec::new(), Vec::new());
+        for i in 0..count * fine {
+            let t = i as f64 / (rate_hz * fine as f64) - Self::HIT_S;
+            let speed = self.velocity(t);
+            if i % fine == 0 {
+                places.push(place);
+                speeds.push(speed);
+            }
+            place += speed / (rate_hz * fine as f64);
+        }
+        [speeds, places]
+    }
+}
+
+#[test]
+fn prop_separation_speeds_are_within_what_was_measured_and_hold_the_truth_whatever_rings_or_lasts()
+{
+    use rand::{Rng, SeedableRng};
+    for (seed, by_camera) in [(741, false), (742, false), (743, true), (744, true)] {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+        let (mut found, mut held, rate_hz, all) = (0, 0, 500.0, 40);
+        let mut outside = Vec::new();
+        for _ in 0..all {
+            let bumpers = Bumpers::random(&mut rng);
+            let noise: f64 = match by_camera {
+                true => rng.random_range(2e-6..2e-5),
+                false => rng.random_range(1e-3..5e-3),
+            };
+            let [speeds, places] = bumpers.sampled(rate_hz);
+            // each mass has half of it, beside a motion of both
+            let mut of_mass = |both: f64| -> Vec<f64> {
+                let drift = |i: usize| if by_camera { i as f64 / rate_hz } else { 1.0 };
+                let signal = if by_camera { &places } else { &speeds };
+                let values = signal.iter().enumerate();
+                values
+                    .map(|(i, v)| 0.5 * v + both * drift(i) + noise * rng.random_range(-1.7..1.7))
+                    .collect()
+            };
+            let (own, other) = (of_mass(0.1), of_mass(-0.1));
+            let roles = match by_camera {
+                true => [Role::DisplacementX, Role::DisplacementY],
+                false => [Role::VelocityX, Role::VelocityY],
+            };
+            let record = Record::of(rate_hz, &[(roles[0], &own), (roles[1], &other)]);
+            let kinematics = Kinematics::of(&record, RigKind::Double, 1);
+            for impact in detect(&kinematics, RigKind::Double, &[]).impacts {
+                let separation = -impact.approach_speed_after_m_s.unwrap();
+                let before = impact.approach_speed_before_m_s.unwrap();
+                let error = impact.speed_error_m_s.unwrap();
+                // the fastest mean over 6 ms after the impact, and what friction changes on the way
+                let from = crate::signal::whole::index(impact.time_s * rate_hz);
+                let means = kinematics.relative.velocity.as_ref().unwrap().values[from..]
+                    .windows(3)
+                    .map(|w| -robust::mean(w));
+                let fastest = means.fold(0.0f64, f64::max);
+                if separation > fastest + 0.01 * before {
+                    outside.push((separation, fastest, before));
+                }
+                let ratio = separation / before;
+                let half = 1.96 * error * (1.0 + ratio * ratio).sqrt() / before;
+                found += 1;
+                held += usize::from((ratio - bumpers.restitution).abs() < half);
+            }
+        }
+        assert!(outside.is_empty(), "{seed}: {outside:?}");
+        assert!(
+            found >= all * 8 / 10 && found <= all,
+            "{seed}: {found} found"
+        );
+        assert!(held * 100 >= 92 * found, "{seed}: {held} of {found} held");
+    }
+}
+
+/// A contact as smooth as rubber's, 40 ms at 500 Hz, after hands have braked the riders by nothing or by much.
+#[test]
+fn a_fall_is_one_contact_whole_and_not_what_slows_the_bodies_before_it() {
+    let contact = |t: f64| 0.5 - 0.5 * (std::f64::consts::PI * t.clamp(0.0, 0.04) / 0.04).cos();
+    let braking = |t: f64| 0.5 - 0.5 * (std::f64::consts::PI * t.clamp(0.0, 0.3) / 0.3).cos();
+    for braked in [0.0, 0.3, 1.5] {
+        let velocity: Vec<f64> = (0..1000)
+            .map(|i| f64::from(i) / 500.0)
+            .map(|t| 0.5 + braked - braked * braking(t - 0.3) - 0.9 * contact(t - 1.0))
+            .collect();
+        let mut series = crate::event::kinematics::Series::clean(velocity);
+        series.noise = 1e-4;
+        let falls = fall::find(&series, 0.5 + braked);
+        let last = falls.last().expect("a fall");
+        assert!(last.first.abs_diff(501) <= 2, "{braked}: {falls:?}");
+        assert!(last.last.abs_diff(519) <= 2, "{braked}: {falls:?}");
+    }
 }

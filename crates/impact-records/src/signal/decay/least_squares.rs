@@ -58,8 +58,14 @@ impl Series {
     }
 
     /// Background, cosine and sine at given rates.
-    fn linear_columns(&self, shape: Shape, rates: &Rates) -> Vec<Vec<f64>> {
+    pub(super) fn linear_columns(&self, shape: Shape, rates: &Rates) -> Vec<Vec<f64>> {
         let mut columns = self.background();
+        columns.extend(self.oscillation(shape, rates));
+        columns
+    }
+
+    /// Cosine and sine at given rates.
+    pub(super) fn oscillation(&self, shape: Shape, rates: &Rates) -> [Vec<f64>; 2] {
         let (cosine, sine) = (0..self.values.len())
             .map(|i| {
                 let t = i as f64;
@@ -68,8 +74,7 @@ impl Series {
                 (envelope * cos, envelope * sin)
             })
             .unzip();
-        columns.extend([cosine, sine]);
-        columns
+        [cosine, sine]
     }
 
     /// The best linear part at given rates.
@@ -217,7 +222,7 @@ fn phase(rates: &Rates, t: f64) -> f64 {
 }
 
 /// Normal matrix and right side.
-fn equations(columns: &[Vec<f64>], values: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+pub(super) fn equations(columns: &[Vec<f64>], values: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
     let count = columns.len();
     let mut normal = DMatrix::zeros(count, count);
     for i in 0..count {

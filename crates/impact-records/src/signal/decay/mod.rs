@@ -5,6 +5,7 @@
 //! after it are not those of the decay, and ends where the decay is lost. Means over a few samples are fitted,
 //! of which a period has some forty at least: they decay alike.
 
+mod beat;
 mod blows;
 mod change;
 mod least_squares;
@@ -57,6 +58,9 @@ pub struct Decay {
     /// The channel whose decay is given: the one that determines f0 best, by its place among those fitted.
     #[serde(default)]
     pub channel: usize,
+    /// Periods that are fitted.
+    #[serde(default)]
+    pub periods: f64,
     /// First fitted sample.
     pub first: usize,
     /// Number of fitted samples.
@@ -70,6 +74,10 @@ pub struct Beside {
     pub hum: Option<[f64; 2]>,
     /// The strongest decay of another frequency, likewise.
     pub mode: Option<[f64; 2]>,
+    /// Two decays that beat, which one does not explain: both frequencies, Hz, the stronger first, and the amplitude
+    /// of the weaker over that of the stronger. They are not fitted with it.
+    #[serde(default)]
+    pub beat: Option<[f64; 3]>,
     /// Range of the polynomial under the decay over the decay's first amplitude; zero of an offset alone.
     pub drift_ratio: f64,
     /// How many times as wide noise at the decay's frequency makes the intervals as that at high frequencies.
@@ -201,6 +209,7 @@ fn of_part(samples: &[f64], rate_hz: f64) -> Option<Decay> {
         beside: prepared.beside(whole.amplitude, rate_hz),
         course: change::course(&prepared, &viscous, rate_hz),
         channel: 0,
+        periods: whole.samples as f64 * natural / factor / std::f64::consts::TAU,
         first: prepared.first,
         samples: whole.samples,
     })

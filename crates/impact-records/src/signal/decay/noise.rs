@@ -1,6 +1,6 @@
 //! Noise beside a decay: white, or autoregressive of a low order.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use crate::signal::columns::dot;
 
@@ -104,21 +104,72 @@ impl Noise {
         self.deviations.iter().map(|d| d.ln()).sum()
     }
 
-    /// −2 ln of the restricted likelihood (Patterson and Thompson 1971), but for a constant.
-    fn criterion(&self, residuals: &[f64], columns: &[Vec<f64>]) -> Option<f64> {
-        let white: Vec<Vec<f64>> = columns.iter().map(|c| self.whiten(c)).collect();
-        let rest = self.whiten(residuals);
-        let count = white.len();
-        let normal = DMatrix::from_fn(count, count, |i, k| dot(&white[i], &white[k]));
-        let right = DVector::from_iterator(count, white.iter().map(|c| dot(c, &rest)));
+    /// −2 ln of the restricted likelihood (Patterson and Thompson 1971), but for a constant, of residuals beside
+    /// columns by their lagged products.
+    fn criterion(&self, lagged: &Lagged) -> Option<f64> {
+        let white = lagged.whitened(self);
+        let count = white.nrows() - 1;
+        let normal = white.view((0, 0), (count, count)).into_owned();
+        let right = white.view((0, count), (count, 1)).into_owned();
         let factor = normal.cholesky()?;
         let explained = right.dot(&factor.solve(&right));
-        let squares = dot(&rest, &rest) - explained;
+        let squares = white[(count, count)] - explained;
         let of_columns: f64 = factor.l_dirty().diagonal().iter().map(|d| d.ln()).sum();
-        let freedom = residuals.len().checked_sub(count).filter(|f| *f > 0)? as f64;
+        let freedom = lagged.samples.checked_sub(count).filter(|f| *f > 0)? as f64;
         let value =
             freedom * squares.max(f64::MIN_POSITIVE).ln() + 2.0 * (of_columns + self.logarithm());
         value.is_finite().then_some(value)
+    }
+}
+
+/// Products of columns and residuals with each other at all lags of a regression: the likelihood of any noise
+/// follows from them whatever the number of samples.
+struct Lagged {
+    samples: usize,
+    /// The first samples of each column and of the residuals, which have fewer than all predecessors.
+    heads: Vec<Vec<f64>>,
+    /// Sums of products of samples `a` and `b` before those that have all predecessors, by `a` and `b`.
+    products: Vec<Vec<DMatrix<f64>>>,
+}
+
+impl Lagged {
+    fn of(residuals: &[f64], columns: &[Vec<f64>], order: usize) -> Self {
+        let all: Vec<&[f64]> = columns
+            .iter()
+            .map(Vec::as_slice)
+            .chain([residuals])
+            .collect();
+        let samples = residuals.len();
+        let delayed = |i: usize, by: usize| &all[i][order - by..samples - by];
+        let between = |a: usize, b: usize| {
+            DMatrix::from_fn(all.len(), all.len(), |i, k| {
+                dot(delayed(i, a), delayed(k, b))
+            })
+        };
+        let lags = 0..=order;
+        Self {
+            samples,
+            heads: all.iter().map(|c| c[..order].to_vec()).collect(),
+            products: lags
+                .clone()
+                .map(|a| lags.clone().map(|b| between(a, b)).collect())
+                .collect(),
+        }
+    }
+
+    /// Products of the columns and the residuals, whitened by a noise of the same order.
+    fn whitened(&self, noise: &Noise) -> DMatrix<f64> {
+        let predictor = noise.predictors.last().into_iter().flatten();
+        let factors: Vec<f64> = std::iter::once(1.0).chain(predictor.map(|p| -p)).collect();
+        let heads: Vec<Vec<f64>> = self.heads.iter().map(|h| noise.whiten(h)).collect();
+        let size = heads.len();
+        let mut out = DMatrix::from_fn(size, size, |i, k| dot(&heads[i], &heads[k]));
+        for (a, row) in factors.iter().zip(&self.products) {
+            for (b, product) in factors.iter().zip(row) {
+                out += product * (a * b);
+            }
+        }
+        out
     }
 }
 
@@ -156,6 +207,15 @@ fn burg(residuals: &[f64], highest: usize) -> Vec<f64> {
     partial
 }
 
+/// Root mean square of the part of residuals that neighbours share. White noise has a mean squared
+/// difference of neighbours of twice its variance (von Neumann's ratio); what is above that is structure.
+pub(super) fn structured(residuals: &[f64]) -> f64 {
+    let count = residuals.len().max(2) as f64;
+    let all = dot(residuals, residuals) / count;
+    let steps: f64 = residuals.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
+    (all - 0.5 * steps / (count - 1.0)).max(0.0).sqrt()
+}
+
 /// Greatest partial autocorrelation.
 const GREATEST: f64 = 0.9999;
 
@@ -164,9 +224,12 @@ const DEARER: f64 = 3.84;
 
 /// The order, one at least, and the partial autocorrelations of the greatest restricted likelihood.
 fn restricted(residuals: &[f64], columns: &[Vec<f64>], highest: usize) -> Noise {
+    let lagged: Vec<Lagged> = (0..=highest)
+        .map(|order| Lagged::of(residuals, columns, order))
+        .collect();
     let value = |turned: &[f64]| {
         let partial: Vec<f64> = turned.iter().map(|u| GREATEST * u.tanh()).collect();
-        let found = Noise::of(&partial).criterion(residuals, columns);
+        let found = Noise::of(&partial).criterion(&lagged[turned.len()]);
         found.unwrap_or(f64::INFINITY)
     };
     let mut turned: Vec<f64> = Vec::new();
@@ -270,6 +333,24 @@ mod tests {
         // |1 − 1.2 e^{−iω} + 0.5 e^{−2iω}|⁻² at ω = 0, over the variance 1.5/(0.5·(1.5² − 1.2²))
         let exact = 1.0 / 0.09 / (1.5 / (0.5 * (1.5f64.powi(2) - 1.2f64.powi(2))));
         assert!((noise.density(0.0) / exact - 1.0).abs() < 0.15);
+    }
+
+    #[test]
+    fn valid_lagged_products_give_those_of_whitened_series() {
+        let residuals = autoregressive(0.7, 0.2, 80, 5);
+        let columns = [autoregressive(0.1, 0.0, 80, 6), vec![1.0; 80]];
+        for partial in [&[][..], &[0.6], &[0.9, -0.3], &[0.5, 0.4, -0.2]] {
+            let noise = Noise::of(partial);
+            let found = Lagged::of(&residuals, &columns, partial.len()).whitened(&noise);
+            let mut all: Vec<Vec<f64>> = columns.iter().map(|c| noise.whiten(c)).collect();
+            all.push(noise.whiten(&residuals));
+            for i in 0..3 {
+                for k in 0..3 {
+                    let direct = dot(&all[i], &all[k]);
+                    assert!((found[(i, k)] - direct).abs() < 1e-9 * 80.0, "{partial:?}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -1,12 +1,11 @@
 //! A decay made ready for its fit: where it begins and ends, what lies under it, the noise about it.
 
-use super::blows;
 use super::least_squares::{Point, Series};
 use super::modes::{self, Mode, STEADY};
-use super::noise::Noise;
+use super::noise::{Noise, structured};
 use super::shape::{Rates, Shape};
 use super::{LEAST_PERIODS, STANDS_OUT};
-use crate::signal::columns::dot;
+use super::{beat, blows};
 use crate::signal::{robust, spectrum, whole};
 
 /// Means that a period is fitted by, at least, where it has as many samples.
@@ -177,9 +176,15 @@ impl Prepared {
             let found = of_kind.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
             found.map(|m| [m.frequency * rate_hz, m.amplitude / amplitude])
         };
+        let beat = beat::find(&self.series, &self.free).map(|found| {
+            let hz = rate_hz / self.factor as f64 / std::f64::consts::TAU;
+            let [strong, weak] = found.frequencies.map(|f| f * hz);
+            [strong, weak, found.ratio]
+        });
         super::Beside {
             hum: strongest(true),
             mode: strongest(false),
+            beat,
             drift_ratio: self.free.drift() / amplitude,
             slow_noise: self.series.noise.slow(self.free.rates[0]),
         }
@@ -447,13 +452,4 @@ fn fitted(series: &mut Series, shape: Shape, start: &Point) -> Option<Point> {
         point = series.descend(shape, point.rates)?;
     }
     Some(point)
-}
-
-/// Root mean square of the part of residuals that neighbours share. White noise has a mean squared
-/// difference of neighbours of twice its variance (von Neumann's ratio); what is above that is structure.
-pub(super) fn structured(residuals: &[f64]) -> f64 {
-    let count = residuals.len().max(2) as f64;
-    let all = dot(residuals, residuals) / count;
-    let steps: f64 = residuals.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
-    (all - 0.5 * steps / (count - 1.0)).max(0.0).sqrt()
 }

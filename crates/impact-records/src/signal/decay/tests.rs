@@ -282,3 +282,34 @@ fn prop_intervals_hold_f0_and_beta_over_kinds_of_noise_and_lengths() {
         assert!((0.90..=0.99).contains(&share), "{held} of {all}");
     }
 }
+
+#[test]
+fn valid_two_modes_that_beat_are_named_by_their_frequencies() {
+    // from about one line of the spectrum apart on
+    for (second, ratio, seconds) in [(3.18, 0.6, 6.0), (3.4, 0.3, 8.0), (2.85, 0.9, 12.0)] {
+        let (one, other) = (decay(3.0, 0.01, 0.0), decay(second, 0.01, 0.4));
+        let count = whole::index(seconds * 500.0);
+        let mut samples = sampled(count, 500.0, |t| one(t) + ratio * other(t));
+        white(&mut samples, 3e-3, 8);
+        let found = fit(&samples, 500.0).unwrap();
+        let [strong, weak, share] = found
+            .beside
+            .beat
+            .unwrap_or_else(|| panic!("{second}: no beat, {:?}", found.beside));
+        assert!((strong - 3.0).abs() < 0.01, "{second}: {strong}");
+        assert!((weak - second).abs() < 0.01, "{second}: {weak}");
+        assert!((share - ratio).abs() < 0.05, "{second}: {share}");
+    }
+    let mut plain = sampled(3000, 500.0, decay(3.0, 0.02, 0.3));
+    white(&mut plain, 0.02, 9);
+    assert_eq!(fit(&plain, 500.0).unwrap().beside.beat, None);
+    let rubbed = with_friction(3.0, 0.01, 4e-3, 500.0, 3000);
+    assert_eq!(fit(&rubbed, 500.0).unwrap().beside.beat, None);
+}
+
+#[test]
+fn a_decay_states_how_many_periods_were_fitted() {
+    let samples = sampled(1000, 500.0, decay(2.5, 0.01, 0.0));
+    let found = fit(&samples, 500.0).unwrap();
+    assert!((found.periods - 5.0).abs() < 0.2, "{}", found.periods);
+}
