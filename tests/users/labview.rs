@@ -1,4 +1,4 @@
-//! A campaign as LabVIEW leaves it: a CSV file a record with decimal commas and German heads, and the laboratory book
+//! A campaign as `LabVIEW` leaves it: a CSV file a record with decimal commas and German heads, and the laboratory book
 //! beside them. From `init` to the report.
 
 use std::fmt::Write as _;
@@ -19,7 +19,7 @@ const COLUMNS: [(&str, &str, f64); 5] = [
 /// Samples a second.
 const RATE: f64 = 2000.0;
 
-/// A record as the program converts it, as LabVIEW writes it.
+/// A record as the program converts it, as `LabVIEW` writes it.
 fn saved(record: &str) -> String {
     let mut lines = record.lines().filter(|l| !l.starts_with('#'));
     let heads: Vec<&str> = lines.next().expect("heads").split(',').collect();

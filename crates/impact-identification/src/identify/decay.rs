@@ -86,7 +86,7 @@ fn too_short(decays: &[&Decay]) -> Option<f64> {
         d.periods < TESTED_PERIODS && (-d.damping_ratio * turns).exp() > CUT_OFF
     };
     let longest = decays.iter().map(|d| d.periods).fold(0.0, f64::max);
-    decays.iter().all(|d| cut_off(&d)).then_some(longest)
+    decays.iter().all(cut_off).then_some(longest)
 }
 
 /// Make f0 and β weak for a reason, if they are no weaker.

@@ -169,7 +169,7 @@ mod tests {
         assert_eq!(parse("10:45:47:250", false).unwrap().seconds, 38_747.25);
         assert_eq!(
             parse("10:45:47:000250", false).unwrap().seconds,
-            38_747.00025
+            38_747.000_25
         );
         assert_eq!(
             parse("2024-05-01 1:45:47:250 PM", false).unwrap().seconds,

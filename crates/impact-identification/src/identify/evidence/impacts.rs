@@ -516,7 +516,10 @@ mod tests {
         for (item, v) in [0.2, 0.4, 0.7].into_iter().enumerate() {
             let off = |p: &Parameters| block.residuals(item, p).expect("a residual")[0];
             let unexplained = off(&constant).abs();
-            assert!(off(&slope).abs() < 0.02 * unexplained + 1e-9, "{v}: {unexplained}");
+            assert!(
+                off(&slope).abs() < 0.02 * unexplained + 1e-9,
+                "{v}: {unexplained}"
+            );
         }
     }
 

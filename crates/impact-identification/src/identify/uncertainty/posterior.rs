@@ -45,10 +45,7 @@ impl Posterior {
     /// With an interval that reaches to that of another posterior, and a normal distribution as wide.
     fn reaching(mut self, other: &Self) -> Self {
         let [low, high] = self.interval95;
-        self.interval95 = [
-            low.min(other.interval95[0]),
-            high.max(other.interval95[1]),
-        ];
+        self.interval95 = [low.min(other.interval95[0]), high.max(other.interval95[1])];
         let ((a, sa), (b, sb)) = (self.restitution, other.restitution);
         let spread = 0.5 * (sa * sa + sb * sb) + 0.25 * (a - b).powi(2);
         self.restitution = (0.5 * (a + b), spread.sqrt());
@@ -469,8 +466,7 @@ mod tests {
     fn valid_ends_at_the_lower_edges_of_their_brackets_are_held_without_early_jumps() {
         // each s2 a hundredth of the width above the last setting at which z = 1 was seen
         let p = Parameters::symmetric(0.7, 12.6, 0.05, 1e-3);
-        let brackets =
-            [1.1, 1.3, 1.5].map(|eta| bracket(BoundaryKind::SaddleNode, eta, &p, -0.98));
+        let brackets = [1.1, 1.3, 1.5].map(|eta| bracket(BoundaryKind::SaddleNode, eta, &p, -0.98));
         let block = BoundaryBlock::new(RigKind::Double, &brackets);
         let effect = Effect::ContactDuration;
         let prior = Prior::new(Coordinate::Effect(effect), 0.0, effect.accepted());
