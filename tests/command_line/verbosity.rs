@@ -35,7 +35,7 @@ fn v_prints_versions_files_times_and_fits_and_vv_also_records_and_notes() {
         "identify: ",
         "write: ",
         "total: ",
-        "fit of impacts: ",
+        "fit of speeds_at_impact: ",
         " iterations",
     ] {
         assert!(v.contains(words), "'{words}' is not in {v}");
@@ -46,7 +46,7 @@ fn v_prints_versions_files_times_and_fits_and_vv_also_records_and_notes() {
         " 1.0000 mm, motion ",
         "confidence ",
         "r1.csv: note: the last row has",
-        "fit of impacts: ",
+        "fit of speeds_at_impact: ",
         "total: ",
     ] {
         assert!(vv.contains(words), "'{words}' is not in {vv}");
@@ -64,7 +64,7 @@ fn the_stages_print_details_too() {
     assert!(!said(&lab, classify, "-v").contains("r1: 1"));
     let identify = said(&lab, &["identify", "out"], "-v");
     assert!(
-        identify.contains("fit of impacts: ") && identify.contains("identify: "),
+        identify.contains("fit of speeds_at_impact: ") && identify.contains("identify: "),
         "{identify}"
     );
 }

@@ -66,7 +66,7 @@ mod tests {
         std::fs::write(&path, &text).unwrap();
         check(folder.path()).unwrap();
         for other in [
-            text.replace("\"5\"", "\"1\""),
+            text.replace("\"6\"", "\"1\""),
             "{}".into(),
             "no JSON".into(),
         ] {

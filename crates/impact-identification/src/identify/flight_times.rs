@@ -138,9 +138,10 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         });
     }
     let scatter = ratios.len() > 1 && !rows.is_empty();
-    let grouping = match trend(&rows, noise) {
-        true => Some(Grouping::Bounce),
-        false => between_records(&groups).or_else(|| structure::structure(&ratios)),
+    let grouping = if trend(&rows, noise) {
+        Some(Grouping::Bounce)
+    } else {
+        between_records(&groups).or_else(|| structure::structure(&ratios))
     };
     if let Some(grouping) = grouping.filter(|_| scatter) {
         result.judge_structure(grouping);
@@ -382,9 +383,10 @@ fn time_noise(fits: &[(&Row, Fitted)], records: &[(usize, &Observation)]) -> Spr
             .collect()
     };
     let third = of(&[-1.0, 3.0, -3.0, 1.0]);
-    let differences = match third.len() < ENOUGH {
-        true => of(&[1.0, -2.0, 1.0]),
-        false => third,
+    let differences = if third.len() < ENOUGH {
+        of(&[1.0, -2.0, 1.0])
+    } else {
+        third
     };
     if differences.len() < ENOUGH {
         return Spread::known(stated.max(USUAL_ERROR_S));

@@ -529,11 +529,19 @@ impl IdentificationRun<'_> {
     fn change(&self, fits: &Fits) -> Option<Change> {
         let joint = succeeded(&fits.joint)?;
         let blocks = &self.selection.blocks;
-        let problem = self.problem(blocks, fits.start, &fits.weights)?;
+        // Speeds go with the gap, and the gap with the time: R over the speed would take up some of a change.
+        let nominal = &self.evidence.nominal;
+        let constant = Nominal {
+            effects: nominal.effects.without(EffectKind::RestitutionSpeed),
+            ..*nominal
+        };
+        let of_brackets = self.posterior.as_ref().map(Posterior::as_prior);
+        let problem = joint::problem(blocks, fits.start, &fits.weights, &constant, of_brackets)?;
         let present = joint::present(blocks, &fits.weights);
         let fitted = (&self.selection, &problem, &present[..]);
-        let at = (&joint.fit.parameters, joint.factor);
-        change::change(self.evidence, fitted, at)
+        let over_speed = Coordinate::Effect(Effect::RestitutionSpeed);
+        let at = joint.fit.parameters.with(over_speed, 0.0);
+        change::change(self.evidence, fitted, (&at, joint.factor))
     }
 
     /// The gap that deviates most from what the others say, if one does.

@@ -73,15 +73,17 @@ pub fn beside(
         let mut simulated = others.iter().map(|map| map[i]);
         let found = simulated.find(|m| *m != own && is_known(m));
         let known = || columns[i % columns.len()].other(machine, grid.at(i).1, own);
-        match patience::is_over() || !is_known(&own) {
-            true => own,
-            false => found.or_else(known).unwrap_or(own),
+        if patience::is_over() || !is_known(&own) {
+            own
+        } else {
+            found.or_else(known).unwrap_or(own)
         }
     };
     let cells: Vec<usize> = (0..grid.len()).collect();
     let found = parallel::map(&cells, other);
-    match patience::is_over() {
-        true => Err(ModelError::GivenUp),
-        false => Ok(found),
+    if patience::is_over() {
+        Err(ModelError::GivenUp)
+    } else {
+        Ok(found)
     }
 }

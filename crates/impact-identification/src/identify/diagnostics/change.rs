@@ -71,12 +71,11 @@ pub fn change(
     let ranks = ranks(evidence.observations);
     let of_rank = |rank: usize| ranks.iter().position(|r| *r == rank);
     let suspects = [
-        by_impacts(&ranks, evidence.observations, &selection.blocks),
         by_rows(&ranks, problem, present, (&selection.blocks, at, factor)),
+        by_impacts(&ranks, evidence.observations, &selection.blocks),
         by_lost_records(&ranks, selection),
     ];
-    let moments: BTreeSet<usize> = suspects.into_iter().flatten().collect();
-    let found = moments.into_iter().filter_map(|rank| {
+    let found = suspects.into_iter().flatten().filter_map(|rank| {
         let both = [false, true].map(|later| {
             let within = |i: usize| (ranks[i] >= rank) == later;
             part_alone(evidence, &within)
@@ -98,7 +97,10 @@ pub fn change(
                 parts,
             })
     });
-    found.max_by(|a, b| a.chi2().total_cmp(&b.chi2()))
+    let found: Vec<Change> = found.collect();
+    let most = found.iter().map(Change::chi2).fold(0.0, f64::max);
+    // Parts that begin a few records apart differ about as much: the first suspect then weighs most records.
+    found.into_iter().find(|change| change.chi2() >= 0.5 * most)
 }
 
 /// Whether a parameter of two parts differs beyond chance and beyond what drifts.
@@ -194,9 +196,12 @@ fn gain(all: &Normal, after: &Normal, places: &[usize]) -> Option<f64> {
         (false, false) => after.matrix[(places[i - n], places[k - n])],
     };
     let covariance = inverse(&DMatrix::from_fn(n + m, n + m, entry))?;
-    let gradient = DVector::from_fn(n + m, |i, _| match i < n {
-        true => all.gradient[i],
-        false => after.gradient[places[i - n]],
+    let gradient = DVector::from_fn(n + m, |i, _| {
+        if i < n {
+            all.gradient[i]
+        } else {
+            after.gradient[places[i - n]]
+        }
     });
     let change = (&covariance * gradient).rows(n, m).into_owned();
     let own = covariance.view((n, n), (m, m)).into_owned();
@@ -227,9 +232,10 @@ fn by_impacts(ranks: &[usize], observations: &[Observation], blocks: &Blocks) ->
     let slope = slope(&speeds);
     for pair in pairs {
         let own = of_records.entry(ranks[pair.observation]).or_default();
-        let by_speed = match driven(pair.observation) {
-            true => 0.0,
-            false => slope * pair.before_m_s,
+        let by_speed = if driven(pair.observation) {
+            0.0
+        } else {
+            slope * pair.before_m_s
         };
         own.push(pair.after_m_s / pair.before_m_s - by_speed);
     }
@@ -317,9 +323,10 @@ impl Change {
             let Some(slot) = joint.parameters.slot(*parameter) else {
                 continue;
             };
-            *slot = Some(match differs(*parameter, both) {
-                true => between(*parameter, both),
-                false => stated(*parameter, mean(both)),
+            *slot = Some(if differs(*parameter, both) {
+                between(*parameter, both)
+            } else {
+                stated(*parameter, mean(both))
             });
         }
         self.parts.keys().copied().collect()

@@ -35,9 +35,10 @@ impl Circumstances {
 
 /// Logarithm of an approach speed over the typical one; 0 where either is not positive.
 pub fn log_speed(approach_m_s: f64, typical_m_s: f64) -> f64 {
-    match approach_m_s > 0.0 && typical_m_s > 0.0 {
-        true => (approach_m_s / typical_m_s).ln(),
-        false => 0.0,
+    if approach_m_s > 0.0 && typical_m_s > 0.0 {
+        (approach_m_s / typical_m_s).ln()
+    } else {
+        0.0
     }
 }
 
@@ -82,17 +83,19 @@ impl Parameters {
     fn equivalent_damping(&self, eta: f64) -> [f64; 2] {
         let share = self.effect(Effect::HystereticDamping);
         let whole = 1.0 + share * (1.0 / eta - 1.0);
-        match whole > 0.01 {
-            true => [whole, -share / (eta * eta)],
-            false => [0.01, 0.0],
+        if whole > 0.01 {
+            [whole, -share / (eta * eta)]
+        } else {
+            [0.01, 0.0]
         }
     }
 
     /// Frequency ratio of a record; 1 where nothing is known of its drive.
     fn eta(&self, at: &Circumstances) -> f64 {
-        match at.frequency_hz > 0.0 {
-            true => at.frequency_hz / self.natural_frequency_hz,
-            false => 1.0,
+        if at.frequency_hz > 0.0 {
+            at.frequency_hz / self.natural_frequency_hz
+        } else {
+            1.0
         }
     }
 

@@ -48,9 +48,10 @@ pub(super) struct Stretch {
 impl Stretch {
     /// Velocity at a time in samples, m/s.
     pub(super) fn speed(&self, time: f64) -> f64 {
-        match self.of_displacement {
-            true => self.fit.slope(time) * self.rate_hz,
-            false => self.fit.value(time),
+        if self.of_displacement {
+            self.fit.slope(time) * self.rate_hz
+        } else {
+            self.fit.value(time)
         }
     }
 
@@ -65,9 +66,10 @@ impl Stretch {
     pub(super) fn sure_step(&self, time: f64, deviates: f64) -> f64 {
         let count = (self.samples.1 - self.samples.0) as f64;
         let squared = count * count;
-        let (factor, rate_hz) = match self.of_displacement {
-            true => (720.0 / (squared - 4.0), self.rate_hz),
-            false => (12.0, 1.0),
+        let (factor, rate_hz) = if self.of_displacement {
+            (720.0 / (squared - 4.0), self.rate_hz)
+        } else {
+            (12.0, 1.0)
         };
         let error = self.deviation * rate_hz * (factor / (count * (squared - 1.0))).sqrt();
         let step = self.step(time);
@@ -80,9 +82,10 @@ impl Stretch {
 
     /// Standard error of the velocity at a time, m/s.
     pub(super) fn error(&self, time: f64) -> f64 {
-        let factor = match self.of_displacement {
-            true => self.fit.slope_error_factor(time) * self.rate_hz,
-            false => self.fit.error_factor(time),
+        let factor = if self.of_displacement {
+            self.fit.slope_error_factor(time) * self.rate_hz
+        } else {
+            self.fit.error_factor(time)
         };
         (self.deviation * factor)
             .hypot(SPEED_SCATTER * self.speed(time).abs())

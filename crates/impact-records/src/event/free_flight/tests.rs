@@ -205,9 +205,10 @@ fn prop_separation_speeds_are_within_what_was_measured_and_hold_the_truth_whatev
         let mut outside = Vec::new();
         for _ in 0..all {
             let bumpers = Bumpers::random(&mut rng);
-            let noise: f64 = match by_camera {
-                true => rng.random_range(2e-6..2e-5),
-                false => rng.random_range(1e-3..5e-3),
+            let noise: f64 = if by_camera {
+                rng.random_range(2e-6..2e-5)
+            } else {
+                rng.random_range(1e-3..5e-3)
             };
             let [speeds, places] = bumpers.sampled(rate_hz);
             // each mass has half of it, beside a motion of both
@@ -220,9 +221,10 @@ fn prop_separation_speeds_are_within_what_was_measured_and_hold_the_truth_whatev
                     .collect()
             };
             let (own, other) = (of_mass(0.1), of_mass(-0.1));
-            let roles = match by_camera {
-                true => [Role::DisplacementX, Role::DisplacementY],
-                false => [Role::VelocityX, Role::VelocityY],
+            let roles = if by_camera {
+                [Role::DisplacementX, Role::DisplacementY]
+            } else {
+                [Role::VelocityX, Role::VelocityY]
             };
             let record = Record::of(rate_hz, &[(roles[0], &own), (roles[1], &other)]);
             let kinematics = Kinematics::of(&record, RigKind::Double, 1);

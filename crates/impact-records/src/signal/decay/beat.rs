@@ -75,9 +75,10 @@ fn told(series: &Series, pair: &Pair, of_one: f64) -> Option<Beat> {
         && decay
         && strong < CANCELS * greatest
         && weak > TELLING * strong;
-    let frequencies = match first >= second {
-        true => [pair.rates[0], pair.rates[2]],
-        false => [pair.rates[2], pair.rates[0]],
+    let frequencies = if first >= second {
+        [pair.rates[0], pair.rates[2]]
+    } else {
+        [pair.rates[2], pair.rates[0]]
     };
     is_told.then_some(Beat {
         frequencies,
