@@ -163,7 +163,7 @@ mod tests {
     #[test]
     fn a_text_without_a_translation_is_english_and_without_a_text_its_key() {
         let german = Language::of_code("de").expect("German");
-        assert_eq!(german.text("method", "resonance"), "Resonanzkurve");
+        assert_eq!(german.text("method", "resonance_curve"), "Resonanzkurve");
         assert_eq!(german.text("method", "guess"), "guess");
         assert!(german.decimal_comma() && german.capital_nouns());
         assert!(Language::of_code("xx").is_none());
