@@ -118,18 +118,9 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         ..structure::groups(&ratios, observations)
     });
     result.remarks.push(Remark::TimesScatter { error_s });
-    if left_out > 0 {
-        result
-            .remarks
-            .push(Remark::FlightsLeftOut { count: left_out });
-    }
-    if let Some((record, time_s)) = missed.first() {
-        result.remarks.push(Remark::ImpactsMissed {
-            count: missed.len(),
-            record: observations[*record].record.clone(),
-            time_s: *time_s,
-        });
-    }
+    result
+        .remarks
+        .extend(not_used(left_out, &missed, observations));
     if let Some(odd) = odd {
         result.remarks.push(Remark::OddRecord {
             record: all[odd].group.clone(),
@@ -147,6 +138,23 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         result.judge_structure(grouping);
     }
     Some(result)
+}
+
+/// What the flights that are left out, and the impacts that seem to be missing, are to be known by.
+fn not_used(
+    left_out: usize,
+    missed: &[(usize, f64)],
+    observations: &[Observation],
+) -> impl Iterator<Item = Remark> {
+    let flights = (left_out > 0).then_some(Remark::FlightsLeftOut { count: left_out });
+    let impacts = missed
+        .first()
+        .map(|(record, time_s)| Remark::ImpactsMissed {
+            count: missed.len(),
+            record: observations[*record].record.clone(),
+            time_s: *time_s,
+        });
+    flights.into_iter().chain(impacts)
 }
 
 /// Standard error of R by the contacts' length, where listed times are those at which contacts close: a flight begins

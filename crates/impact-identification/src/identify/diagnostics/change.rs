@@ -5,7 +5,7 @@
 //! lost, and by R of the records' impacts. The two parts about that moment are then fitted each by itself,
 //! with allowances of their own, and compared.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
