@@ -455,8 +455,18 @@ impl IdentificationRun<'_> {
         start: Parameters,
         weights: &Weights,
     ) -> Option<Problem<'b>> {
+        self.problem_with(&self.evidence.nominal, blocks, (start, weights))
+    }
+
+    /// The same with other statements of the laboratory.
+    fn problem_with<'b>(
+        &self,
+        nominal: &Nominal,
+        blocks: &'b Blocks,
+        (start, weights): (Parameters, &Weights),
+    ) -> Option<Problem<'b>> {
         let of_brackets = self.posterior.as_ref().map(Posterior::as_prior);
-        joint::problem(blocks, start, weights, &self.evidence.nominal, of_brackets)
+        joint::problem(blocks, start, weights, nominal, of_brackets)
     }
 
     /// The joint fit with all that other campaigns' fits are combined with it by; `estimates`: what was
@@ -535,8 +545,7 @@ impl IdentificationRun<'_> {
             effects: nominal.effects.without(EffectKind::RestitutionSpeed),
             ..*nominal
         };
-        let of_brackets = self.posterior.as_ref().map(Posterior::as_prior);
-        let problem = joint::problem(blocks, fits.start, &fits.weights, &constant, of_brackets)?;
+        let problem = self.problem_with(&constant, blocks, (fits.start, &fits.weights))?;
         let present = joint::present(blocks, &fits.weights);
         let fitted = (&self.selection, &problem, &present[..]);
         let over_speed = Coordinate::Effect(Effect::RestitutionSpeed);

@@ -89,8 +89,7 @@ fn far_brackets(content: &ReportContent, locale: Locale<'_>) -> Option<String> {
         b.left_out.is_none() && off > Some(high - low)
     });
     let count = far.count();
-    let values = [("count", count.to_string())];
-    let values = values.each_ref().map(|(name, text)| (*name, text.as_str()));
+    let values = [("count", &*count.to_string())];
     (count > 0).then(|| locale.translate_with(Phrase::FarBrackets, &values))
 }
 

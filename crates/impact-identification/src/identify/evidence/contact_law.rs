@@ -291,18 +291,11 @@ mod tests {
         let pairs = (0..200)
             .map(|i| {
                 let v = 0.05 + 0.01 * i as f64;
+                let before_m_s = v + scatter(1.0 + 1.732_051 * i as f64);
+                let after_m_s = law(v) * v + scatter(2.399_963 * i as f64);
                 SpeedPair {
                     observation: i,
-                    time_s: 0.0,
-                    before_m_s: v + scatter(1.0 + 1.732_051 * i as f64),
-                    after_m_s: law(v) * v + scatter(2.399_963 * i as f64),
-                    error_m_s,
-                    by_time_m_s: [0.0; 2],
-                    corner_shifts: [None, None],
-                    lags: [None, None],
-                    picked_up_m_s: [0.0; 2],
-                    sample_place: None,
-                    in_record: 1.0,
+                    ..SpeedPair::of_speeds(before_m_s, after_m_s, error_m_s)
                 }
             })
             .collect();
@@ -330,18 +323,13 @@ mod tests {
                 let v = 0.28 * (1.0 + apart * f64::from(i % 11) / 10.0);
                 let late = normal();
                 let [before, after] = BY_TIME_M_S.map(|m_s| m_s * late);
+                let before_m_s = v + before + 2e-3 * normal();
+                let after_m_s = 0.835 * v - after + 2e-3 * normal();
                 SpeedPair {
                     observation: usize::from(i % 2 == 1),
                     time_s: f64::from(i),
-                    before_m_s: v + before + 2e-3 * normal(),
-                    after_m_s: 0.835 * v - after + 2e-3 * normal(),
-                    error_m_s: 2e-3,
                     by_time_m_s: BY_TIME_M_S,
-                    corner_shifts: [None, None],
-                    lags: [None, None],
-                    picked_up_m_s: [0.0; 2],
-                    sample_place: None,
-                    in_record: 1.0,
+                    ..SpeedPair::of_speeds(before_m_s, after_m_s, 2e-3)
                 }
             })
             .collect();

@@ -38,6 +38,24 @@ pub struct SpeedPair {
 }
 
 impl SpeedPair {
+    /// The first impact of a first record: two speeds with their error, which nothing else changes.
+    #[cfg(test)]
+    pub(in crate::identify) fn of_speeds(before_m_s: f64, after_m_s: f64, error_m_s: f64) -> Self {
+        Self {
+            observation: 0,
+            time_s: 0.0,
+            before_m_s,
+            after_m_s,
+            error_m_s,
+            by_time_m_s: [0.0; 2],
+            corner_shifts: [None, None],
+            lags: [None, None],
+            picked_up_m_s: [0.0; 2],
+            sample_place: None,
+            in_record: 1.0,
+        }
+    }
+
     /// Read the speeds with the delays of the channels that waveforms tell.
     fn delay(&mut self, parameters: &Parameters) {
         let lags = self.lags.iter().flatten();
@@ -456,23 +474,15 @@ mod tests {
     fn valid_slopes_are_those_of_finite_differences() {
         let shift = |role, speed_m_s| Some(CornerShift { role, speed_m_s });
         let pair = SpeedPair {
-            observation: 0,
-            time_s: 0.1,
-            before_m_s: 0.5,
-            after_m_s: 0.37,
-            error_m_s: 5e-3,
             by_time_m_s: [4e-3, 1e-3],
             corner_shifts: [shift(Role::VelocityX, 3e-3), shift(Role::VelocityY, -2e-3)],
-            lags: [None, None],
             picked_up_m_s: [0.3, -0.1],
-            sample_place: None,
-            in_record: 1.0,
+            ..SpeedPair::of_speeds(0.5, 0.37, 5e-3)
         };
-        let block = ImpactBlock::of_pairs(vec![pair], 4e-3);
+        let mut block = ImpactBlock::of_pairs(vec![pair], 4e-3);
         let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
         parameters.corners = [1.1, 0.9, 1.0, 1.0, 1.0, 1.0];
         let parameters = parameters.with(Coordinate::Effect(Effect::PickupX), 2e-3);
-        let mut block = block;
         block.typical_approach_m_s = 0.3;
         let coordinates = [
             Coordinate::Effect(Effect::RestitutionSpeed),
@@ -496,19 +506,8 @@ mod tests {
     #[test]
     fn valid_impacts_whose_r_follows_the_speed_fit_with_its_slope() {
         // R = 0.8 − 0.02 ln v/v₀: to second order of the slope the residuals vanish
-        let pair = |v: f64| SpeedPair {
-            observation: 0,
-            time_s: 0.1,
-            before_m_s: v,
-            after_m_s: (0.8 - 0.02 * (v / 0.4).ln()) * v,
-            error_m_s: 1e-3,
-            by_time_m_s: [0.0; 2],
-            corner_shifts: [None, None],
-            lags: [None, None],
-            picked_up_m_s: [0.0; 2],
-            sample_place: None,
-            in_record: 1.0,
-        };
+        let restitution = |v: f64| 0.8 - 0.02 * (v / 0.4).ln();
+        let pair = |v: f64| SpeedPair::of_speeds(v, restitution(v) * v, 1e-3);
         let block = ImpactBlock::of_pairs([0.2, 0.4, 0.7].map(pair).into(), 0.0);
         assert!((block.typical_approach_m_s - 0.4).abs() < 1e-12);
         let constant = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
@@ -526,20 +525,11 @@ mod tests {
     #[test]
     fn valid_speeds_are_read_where_the_delays_of_the_channels_place_them() {
         let pair = SpeedPair {
-            observation: 0,
-            time_s: 0.1,
-            before_m_s: 0.5,
-            after_m_s: 0.4,
-            error_m_s: 1e-3,
-            by_time_m_s: [0.0; 2],
-            corner_shifts: [None, None],
             lags: [
                 lag(Role::VelocityX, Role::DisplacementX, [10.0, 4.0]),
                 lag(Role::VelocityY, Role::DisplacementY, [20.0, 8.0]),
             ],
-            picked_up_m_s: [0.0; 2],
-            sample_place: None,
-            in_record: 1.0,
+            ..SpeedPair::of_speeds(0.5, 0.4, 1e-3)
         };
         let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
         parameters.delays_s = [5e-4, 2e-4, 1e-4, 3e-4, 0.0, 0.0];

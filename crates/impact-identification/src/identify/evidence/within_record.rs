@@ -181,18 +181,12 @@ mod tests {
                 let place = (period * impact as f64).rem_euclid(1.0);
                 let by_place = 12f64.sqrt() * ((first + place).rem_euclid(1.0) - 0.5);
                 let error = (by_place + normal()) / 2f64.sqrt();
+                let after = law(speed) * speed + ERROR_M_S * 1f64.hypot(law(speed)) * error;
                 pairs.push(SpeedPair {
                     observation: record,
                     time_s: impact as f64,
-                    before_m_s: speed,
-                    after_m_s: law(speed) * speed + ERROR_M_S * 1f64.hypot(law(speed)) * error,
-                    error_m_s: ERROR_M_S,
-                    by_time_m_s: [0.0; 2],
-                    corner_shifts: [None, None],
-                    lags: [None, None],
-                    picked_up_m_s: [0.0; 2],
                     sample_place: Some(place),
-                    in_record: 1.0,
+                    ..SpeedPair::of_speeds(speed, after, ERROR_M_S)
                 });
             }
         }

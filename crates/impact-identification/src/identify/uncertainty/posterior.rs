@@ -98,6 +98,7 @@ impl Scales<'_> {
         }
     }
 }
+
 /// Ratio of their likelihoods at which brackets refute a rig without early jumps and lasting contacts.
 const REFUTED: f64 = 0.05;
 /// Deviations by which brackets miss the waveforms' R before their jumps count as early.

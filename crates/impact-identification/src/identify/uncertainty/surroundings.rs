@@ -119,20 +119,13 @@ impl Surroundings {
     /// The same with contacts without length.
     #[must_use]
     pub fn of_instants(&self) -> Self {
-        let length = Coordinate::Effect(Effect::ContactDuration);
-        let is_length = |d: &Deviate| match d {
-            Deviate::Coordinates(list) => list.iter().any(|(c, _)| *c == length),
-            Deviate::Clearance { .. } => false,
-        };
-        let others = self.deviates.iter().filter(|d| !is_length(d));
-        match self.length {
-            Some(_) => Self {
-                about: self.about.with(length, 0.0),
-                deviates: others.cloned().collect(),
-                length: None,
-            },
-            None => self.clone(),
+        let mut instants = self.clone();
+        if let Some(length) = instants.length.take() {
+            instants.deviates.remove(length);
+            let duration = Coordinate::Effect(Effect::ContactDuration);
+            instants.about = instants.about.with(duration, 0.0);
         }
+        instants
     }
 
     /// The direction of the deviate that must be positive, if there is one.

@@ -1,7 +1,7 @@
 //! Two decays whose frequencies are so near that they beat.
 
 use super::least_squares::{Point, Series, equations};
-use super::noise::{Noise, structured};
+use super::noise::structured;
 use super::shape::{Rates, Shape};
 use crate::signal::columns::dot;
 use crate::signal::robust;
@@ -41,14 +41,10 @@ struct Pair {
 /// The two decays that explain a series that one, of whatever shape, does not.
 pub(super) fn find(series: &Series, one: &Point) -> Option<Beat> {
     let left = series.residuals(one);
-    let plain = Series {
-        values: series.values.clone(),
-        degree: series.degree,
-        noise: Noise::default(),
-    };
     if structured(&left) < LEFT * one.level(series.values.len()) {
         return None;
     }
+    let plain = Series::white(series.values.clone(), series.degree);
     let line = std::f64::consts::TAU / series.values.len() as f64;
     let [omega, sigma, ..] = one.rates;
     let starts = LINES.iter().flat_map(|lines| {

@@ -34,9 +34,14 @@ const SETTLED: f64 = 1e-6;
 impl Series {
     /// Samples of which nothing is known but an offset and white noise.
     pub(super) fn plain(values: Vec<f64>) -> Self {
+        Self::white(values, 0)
+    }
+
+    /// Samples in white noise over a background of a degree.
+    pub(super) fn white(values: Vec<f64>, degree: usize) -> Self {
         Self {
             values,
-            degree: 0,
+            degree,
             noise: Noise::default(),
         }
     }
