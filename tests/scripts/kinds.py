@@ -58,6 +58,7 @@ ONE_MASS = replace(Kind(), machine="single", clearances=(0.6, 1.2, 2.0))
 
 KINDS = {
     "typical": Kind(),
+    "rate_300": Kind("0.3 kHz", rate_hz=300.0),
     "rate_1k": Kind("1 kHz", rate_hz=1e3),
     "rate_5k": Kind("5 kHz", rate_hz=5e3),
     "rate_10k": Kind("10 kHz", rate_hz=1e4),
