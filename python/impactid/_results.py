@@ -2,60 +2,25 @@
 
 from __future__ import annotations
 
+import gzip
 import json
-from dataclasses import dataclass
 from functools import cached_property
+from html import escape
 from os import PathLike
 from pathlib import Path
-from typing import Any, Mapping, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 
-from . import _frames
+import numpy as np
+
+from . import _frames, _html, _plots, _waveform
+from ._estimate import Estimate, estimates
 from ._program import start
+from ._waveform import Waveform
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 StrPath = Union[str, "PathLike[str]"]
-
-PARAMETERS = (
-    "restitution",
-    "natural_frequency_hz",
-    "damping_ratio",
-    "static_deflection_m",
-)
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """One parameter, SI.
-
-    Attributes:
-        value: best value; None where it is not identifiable.
-        standard_error: its standard error.
-        interval95: the 95 % interval, low and high.
-        status: identified, weak or not_identifiable.
-        note: why weak or not identifiable, in English.
-    """
-
-    value: Optional[float]
-    standard_error: Optional[float]
-    interval95: Optional[Tuple[float, float]]
-    status: str
-    note: Optional[str] = None
-
-    @classmethod
-    def of(cls, found: Mapping[str, Any]) -> "Estimate":
-        """From its form in identification.json."""
-        interval = found.get("interval95")
-        note = found.get("note")
-        return cls(
-            value=found.get("value"),
-            standard_error=found.get("standard_error"),
-            interval95=(interval[0], interval[1]) if interval else None,
-            status=found["status"],
-            note=note.get("text") if note else None,
-        )
-
-
-def _estimates(found: Mapping[str, Any]) -> dict[str, Estimate]:
-    return {name: Estimate.of(found[name]) for name in PARAMETERS if found.get(name)}
 
 
 class Results:
@@ -72,6 +37,7 @@ class Results:
     def __init__(self, folder: StrPath, frames: Optional[str] = None) -> None:
         self.folder = Path(folder)
         self._frames = frames
+        self._waveforms: dict[str, Waveform] = {}
         path = self.folder / "identification.json"
         if not path.is_file():
             raise FileNotFoundError(
@@ -83,32 +49,55 @@ class Results:
     def __repr__(self) -> str:
         return f"Results({str(self.folder)!r}: {self.verdict})"
 
+    def _repr_html_(self) -> str:
+        """The answer for notebooks: the verdict, the parameters, the findings, the methods."""
+        name = str(self.identification.get("settings", {}).get("name") or self.folder)
+        parts = [f"<strong>{escape(name)}</strong>", f"<p>{escape(self.summary)}</p>"]
+        parts.append(_html.estimates_table(self.joint))
+        for specimen, found in self.specimens.items():
+            parts.append(f"<p>{escape(specimen)}</p>{_html.estimates_table(found)}")
+        if self.findings:
+            title = f"Findings ({len(self.findings)})"
+            parts.append(_html.details(title, _html.items(self.findings), opened=True))
+        parts.append(_html.details(self.agreement, _html.methods_table(self.methods)))
+        return f"<div>{''.join(parts)}</div>"
+
     @property
     def verdict(self) -> str:
         """identified, weak, not_identifiable or does_not_fit."""
-        return self.identification["verdict"]["kind"]
+        return str(self.identification["verdict"]["kind"])
 
     @property
     def summary(self) -> str:
         """The verdict in sentences."""
-        return self.identification["verdict"]["summary"]
+        return str(self.identification["verdict"]["summary"])
+
+    @property
+    def findings(self) -> list[str]:
+        """What was found about the rig and the records, in English sentences; empty where nothing was."""
+        return [str(finding["text"]) for finding in self.identification["verdict"]["findings"]]
+
+    @property
+    def agreement(self) -> str:
+        """Whether the methods agree, in sentences."""
+        return str(self.identification["agreement"]["summary"])
 
     @cached_property
     def joint(self) -> dict[str, Estimate]:
         """The joint estimates by parameter: R, f0, β, x_st as far as they were asked for."""
-        return _estimates(self.identification["joint"])
+        return estimates(self.identification["joint"])
 
     @cached_property
     def methods(self) -> dict[str, dict[str, Estimate]]:
         """The estimates of each method alone, by method and parameter."""
         found = self.identification["methods"].items()
-        return {method: _estimates(result) for method, result in found}
+        return {method: estimates(result) for method, result in found}
 
     @cached_property
     def specimens(self) -> dict[str, dict[str, Estimate]]:
         """The joint estimates of each specimen, where the campaign holds several."""
         found = self.identification.get("specimens", {}).items()
-        return {name: _estimates(result["joint"]) for name, result in found}
+        return {name: estimates(result["joint"]) for name, result in found}
 
     @cached_property
     def budget(self) -> Any:
@@ -141,10 +130,105 @@ class Results:
         Raises:
             FileNotFoundError: naming the figures that there are.
         """
+        return _frames.csv(self._figure_path(name), self._frames)
+
+    def waveform(self, record: str) -> Waveform:
+        """The waveform of a record, measured and simulated: the program replays it, which takes seconds.
+
+        Raises:
+            ValueError: where no record has this name, or it has no drive.
+            FileNotFoundError: where its file is not found.
+        """
+        if record not in self._waveforms:
+            self._waveforms[record] = self._replayed(record)
+        return self._waveforms[record]
+
+    def plot_map(self, *, dimensionless: bool = False, ax: "Optional[Axes]" = None) -> "Axes":
+        """Plot the map: records by motion, brackets, and the simulated boundaries with their 95 % bands.
+
+        The boundaries are those of the identified parameters.
+
+        Args:
+            dimensionless: plot ρ against η; else the clearance in mm against the frequency in Hz.
+            ax: axes of matplotlib to draw on; new ones if they are not given.
+
+        Raises:
+            ImportError: where matplotlib is not installed.
+            FileNotFoundError: where the results hold no map.
+        """
+        values = {name: estimate.value for name, estimate in self.joint.items()}
+        scales = (values.get("natural_frequency_hz"), values.get("static_deflection_m"))
+        plane = _plots.Plane(dimensionless, *scales)
+        return _plots.draw_map(self._figure_path("map"), plane, ax)
+
+    def plot_residuals(self, method: Optional[str] = None, *, ax: "Optional[Axes]" = None) -> "Axes":
+        """Plot the residuals over their standard errors against the drive's frequency.
+
+        Args:
+            method: resonance_curve, trajectories or speeds_at_impact; all if it is not given. Of more than
+                4000 residuals of one the results hold every second, third …
+            ax: axes of matplotlib to draw on; new ones if they are not given.
+
+        Raises:
+            ImportError: where matplotlib is not installed.
+            ValueError: naming the methods that have residuals.
+        """
+        found = self._residual_figures()
+        chosen = {name: path for name, path in found.items() if method in (None, name)}
+        if not chosen:
+            known = ", ".join(found) or "none"
+            raise ValueError(f"no residuals of {method or 'any method'}; there are those of: {known}")
+        return _plots.draw_residuals(chosen, ax)
+
+    def plot_record(
+        self, record: str, quantity: Optional[str] = None, *, ax: "Optional[Axes]" = None
+    ) -> "Axes":
+        """Plot a record: what was measured, what the identified parameters give, and the impacts.
+
+        Args:
+            record: its name, as in `records`.
+            quantity: velocity, displacement or acceleration; the first that was measured if it is not given.
+            ax: axes of matplotlib to draw on; new ones if they are not given.
+
+        Raises:
+            ImportError: where matplotlib is not installed.
+            ValueError, FileNotFoundError: as `waveform`; also for a quantity that was not measured.
+        """
+        _plots.pyplot()
+        waveform = self.waveform(record)
+        return _plots.draw_waveform(waveform, _plots.quantity_of(waveform, quantity), ax)
+
+    def _replayed(self, record: str) -> Waveform:
+        frequencies = dict(zip(self.records["record"], self.records["frequency_hz"]))
+        if record not in frequencies:
+            raise ValueError(f"no record is named {record!r}; see the column record of `records`")
+        frequency = frequencies[record]
+        if frequency is None or not np.isfinite(frequency):
+            raise ValueError(f"{record} has no drive: there is no motion to compare it with")
+        found = _waveform.replay(self.folder, record)
+        rows = zip(*(self.impacts[name] for name in ("record", "time_s", "drive_phase_rad")))
+        impacts = [(time, phase) for name, time, phase in rows if name == record]
+        times_s = _waveform.on_stretch(float(frequency), impacts, found["measured"])
+        return Waveform(record, found["measured"], found["simulated"], times_s)
+
+    def _residual_figures(self) -> dict[str, Path]:
+        """The data of the figures of residuals by method; they are numbered in the order of the fit."""
+        # of a run, or of the stages
+        of_run, of_stages = self.folder / "report_data.json.gz", self.folder / "residuals.json.gz"
+        sets: list[dict[str, Any]] = []
+        if of_run.is_file():
+            sets = json.loads(gzip.decompress(of_run.read_bytes()))[1]
+        elif of_stages.is_file():
+            sets = json.loads(gzip.decompress(of_stages.read_bytes()))
+        figures = self.folder / "figures"
+        found = {str(one["method"]): figures / f"residuals_{i}.csv" for i, one in enumerate(sets, 1)}
+        return {method: path for method, path in found.items() if path.is_file()}
+
+    def _figure_path(self, name: str) -> Path:
         if name not in self.figures:
             known = ", ".join(self.figures) or "none"
             raise FileNotFoundError(f"no figure is named {name!r}; there are: {known}")
-        return self._table(f"figures/{name}.csv")
+        return self.folder / "figures" / f"{name}.csv"
 
     def _table(self, name: str) -> Any:
         path = self.folder / name

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import tempfile
 from dataclasses import dataclass
@@ -12,9 +11,8 @@ from typing import Iterable, Optional, Sequence, Tuple, Union
 import numpy as np
 from numpy.typing import NDArray
 
+from ._columns import Array, columns, numbers
 from ._program import start
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -65,20 +63,6 @@ def _machine(
     return arguments
 
 
-def _columns(path: Path) -> dict[str, list[str]]:
-    with path.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-        names = list(rows[0]) if rows else []
-    return {name: [row[name] for row in rows] for name in names}
-
-
-def _numbers(column: Sequence[str]) -> Optional[Array]:
-    try:
-        return np.array([float(cell) if cell else np.nan for cell in column], dtype=np.float64)
-    except ValueError:
-        return None
-
-
 def simulate(
     *,
     eta: float,
@@ -119,12 +103,14 @@ def simulate(
         arguments.append("--start=" + ",".join(repr(float(v)) for v in start_state))
     with tempfile.TemporaryDirectory(prefix="impactid-") as folder:
         start([*arguments, "--out", folder])
-        motion = _columns(Path(folder) / "motion.csv")
-        impacts = _columns(Path(folder) / "motion-impacts.csv")
-    series = {name: _numbers(column) for name, column in motion.items() if name != "joined"}
-    found = {name: _numbers(column) for name, column in impacts.items()}
-    empty = np.zeros(0)
-    of = lambda name: empty if series.get(name) is None else series[name]  # noqa: E731
+        motion = columns(Path(folder) / "motion.csv")
+        impacts = columns(Path(folder) / "motion-impacts.csv")
+    found = {name: numbers(column) for name, column in impacts.items()}
+
+    def of(name: str) -> Array:
+        series = numbers(motion.get(name, []))
+        return np.zeros(0) if series is None else series
+
     return Motion(
         tau_over_period=of("tau_over_period"),
         x=of("x"),

@@ -3,12 +3,16 @@
 IMPACTID_PROGRAM names the program; without it the one that is installed is tested.
 """
 
+import os
 from pathlib import Path
 
 import pytest
 
 import impactid
 from impactid._program import start
+
+# plots are drawn without a screen
+os.environ.setdefault("MPLBACKEND", "Agg")
 
 
 @pytest.fixture(scope="session")
