@@ -3,7 +3,7 @@
 #
 # Run it as a script, `python read_results.py results/`, or cell by cell in an editor that knows `# %%`.
 # It needs the module `impactid` (pip install impactid-*.whl) and polars or pandas; with matplotlib it also
-# draws the records and a simulated motion.
+# draws the map.
 
 # %%
 import json
@@ -53,27 +53,13 @@ print(f"simulated: {len(motion.x)} samples, {len(motion.impacts['closing_speed_b
 print(f"z = 1 ends at rho = {edge.rho} for eta = {edge.eta}")
 
 # %% [markdown]
-# ## A picture
+# ## The map
 
 # %%
 try:
-    import matplotlib
-except ImportError:
-    print("matplotlib is not installed: no plot")
+    axes = results.plot_map()
+except ImportError as error:
+    print(error)
     sys.exit(0)
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
-
-figure, (left, right) = pyplot.subplots(1, 2, figsize=(9, 4))
-columns = [list(results.records[n]) for n in ("frequency_hz", "clearance_m", "motion")]
-for kind in sorted(set(columns[2])):
-    points = [(f, 1e3 * c) for f, c, m in zip(*columns) if m == kind and f is not None and c is not None]
-    if points:
-        left.plot(*zip(*points), ".", label=f"z = {kind}")
-left.set(xlabel="drive frequency, Hz", ylabel="clearance, mm")
-left.legend()
-right.plot(motion.x, motion.x_velocity)
-right.set(xlabel="X", ylabel="X'")
-figure.tight_layout()
-figure.savefig(folder / "records.png")
+axes.figure.savefig(folder / "records.png")
 print(f"written: {folder / 'records.png'}")

@@ -6,9 +6,9 @@ Colours and fonts are those of the page around it, so that it is readable on lig
 from __future__ import annotations
 
 from html import escape
-from typing import Mapping, Sequence
+from typing import Any, Mapping, Sequence
 
-from ._estimate import PARAMETERS, Estimate, interval_text, value_text
+from ._estimate import PARAMETERS, Estimate, estimates, interval_text, value_text
 
 _LEFT = 'style="text-align:left"'
 
@@ -69,11 +69,37 @@ def _of_method(name: str, found: Mapping[str, Estimate]) -> str:
     return value_text(name, estimate) + weak
 
 
-def details(summary: str, content: str, *, opened: bool = False) -> str:
-    """Content that is shown when its summary is clicked."""
-    return f"<details{' open' if opened else ''}><summary>{escape(summary)}</summary>{content}</details>"
+def answer(found: Mapping[str, Any]) -> str:
+    """Parameters, findings and methods of an identification: that of a campaign, or of one specimen."""
+    of_methods = {name: estimates(result) for name, result in found["methods"].items()}
+    texts = [str(finding["text"]) for finding in found["verdict"]["findings"]]
+    parts = [estimates_table(estimates(found["joint"]))]
+    if texts:
+        parts.append(_details(f"Findings ({len(texts)})", items(texts), " open"))
+    if len(of_methods) > 1:
+        parts.append(_details(str(found["agreement"]["summary"]), methods_table(of_methods)))
+    return "".join(parts)
+
+
+def _details(summary: str, content: str, opened: str = "") -> str:
+    """Content that is shown when its summary is clicked, or at once."""
+    return f"<details{opened}><summary>{escape(summary)}</summary>{content}</details>"
 
 
 def items(texts: Sequence[str]) -> str:
     """Texts as a list."""
     return "<ul>" + "".join(f"<li>{escape(text)}</li>" for text in texts) + "</ul>"
+
+
+def results(found: Mapping[str, Any], folder: str) -> str:
+    """What identification.json holds: the verdict, then the answer, or that of each specimen."""
+    name = str(found.get("settings", {}).get("name") or folder)
+    parts = [f"<strong>{escape(name)}</strong>", f"<p>{escape(found['verdict']['summary'])}</p>"]
+    specimens = found.get("specimens", {})
+    if not specimens:
+        return f"<div>{''.join(parts)}{answer(found)}</div>"
+    # what was found of all of them begins with a sentence on each
+    parts.append(items([str(finding["text"]) for finding in found["verdict"]["findings"]]))
+    for specimen, one in specimens.items():
+        parts.append(f"<p><strong>{escape(specimen)}</strong></p>{answer(one)}")
+    return f"<div>{''.join(parts)}</div>"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import gzip
 import json
 from functools import cached_property
-from html import escape
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
@@ -51,16 +50,7 @@ class Results:
 
     def _repr_html_(self) -> str:
         """The answer for notebooks: the verdict, the parameters, the findings, the methods."""
-        name = str(self.identification.get("settings", {}).get("name") or self.folder)
-        parts = [f"<strong>{escape(name)}</strong>", f"<p>{escape(self.summary)}</p>"]
-        parts.append(_html.estimates_table(self.joint))
-        for specimen, found in self.specimens.items():
-            parts.append(f"<p>{escape(specimen)}</p>{_html.estimates_table(found)}")
-        if self.findings:
-            title = f"Findings ({len(self.findings)})"
-            parts.append(_html.details(title, _html.items(self.findings), opened=True))
-        parts.append(_html.details(self.agreement, _html.methods_table(self.methods)))
-        return f"<div>{''.join(parts)}</div>"
+        return _html.results(self.identification, str(self.folder))
 
     @property
     def verdict(self) -> str:

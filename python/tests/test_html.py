@@ -87,11 +87,20 @@ def test_text_of_the_campaign_is_escaped(results, tmp_path):
     def change(found):
         found["settings"]["name"] = "<script>a & b</script>"
         found["verdict"]["findings"] = [{"text": '<img src="x">'}]
-        found["specimens"] = {"<i>steel": {"joint": found["joint"]}}
 
     html = changed(results, tmp_path, change)._repr_html_()
     assert "<script" not in html and "<img" not in html and "<i>" not in html
     assert "<script>a & b</script>" in shown(html)
+
+
+def test_each_specimen_has_its_own_table(results, tmp_path):
+    def change(found):
+        one = {name: found[name] for name in ("joint", "methods", "verdict", "agreement")}
+        found["specimens"] = {"<i>steel": one, "rubber": one}
+
+    html = changed(results, tmp_path, change)._repr_html_()
+    assert html.count("95 % interval") == 2 and "<i>" not in html
+    assert "<i>steel" in shown(html) and "rubber" in shown(html)
 
 
 @pytest.mark.parametrize(
