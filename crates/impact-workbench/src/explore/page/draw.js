@@ -76,9 +76,13 @@ export function ticks(low, high, count) {
   return { all, text: (v) => v.toFixed(digits).replace("-", "−") };
 }
 
+/** Below this a number is the rounding of zero. */
+const DUST = 1e-12;
+
 /** A number as text, with so many significant digits. */
 export function number(v, digits = 4) {
   if (v === null || v === undefined || !Number.isFinite(v)) return "–";
+  if (Math.abs(v) < DUST) return "0";
   const text = Math.abs(v) >= 1e5 || (v !== 0 && Math.abs(v) < 1e-4)
     ? v.toExponential(digits - 1) : String(Number(v.toPrecision(digits)));
   return text.replace("-", "−");

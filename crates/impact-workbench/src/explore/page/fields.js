@@ -95,14 +95,16 @@ export class Sliders {
     range.addEventListener("focus", next);
     range.addEventListener("input", () => { change(Number(range.value)); next(); });
     row.append(make("span", name), range, field.fault, field.input);
-    return { row, range, shown, field };
+    return { row, range, shown, field, pair: name.endsWith("Y/X") };
   }
 
   /** Thumbs and fields at what the state holds. */
   show() {
-    for (const { range, shown, field } of this.rows) {
+    for (const { row, range, shown, field, pair } of this.rows) {
       const v = shown();
       range.disabled = v === null;
+      // what compares two masses has no meaning for one
+      row.style.visibility = pair && this.app.state.single ? "hidden" : "";
       if (v !== null && Number(range.value) !== v) range.value = v;
       field.show();
     }
