@@ -60,6 +60,25 @@ fn without_faults(browser: &mut Chromium, where_: &str) {
 
 #[test]
 #[ignore = "needs chromium"]
+fn browser_the_caption_of_a_demo_covers_no_key() {
+    let explorer = Explorer::theory();
+    for size in &SIZES[2..] {
+        let mut browser = Chromium::open(&explorer.url(), *size);
+        browser.until(QUIET);
+        browser.key("3", 0);
+        browser.until(
+            "!document.getElementById('caption').hidden && impactid.basins.tile?.filled > 0",
+        );
+        let covered = "(() => { const c = document.getElementById('caption').getBoundingClientRect(); \
+             return [...document.querySelectorAll('#legend > span, #basin-shares > span, #readout, canvas')].filter((e) => e.checkVisibility()) \
+               .filter((e) => { const b = e.getBoundingClientRect(); return b.left < c.right && b.right > c.left && b.top < c.bottom && b.bottom > c.top; }) \
+               .map((e) => e.id || e.textContent); })()";
+        assert_eq!(browser.evaluate(covered), json!([]), "{size:?}");
+    }
+}
+
+#[test]
+#[ignore = "needs chromium"]
 fn browser_dialogs_fit_a_phone_and_twice_the_size() {
     let explorer = Explorer::theory();
     for size in &SIZES[..2] {

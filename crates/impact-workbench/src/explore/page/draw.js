@@ -146,10 +146,11 @@ export class Frame {
     }
     c.stroke();
     c.font = `14px ${FONT}`; c.textAlign = "center"; c.textBaseline = "alphabetic";
-    const middle = b.left + b.width / 2;
-    rich(c, this.titles[0], middle, this.height - 5, 2 * Math.min(middle, this.width - middle));
-    c.save(); c.translate(12, b.top + b.height / 2); c.rotate(-Math.PI / 2);
-    rich(c, this.titles[1], 0, 0, b.height + 24); c.restore();
+    // as long as the picture at most
+    const [across, down] = [b.left + b.width / 2, b.top + b.height / 2], room = (at, size) => 2 * Math.min(at, size - at);
+    rich(c, this.titles[0], across, this.height - 5, room(across, this.width));
+    c.save(); c.translate(12, down); c.rotate(-Math.PI / 2);
+    rich(c, this.titles[1], 0, 0, room(down, this.height)); c.restore();
     return this;
   }
   /** Names of what is drawn, [text, colour], in a row above the box. */
