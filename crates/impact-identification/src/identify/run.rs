@@ -3,7 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::identify::answer::{Allowed, JointFit, MethodResult};
-use crate::identify::diagnostics::agreement::{agreement, between_methods, which_restitution};
+use crate::identify::diagnostics::agreement::{
+    agreement, between_methods, carried_on, which_restitution,
+};
 use crate::identify::diagnostics::beyond;
 use crate::identify::diagnostics::change::{self, Change};
 use crate::identify::diagnostics::clock;
@@ -92,8 +94,11 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
     if let Some(impacts) = methods.get_mut(&Method::Impacts) {
         impacts.remarks.extend(which_restitution(&agreement));
     }
-    let apart = between_methods(&methods, &agreement, &joint);
+    let mut apart = between_methods(&methods, &agreement, &joint);
     widen_apart(&mut joint, &apart);
+    let carried = succeeded(&fits.joint).map_or_else(Vec::new, |f| carried_on(&f.fit, &apart));
+    widen_carried(&mut joint, &carried);
+    apart.extend(carried);
     let clock_uncertainty = evidence.nominal.clock_uncertainty;
     for result in methods.values_mut().chain([&mut joint]) {
         clock::widen(result, clock_uncertainty);
@@ -192,6 +197,15 @@ fn widen_apart(joint: &mut MethodResult, apart: &[(Coordinate, f64)]) {
     for (parameter, by) in apart {
         if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
             *estimate = estimate::widened(*parameter, estimate, *by);
+        }
+    }
+}
+
+/// Widen the joint estimates that methods agree on by what follows from those that they disagree on.
+fn widen_carried(joint: &mut MethodResult, carried: &[(Coordinate, f64)]) {
+    for (parameter, by) in carried {
+        if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
+            *estimate = estimate::wider(*parameter, estimate, *by);
         }
     }
 }
