@@ -20,6 +20,7 @@ use crate::identify::diagnostics::stated_frequencies;
 use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
 use crate::identify::diagnostics::undeclared_high_pass;
+use crate::identify::diagnostics::undeclared_low_pass::{self, Refiltered};
 use crate::identify::diagnostics::verdict::{self, Basis};
 use crate::identify::diagnostics::wrong_gains;
 use crate::identify::estimate::ParameterSet;
@@ -49,6 +50,49 @@ use crate::identify::{decay, estimate, flight_times, residuals, results};
 /// What cannot be identified has no value but a note; what was left out of the fits is in `left_out`.
 /// The example of the crate identifies a simulated campaign.
 pub fn identify(evidence: &Evidence<'_>) -> Identification {
+    match behind_low_pass(evidence) {
+        Some(refiltered) => identify_as_stated(&refiltered.evidence(evidence)),
+        None => identify_as_stated(evidence),
+    }
+}
+
+/// The evidence behind the low-pass that fits its waveforms best, where one was found that is not stated.
+fn behind_low_pass(evidence: &Evidence<'_>) -> Option<Refiltered> {
+    if undeclared_low_pass::filtered(evidence).is_empty() {
+        return None;
+    }
+    let mut selection = Selection::new(evidence);
+    let resonance = selection.resonance();
+    let found = selection.trajectories(start(evidence, &resonance))?.ok()?;
+    let fitted = found.fit.parameters.ideal();
+    let records = &selection.blocks.trajectory.records;
+    let kept: BTreeSet<usize> = records.iter().map(|r| r.observation).collect();
+    let both = Weights::from([(Method::Resonance, 1.0), (Method::Trajectories, 1.0)]);
+    let fit = |evidence: &Evidence<'_>| {
+        let begin = evidence.nominal.applied(fitted);
+        let mut blocks = Blocks::new(evidence);
+        blocks
+            .trajectory
+            .records
+            .retain(|r| kept.contains(&r.observation));
+        blocks.allow_least(&begin);
+        let simple = Nominal {
+            effects: evidence.nominal.effects.without(EffectKind::ForceFrequency),
+            ..evidence.nominal
+        };
+        let fitted = |nominal: &Nominal| rough_fit(&blocks, begin, &both, nominal);
+        let open = fitted(&evidence.nominal)?;
+        Some(undeclared_low_pass::Costs {
+            open: open.cost,
+            simple: fitted(&simple)?.cost,
+            residuals: open.residuals,
+        })
+    };
+    undeclared_low_pass::settled(evidence, &fit)
+}
+
+/// The same where all filters are known.
+fn identify_as_stated(evidence: &Evidence<'_>) -> Identification {
     let mut run = IdentificationRun {
         evidence,
         selection: Selection::new(evidence),
@@ -141,7 +185,7 @@ fn without_clearances(evidence: &Evidence<'_>, contradicted: Finding) -> Identif
     for o in &mut observations {
         o.setting.clearance_m = None;
     }
-    let mut found = identify(&Evidence {
+    let mut found = identify_as_stated(&Evidence {
         observations: &observations,
         brackets: &[],
         ..*evidence
@@ -640,13 +684,7 @@ impl IdentificationRun<'_> {
         };
         let curve = Weights::from([(Method::Resonance, 1.0)]);
         // without what delays, gains and asymmetries took of it
-        let [r, f0, beta, x_st] = [
-            start.restitution,
-            start.natural_frequency_hz,
-            start.damping_ratio,
-            start.static_deflection_m,
-        ];
-        let begin = nominal.applied(Parameters::symmetric(r, f0, beta, x_st));
+        let begin = nominal.applied(start.ideal());
         let fit = |blocks: &Blocks| rough_fit(blocks, begin, &curve, &open);
         let mut found = undeclared_high_pass::undeclared(&self.selection.blocks, &fit);
         found.extend(suspicion::corners(&joint.fit, joint.factor, nominal));
