@@ -67,7 +67,10 @@ mod tests {
 
     /// Ten periods of 200 samples that reach the stop at 1 in sample 50 of each, and `other` in sample 140.
     fn body(other: f64) -> Body {
-        let bump = |i: usize, at: usize| (-(i as f64 - at as f64).powi(2) / 300.0).exp();
+        let bump = |i: usize, at: usize| {
+            let off = i as f64 - at as f64;
+            (-off * off / 300.0).exp()
+        };
         let one = |i: usize| bump(i % 200, 50) + other * bump(i % 200, 140);
         let series = |values: Vec<f64>| {
             let mut series = Series::clean(values);
