@@ -138,11 +138,8 @@ fn identify_as_stated(evidence: &Evidence<'_>) -> Identification {
     if let Some(impacts) = methods.get_mut(&Method::Impacts) {
         impacts.remarks.extend(which_restitution(&agreement));
     }
-    let mut apart = between_methods(&methods, &agreement, &joint);
-    widen_apart(&mut joint, &apart);
-    let carried = succeeded(&fits.joint).map_or_else(Vec::new, |f| carried_on(&f.fit, &apart));
-    widen_carried(&mut joint, &carried);
-    apart.extend(carried);
+    let apart = between_methods(&methods, &agreement, &joint);
+    let apart = widen_apart(&mut joint, apart, &fits);
     let clock_uncertainty = evidence.nominal.clock_uncertainty;
     for result in methods.values_mut().chain([&mut joint]) {
         clock::widen(result, clock_uncertainty);
@@ -236,22 +233,26 @@ fn widen_over_speed(
     Some(by)
 }
 
-/// Widen the joint estimates by what a disagreement of methods leaves open.
-fn widen_apart(joint: &mut MethodResult, apart: &[(Coordinate, f64)]) {
-    for (parameter, by) in apart {
+/// Widen the joint estimates by what a disagreement of methods leaves open, and those that the methods agree on by
+/// what follows from it; gives what is open of all.
+fn widen_apart(
+    joint: &mut MethodResult,
+    apart: Vec<(Coordinate, f64)>,
+    fits: &Fits,
+) -> Vec<(Coordinate, f64)> {
+    let fit = succeeded(&fits.joint).map(|f| &f.fit);
+    let carried = fit.map_or_else(Vec::new, |fit| carried_on(fit, &apart));
+    for (parameter, by) in &apart {
         if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
             *estimate = estimate::widened(*parameter, estimate, *by);
         }
     }
-}
-
-/// Widen the joint estimates that methods agree on by what follows from those that they disagree on.
-fn widen_carried(joint: &mut MethodResult, carried: &[(Coordinate, f64)]) {
-    for (parameter, by) in carried {
+    for (parameter, by) in &carried {
         if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
             *estimate = estimate::wider(*parameter, estimate, *by);
         }
     }
+    [apart, carried].concat()
 }
 
 /// Whether no record has a drive, so that R rests on the impacts alone.

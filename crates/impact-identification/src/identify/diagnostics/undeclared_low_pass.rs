@@ -1,6 +1,6 @@
 //! Order and corner of a low-pass that is not stated. Jumps show that there is one and about which corner it has;
-//! the waveforms tell the rest: behind one pole an amplitude at the frequency f is smaller by ½(f/f_c)², behind
-//! more of them, as far as second order in f/f_c goes, it is not. The waveforms are fitted with either.
+//! the waveforms tell the rest: behind one pole an amplitude at the frequency f is smaller by ½(f/`f_c`)², behind
+//! more of them, as far as second order in f/`f_c` goes, it is not. The waveforms are fitted with either.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use crate::identify::parameters::gain_index;
 use impact_records::motion::{LateChannel, Observation};
 use impact_records::record::LowPass;
 
-/// What one pole lowers amplitudes by, over ½(f/f_c)² with the corner that jumps show: in equal steps, as it is
+/// What one pole lowers amplitudes by, over ½(f/`f_c`)² with the corner that jumps show: in equal steps, as it is
 /// tried; jumps show corners up to 1.6 times as high as they are (`low_pass_200_1` of tests/scripts, seeds 1001 to
 /// 1020).
 const LOWERED: [f64; 3] = [0.5, 1.25, 2.0];
@@ -72,10 +72,7 @@ pub fn settled(
     };
     let one_pole = [a, b, c];
     let parabola = Parabola::through(one_pole.map(|c| c.simple));
-    let open = one_pole
-        .map(|c| c.open)
-        .into_iter()
-        .fold(f64::INFINITY, f64::min);
+    let open = Parabola::through(one_pole.map(|c| c.open)).least;
     let least = open.min(more_poles.open);
     let typical = (least / more_poles.residuals.max(1) as f64).max(1.0);
     let better = (more_poles.simple - parabola.least) / typical;
@@ -127,7 +124,7 @@ impl Parabola {
 }
 
 /// As if the channels had passed a low-pass of an order whose corner is that which their jumps show times a factor;
-/// `order_share` is what is left open of ½(f/f_c)².
+/// `order_share` is what is left open of ½(f/`f_c`)².
 fn refiltered(
     evidence: &Evidence<'_>,
     channels: &[LateChannel],
