@@ -138,10 +138,6 @@ fn open(path: &Path, verbosity: Verbosity) -> Result<Session, Failure> {
     let bar = || Progress::new(verbosity, "observe", 0);
     if path.is_dir() {
         let bar = bar();
-        let path = &fs::canonicalize(path).map_err(|e| Failure::io(path, &e))?;
-        if let Some(base) = OpenCampaign::base(path)? {
-            std::env::set_current_dir(&base).map_err(|e| Failure::io(&base, &e))?;
-        }
         let (campaign, notes) = OpenCampaign::read(path, &|s, d, t| bar.step(s, d, t))?;
         return Ok(Session::of_campaign(campaign, notes));
     }

@@ -1,7 +1,7 @@
 //! The single stages: `ingest`, `classify`, `identify`, `report`; each reads what the one before
 //! wrote.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -14,6 +14,7 @@ use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::run_one::{command_line, print_verdict};
 use super::stdout::{print, print_json_file};
 use super::{Exit, Failure, Verbosity, interrupt};
+use impact_campaign::campaign::resolved::ResolvedCampaign;
 use impact_campaign::pipeline::{self, store};
 use impact_report::catalog::Catalog;
 use labfiles::output::Lock;
@@ -199,11 +200,25 @@ impl Report {
             true => commands(&campaign.file, &folder, &self.options),
             false => command_line(&campaign.file, &folder, &self.options),
         };
+        note_missing(&campaign, verbosity);
         let bar = Progress::new(verbosity, "report", 1);
         let report = pipeline::report::files(&campaign, &observed, &found, &command)?;
         pipeline::report::write(&report, &folder)?;
         drop(bar);
         print_report_paths(&campaign, &folder, verbosity);
         Ok(Exit::Done)
+    }
+}
+
+/// Say which record files are gone: what a report draws of them is left out.
+fn note_missing(campaign: &ResolvedCampaign, verbosity: Verbosity) {
+    let files: BTreeSet<&Path> = campaign.records.iter().map(|r| r.file.as_path()).collect();
+    let mut missing = files.into_iter().filter(|file| !file.exists());
+    if let Some(first) = missing.next() {
+        let count = 1 + missing.count();
+        verbosity.info(&format!(
+            "{count} of the record files are not found, {} first: figures that compare them are left out",
+            first.display()
+        ));
     }
 }

@@ -110,6 +110,15 @@ impl ResolvedCampaign {
         }
     }
 
+    /// The same with all paths below a folder; absolute ones stay.
+    #[must_use]
+    pub(crate) fn below(mut self, base: &Path) -> Self {
+        let records = self.records.iter_mut().map(|r| &mut r.file);
+        let files = records.chain([&mut self.file]).chain(&mut self.run_table);
+        files.for_each(|file| *file = base.join(&*file));
+        self
+    }
+
     /// The same with channels that are later than stated by what was found.
     #[must_use]
     pub fn with_late(&self, late: &[LateChannel]) -> Self {

@@ -33,12 +33,23 @@ pub fn write_resolved(campaign: &ResolvedCampaign, out: &Path) -> Result<(), Pip
     write_json(&out.join(RESOLVED), campaign)
 }
 
-/// Read the resolved campaign of a previous stage.
+/// Read the resolved campaign of a previous stage. Its paths are as they were stated; where they lead nowhere from
+/// the working directory, they are those below the nearest folder above the results from which they do.
 ///
 /// # Errors
 /// If it is missing or unreadable.
 pub fn read_resolved(out: &Path) -> Result<ResolvedCampaign, PipelineError> {
-    read_json(&out.join(RESOLVED))
+    let campaign: ResolvedCampaign = read_json(&out.join(RESOLVED))?;
+    if campaign.file.exists() {
+        return Ok(campaign);
+    }
+    let whole = out.canonicalize().unwrap_or_else(|_| out.to_owned());
+    let mut above = whole.ancestors().skip(1);
+    let base = above.find(|base| base.join(&campaign.file).exists());
+    Ok(match base {
+        Some(base) => campaign.below(base),
+        None => campaign,
+    })
 }
 
 /// The calibrated campaign: records in SI in our own HDF5 files, with the flags of the calibration.

@@ -1,6 +1,6 @@
 //! A campaign as the page shows it: records, brackets, the fit with its bands.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde_json::{Value, json};
 
@@ -82,22 +82,6 @@ impl OpenCampaign {
             }));
         }
         Ok((Self::with(resolved, observed, found.identification), notes))
-    }
-
-    /// The folder from which the paths in a folder of results lead to their inputs, where that is not the working
-    /// directory: the nearest one above the results.
-    ///
-    /// # Errors
-    /// [`ExploreError`] where the results cannot be read.
-    pub fn base(folder: &Path) -> Result<Option<PathBuf>, ExploreError> {
-        let file = store::read_resolved(folder)?.file;
-        if file.exists() {
-            return Ok(None);
-        }
-        let above = folder.ancestors().skip(1);
-        Ok(above
-            .map(Path::to_owned)
-            .find(|base| base.join(&file).exists()))
     }
 
     fn with(
