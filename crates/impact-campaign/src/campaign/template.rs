@@ -244,10 +244,15 @@ fn table(
                 "unit = \"{usual}\"               # CHECK: the file states {stated}"
             )?;
         }
-        (None, None, _) => writeln!(
-            text,
-            "# unit = \"V\"               # FILL IN: the file states none"
-        )?,
+        (None, None, usual) => {
+            let calibrated = usual.map_or(String::new(), |symbol| {
+                format!("; \"{}\" if it is calibrated", symbol.replace('²', "2"))
+            });
+            writeln!(
+                text,
+                "# unit = \"V\"               # FILL IN: the file states none{calibrated}"
+            )?;
+        }
     }
     if let Experiment::Events(content) = found.experiment {
         return events(text, content);
@@ -295,7 +300,13 @@ fn table(
             channel.sign
         )?;
     }
-    if matches!(role, Role::VelocityX | Role::VelocityY) {
+    let integrated = [
+        Role::VelocityX,
+        Role::VelocityY,
+        Role::DisplacementX,
+        Role::DisplacementY,
+    ];
+    if integrated.contains(&role) {
         writeln!(
             text,
             "# high_pass = \"0.5 Hz\"       # corner of an integrator's high-pass"
