@@ -88,16 +88,10 @@ pub(super) fn chosen_records(input: &Input<'_>) -> Vec<usize> {
     shown.into_iter().map(|(_, i)| i).collect()
 }
 
-/// Confidence first, then the share of impacts that the contact shows, then the strength of the motion over its noise.
-fn quality(o: &Observation) -> [f64; 3] {
+/// Confidence first, then the strength of the motion over its noise.
+fn quality(o: &Observation) -> f64 {
     let noise = o.classification.evidence.noise_ratio.unwrap_or(1.0);
-    let missed = o.impacts.iter().filter(|i| without_contact(i)).count();
-    let missed = missed as f64 / o.impacts.len().max(1) as f64;
-    [o.classification.confidence.min(SURE), -missed, -noise]
-}
-
-fn without_contact(impact: &Impact) -> bool {
-    impact.source == DetectionSource::Velocity
+    o.classification.confidence.min(SURE) - noise
 }
 
 /// The chosen records with letters in their order; none for a record without a drive.
@@ -143,7 +137,8 @@ pub(super) fn comparison(
     });
     let shown = |i: &&Impact| (0.0..stretch.length_s).contains(&(i.time_s - stretch.start_s));
     let impacts: Vec<&Impact> = o.impacts.iter().filter(shown).collect();
-    let missed = impacts.iter().filter(|i| without_contact(i)).count();
+    let without = |i: &&&Impact| i.source == DetectionSource::Velocity;
+    let missed = impacts.iter().filter(without).count();
     Some(ReplayedRecord {
         letter,
         record: o.record.clone(),
