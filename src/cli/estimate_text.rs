@@ -1,7 +1,7 @@
 //! Estimates in a line of the terminal.
 
 use impact_identification::identify::{Estimate, Status};
-use impact_records::message::decimals_for;
+use impact_records::signal::digits::decimals_for;
 
 /// A value with half of its 95 % interval.
 pub(super) fn with_error(estimate: &Estimate) -> String {

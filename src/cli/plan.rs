@@ -9,8 +9,8 @@ use super::stdout::print_json;
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
 use impact_campaign::pipeline::plan;
 use impact_identification::identify::boundary_plan::BoundaryPlan;
-use impact_records::message::decimals_for;
 use impact_records::motion::Motion;
+use impact_records::signal::digits::decimals_for;
 
 /// Arguments of `impactid plan`.
 #[derive(Debug, Args)]

@@ -168,6 +168,11 @@ fn valid_a_workbook_with_a_sheet_of_settings_from_init_to_the_report() {
         "{written}"
     );
     // what the user knows and no file states
+    lab.replace(
+        "day/campaign.toml",
+        "machine = \"single\"",
+        "machine = \"double\"",
+    );
     let line = "channel = \"displacement x\"";
     lab.replace(
         "day/campaign.toml",

@@ -4,9 +4,10 @@
 use super::catalog::Catalog;
 use super::phrase::{Phrase, Text, motion_text, role_text};
 use impact_records::language::Language;
-use impact_records::message::{Message, Print, decimal_exponent, filled, sentence};
+use impact_records::message::{Message, Print, filled, sentence};
 use impact_records::motion::Motion;
 use impact_records::record::Role;
+use impact_records::signal::digits::decimal_exponent;
 
 /// What the reader chose about numbers and language.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use super::locale::Locale;
 use crate::phrase::Phrase;
 use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::{Estimate, Method};
-pub(super) use impact_records::message::decimals_for;
+pub(super) use impact_records::signal::digits::decimals_for;
 
 /// How a parameter is named and printed.
 #[derive(Debug, Clone, Copy)]

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::identify::parameters::Coordinate;
-use impact_records::message::{Message, Value, decimals_for};
+use impact_records::message::{Message, Value};
+use impact_records::signal::digits::decimals_for;
 use impact_records::{message_table, messages};
 
 /// A parameter with its value as a sentence states it.
