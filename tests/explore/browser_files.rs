@@ -64,6 +64,9 @@ fn browser_the_svg_shows_what_is_seen() {
         "drivefrequency,Hz",
         "autocorrelation",
         "η=",
+        "impactidSynthetic",
+        "dampingβ",
+        "0.07001232",
     ] {
         assert!(text.contains(part), "{part} is not in: {text}");
     }
@@ -85,7 +88,7 @@ fn browser_the_png_has_the_keys_and_the_numbers() {
     // within the place of each key and number there is ink
     let empty = "(() => { const b = kept.get('explorer.png'), canvas = new OffscreenCanvas(b.width, b.height), c = canvas.getContext('2d'); \
          c.drawImage(b, 0, 0); \
-         const all = [...document.querySelectorAll('main canvas, #legend, #readout, #numbers, #title')].filter((e) => e.checkVisibility()).map((e) => e.getBoundingClientRect()); \
+         const all = [...document.querySelectorAll('main canvas, #legend, #readout, #numbers, h1')].filter((e) => e.checkVisibility()).map((e) => e.getBoundingClientRect()); \
          const left = Math.min(...all.map((b) => b.left)) - 12, top = Math.min(...all.map((b) => b.top)) - 12; \
          const parts = [...document.querySelectorAll('#legend > span, #numbers dt, #numbers dd, #readout')]; \
          return parts.filter((e) => { const r = e.getBoundingClientRect(), d = c.getImageData(r.left - left, r.top - top, r.width, r.height).data; \

@@ -20,7 +20,8 @@ fn browser_boundaries_are_named_and_sweeps_lie_apart() {
     assert_eq!(browser.evaluate(apart), json!(true));
     let residuals = browser.evaluate("document.getElementById('residuals').textContent");
     let residuals = residuals.as_str().unwrap();
-    assert!(residuals.contains("(not in the joint fit)"), "{residuals}");
+    let why = "(takes the rig as ideal, not in the joint fit)";
+    assert!(residuals.contains(why), "{residuals}");
     let red = browser.evaluate("document.querySelectorAll('#residuals .worse').length");
     assert_eq!(red, json!(0), "{residuals}");
     browser.key("t", 0);
@@ -40,6 +41,13 @@ fn browser_ticks_and_phases_have_no_dust() {
          return Math.max(...[0.1, 1e-3, 3.2, 700, -0.07].flatMap((v) => { const [a, b] = around([[v, v]]), t = ticks(a, b, 4); return t.all.map((x) => t.text(x).length); })); })()";
     let longest = browser.evaluate(longest).as_u64().unwrap();
     assert!(longest <= 8, "{longest}");
+    // a scale has two numbers, and they leave room for its title
+    let scales = "(async () => { const { Frame, ticks } = await import('/draw.js'), canvas = document.getElementById('phase'); \
+         const few = [[-1.8, 1.8], [-2.1, 0.2], [0.55, 0.64], [-3.9, 3.9]].filter(([a, b]) => ticks(a, b, 2.4).all.length < 2); \
+         const narrow = [[-0.0041, 0.0002], [-1.2e-5, 1e-5], [0, 1]].filter((y) => { const f = new Frame(canvas, [0, 1], y, ['', '']), t = ticks(...y, 4); \
+           return t.all.some((v) => f.box.left - 5 - f.context.measureText(t.text(v)).width < 14); }); \
+         impactid.motion.draw(); return [few, narrow]; })()";
+    assert_eq!(browser.evaluate(scales), json!([[], []]));
     let numbers = "document.getElementById('numbers').textContent";
     for phase in ["8.5265e-14", "2 * Math.PI - 1e-13"] {
         browser.evaluate(&format!(
@@ -47,6 +55,12 @@ fn browser_ticks_and_phases_have_no_dust() {
         ));
         browser.until(QUIET);
         browser.until(&format!("{numbers}.includes('phase φ0 rad')"));
+        browser.key("a", 0);
+        browser.until("document.getElementById('dialog').open");
+        let typed = "[...document.querySelectorAll('dialog label')].find((l) => l.textContent.startsWith('phase')).querySelector('input').value";
+        assert_eq!(browser.evaluate(typed), json!("0"));
+        browser.key("Escape", 0);
+        browser.until("!document.getElementById('dialog').open");
     }
     // the swing is seen where the greatest displacement is the contact's
     browser.key("h", 0);
@@ -107,4 +121,59 @@ fn browser_the_map_of_a_slow_machine_is_striped_too() {
     browser.evaluate(BESIDE);
     let both = browser.evaluate("[at(1.3, 2.5), at(1.5, 5.5), at(1.3, 0.7)]");
     assert_eq!(both, json!(["0 · 1", "0", "1"]));
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_stripes_name_what_is_another_motion_after_longer_settling_too() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.evaluate("impactid.look([0.5, 0.95], [0, 1.6])");
+    browser.until(QUIET);
+    browser.until("impactid.map.other?.id === impactid.wire.newest.map");
+    browser.evaluate(BESIDE);
+    // beside a period doubling, in transient chaos, and where two motions coexist
+    for place in [
+        [0.7374, 0.0168],
+        [0.5886, 0.1011],
+        [0.7409, 0.0505],
+        [0.5992, 1.2126],
+        [0.6311, 0.8926],
+        [0.5425, 1.1621],
+    ] {
+        let [eta, rho] = place;
+        let found = browser.evaluate(&format!(
+            "impactid.wire.once({{ kind: 'coexisting' }}, {{ ...impactid.state, \
+             cursor: {{ ...impactid.state.cursor, eta: {eta}, rho: {rho} }}, \
+             watch: {{ ...impactid.state.watch, settle_periods: 3000 }} }}).then((f) => f.motions.map((m) => m.label))"
+        ));
+        let named = browser.evaluate(&format!("at({eta}, {rho})"));
+        let named: Vec<&str> = named.as_str().unwrap().split(" · ").collect();
+        let found = found.as_array().unwrap();
+        let confirmed = |label: &&str| found.iter().any(|f| f == label);
+        assert!(
+            named.len() == 1 || named.iter().all(confirmed),
+            "{named:?} at {place:?}: {found:?}"
+        );
+        assert_eq!(named.len(), found.len().min(2), "{named:?} at {place:?}");
+    }
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_names_on_the_map_have_places_of_their_own() {
+    let explorer = Explorer::start(&[SAMPLE], &std::env::temp_dir());
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.until("impactid.map.other?.id === impactid.wire.newest.map");
+    browser.until("impactid.map.names.some((n) => n.text === 's₂(1)')");
+    // where there is room regions are named beside records, and no two names cover each other
+    let covered = "(() => { const { frame: f, labels, names } = impactid.map, records = impactid.campaign.placed(f); \
+         const wide = labels.filter((l) => ['0', '1', '0 · 1'].includes(l.text)).map((l) => [l.text, f.px(l.eta), f.py(l.rho)]); \
+         const texts = [...wide, ...names.map((n) => [n.text, n.x, n.y])]; \
+         const near = (x, y, p, q, wide, high) => Math.abs(x - p) < wide && Math.abs(y - q) < high; \
+         return [...texts.filter(([, x, y]) => records.some((r) => near(x, y, r.x, r.y, 8, 10))).map(([t]) => `${t} on a record`), \
+           ...texts.flatMap(([t, x, y], i) => texts.slice(i + 1).filter(([, p, q]) => near(x, y, p, q, 30, 14)).map(([other]) => `${t} on ${other}`))]; })()";
+    assert_eq!(browser.evaluate(covered), json!([]));
 }

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use serde_json::json;
 
+use super::browser_sizes::CUT;
 use super::chromium::{Chromium, SIZE};
 use super::server::{Explorer, QUIET};
 
@@ -13,6 +14,7 @@ fn browser_label_and_numbers_follow_the_running_motion() {
     let explorer = Explorer::theory();
     let mut browser = Chromium::open(&explorer.url(), SIZE);
     browser.until(QUIET);
+    browser.evaluate(CUT);
     browser.evaluate("impactid.carry(1.1, 2)");
     browser.until(QUIET);
     let readout = "document.getElementById('readout').textContent";
@@ -29,9 +31,10 @@ fn browser_label_and_numbers_follow_the_running_motion() {
     browser.until(&format!("{numbers}.startsWith('nowz = 0')"));
     browser.until(&format!("/approach speed\\s*none/.test({numbers})"));
     browser.until(&format!("/of all starts\\s*z = /.test({numbers})"));
-    // what was before the move is told from what is now
+    // what was before the move is told from what is now, in texts that are not cut
     let live = browser.evaluate("impactid.motion.live.moved > 0");
     assert_eq!(live, json!(true));
+    assert_eq!(browser.evaluate("[...cut]"), json!([]));
     // and back below the end of z = 0, where the impacts come again
     browser.evaluate("impactid.carry(1.1, 1)");
     browser.until(&format!("{readout}.startsWith('z = 1 at η = 1.1,')"));

@@ -37,9 +37,61 @@ const FAULTS: &str = "(() => { const faults = [], box = (e) => e.getBoundingClie
      if (map < Math.max(250, 0.5 * innerHeight)) faults.push(`the map is ${map} px high`); \
      return faults; })()";
 
+/// From now on the page notes texts that leave their picture.
+pub(super) const CUT: &str = "(() => { window.cut = new Set(); const of = CanvasRenderingContext2D.prototype, fill = of.fillText; \
+     of.fillText = function (text, x, y) { \
+       const wide = this.measureText(text).width, left = { left: 0, center: wide / 2, right: wide }[this.textAlign], m = this.getTransform(); \
+       for (const by of [-left, wide - left]) { const p = m.transformPoint({ x: x + by, y }); \
+         if (this.canvas.isConnected && (p.x < -1 || p.y < -1 || p.x > this.canvas.width + 1 || p.y > this.canvas.height + 1)) cut.add(`${text} in ${this.canvas.id}`); } \
+       fill.call(this, text, x, y); }; return true; })()";
+
+/// What is wrong with the open dialog.
+const DIALOG: &str = "(() => { const d = document.getElementById('dialog'), faults = []; \
+     if (d.scrollWidth > d.clientWidth + 1) faults.push('the dialog is wider than its box'); \
+     for (const e of [d, ...d.querySelectorAll('label, input, button, select, textarea, p, h2')]) { const b = e.getBoundingClientRect(); \
+       if (b.width > 0 && (b.left < 0 || b.right > innerWidth)) faults.push(`${e.textContent || e.tagName} leaves the window`); } \
+     return faults; })()";
+
 fn without_faults(browser: &mut Chromium, where_: &str) {
     let faults = browser.evaluate(FAULTS);
     assert_eq!(faults, json!([]), "{where_}");
+    assert_eq!(browser.evaluate("[...cut]"), json!([]), "{where_}");
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_the_caption_of_a_demo_covers_no_key() {
+    let explorer = Explorer::theory();
+    for size in &SIZES[2..] {
+        let mut browser = Chromium::open(&explorer.url(), *size);
+        browser.until(QUIET);
+        browser.key("3", 0);
+        browser.until(
+            "!document.getElementById('caption').hidden && impactid.basins.tile?.filled > 0",
+        );
+        let covered = "(() => { const c = document.getElementById('caption').getBoundingClientRect(); \
+             return [...document.querySelectorAll('#legend > span, #basin-shares > span, #readout, canvas')].filter((e) => e.checkVisibility()) \
+               .filter((e) => { const b = e.getBoundingClientRect(); return b.left < c.right && b.right > c.left && b.top < c.bottom && b.bottom > c.top; }) \
+               .map((e) => e.id || e.textContent); })()";
+        assert_eq!(browser.evaluate(covered), json!([]), "{size:?}");
+    }
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_dialogs_fit_a_phone_and_twice_the_size() {
+    let explorer = Explorer::theory();
+    for size in &SIZES[..2] {
+        let mut browser = Chromium::open(&explorer.url(), *size);
+        browser.until(QUIET);
+        for key in ["a", "b", "c", "d", "e", "n", "f", "x", "?"] {
+            browser.key(key, 0);
+            browser.until("document.getElementById('dialog').open");
+            assert_eq!(browser.evaluate(DIALOG), json!([]), "{key} at {size:?}");
+            browser.key("Escape", 0);
+            browser.until("!document.getElementById('dialog').open");
+        }
+    }
 }
 
 #[test]
@@ -50,6 +102,7 @@ fn browser_nothing_is_cut_or_covered_at_any_size() {
     for explorer in [&theory, &campaign] {
         for size in SIZES {
             let mut browser = Chromium::open(&explorer.url(), size);
+            browser.evaluate(CUT);
             browser.until(QUIET);
             for action in [
                 "panel('motion')",

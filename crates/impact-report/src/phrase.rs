@@ -47,6 +47,7 @@ pub enum Phrase {
     DisagreementOfMethods,
     EffectiveDegreesOfFreedom,
     BeyondFirstOrder,
+    SharedGains,
     ExpandedUncertainty,
     NoiseOf,
     ScatterBetweenGroups,

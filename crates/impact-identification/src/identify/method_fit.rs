@@ -6,6 +6,7 @@ use crate::identify::parameters::Coordinate;
 use crate::identify::solver::normal::{Normal, inverse};
 use crate::identify::solver::{Fit, Precision, Problem};
 use crate::identify::statistics::scatter::{self, Scatter, Spread};
+use crate::identify::statistics::shared_gains::shared_gains;
 
 /// A method's fit with its variance factor and the items left out.
 #[derive(Debug, Clone)]
@@ -18,6 +19,9 @@ pub struct MethodFit {
     pub reduced: f64,
     /// Scatter between groups of records beyond it; not looked for where the fit only starts another.
     pub scatter: Scatter,
+    /// What gains of one mass leave open that may have been calibrated together, of R absolute, of the others
+    /// relative; not looked for either.
+    pub shared_gains: Vec<(Coordinate, f64)>,
     /// Normal equations at the optimum of each block, then those of all priors; none where the fit only
     /// starts another.
     pub parts: Vec<Normal>,
@@ -39,17 +43,20 @@ impl MethodFit {
     /// Of a fit of a problem, judged with degrees of freedom.
     pub fn of(problem: &Problem<'_>, fit: Fit, freedom: usize) -> Self {
         let reduced = fit.cost / freedom.max(1) as f64;
-        let (scatter, parts) = match problem.precision {
+        let factor = reduced.max(1.0);
+        let (scatter, shared_gains, parts) = match problem.precision {
             Precision::Result => (
                 scatter::scatter(problem, &fit),
+                shared_gains(problem, &fit, factor),
                 problem.parts(&fit.parameters),
             ),
-            Precision::Start => (Scatter::default(), Vec::new()),
+            Precision::Start => Default::default(),
         };
         Self {
-            factor: reduced.max(1.0),
+            factor,
             reduced,
             scatter,
+            shared_gains,
             parts,
             fit,
         }
@@ -59,7 +66,13 @@ impl MethodFit {
     pub fn spread(&self, coordinate: Coordinate) -> Option<Spread> {
         let spread = self.scatter.spread(&self.fit, self.factor, coordinate)?;
         let beyond = self.first_order(coordinate).unwrap_or(0.0);
-        Some(spread.with(beyond))
+        Some(spread.with(beyond).with(self.by_shared_gains(coordinate)))
+    }
+
+    /// Standard uncertainty of a parameter as gains of one mass may have been calibrated together.
+    pub fn by_shared_gains(&self, coordinate: Coordinate) -> f64 {
+        let own = self.shared_gains.iter().find(|(c, _)| *c == coordinate);
+        own.map_or(0.0, |(_, by)| *by)
     }
 
     /// What the effects beyond the model leave open in a parameter as they are treated to first order:

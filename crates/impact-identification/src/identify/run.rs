@@ -3,7 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::identify::answer::{Allowed, JointFit, MethodResult};
-use crate::identify::diagnostics::agreement::{agreement, between_methods, which_restitution};
+use crate::identify::diagnostics::agreement::{
+    agreement, between_methods, carried_on, which_restitution,
+};
 use crate::identify::diagnostics::beyond;
 use crate::identify::diagnostics::change::{self, Change};
 use crate::identify::diagnostics::clock;
@@ -18,6 +20,7 @@ use crate::identify::diagnostics::stated_frequencies;
 use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
 use crate::identify::diagnostics::undeclared_high_pass;
+use crate::identify::diagnostics::undeclared_low_pass::{self, Refiltered};
 use crate::identify::diagnostics::verdict::{self, Basis};
 use crate::identify::diagnostics::wrong_gains;
 use crate::identify::estimate::ParameterSet;
@@ -47,6 +50,49 @@ use crate::identify::{decay, estimate, flight_times, residuals, results};
 /// What cannot be identified has no value but a note; what was left out of the fits is in `left_out`.
 /// The example of the crate identifies a simulated campaign.
 pub fn identify(evidence: &Evidence<'_>) -> Identification {
+    match behind_low_pass(evidence) {
+        Some(refiltered) => identify_as_stated(&refiltered.evidence(evidence)),
+        None => identify_as_stated(evidence),
+    }
+}
+
+/// The evidence behind the low-pass that fits its waveforms best, where one was found that is not stated.
+fn behind_low_pass(evidence: &Evidence<'_>) -> Option<Refiltered> {
+    if undeclared_low_pass::filtered(evidence).is_empty() {
+        return None;
+    }
+    let mut selection = Selection::new(evidence);
+    let resonance = selection.resonance();
+    let found = selection.trajectories(start(evidence, &resonance))?.ok()?;
+    let fitted = found.fit.parameters.ideal();
+    let records = &selection.blocks.trajectory.records;
+    let kept: BTreeSet<usize> = records.iter().map(|r| r.observation).collect();
+    let both = Weights::from([(Method::Resonance, 1.0), (Method::Trajectories, 1.0)]);
+    let fit = |evidence: &Evidence<'_>| {
+        let begin = evidence.nominal.applied(fitted);
+        let mut blocks = Blocks::new(evidence);
+        blocks
+            .trajectory
+            .records
+            .retain(|r| kept.contains(&r.observation));
+        blocks.allow_least(&begin);
+        let simple = Nominal {
+            effects: evidence.nominal.effects.without(EffectKind::ForceFrequency),
+            ..evidence.nominal
+        };
+        let fitted = |nominal: &Nominal| rough_fit(&blocks, begin, &both, nominal);
+        let open = fitted(&evidence.nominal)?;
+        Some(undeclared_low_pass::Costs {
+            open: open.cost,
+            simple: fitted(&simple)?.cost,
+            residuals: open.residuals,
+        })
+    };
+    undeclared_low_pass::settled(evidence, &fit)
+}
+
+/// The same where all filters are known.
+fn identify_as_stated(evidence: &Evidence<'_>) -> Identification {
     let mut run = IdentificationRun {
         evidence,
         selection: Selection::new(evidence),
@@ -93,7 +139,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         impacts.remarks.extend(which_restitution(&agreement));
     }
     let apart = between_methods(&methods, &agreement, &joint);
-    widen_apart(&mut joint, &apart);
+    let apart = widen_apart(&mut joint, apart, &fits);
     let clock_uncertainty = evidence.nominal.clock_uncertainty;
     for result in methods.values_mut().chain([&mut joint]) {
         clock::widen(result, clock_uncertainty);
@@ -136,7 +182,7 @@ fn without_clearances(evidence: &Evidence<'_>, contradicted: Finding) -> Identif
     for o in &mut observations {
         o.setting.clearance_m = None;
     }
-    let mut found = identify(&Evidence {
+    let mut found = identify_as_stated(&Evidence {
         observations: &observations,
         brackets: &[],
         ..*evidence
@@ -187,13 +233,26 @@ fn widen_over_speed(
     Some(by)
 }
 
-/// Widen the joint estimates by what a disagreement of methods leaves open.
-fn widen_apart(joint: &mut MethodResult, apart: &[(Coordinate, f64)]) {
-    for (parameter, by) in apart {
+/// Widen the joint estimates by what a disagreement of methods leaves open, and those that the methods agree on by
+/// what follows from it; gives what is open of all.
+fn widen_apart(
+    joint: &mut MethodResult,
+    apart: Vec<(Coordinate, f64)>,
+    fits: &Fits,
+) -> Vec<(Coordinate, f64)> {
+    let fit = succeeded(&fits.joint).map(|f| &f.fit);
+    let carried = fit.map_or_else(Vec::new, |fit| carried_on(fit, &apart));
+    for (parameter, by) in &apart {
         if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
             *estimate = estimate::widened(*parameter, estimate, *by);
         }
     }
+    for (parameter, by) in &carried {
+        if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
+            *estimate = estimate::wider(*parameter, estimate, *by);
+        }
+    }
+    [apart, carried].concat()
 }
 
 /// Whether no record has a drive, so that R rests on the impacts alone.
@@ -626,13 +685,7 @@ impl IdentificationRun<'_> {
         };
         let curve = Weights::from([(Method::Resonance, 1.0)]);
         // without what delays, gains and asymmetries took of it
-        let [r, f0, beta, x_st] = [
-            start.restitution,
-            start.natural_frequency_hz,
-            start.damping_ratio,
-            start.static_deflection_m,
-        ];
-        let begin = nominal.applied(Parameters::symmetric(r, f0, beta, x_st));
+        let begin = nominal.applied(start.ideal());
         let fit = |blocks: &Blocks| rough_fit(blocks, begin, &curve, &open);
         let mut found = undeclared_high_pass::undeclared(&self.selection.blocks, &fit);
         found.extend(suspicion::corners(&joint.fit, joint.factor, nominal));

@@ -202,6 +202,7 @@ impl<'a> Carried<'a> {
         };
         let mut lyapunov = Lyapunov::new(self.machine, setting.frequency_ratio);
         follower.advance(followed * period, &mut lyapunov);
+        // the watch alone may take a slow convergence for growth: a label agrees with the exponent stated beside it
         let judged = watch.settle_periods > 0.0 && motion == SettledMotion::Chaotic;
         let motion = match lyapunov.variations() {
             Variations::Decay | Variations::Open if judged => SettledMotion::NotSettled,

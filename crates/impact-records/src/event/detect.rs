@@ -6,9 +6,10 @@ use crate::event::contact::{Closed, closed_intervals};
 use crate::event::drive::{self, DriveTone};
 use crate::event::finite_contact::{self, FiniteContact};
 use crate::event::impact::{DetectionSource, Impact};
-use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
-use crate::event::kinematics::{Kinematics, RigKind, Series};
+use crate::event::jumps::{Jump, JumpSearch};
+use crate::event::kinematics::{Body, Kinematics, RigKind, Series};
 use crate::event::refine;
+use crate::event::touches::touches;
 use crate::event::{drift, free_flight, impact_speeds, integrated};
 use crate::record::{Flag, FlagCode, ListedTimes, Record, Role};
 use crate::signal::local_fit::LocalFit;
@@ -83,6 +84,8 @@ pub struct Detection {
     pub unsupported_pulses: usize,
     /// Impacts that the contact channel missed, although there is one.
     pub missed_pulses: usize,
+    /// Times at which the masses come as close as at the impacts and no jump of velocity shows.
+    pub unsupported_touches: usize,
     /// Fraction of the record in which the contact was closed.
     pub closed_fraction: f64,
     /// How much later than the contact or the other mass the channels show impacts; looked for where impacts
@@ -160,7 +163,8 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
     let arc_samples = arc_samples(width);
     let found = match &kinematics.relative.velocity {
         Some(velocity) => {
-            fuse(velocity, &closed, width, dead_from).confirmed(velocity, arc_samples)
+            let found = fuse((&kinematics.relative, velocity), &closed, width, dead_from);
+            found.confirmed(velocity, arc_samples)
         }
         None => from_contact_alone(&closed, dead_from),
     };
@@ -183,6 +187,7 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
         impacts,
         jump_samples: found.jump_samples,
         unsupported_pulses: found.unsupported,
+        unsupported_touches: found.unsupported_touches,
         missed_pulses: if record.channel(Role::Contact).is_some() {
             found.missed
         } else {
@@ -219,6 +224,7 @@ fn freely(record: &Record, kinematics: Kinematics, rig: RigKind, closed: &[Close
         jump_samples: found.jump_samples,
         unsupported_pulses: 0,
         missed_pulses: 0,
+        unsupported_touches: 0,
         closed_fraction: closed_samples as f64 / record.samples().max(1) as f64,
         kinematics,
         lags: Vec::new(),
@@ -238,6 +244,7 @@ fn listed(kinematics: Kinematics, times_s: &[f64], known: ListedTimes) -> Detect
         jump_samples: 1,
         unsupported_pulses: 0,
         missed_pulses: 0,
+        unsupported_touches: 0,
         closed_fraction: 0.0,
         kinematics,
         lags: Vec::new(),
@@ -380,6 +387,8 @@ struct Fused {
     jump_samples: usize,
     /// Contact pulses without a jump of the velocity.
     unsupported: usize,
+    /// Touches of the masses without a jump of the velocity.
+    unsupported_touches: usize,
     /// Jumps without a contact pulse.
     missed: usize,
     /// Jumps upward, which no impact makes.
@@ -389,8 +398,13 @@ struct Fused {
 }
 
 /// Fuse jumps and contact pulses: a jump within reach of a pulse belongs to it; a pulse without a
-/// jump admits a weaker jump beside it; a long pulse is a dead zone.
-fn fuse(velocity: &Series, closed: &[Closed], width: usize, dead_from: usize) -> Fused {
+/// jump admits a weaker jump beside it, as does a touch; a long pulse is a dead zone.
+fn fuse(
+    (relative, velocity): (&Body, &Series),
+    closed: &[Closed],
+    width: usize,
+    dead_from: usize,
+) -> Fused {
     let search = JumpSearch::new(velocity, width);
     let mut jumps = search.find();
     let (upward, downward) = search.directions();
@@ -401,18 +415,22 @@ fn fuse(velocity: &Series, closed: &[Closed], width: usize, dead_from: usize) ->
             continue;
         }
         let end = last.min(first + 4 + search.gap);
-        match search.near(first, end, &jumps, SUPPORTED) {
-            Some(jump) => {
-                let place = jumps.partition_point(|j| j.left < jump.left);
-                jumps.insert(place, jump);
-            }
-            None => unsupported += 1,
+        if !search.admit((first, end), &mut jumps) {
+            unsupported += 1;
+        }
+    }
+    let mut unsupported_touches = 0;
+    for at in touches(relative, &jumps, width) {
+        let first = at.saturating_sub(search.gap + 2);
+        if !search.admit((first, at + 2), &mut jumps) {
+            unsupported_touches += 1;
         }
     }
     Fused {
         candidates: candidates(&jumps, closed, search.gap, dead_from, velocity),
         jump_samples: search.gap,
         unsupported,
+        unsupported_touches,
         missed: 0,
         upward,
         downward,

@@ -10,8 +10,8 @@ use crate::signal::whole;
 /// Significance (in standard errors) above which a jump counts by itself.
 const SIGNIFICANT: f64 = 6.0;
 
-/// Significance that suffices if the contact channel shows a pulse.
-pub(super) const SUPPORTED: f64 = 3.0;
+/// Significance that suffices where the contact channel shows a pulse, or the masses touch.
+const SUPPORTED: f64 = 3.0;
 
 /// A jump of velocity between two samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -202,9 +202,19 @@ impl<'a> JumpSearch<'a> {
         steepest.unwrap_or(0.0)
     }
 
+    /// Add the jump whose left sample is in `first..=last` to the accepted ones, if there is a supported one.
+    pub(super) fn admit(&self, (first, last): (usize, usize), accepted: &mut Vec<Jump>) -> bool {
+        let found = self.near(first, last, accepted, SUPPORTED);
+        if let Some(jump) = found {
+            let place = accepted.partition_point(|j| j.left < jump.left);
+            accepted.insert(place, jump);
+        }
+        found.is_some()
+    }
+
     /// The most significant jump whose left sample is in `first..=last` and whose significance
     /// exceeds `significance`, with windows that end before the accepted jumps.
-    pub(super) fn near(
+    fn near(
         &self,
         first: usize,
         last: usize,

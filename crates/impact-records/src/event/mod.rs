@@ -23,6 +23,7 @@ mod jumps;
 mod kinematics;
 mod lag;
 mod refine;
+mod touches;
 
 pub use channel_lags::ChannelLag;
 pub use detect::extrapolation_error;

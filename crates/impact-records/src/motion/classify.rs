@@ -59,8 +59,15 @@ pub struct MotionEvidence {
     pub settling: Option<f64>,
     /// Number of impacts in the record.
     pub impacts: usize,
+    /// Times at which the masses come as close as at the impacts and no jump of velocity shows.
+    #[serde(default, skip_serializing_if = "is_none_at_all")]
+    pub touches: usize,
     /// Measures that distinguish a beat from chaos, if the motion does not close.
     pub irregularity: Option<Irregularity>,
+}
+
+fn is_none_at_all(count: &usize) -> bool {
+    *count == 0
 }
 
 /// A motion type with its evidence.
@@ -105,6 +112,7 @@ pub fn classify(
 ) -> Classification {
     let mut evidence = MotionEvidence {
         impacts: detection.impacts.len(),
+        touches: detection.unsupported_touches,
         ..MotionEvidence::default()
     };
     let Some(drive) = &detection.drive else {
@@ -348,6 +356,7 @@ impl Case<'_> {
         let confidence = quality
             * count.agreement.powi(2)
             * cycles_factor(evidence.cycles_observed)
+            * touches_factor(&evidence)
             * shorter_factor(&evidence);
         Classification {
             motion,
@@ -414,6 +423,12 @@ fn cycles_factor(cycles: f64) -> f64 {
     ((cycles - 1.0) / 0.8).clamp(0.0, 1.0)
 }
 
+/// Each touch may be an impact that is too slow to see.
+fn touches_factor(evidence: &MotionEvidence) -> f64 {
+    let (impacts, touches) = (evidence.impacts as f64, evidence.touches as f64);
+    impacts / (impacts + touches).max(1.0)
+}
+
 /// A longer period must close clearly better than every shorter one.
 fn shorter_factor(evidence: &MotionEvidence) -> f64 {
     match (evidence.shorter_closure, evidence.waveform_closure) {
@@ -455,6 +470,7 @@ mod tests {
             jump_samples: 1,
             unsupported_pulses: 0,
             missed_pulses: 0,
+            unsupported_touches: 0,
             closed_fraction: 0.0,
             lags: Vec::new(),
             flags: Vec::new(),

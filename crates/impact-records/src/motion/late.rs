@@ -63,6 +63,7 @@ pub fn late_channels(observations: &[Observation]) -> Vec<LateChannel> {
                 _ => late_s,
             },
             low_pass: t.low_pass,
+            order_share: 1.0,
         })
     });
     late.collect()
@@ -132,6 +133,7 @@ mod tests {
             role: Role::VelocityX,
             delay_s,
             low_pass: None,
+            order_share: 1.0,
         };
         assert_eq!(late([1.5, 0.1], true), [x(1.5e-3)]);
         // both behind the contact, within what the detection bears

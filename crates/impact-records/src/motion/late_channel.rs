@@ -14,4 +14,12 @@ pub struct LateChannel {
     /// The low-pass that its jumps show and that is not stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub low_pass: Option<LowPass>,
+    /// What is not known of how much that low-pass lowers an amplitude at the frequency f, over ½(f/`f_c`)²: all of
+    /// it where its order is not known.
+    #[serde(default = "all")]
+    pub order_share: f64,
+}
+
+fn all() -> f64 {
+    1.0
 }

@@ -47,6 +47,21 @@ impl Response {
         }
     }
 
+    /// The same measured values if the channel has passed another low-pass than was assumed.
+    #[must_use]
+    pub fn behind_low_pass(&self, [assumed, other]: [LowPass; 2], frequency_hz: f64) -> Self {
+        let rate = Complex::new(0.0, std::f64::consts::TAU * frequency_hz);
+        let passed = assumed.transfer(rate);
+        let value = Complex::new(self.real, self.imaginary) * passed;
+        let measured = Self {
+            real: value.re,
+            imaginary: value.im,
+            error: self.error * passed.norm(),
+            ..*self
+        };
+        measured.before(other, frequency_hz)
+    }
+
     /// The same measured values if the channel has passed another high-pass than was assumed.
     #[must_use]
     pub fn behind(&self, high_pass_hz: Option<f64>, frequency_hz: f64) -> Self {

@@ -167,6 +167,7 @@ fn real_rig() -> ReportContent {
         (UncertaintySource::BetweenGroups { groups: 9 }, 1e-3),
         (stated(Coordinate::Gap(0), Some(1e-3)), 1e-3),
         (UncertaintySource::FirstOrder, 1e-3),
+        (UncertaintySource::SharedGains, 1e-3),
         (UncertaintySource::RestitutionOverSpeed, 1e-3),
         (UncertaintySource::BetweenMethods, 1e-3),
         (UncertaintySource::Clock, 1e-3),

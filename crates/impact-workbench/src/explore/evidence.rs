@@ -9,12 +9,12 @@ use super::campaign::OpenCampaign;
 use super::jobs::Job;
 use super::{ExploreError, State};
 use impact_campaign::pipeline::identify::evidence;
-use impact_identification::identify::Method;
 use impact_identification::identify::evidence::boundary::predicted_hz;
 use impact_identification::identify::joint;
 use impact_identification::identify::parameters::Parameters;
 use impact_identification::identify::plan::propose;
 use impact_identification::identify::solver::Block;
+use impact_identification::identify::{Method, Remark};
 use impact_identification::replay::{BesideRecord, Signal, beside};
 use impact_records::motion::{BoundaryKind, Motion, Observation};
 use impact_report::style::MotionStyle;
@@ -171,7 +171,11 @@ pub(super) fn residuals(campaign: &OpenCampaign, state: &State, job: &Job) -> Re
             squares += weight * found.squares;
             count += found.count;
         }
+        let own = campaign.identification.methods.get(&method);
+        let remarks = own.map_or(&[][..], |own| &own.remarks);
         methods.push(json!({
+            "ideal_rig": remarks.contains(&Remark::IdealRig),
+            "remarks": remarks.iter().map(|r| r.to_string()).collect::<Vec<_>>(),
             "method": method.to_string(),
             "rms": root_mean(found.squares, found.count),
             "weight": weights.map(|w| w.get(&method).copied().unwrap_or(0.0)),

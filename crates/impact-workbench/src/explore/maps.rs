@@ -3,20 +3,20 @@
 use rayon::prelude::*;
 
 use super::answer::Stop;
+use super::beside::coexisting;
 use super::frame::Frame;
 use super::jobs::Job;
 use super::state::MAP_CELLS;
 use super::{ExploreError, State};
-use impact_oscillator::atlas::carried_maps;
-use impact_oscillator::atlas::coexisting::{MOST_PERIODS, beside};
+use impact_oscillator::atlas::coexisting::MOST_PERIODS;
 use impact_oscillator::atlas::map::{UnitMass, even};
 use impact_oscillator::model::boundary::{rho_sticking, s1_of_branch, s2_of_branch};
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::patience::carry;
 use impact_oscillator::model::range;
 use impact_oscillator::{
-    BoundaryPoint, Initial, Machine, MapGrid, MapSettings, SettledMotion, region_map, rho_grazing,
-    rho_s1, rho_s2,
+    BoundaryPoint, Machine, MapGrid, MapSettings, SettledMotion, region_map, rho_grazing, rho_s1,
+    rho_s2,
 };
 use impact_records::motion::Motion;
 use impact_report::style::MotionStyle;
@@ -29,8 +29,6 @@ const FINE: (usize, usize) = (384, 288);
 const STRIP_CELLS: usize = 12_288;
 /// The same of machines that the exact simulator marches, some 0.4 ms a cell.
 const SLOW_STRIP_CELLS: usize = 192;
-/// X' and Y' of the lively start.
-const LIVELY_SPEED: f64 = 3.0;
 /// Most points of a boundary that a page may ask for.
 const MOST_POINTS: usize = 2000;
 
@@ -96,16 +94,6 @@ pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
     tiles.send_coexisting(&shown)
 }
 
-/// The start from which motions are sought that coexist with those of the map: lively where the map is from rest.
-fn other_start(state: &State) -> Initial {
-    let lively = Initial::both(0.0, LIVELY_SPEED);
-    if state.map_start == lively {
-        Initial::rest()
-    } else {
-        lively
-    }
-}
-
 /// The levels of a map.
 struct Tiles<'a> {
     state: &'a State,
@@ -122,7 +110,10 @@ struct Tiles<'a> {
 impl Tiles<'_> {
     /// Send a level strip by strip, each a frame; returns its motions.
     fn send(&self, level: usize, size: (usize, usize)) -> Result<Vec<SettledMotion>, Stop> {
-        let settings = self.settings(self.state.map_start);
+        let settings = MapSettings {
+            start: self.state.map_start,
+            ..self.state.map_settings()
+        };
         let mut all = Vec::with_capacity(size.0 * size.1);
         self.strips(size, |grid, first_row, last| {
             let march = || region_map(self.machine, grid, &settings);
@@ -141,33 +132,18 @@ impl Tiles<'_> {
         Ok(all)
     }
 
-    /// Send what coexists with the motions of 128 × 96 cells: what another start or sweeps in rising and falling η
-    /// settle on, or a stable motion in closed form.
+    /// Send what coexists with the motions of 128 × 96 cells.
     fn send_coexisting(&self, shown: &[SettledMotion]) -> Result<(), Stop> {
-        let (from, other) = (
-            self.settings(self.state.map_start),
-            self.settings(other_start(self.state)),
-        );
         self.strips(MAP_CELLS, |grid, first_row, _| {
-            let first = &shown[first_row * MAP_CELLS.0..][..grid.len()];
-            let found = self.job.pools.work(|| {
-                let other = region_map(self.machine, grid, &other)?.cells;
-                let carried = carried_maps(self.machine, grid, &from)?;
-                let [up, down] =
-                    carried.map(|ends| ends.iter().map(|e| e.motion).collect::<Vec<_>>());
-                beside(self.machine, grid, &[first, &other, &up, &down])
-            })?;
+            let own = &shown[first_row * MAP_CELLS.0..][..grid.len()];
+            let found = self
+                .job
+                .pools
+                .work(|| coexisting(self.state, self.machine, grid, own))?;
             let (motions, cells) = cells(found.iter());
             let frame = self.frame("beside", MAP_CELLS, first_row);
             Ok(self.job.send(frame.with("motions", motions).cells(cells))?)
         })
-    }
-
-    fn settings(&self, start: Initial) -> MapSettings {
-        MapSettings {
-            start,
-            ..self.state.map_settings()
-        }
     }
 
     fn frame(&self, kind: &str, size: (usize, usize), first_row: usize) -> Frame {

@@ -6,6 +6,7 @@
 //! none: the same state is the page's address, a step of a demo and, as TOML, a study.
 
 mod answer;
+mod beside;
 mod campaign;
 mod check;
 mod demo;

@@ -7,6 +7,7 @@ use crate::identify::estimate::{Estimate, Status};
 use crate::identify::messages::{PairAgreement, Remark};
 use crate::identify::method::Method;
 use crate::identify::parameters::Coordinate;
+use crate::identify::solver::Fit;
 use crate::identify::statistics::distribution::normal_tail;
 use crate::identify::statistics::quantile::NORMAL_975;
 
@@ -87,6 +88,21 @@ pub fn between_methods(
     parameters.into_iter().filter_map(of).collect()
 }
 
+/// What a disagreement on some parameters leaves open in those that the methods agree on: where a joint fit is
+/// off by δ in p, the others follow by δ `C_qp`/`C_pp`.
+pub fn carried_on(joint: &Fit, apart: &[(Coordinate, f64)]) -> Vec<(Coordinate, f64)> {
+    let others = Coordinate::PHYSICAL.into_iter();
+    let others = others.filter(|q| apart.iter().all(|(p, _)| p != q));
+    let of = |q: Coordinate| {
+        let carried = apart.iter().filter_map(|(p, by)| {
+            let ratio = joint.error(q)? / joint.error(*p)?;
+            Some((joint.correlation(q, *p)? * ratio * by).powi(2))
+        });
+        (q, carried.sum::<f64>().sqrt())
+    };
+    others.map(of).filter(|(_, by)| *by > 0.0).collect()
+}
+
 fn left_open(found: &[(f64, f64)], (value, error): (f64, f64)) -> f64 {
     let sum = |of: &dyn Fn(&(f64, f64)) -> f64| found.iter().map(of).sum::<f64>();
     let weight = |e: f64| e.powi(-2);
@@ -131,9 +147,13 @@ fn pair(
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DMatrix;
+
     use super::*;
     use crate::identify::estimate::{estimate, not_identifiable};
     use crate::identify::messages::Note;
+    use crate::identify::parameters::Parameters;
+    use crate::identify::solver::FitReport;
 
     /// A method with R and its standard error.
     fn with_restitution(value: f64, error: f64) -> MethodResult {
@@ -219,6 +239,25 @@ mod tests {
             (Method::Trajectories, missing),
         ]);
         assert_eq!(agreement(&with_missing).agree, None);
+    }
+
+    #[test]
+    fn valid_what_methods_agree_on_follows_what_they_disagree_on() {
+        // of a normal distribution with σ_R = 0.01, σ_f = 0.001 and a correlation of 0.6, f0 follows R by 0.06
+        let joint = Fit {
+            parameters: Parameters::symmetric(0.8, 12.0, 0.05, 1e-3),
+            free: vec![Coordinate::Restitution, Coordinate::Frequency],
+            covariance: DMatrix::from_row_slice(2, 2, &[1e-4, 6e-6, 6e-6, 1e-6]),
+            cost: 0.0,
+            residuals: 0,
+            report: FitReport::default(),
+        };
+        let carried = carried_on(&joint, &[(Coordinate::Restitution, 0.02)]);
+        let [(Coordinate::Frequency, by)] = carried[..] else {
+            panic!("{carried:?}");
+        };
+        assert!((by - 0.06 * 0.02).abs() < 1e-15);
+        assert_eq!(carried_on(&joint, &[]), []);
     }
 
     #[test]

@@ -6,7 +6,6 @@
 use crate::identify::diagnostics::suspicion::{OddGap, recover};
 use crate::identify::evidence::Blocks;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
-use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
 use crate::identify::parameters::Parameters;
 use crate::identify::solver::mean_squares;
 use impact_records::signal::robust;
@@ -33,14 +32,7 @@ pub fn contradicting_gap(
 ) -> Option<OddGap> {
     let records = of_each_gap(blocks.trajectory.records.iter().chain(lost).collect());
     let mut few = blocks.with_trajectory(blocks.trajectory.with_records(records));
-    few.trajectory.find_changes(start);
-    few.resonance.allow(LEAST_ALLOWANCE);
-    few.trajectory.allow(LEAST_ALLOWANCE);
-    let has_orbit = mean_squares(&few.trajectory, start);
-    let mut has_orbit = has_orbit.iter().map(Option::is_some);
-    few.trajectory
-        .records
-        .retain(|_| has_orbit.next().unwrap_or(false));
+    few.allow_least(start);
     let mut gaps: Vec<f64> = few
         .trajectory
         .records

@@ -14,7 +14,7 @@ const SURE: f64 = 4.0;
 const INFORMED: f64 = 0.1;
 
 /// The channels that are later or earlier than stated; what they showed was moved where impacts told it, and
-/// the fit allows for the rest. Of a low-pass that is not stated, the order stays in doubt.
+/// the fit allows for the rest. Of a low-pass that is not stated, what its order leaves open stays in doubt.
 pub fn late_channels(
     observations: &[Observation],
     found: Option<&MethodFit>,
@@ -23,14 +23,15 @@ pub fn late_channels(
     let moved = observations.first().map_or(&[][..], |o| &o.late[..]);
     let of = |(i, channel): (usize, &_)| {
         let moved = moved.iter().find(|l| l.role == *channel);
-        if let Some(filter) = moved.and_then(|l| l.low_pass) {
+        if let Some((late, filter)) = moved.and_then(|l| Some((l, l.low_pass?))) {
             let finding = Finding::UndeclaredLowPass {
                 channel: *channel,
                 corner_hz: filter.corner_hz,
+                order: (late.order_share < 1.0).then_some(filter.order),
             };
             return Some(Suspicion {
                 finding,
-                doubts: found.map_or_else(Vec::new, |f| by_order(f, filter)),
+                doubts: found.map_or_else(Vec::new, |f| by_order(f, filter, late.order_share)),
             });
         }
         let moved_ms = moved.map_or(0.0, |l| 1e3 * l.delay_s);
@@ -48,11 +49,12 @@ pub fn late_channels(
     GAIN_ROLES.iter().enumerate().filter_map(of).collect()
 }
 
-/// What is open as jumps tell a filter's corner, not its order: behind one pole an amplitude at the frequency f is
-/// smaller by half of (f/fc)², behind more of them not at all. f0 follows from phases, and the delay is fitted.
-fn by_order(found: &MethodFit, filter: LowPass) -> Vec<Doubt> {
+/// What is open where a filter's order is not known, or its corner: behind one pole an amplitude at the frequency f
+/// is smaller by half of (f/fc)², behind more of them not at all, and a share of that is open. f0 follows from
+/// phases, and the delay is fitted.
+fn by_order(found: &MethodFit, filter: LowPass, open: f64) -> Vec<Doubt> {
     let p = &found.fit.parameters;
-    let share = 0.5 * (p.natural_frequency_hz / filter.corner_hz).powi(2);
+    let share = open * 0.5 * (p.natural_frequency_hz / filter.corner_hz).powi(2);
     let of = |(parameter, by)| Doubt::material(found, parameter, by, Note::InstrumentOff);
     let open = [
         (Coordinate::Restitution, share * p.restitution),

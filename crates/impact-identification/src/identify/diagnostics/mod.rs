@@ -17,5 +17,6 @@ pub mod stated_frequencies;
 pub mod suspicion;
 pub mod swapped_channels;
 pub mod undeclared_high_pass;
+pub mod undeclared_low_pass;
 pub mod verdict;
 pub mod wrong_gains;

@@ -300,6 +300,7 @@ mod tests {
             },
             factor: 1.0,
             reduced: 1.0,
+            shared_gains: Vec::new(),
             scatter: Scatter {
                 groups: 6,
                 excess: vec![excess],

@@ -155,6 +155,7 @@ mod tests {
             factor: 1.0,
             reduced: 1.0,
             scatter: Scatter::default(),
+            shared_gains: Vec::new(),
             parts: Vec::new(),
         }
     }

@@ -16,6 +16,19 @@ impl Blocks {
         self.weigh_trajectories(parameters);
     }
 
+    /// Allow impactless and periodic records the least error beside the noise, with the changes by effects as they
+    /// are at parameters; periodic ones without an orbit there are left out.
+    pub fn allow_least(&mut self, at: &Parameters) {
+        self.resonance.find_changes(at);
+        self.trajectory.find_changes(at);
+        self.resonance.allow(LEAST_ALLOWANCE);
+        self.trajectory.allow(LEAST_ALLOWANCE);
+        let has_orbit = mean_squares(&self.trajectory, at);
+        let mut has_orbit = has_orbit.iter().map(Option::is_some);
+        let records = &mut self.trajectory.records;
+        records.retain(|_| has_orbit.next().unwrap_or(false));
+    }
+
     /// Find what the errors of the drive's frequency change in the impactless records, and allow them
     /// the least relative error that explains the rest.
     pub fn weigh_resonance(&mut self, parameters: &Parameters) {

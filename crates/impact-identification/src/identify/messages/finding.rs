@@ -78,8 +78,10 @@ pub enum Finding {
     UndeclaredLowPass {
         /// The channel.
         channel: Role,
-        /// Its corner, as jumps show it, Hz.
+        /// Its corner, as jumps show it, or as it fits where its order is known, Hz.
         corner_hz: f64,
+        /// Its order; `None` where the waveforms do not tell it. Of 2 or more poles the waveforms are alike.
+        order: Option<u32>,
     },
     /// The masses, springs, dashpots or drives of both sides differ by far more than is stated or assumed.
     SidesUnlike {
@@ -309,7 +311,7 @@ message_table! { "finding": Finding, key = template_key;
     Self::UndeclaredHighPass { channel, corner_hz, .. } =>
         channel = Value::Name(channel.name()),
         corner = Value::Shortest(two_digits(*corner_hz));
-    Self::UndeclaredLowPass { channel, corner_hz } =>
+    Self::UndeclaredLowPass { channel, corner_hz, .. } =>
         channel = Value::Name(channel.name()),
         corner = Value::Shortest(two_digits(*corner_hz));
     Self::SidesUnlike { coordinate, difference, deviations } =>
@@ -386,6 +388,8 @@ fn template_key(finding: &Finding) -> String {
             format!("{}_{}_zero", effect.name(), way)
         }
         Finding::LateChannel { later_ms, .. } if *later_ms <= 0.0 => "early_channel".to_owned(),
+        Finding::UndeclaredLowPass { order: Some(1), .. } => "undeclared_low_pass_1".to_owned(),
+        Finding::UndeclaredLowPass { order: Some(_), .. } => "undeclared_low_pass_2".to_owned(),
         _ => finding.kind().to_owned(),
     }
 }

@@ -26,6 +26,12 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         later_ms: 1.0,
         z_score: 0.0,
     };
+    // as has a low-pass whose order is known
+    let filters = [1, 2].map(|order| Finding::UndeclaredLowPass {
+        channel: Role::default(),
+        corner_hz: 1.0,
+        order: Some(order),
+    });
     let findings = Finding::iter().filter(|f| !matches!(f, Finding::BeyondModel { .. }));
     boxed(Method::iter())
         .chain(boxed(Note::iter()))
@@ -33,6 +39,7 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         .chain(boxed(Reason::iter()))
         .chain(boxed(findings))
         .chain(boxed([late].into_iter()))
+        .chain(boxed(filters.into_iter()))
         .chain(boxed(beyond))
         .chain(boxed(Undetermined::iter()))
         .chain(boxed(FlagCode::ALL.into_iter()))

@@ -210,6 +210,17 @@ impl Parameters {
         self
     }
 
+    /// R, f0, β and `x_st` of these, of an ideal rig with ideal instruments.
+    #[must_use]
+    pub fn ideal(&self) -> Self {
+        Self::symmetric(
+            self.restitution,
+            self.natural_frequency_hz,
+            self.damping_ratio,
+            self.static_deflection_m,
+        )
+    }
+
     /// Whether the model's range holds them.
     pub fn in_range(&self) -> bool {
         (0.0..=1.0).contains(&self.restitution)

@@ -38,6 +38,8 @@ pub enum UncertaintySource {
     },
     /// What the first order of the effects beyond the model does not hold.
     FirstOrder,
+    /// Gains of two sensors of one mass that may have been calibrated together.
+    SharedGains,
     /// A small change of R with the speed.
     RestitutionOverSpeed,
     /// Disagreement between methods beyond their uncertainties.
@@ -193,6 +195,15 @@ pub fn budget(
             (None, found.first_order(c).unwrap_or(0.0))
         }),
     });
+    if !found.shared_gains.is_empty() {
+        rows.push(Row {
+            source: UncertaintySource::SharedGains,
+            evaluation: Evaluation::B,
+            standard_uncertainty: None,
+            degrees_of_freedom: None,
+            contributions: contributions(&estimated, |_, c| (None, found.by_shared_gains(c))),
+        });
+    }
     let present = further.iter().filter(|f| !f.open.is_empty());
     rows.extend(present.map(|f| f.row(&estimated, methods.len())));
     let apart = |c: Coordinate| further.iter().map(|f| f.of(c)).fold(0.0, f64::hypot);
@@ -305,6 +316,7 @@ impl Budget {
                     ("between_groups", groups.to_string())
                 }
                 UncertaintySource::FirstOrder => ("first_order", String::new()),
+                UncertaintySource::SharedGains => ("shared_gains", String::new()),
                 UncertaintySource::RestitutionOverSpeed => {
                     ("restitution_over_speed", String::new())
                 }

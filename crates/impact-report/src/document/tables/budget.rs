@@ -142,6 +142,7 @@ fn source(source: UncertaintySource, locale: Locale<'_>) -> String {
         }
         UncertaintySource::Stated { coordinate, .. } => name(coordinate, locale),
         UncertaintySource::FirstOrder => locale.translate(Phrase::BeyondFirstOrder),
+        UncertaintySource::SharedGains => locale.translate(Phrase::SharedGains),
         UncertaintySource::RestitutionOverSpeed => locale.translate(Phrase::ChangeOverSpeed),
         UncertaintySource::BetweenMethods => locale.translate(Phrase::DisagreementOfMethods),
         UncertaintySource::Clock => locale.translate(Phrase::ClockOfSampler),

@@ -1,14 +1,9 @@
 // A campaign on the map: records, brackets, proposals; a record beside its simulation; residuals.
-import { Frame, around, colour, mark, number, rich, FONT } from "./draw.js";
-import { facts, swatch } from "./plots.js";
+import { Frame, around, colour, mark, number, FONT } from "./draw.js";
+import { make } from "./fields.js";
+import { facts } from "./plots.js";
 
 const element = (id) => document.getElementById(id);
-const make = (name, text, className) => {
-  const e = document.createElement(name);
-  if (text !== undefined) e.textContent = text;
-  if (className) e.className = className;
-  return e;
-};
 
 /** Records of sweeps up and down lie apart, as in the report, px. */
 const APART = { up: -4, down: 4 };
@@ -194,15 +189,16 @@ export class CampaignView {
     box.hidden = !this.fit;
     if (!this.fit) return;
     // a method that the joint fit trusts less than its own noise is judged as the joint fit weighs it
-    const item = (name, rms, tip, weight = 1) => {
+    const item = (name, rms, tip, { weight = 1, ideal_rig, remarks = [] } = {}) => {
       const span = make("span"), weighed = weight ?? 1;
       const apart = weighed === 0 && rms > 2;
       const value = make("b", rms === null ? "no model" : number(rms, 3), rms === null || rms * Math.sqrt(weighed) > 2 ? "worse" : apart ? "" : "fits");
-      span.append(`${name} `, value, apart ? " (not in the joint fit)" : "");
-      span.title = weighed > 0 && weighed < 0.5 ? `${tip}; the joint fit takes its errors ${number(1 / Math.sqrt(weighed), 2)} times as large` : tip;
+      span.append(`${name} `, value, apart ? ` (${ideal_rig ? "takes the rig as ideal, " : ""}not in the joint fit)` : "");
+      const larger = weighed > 0 && weighed < 0.5 ? [`the joint fit takes its errors ${number(1 / Math.sqrt(weighed), 2)} times as large`] : [];
+      span.title = [tip, ...larger, ...remarks].join("; ");
       return span;
     };
-    const parts = frame.methods.map((m) => item(m.method, m.rms, `${m.count} residuals over their standard errors, root mean square${m.without ? `; ${m.without} observations have no such motion here` : ""}`, m.weight));
+    const parts = frame.methods.map((m) => item(m.method, m.rms, `${m.count} residuals over their standard errors, root mean square${m.without ? `; ${m.without} observations have no such motion here` : ""}`, m));
     if (frame.joint !== null) parts.unshift(item("Joint", frame.joint, "root mean square of all weighted residuals of the joint fit"));
     const known = frame.brackets.filter((b) => b.boundary_hz !== null), past = known.filter((b) => b.past_hz > 0);
     const most = Math.max(0, ...past.map((b) => b.past_hz));
@@ -213,12 +209,4 @@ export class CampaignView {
     box.replaceChildren(make("span", "Residuals at the sliders:"), ...parts, brackets, back);
     this.app.map.redraw();
   }
-
-  legend() {
-    const seen = new Map();
-    for (const r of this.facts.records) seen.set(r.motion.label, r.motion);
-    return [...seen.values()].sort((a, b) => String(a.order).localeCompare(String(b.order)));
-  }
 }
-
-export { swatch, rich };

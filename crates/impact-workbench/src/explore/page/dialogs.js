@@ -3,6 +3,7 @@ import { KEYS } from "./keys.js";
 import { copyAddress, exportFiles, png, svg } from "./exports.js";
 import { make, numberField, typed } from "./fields.js";
 import { tableOf } from "./formula.js";
+import { turned } from "./plots.js";
 
 /** The law R(v) that a text states in one of the forms; throws where it states none. */
 function lawOf(form, text) {
@@ -48,7 +49,7 @@ export class Dialogs {
   initial() {
     const { app } = this, c = () => app.state.cursor;
     const start = (name, key) => [name, "start", () => c().start[key], (v) => app.start({ ...c().start, [key]: v })];
-    const rows = [start("X(0)", "x"), start("X′(0)", "vx"), start("Y(0)", "y"), start("Y′(0)", "vy"), ["phase φ, rad", "phase", () => c().phase, (v) => app.start(c().start, v)]];
+    const rows = [start("X(0)", "x"), start("X′(0)", "vx"), start("Y(0)", "y"), start("Y′(0)", "vy"), ["phase φ, rad", "phase", () => turned(c().phase), (v) => app.start(c().start, v)]];
     this.fields("Initial conditions (A)", rows, "The motion is shown from this start, not settled. Q starts it from rest.");
   }
 
@@ -76,7 +77,7 @@ export class Dialogs {
     const { app } = this, s = () => app.state;
     const watch = (name, key) => [name, key, () => s().watch[key], (v) => { app.set({ watch: { ...s().watch, [key]: v } }, ["motion", "panel"]); }];
     const line = (v) => { app.set({ line: { ...(s().line ?? app.ownLine("eta")), steps: Math.round(v) } }, ["panel"]); };
-    this.fields("Parameters of the simulation (D)", [watch("periods to settle", "settle_periods"), watch("periods watched", "watch_periods"), watch("tolerance of recurrence", "tolerance"), ["Poincaré phase, rad", "phase", () => s().poincare_phase, (v) => { app.set({ poincare_phase: v }, ["motion"]); }], ["steps of characteristics", "steps", () => s().line?.steps ?? 200, line]]);
+    this.fields("Parameters of the simulation (D)", [watch("periods to settle", "settle_periods"), watch("periods watched", "watch_periods"), watch("tolerance of recurrence", "tolerance"), ["Poincaré phase, rad", "phase", () => turned(s().poincare_phase), (v) => { app.set({ poincare_phase: v }, ["motion"]); }], ["steps of characteristics", "steps", () => s().line?.steps ?? 200, line]]);
   }
 
   /** Where the starts of the basins lie, and which masses take them. */
@@ -96,7 +97,7 @@ export class Dialogs {
   law() {
     const { app } = this, r = app.state.restitution;
     const kind = typeof r === "number" ? "constant" : Object.keys(r)[0];
-    const select = make("select"), text = make("textarea"), note = make("p", "", "note");
+    const select = make("select"), text = make("textarea"), note = make("p", "", "note"), kindOf = make("span");
     const forms = {
       constant: ["0.9", "R at every speed."],
       table: ["0 0.95\n6 0.85", "One pair a line: approach speed, R; linear between, constant beyond. Speeds rise."],
@@ -110,6 +111,7 @@ export class Dialogs {
     const fill = (name) => {
       const now = name === kind ? { constant: () => String(r), table: () => r.table.map((p) => p.join(" ")).join("\n"), power_law: () => [r.power_law.coefficient, r.power_law.exponent, r.power_law.floor].join(" "), exponential: () => [r.exponential.slow, r.exponential.fast, r.exponential.speed].join(" ") }[name]() : forms[name][0];
       text.value = now; note.textContent = forms[name][1]; note.className = "note";
+      kindOf.textContent = name === "formula" ? "Formula" : "Numbers";
     };
     select.value = kind; fill(kind);
     select.addEventListener("change", () => fill(select.value));
@@ -117,8 +119,8 @@ export class Dialogs {
     apply.addEventListener("click", () => {
       try { app.parameters({ restitution: lawOf(select.value, text.value) }); this.box.close(); } catch (error) { note.textContent = `${error.message}. ${forms[select.value][1]}`; note.className = "fault"; }
     });
-    const label = make("label", "R(v) as a "), area = make("label", "Numbers");
-    label.append(select); area.append(text);
+    const label = make("label", "R(v) as a "), area = make("label");
+    label.append(select); area.append(kindOf, text);
     this.open("Restitution R(v) (E)", label, area, note, apply);
   }
 

@@ -65,18 +65,24 @@ export function fit(canvas) {
 export function ticks(low, high, count) {
   const raw = (high - low) / Math.max(1, count);
   const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= raw * 0.999) ?? 10 * power;
-  const all = [];
-  for (let v = Math.ceil(low / step - 1e-9) * step; v <= high + 1e-9 * step; v += step) {
-    all.push(Math.abs(v) < 1e-9 * step ? 0 : v);
-  }
+  const steps = [10, 5, 2, 1, 0.5, 0.2].map((m) => m * power), wanted = steps.findLast((s) => s >= raw * 0.999) ?? steps[0];
+  const within = (step) => {
+    const first = Math.ceil(low / step - 1e-9), last = Math.floor(high / step + 1e-9);
+    return Array.from({ length: last - first + 1 }, (_, i) => (first + i) * step);
+  };
+  // one number alone is no scale
+  const step = steps.find((s) => s <= wanted && within(s).length > 1) ?? wanted, all = within(step);
   const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   return { all, text: (v) => v.toFixed(digits).replace("-", "−") };
 }
 
+/** Below this a number is the rounding of zero. */
+const DUST = 1e-12;
+
 /** A number as text, with so many significant digits. */
 export function number(v, digits = 4) {
   if (v === null || v === undefined || !Number.isFinite(v)) return "–";
+  if (Math.abs(v) < DUST) return "0";
   const text = Math.abs(v) >= 1e5 || (v !== 0 && Math.abs(v) < 1e-4)
     ? v.toExponential(digits - 1) : String(Number(v.toPrecision(digits)));
   return text.replace("-", "−");
@@ -94,12 +100,21 @@ export const named = ({ label }) => (/^\d/.test(label) ? `z = ${label}` : label)
 
 export const FONT = '"Libertinus Serif", Georgia, serif';
 
+/** Room of the title beside the numbers of an axis, px. */
+const TITLE = 20;
+/** About how many numbers an axis of a height has. */
+const rows = (height) => Math.max(2.4, height / 42);
+
 /** A frame with axes; maps values to pixels. */
 export class Frame {
   constructor(canvas, x, y, titles, margin = {}) {
     const { context, width, height } = fit(canvas);
     const m = { left: 46, right: 10, top: 8, bottom: 36, ...margin };
     Object.assign(this, { context, width, height, x, y, titles });
+    // the numbers beside the box leave room for its title
+    context.font = `13px ${FONT}`;
+    const { all, text } = ticks(...y, rows(height - m.top - m.bottom));
+    m.left = Math.max(m.left, TITLE + Math.max(0, ...all.map((v) => context.measureText(text(v)).width)));
     this.box = { left: m.left, top: m.top, width: Math.max(10, width - m.left - m.right), height: Math.max(10, height - m.top - m.bottom) };
   }
   px(v) { return this.box.left + this.box.width * (v - this.x[0]) / (this.x[1] - this.x[0]); }
@@ -117,7 +132,7 @@ export class Frame {
     c.strokeRect(b.left + 0.5, b.top + 0.5, b.width, b.height);
     c.font = `13px ${FONT}`; c.textAlign = "center"; c.textBaseline = "top";
     c.beginPath();
-    const tx = ticks(...this.x, Math.max(2.4, b.width / 75)), ty = ticks(...this.y, Math.max(2.4, b.height / 42));
+    const tx = ticks(...this.x, Math.max(2.4, b.width / 75)), ty = ticks(...this.y, rows(b.height));
     for (const v of tx.all) {
       const p = Math.round(this.px(v)) + 0.5;
       c.moveTo(p, b.top + b.height); c.lineTo(p, b.top + b.height - 4);
@@ -131,9 +146,11 @@ export class Frame {
     }
     c.stroke();
     c.font = `14px ${FONT}`; c.textAlign = "center"; c.textBaseline = "alphabetic";
-    rich(c, this.titles[0], b.left + b.width / 2, this.height - 5);
-    c.save(); c.translate(12, b.top + b.height / 2); c.rotate(-Math.PI / 2);
-    rich(c, this.titles[1], 0, 0, b.height + 24); c.restore();
+    // as long as the picture at most
+    const [across, down] = [b.left + b.width / 2, b.top + b.height / 2], room = (at, size) => 2 * Math.min(at, size - at);
+    rich(c, this.titles[0], across, this.height - 5, room(across, this.width));
+    c.save(); c.translate(12, down); c.rotate(-Math.PI / 2);
+    rich(c, this.titles[1], 0, 0, room(down, this.height)); c.restore();
     return this;
   }
   /** Names of what is drawn, [text, colour], in a row above the box. */

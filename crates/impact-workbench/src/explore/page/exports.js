@@ -3,7 +3,7 @@ import { FONT, colour, drawnInto } from "./draw.js";
 import { SvgContext } from "./svg.js";
 
 /** Texts that belong to what is shown, beside the pictures. */
-const TEXTS = "#title, #readout, #legend, #residuals, #numbers, #line-note, .tools select, #basin-shares, #record-head, #record-evidence, #caption";
+const TEXTS = "h1, #readout, #legend, #sliders, #residuals, #numbers, #line-note, .tools select, #basin-shares, #record-head, #record-evidence, #caption";
 /** Space around the pictures, px. */
 const MARGIN = 12;
 
@@ -67,10 +67,10 @@ function drawSurroundings(c) {
       c.fillStyle = style.color;
       c.fillText(text, b.left, b.bottom - 0.27 * parseFloat(style.fontSize));
     }
-    for (const select of e.matches("select") ? [e] : e.querySelectorAll("select")) {
-      const b = select.getBoundingClientRect();
-      c.font = `15px ${FONT}`; c.fillStyle = colour("ink");
-      c.fillText(select.selectedOptions[0]?.text ?? "", b.left + 6, b.bottom - 7);
+    for (const field of e.matches("select") ? [e] : e.querySelectorAll("select, input[type=text]")) {
+      const b = field.getBoundingClientRect();
+      c.font = `14px ${FONT}`; c.fillStyle = colour("ink");
+      c.fillText(field.selectedOptions?.[0]?.text ?? field.value, b.left + 6, b.bottom - 7);
     }
   }
 }

@@ -75,7 +75,7 @@ export class Sliders {
     if (fit) {
       const f0 = fit.natural_frequency_hz, xst = 1e3 * fit.static_deflection_m;
       rows.push(["f₀, Hz", "natural_frequency_hz", 1, 0.8 * f0, 1.2 * f0, f0 / 5000, ...rig("natural_frequency_hz")]);
-      rows.push(["x_st, mm", "static_deflection_m", 1e3, 0.6 * xst, 1.4 * xst, xst / 5000, ...rig("static_deflection_m")]);
+      rows.push(["xₛₜ, mm", "static_deflection_m", 1e3, 0.6 * xst, 1.4 * xst, xst / 5000, ...rig("static_deflection_m")]);
     }
     if (!fit || !app.first.single) {
       rows.push(["drive Y/X", "drive_amplitude", 1, 0.8, 1.2, 0.001, ...asym("drive_amplitude")], ["stiffness Y/X", "stiffness", 1, 0.8, 1.2, 0.001, ...asym("stiffness")]);
@@ -95,14 +95,16 @@ export class Sliders {
     range.addEventListener("focus", next);
     range.addEventListener("input", () => { change(Number(range.value)); next(); });
     row.append(make("span", name), range, field.fault, field.input);
-    return { row, range, shown, field };
+    return { row, range, shown, field, pair: name.endsWith("Y/X") };
   }
 
   /** Thumbs and fields at what the state holds. */
   show() {
-    for (const { range, shown, field } of this.rows) {
+    for (const { row, range, shown, field, pair } of this.rows) {
       const v = shown();
       range.disabled = v === null;
+      // what compares two masses has no meaning for one
+      row.style.visibility = pair && this.app.state.single ? "hidden" : "";
       if (v !== null && Number(range.value) !== v) range.value = v;
       field.show();
     }

@@ -1,5 +1,5 @@
 // The (η, ρ) map: tiles, boundaries, records, brackets, bands, cursor, line.
-import { Frame, colour, isDark, mark, markColour, named, rich, tint, FONT } from "./draw.js";
+import { Frame, colour, markColour, named, rich, ticks, tint, FONT } from "./draw.js";
 
 const KINDS = {
   s2: { text: "saddle-node *s*₂", colour: "ink", width: 1.6 },
@@ -19,6 +19,8 @@ const EMPTY = 0xffffffff;
 const STRIPES = 7;
 /** Names of boundaries on the map. */
 const NAMES = { s2: "s₂", s1: "s₁" };
+/** Half the width and half the height of such a name, px. */
+const NAME = [22, 8];
 /** Least length of a boundary that is named, px. */
 const ROOM_OF_A_NAME = 45;
 
@@ -88,7 +90,7 @@ export class MapView {
     });
     if (first + frame.cell.length < b.cells.length) return;
     this.other = b;
-    this.labels = placeLabels(b);
+    this.labels = placeLabels(b, this.taken(b));
     this.app.legend(this.app.legendStyles ?? []);
     this.redraw("tiles", "lines");
   }
@@ -147,7 +149,7 @@ export class MapView {
     this.fade(!tile.complete && this.tiles.some((t) => t.id !== tile.id));
     if (tile.complete) {
       this.tiles = this.tiles.filter((t) => t === tile || (t.id === tile.id && t.level > tile.level));
-      if (tile.level === 1) { this.labels = placeLabels(tile); this.cells128 = tile; }
+      if (tile.level === 1) { this.labels = placeLabels(tile, this.taken(tile)); this.cells128 = tile; }
       if (tile.level >= 1) this.app.legend(commonest(tile));
     }
     if (frame.last) this.finished = frame.id;
@@ -234,8 +236,9 @@ export class MapView {
     f.clip((c) => {
       this.bands(f, c);
       this.boundaries(f);
-      if (!this.late) this.regionLabels(f, c);
       if (app.campaign) app.campaign.draw(f, c);
+      this.boundaryNames(f, c);
+      if (!this.late) this.regionLabels(f, c);
     });
     f.axes();
     if (scale) this.rigAxes(f, scale);
@@ -271,7 +274,11 @@ export class MapView {
         f.curve(curve.eta, curve.rho, { ...line, alpha: curve.bare ? 0.45 : 1 });
       }
     }
-    this.names = Object.entries(this.curves).flatMap(([name, curve]) => this.nameOf(f, name, curve));
+  }
+
+  boundaryNames(f, c) {
+    const records = this.app.campaign?.placed(f) ?? [];
+    this.names = Object.entries(this.curves).flatMap(([name, curve]) => this.nameOf(f, name, curve, records));
     for (const { text, x, y, paint } of this.names) {
       c.font = `13px ${FONT}`; c.textAlign = "center"; c.textBaseline = "middle";
       c.lineWidth = 4; c.strokeStyle = colour("paper"); c.strokeText(text, x, y);
@@ -279,8 +286,8 @@ export class MapView {
     }
   }
 
-  /** Where a boundary's name stands: in the middle of the longest stretch on which a stable motion ends. */
-  nameOf(f, name, { eta, rho, exists, stale }) {
+  /** A boundary's name: near the middle of the longest stretch on which a stable motion ends, beside records. */
+  nameOf(f, name, { eta, rho, exists, stale }, records) {
     const [kind, n] = name.split(":");
     if (stale || !exists || !NAMES[kind]) return [];
     let best = [0, 0];
@@ -289,9 +296,12 @@ export class MapView {
       if (i - from > best[1] - best[0]) best = [from, i];
       from = i + 1;
     }
-    const length = f.px(eta[best[1] - 1] ?? 0) - f.px(eta[best[0]]), at = (best[0] + best[1]) >> 1;
+    const length = f.px(eta[best[1] - 1] ?? 0) - f.px(eta[best[0]]);
     if (!(length > ROOM_OF_A_NAME)) return [];
-    return [{ text: `${NAMES[kind]}(${n === "1" ? "1" : `1/${n}`})`, x: f.px(eta[at]), y: f.py(rho[at]), paint: colour(KINDS[kind].colour) }];
+    const places = [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8].map((share) => Math.floor(best[0] + share * (best[1] - best[0]))).map((i) => [f.px(eta[i]), f.py(rho[i])]);
+    const free = ([x, y]) => records.every((r) => Math.abs(r.x - x) > NAME[0] + 5 || Math.abs(r.y - y) > NAME[1] + 5);
+    const [x, y] = places.find(free) ?? places[0];
+    return [{ text: `${NAMES[kind]}(${n === "1" ? "1" : `1/${n}`})`, x, y, paint: colour(KINDS[kind].colour) }];
   }
 
   regionLabels(f, c) {
@@ -299,10 +309,27 @@ export class MapView {
     for (const { eta, rho, text, share } of this.labels) {
       const size = Math.round(13 + 14 * Math.min(1, Math.sqrt(share) * 2.2));
       c.font = `bold ${size}px ${FONT}`;
+      const { left, top, width, height } = f.box, room = c.measureText(text).width / 2 + 2;
+      const inside = (v, from, length, half) => Math.max(from + half, Math.min(from + length - half, v));
+      const x = inside(f.px(eta), left, width, room), y = inside(f.py(rho), top, height, size / 2);
       c.lineWidth = 3; c.strokeStyle = colour("paper"); c.globalAlpha = 0.75;
-      c.strokeText(text, f.px(eta), f.py(rho)); c.globalAlpha = 1;
-      c.fillStyle = colour("ink"); c.fillText(text, f.px(eta), f.py(rho));
+      c.strokeText(text, x, y); c.globalAlpha = 1;
+      c.fillStyle = colour("ink"); c.fillText(text, x, y);
     }
+  }
+
+  /** Cells of a tile under the campaign's records, as 1, and under the names of boundaries, as 2. */
+  taken({ eta, rho, size: [w, h] }) {
+    const cells = new Uint8Array(w * h), { frame: f, app } = this;
+    if (!f) return cells;
+    const along = (v, [low, high], n) => Math.min(n - 1, Math.max(0, Math.round((v - low) / (high - low) * (n - 1))));
+    const boxes = [...(app.campaign?.placed(f) ?? []).map(({ x, y }) => [1, x, y, 6, 6]), ...(this.names ?? []).map(({ x, y }) => [2, x, y, ...NAME])];
+    for (const [what, x, y, wide, high] of boxes) {
+      if (!f.holds(x, y)) continue;
+      const [first, last] = [x - wide, x + wide].map((p) => along(f.ux(p), eta, w));
+      for (let k = along(f.uy(y + high), rho, h); k <= along(f.uy(y - high), rho, h); k++) cells.fill(what, k * w + first, k * w + last + 1);
+    }
+    return cells;
   }
 
   line(f, c) {
@@ -411,7 +438,6 @@ class Frame2 {
   y() { const t = ticksOf(this.ry, this.box.height / 45); return t; }
 }
 
-import { ticks } from "./draw.js";
 const ticksOf = (range, count) => { const t = ticks(range[0], range[1], count); return t.all.map((v) => [v, t.text(v)]); };
 
 /** The motions that take most of a tile. */
@@ -422,8 +448,8 @@ function commonest(tile) {
   return order.slice(0, 9).filter((i) => counts[i] > 2e-4 * tile.cells.length).map((i) => tile.styles[i]);
 }
 
-/** A label in the middle of every large connected region. */
-function placeLabels(tile) {
+/** A label in the middle of every large connected region, where it has room on cells that are not taken. */
+function placeLabels(tile, taken) {
   const [w, h] = tile.size, seen = new Int32Array(w * h).fill(-1), labels = [];
   const stack = [];
   for (let start = 0; start < w * h; start++) {
@@ -439,7 +465,9 @@ function placeLabels(tile) {
     }
     const share = members.length / (w * h);
     if (share < 0.006) continue;
-    const middle = innermost(members, seen, start, w, h);
+    const inside = (x, y) => x >= 0 && y >= 0 && x < w && y < h && seen[y * w + x] === start;
+    // beside records and names, else beside names, else anywhere
+    const middle = [1, 2, 3].reduce((best, least) => (best?.depth >= 3 ? best : innermost(members, (x, y) => inside(x, y) && taken[y * w + x] < least, w, h)), null);
     if (middle.depth < 3) continue;
     const eta = tile.eta[0] + (tile.eta[1] - tile.eta[0]) * middle.x / (w - 1);
     const rho = tile.rho[0] + (tile.rho[1] - tile.rho[0]) * middle.y / (h - 1);
@@ -448,13 +476,13 @@ function placeLabels(tile) {
   return labels;
 }
 
-/** The member that is furthest from its region's edge. */
-function innermost(members, seen, region, w, h) {
+/** The member that is furthest from the edge of what is inside. */
+function innermost(members, inside, w, h) {
   const depth = new Int16Array(w * h);
-  const inside = (x, y) => x >= 0 && y >= 0 && x < w && y < h && seen[y * w + x] === region;
   const sorted = [...members].sort((a, b) => a - b);
   const relax = (at, dx, dy) => {
     const x = at % w, y = (at - x) / w, look = (a, b) => (inside(x + a, y + b) ? depth[(y + b) * w + x + a] : 0);
+    if (!inside(x, y)) return 0;
     return Math.min(look(dx, 0), look(0, dy), look(dx, dy), look(-dx, dy)) + 1;
   };
   for (const at of sorted) depth[at] = relax(at, -1, -1);
@@ -465,5 +493,3 @@ function innermost(members, seen, region, w, h) {
   }
   return best;
 }
-
-export { KINDS, isDark, mark, markColour };

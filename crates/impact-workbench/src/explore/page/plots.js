@@ -132,7 +132,7 @@ export class MotionPanel extends Panel {
     const xs = l ? l.px : c.poincare_x, vs = l ? l.pv : c.poincare_vx;
     const grown = (list) => { const [a, b] = around([list], 0.1), m = 0.05; return b - a < 2 * m ? [(a + b) / 2 - m, (a + b) / 2 + m] : [a, b]; };
     const before = l ? l.pt.findLastIndex((t) => t < l.moved) + 1 : 0, size = xs.length > 50 ? 1.2 : 2.5;
-    const f = new Frame(element("poincare"), grown(xs), grown(vs), [`*X* once a drive period${before ? "; grey: before the move" : ""}`, "*X*′"]).axes();
+    const f = new Frame(element("poincare"), grown(xs), grown(vs), [before ? "*X* each period; grey: before the move" : "*X* once a drive period", "*X*′"]).axes();
     f.clip(() => {
       f.dots(xs.slice(0, before), vs.slice(0, before), size, colour("band"));
       f.dots(xs.slice(before), vs.slice(before), size, colour("vermilion"));
@@ -179,7 +179,7 @@ function withJumps(c) {
 }
 
 /** A phase in [0, 2π), without the dust of arithmetic. */
-function turned(phase) {
+export function turned(phase) {
   const turn = 2 * Math.PI, within = ((phase % turn) + turn) % turn;
   return Math.min(within, turn - within) < 1e-6 ? 0 : within;
 }
@@ -287,7 +287,7 @@ export class LinePanel extends Panel {
     const ways = Object.entries(this.ways);
     const paint = { up: colour("blue"), down: colour("vermilion") };
     const panel = (id, values, name, draw) => {
-      const f = new Frame(element(id), range, values, [title, name], { left: 52 }).axes();
+      const f = new Frame(element(id), range, values, [title, name], { left: 62 }).axes();
       f.clip(() => { for (const [way, data] of ways) draw(f, data, paint[way]); });
       const at = this.app.state.cursor[key];
       f.clip(() => f.curve([at, at], f.y, { colour: colour("quiet"), dash: [3, 3], width: 1 }));
@@ -306,7 +306,8 @@ export class LinePanel extends Panel {
     element("characteristic").value = name;
     element("line-l").setAttribute("aria-label", `${shown.text} along the line`);
     const values = ways.map(([, d]) => shown.of(d));
-    panel("line-l", shown.range ?? around([...values, [0]]), shown.axis, (f, d, ink) => {
+    const ends = shown.error ? ways.flatMap(([, d]) => [-1.96, 1.96].map((by) => shown.of(d).map((v, i) => v + by * shown.error(d)[i]))) : [];
+    panel("line-l", shown.range ?? around([...values, ...ends, [0]]), shown.axis, (f, d, ink) => {
       if (shown.zero) f.curve(range, [0, 0], { colour: colour("quiet"), width: 1 });
       if (shown.error) f.bars(d[key], shown.of(d), shown.error(d).map((e) => 1.96 * e), ink);
       if (shown.dots) f.dots(shown.dots(d, key), shown.of(d), 1, ink);

@@ -1,0 +1,278 @@
+//! Order and corner of a low-pass that is not stated. Jumps show that there is one and about which corner it has;
+//! the waveforms tell the rest: behind one pole an amplitude at the frequency f is smaller by ½(f/`f_c`)², behind
+//! more of them, as far as second order in f/`f_c` goes, it is not. The waveforms are fitted with either.
+
+use std::sync::Arc;
+
+use crate::identify::evidence::{Evidence, Nominal};
+use crate::identify::parameters::gain_index;
+use impact_records::motion::{LateChannel, Observation};
+use impact_records::record::LowPass;
+
+/// What one pole lowers amplitudes by, over ½(f/`f_c`)² with the corner that jumps show: in equal steps, as it is
+/// tried; jumps show corners up to 1.6 times as high as they are (`low_pass_200_1` of tests/scripts, seeds 1001 to
+/// 1020).
+const LOWERED: [f64; 3] = [0.5, 1.25, 2.0];
+/// Range of it that these tell.
+const TOLD: [f64; 2] = [0.25, 3.0];
+/// Difference of the sums of squares, over what is typical of them, from which one order fits better: three
+/// standard errors.
+const SURE: f64 = 9.0;
+
+/// The observations and the stated delays, as if channels had passed other filters than was assumed.
+pub struct Refiltered {
+    /// The observations.
+    pub observations: Vec<Observation>,
+    /// What is stated; the delays are those beside the filters.
+    pub nominal: Nominal,
+}
+
+impl Refiltered {
+    /// The same evidence with these.
+    pub fn evidence<'a>(&'a self, of: &Evidence<'a>) -> Evidence<'a> {
+        Evidence {
+            observations: &self.observations,
+            nominal: self.nominal,
+            ..*of
+        }
+    }
+}
+
+/// The channels whose jumps show a low-pass that is not stated.
+pub fn filtered(evidence: &Evidence<'_>) -> Vec<LateChannel> {
+    let late = evidence.observations.first().map_or(&[][..], |o| &o.late);
+    let filtered = late.iter().filter(|l| l.low_pass.is_some());
+    filtered.copied().collect()
+}
+
+/// Sums of squares of a fit of all waveforms.
+#[derive(Clone, Copy)]
+pub struct Costs {
+    /// Where the force may change with the frequency.
+    pub open: f64,
+    /// Where it may not: such a change and one pole lower amplitudes alike.
+    pub simple: f64,
+    /// Residuals.
+    pub residuals: usize,
+}
+
+/// The evidence with the filter that fits best, by fits of its waveforms. Where a change of the force explains as
+/// much as one pole does, the filter, which is known to be there, is taken, and what it lowers stays open.
+pub fn settled(
+    evidence: &Evidence<'_>,
+    fit: &dyn Fn(&Evidence<'_>) -> Option<Costs>,
+) -> Option<Refiltered> {
+    let channels = filtered(evidence);
+    let refiltered = |filter| refiltered(evidence, &channels, filter);
+    let costs = |order: u32, corner: f64| fit(&refiltered((order, corner, 1.0)).evidence(evidence));
+    let more_poles = costs(2, 1.0)?;
+    let one_pole = LOWERED.map(|lowered| costs(1, corner(lowered)));
+    let [Some(a), Some(b), Some(c)] = one_pole else {
+        return None;
+    };
+    let one_pole = [a, b, c];
+    let parabola = Parabola::through(one_pole.map(|c| c.simple));
+    let open = one_pole
+        .map(|c| c.open)
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
+    let least = open.min(more_poles.open);
+    let typical = (least / more_poles.residuals.max(1) as f64).max(1.0);
+    let better = (more_poles.simple - parabola.least) / typical;
+    let surely = (more_poles.open - open) / typical;
+    let error = (typical / parabola.curvature).sqrt() / parabola.at;
+    let filter = match (better > SURE, surely) {
+        (true, surely) if surely > SURE => (1, corner(parabola.at), error.min(1.0)),
+        (true, _) => (1, corner(parabola.at), 1.0),
+        (false, surely) if surely < -SURE => (2, 1.0, 0.0),
+        (false, _) => (2, 1.0, 1.0),
+    };
+    Some(refiltered(filter))
+}
+
+/// The corner over the one that jumps show at which one pole lowers amplitudes by so much.
+fn corner(lowered: f64) -> f64 {
+    lowered.sqrt().recip()
+}
+
+/// A sum of squares over what one pole lowers amplitudes by.
+struct Parabola {
+    at: f64,
+    least: f64,
+    /// What it grows by over the square of the distance from its least.
+    curvature: f64,
+}
+
+impl Parabola {
+    /// Through the sums of squares at [`LOWERED`]; where they have no least one, the best of them.
+    fn through([left, middle, right]: [f64; 3]) -> Self {
+        let step = LOWERED[1] - LOWERED[0];
+        let slope = (right - left) / (2.0 * step);
+        let curvature = (left - 2.0 * middle + right) / (2.0 * step * step);
+        if curvature > 0.0 {
+            let at = (LOWERED[1] - slope / (2.0 * curvature)).clamp(TOLD[0], TOLD[1]);
+            let off = at - LOWERED[1];
+            return Self {
+                at,
+                least: middle + slope * off + curvature * off * off,
+                curvature,
+            };
+        }
+        Self {
+            at: if left < right { LOWERED[0] } else { LOWERED[2] },
+            least: left.min(right),
+            curvature: f64::MIN_POSITIVE,
+        }
+    }
+}
+
+/// As if the channels had passed a low-pass of an order whose corner is that which their jumps show times a factor;
+/// `order_share` is what is left open of ½(f/`f_c`)².
+fn refiltered(
+    evidence: &Evidence<'_>,
+    channels: &[LateChannel],
+    (order, factor, order_share): (u32, f64, f64),
+) -> Refiltered {
+    let mut observations = evidence.observations.to_vec();
+    let mut nominal = evidence.nominal;
+    for channel in channels {
+        let Some(assumed) = channel.low_pass else {
+            continue;
+        };
+        let other = LowPass {
+            corner_hz: factor * assumed.corner_hz,
+            order,
+        };
+        let later_s = assumed.delay_s() - other.delay_s();
+        if let Some(i) = gain_index(channel.role) {
+            nominal.delays_s[i] += later_s;
+        }
+        let is = LateChannel {
+            delay_s: channel.delay_s + later_s,
+            low_pass: Some(other),
+            order_share,
+            ..*channel
+        };
+        observations
+            .iter_mut()
+            .for_each(|o| refilter(o, &is, assumed));
+    }
+    Refiltered {
+        observations,
+        nominal,
+    }
+}
+
+/// Replace the low-pass that was assumed of a channel of one record.
+fn refilter(observation: &mut Observation, channel: &LateChannel, assumed: LowPass) {
+    let Some(other) = channel.low_pass else {
+        return;
+    };
+    let late = observation.late.iter_mut();
+    late.filter(|l| l.role == channel.role)
+        .for_each(|l| *l = *channel);
+    if let Some(folded) = &mut observation.folded {
+        let channels = Arc::make_mut(folded).channels.iter_mut();
+        let own = channels.filter(|c| c.role == channel.role);
+        own.for_each(|c| c.low_pass = Some(other));
+    }
+    let frequency_hz = observation.frequency_hz();
+    for response in &mut observation.response {
+        if let Some(f) = frequency_hz.filter(|_| response.role == channel.role) {
+            *response = response.behind_low_pass([assumed, other], f);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Complex;
+
+    use super::*;
+    use impact_records::event::RigKind;
+    use impact_records::motion::{Motion, Response};
+    use impact_records::record::Role;
+
+    /// Impactless records at some frequencies of a velocity of unit amplitude behind a filter, as if jumps had shown
+    /// one of second order at 250 Hz.
+    fn observations(behind: LowPass) -> Vec<Observation> {
+        let shown = LowPass {
+            corner_hz: 250.0,
+            order: 2,
+        };
+        let one = |frequency_hz: f64| {
+            let rate = Complex::new(0.0, std::f64::consts::TAU * frequency_hz);
+            let divided = behind.transfer(rate) / shown.transfer(rate);
+            let mut o = Observation::of("r", frequency_hz, Motion::Impactless);
+            o.late = vec![LateChannel {
+                role: Role::VelocityX,
+                delay_s: 0.0,
+                low_pass: Some(shown),
+                order_share: 1.0,
+            }];
+            o.response = vec![Response {
+                role: Role::VelocityX,
+                real: divided.re,
+                imaginary: divided.im,
+                error: 1e-4,
+                residual_rms: 0.0,
+                high_pass_hz: None,
+            }];
+            o
+        };
+        [10.0, 15.0, 20.0, 25.0].map(one).to_vec()
+    }
+
+    /// The filter that is settled on, and what stays open of it, where fits compare amplitudes with 1; where the
+    /// force may change with the frequency they fit anyhow.
+    fn found(behind: LowPass, force_changes: f64) -> (LowPass, f64) {
+        let observations = observations(behind);
+        let evidence = Evidence {
+            rig: RigKind::Double,
+            observations: &observations,
+            brackets: &[],
+            nominal: Nominal::default(),
+            uncertainty: Default::default(),
+            progress: None,
+        };
+        let fit = |other: &Evidence<'_>| {
+            let responses = other.observations.iter().flat_map(|o| &o.response);
+            let off = responses.map(|r| ((r.amplitude() - 1.0) / r.error).powi(2));
+            let simple = 4.0 + off.sum::<f64>();
+            Some(Costs {
+                open: 4.0 + (1.0 - force_changes) * (simple - 4.0),
+                simple,
+                residuals: 4,
+            })
+        };
+        let settled = settled(&evidence, &fit).expect("a filter");
+        let late = settled.observations[0].late[0];
+        // the delay as a whole stays as it was measured
+        let filter = late.low_pass.expect("a filter");
+        let whole = settled.nominal.delays_s[0] + filter.delay_s();
+        let shown = observations[0].late[0].low_pass.expect("a filter");
+        assert!((whole - shown.delay_s()).abs() < 1e-12);
+        (filter, late.order_share)
+    }
+
+    #[test]
+    fn valid_order_and_corner_of_a_filter_follow_from_what_it_lowers() {
+        let one_pole = LowPass {
+            corner_hz: 200.0,
+            order: 1,
+        };
+        let (filter, open) = found(one_pole, 0.0);
+        assert_eq!(filter.order, 1);
+        assert!((filter.corner_hz - 200.0).abs() < 1.0, "{filter:?}");
+        assert!(open < 0.05, "{open}");
+        // the same where a change of the force explains it as well: the order stays open
+        let (filter, open) = found(one_pole, 1.0);
+        assert_eq!((filter.order, open), (1, 1.0));
+        let two_poles = LowPass {
+            order: 2,
+            ..one_pole
+        };
+        let (filter, open) = found(two_poles, 0.0);
+        assert_eq!((filter.order, open), (2, 0.0));
+    }
+}
