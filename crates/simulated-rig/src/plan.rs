@@ -265,7 +265,7 @@ mod tests {
         let truth = Truth::symmetric(0.9, 12.6, 0.07, 1e-3);
         let plan = Plan::through_beats(&truth, 220);
         assert_eq!(plan.steps.len(), 220);
-        for (rho, grazing, doubling) in [(2.0, 0.712, 0.966), (5.0, 0.922, 0.993)] {
+        for (rho, grazing, doubling) in [(2.0, 0.7142, 0.9586), (5.0, 0.9203, 0.9917)] {
             let at = |s: &&Step| s.clearance_m == rho * 1e-3 && s.sweep == Sweep::Up;
             let rising = plan.steps.iter().filter(at).map(|s| s.frequency_hz / 12.6);
             let rising: Vec<f64> = rising.collect();
