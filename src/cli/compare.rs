@@ -271,7 +271,7 @@ fn decided_by(comparison: &Comparison, locale: Locale<'_>) -> String {
     }
 }
 
-/// A text without the markup of symbols, which a terminal does not set: f0 and x_st.
+/// A text without the markup of symbols, which a terminal does not set: `f0` and `x_st`.
 fn plain(text: &str) -> String {
     text.replace(['$', '{', '}'], "").replace("f_0", "f0")
 }

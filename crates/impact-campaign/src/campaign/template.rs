@@ -217,14 +217,13 @@ fn describe(channel: &InferredChannel) -> String {
     format!("{name} ({unit}, {} samples{range}{time})", channel.samples)
 }
 
-fn table(
+/// The line of a channel's unit; the unit, if the file states one or the channel is a rate by its name.
+fn unit_line(
     text: &mut String,
     role: Role,
     channel: &InferredChannel,
     found: &FolderContents,
-) -> std::fmt::Result {
-    writeln!(text, "[channels.{}]", role.name())?;
-    writeln!(text, "channel = {}", quoted(&channel.name))?;
+) -> Result<Option<units::Unit>, std::fmt::Error> {
     let known = channel.unit.as_deref().and_then(units::parse_unit);
     let stated = units::unit_of(channel.unit.as_deref(), &channel.name);
     let turns = (stated.is_none() && infer::is_rate(channel)).then_some("rad/s");
@@ -254,6 +253,18 @@ fn table(
             )?;
         }
     }
+    Ok(unit)
+}
+
+fn table(
+    text: &mut String,
+    role: Role,
+    channel: &InferredChannel,
+    found: &FolderContents,
+) -> std::fmt::Result {
+    writeln!(text, "[channels.{}]", role.name())?;
+    writeln!(text, "channel = {}", quoted(&channel.name))?;
+    let unit = unit_line(text, role, channel, found)?;
     if let Experiment::Events(content) = found.experiment {
         return events(text, content);
     }
