@@ -638,7 +638,8 @@ mod tests {
     fn a_pulse_belongs_to_the_jump_within_its_reach() {
         let velocity = Series::clean(sawtooth(400));
         let closed = [pulse(100, 102), pulse(245, 247)];
-        let found = fuse(&velocity, &closed, 8, 10).confirmed(&velocity, ARC_SAMPLES);
+        let found =
+            fuse((&Body::default(), &velocity), &closed, 8, 10).confirmed(&velocity, ARC_SAMPLES);
         let sources: Vec<_> = found.candidates.iter().map(|c| c.source).collect();
         use DetectionSource::{Both, Velocity};
         assert_eq!(sources, [Both, Velocity, Velocity]);
@@ -653,7 +654,7 @@ mod tests {
     #[test]
     fn a_jump_that_the_flights_do_not_show_needs_a_pulse() {
         let velocity = Series::clean(sawtooth(400));
-        let mut found = fuse(&velocity, &[], 8, 10);
+        let mut found = fuse((&Body::default(), &velocity), &[], 8, 10);
         assert_eq!(found.candidates.len(), 3);
         // Between two impacts the velocity climbs steadily.
         let mut seeming = found.candidates[0].clone();
@@ -672,7 +673,12 @@ mod tests {
     #[test]
     fn a_long_pulse_is_a_dead_zone_that_ends_at_the_next_jump() {
         let velocity = Series::clean(sawtooth(400));
-        let found = fuse(&velocity, &[pulse(100, 120), pulse(200, 330)], 8, 10);
+        let found = fuse(
+            (&Body::default(), &velocity),
+            &[pulse(100, 120), pulse(200, 330)],
+            8,
+            10,
+        );
         let dead: Vec<f64> = found.candidates.iter().map(|c| c.dead_samples).collect();
         // From the jump's left sample 99 to 120; from 199 to the next jump at 299.
         assert_eq!(dead[..2], [21.0, 100.0]);

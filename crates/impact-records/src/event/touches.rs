@@ -99,9 +99,9 @@ mod tests {
         let expected: Vec<usize> = (0..9).map(|k| 200 * k + 140).collect();
         assert_eq!(touches(&body(0.99), &impacts(), 16), expected);
         // a stop that is not reached
-        assert_eq!(touches(&body(0.9), &impacts(), 16), []);
+        assert!(touches(&body(0.9), &impacts(), 16).is_empty());
         // impacts of which nothing tells where the stop is
-        assert_eq!(touches(&body(0.99), &impacts()[..2], 16), []);
+        assert!(touches(&body(0.99), &impacts()[..2], 16).is_empty());
     }
 
     #[test]
@@ -109,6 +109,6 @@ mod tests {
         let mut body = body(0.99);
         let velocity = body.velocity.as_mut().expect("one");
         velocity.role = Role::VelocityX;
-        assert_eq!(touches(&body, &impacts(), 16), []);
+        assert!(touches(&body, &impacts(), 16).is_empty());
     }
 }

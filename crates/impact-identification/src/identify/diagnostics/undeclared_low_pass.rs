@@ -72,10 +72,7 @@ pub fn settled(
     };
     let one_pole = [a, b, c];
     let parabola = Parabola::through(one_pole.map(|c| c.simple));
-    let open = one_pole
-        .map(|c| c.open)
-        .into_iter()
-        .fold(f64::INFINITY, f64::min);
+    let open = Parabola::through(one_pole.map(|c| c.open)).least;
     let least = open.min(more_poles.open);
     let typical = (least / more_poles.residuals.max(1) as f64).max(1.0);
     let better = (more_poles.simple - parabola.least) / typical;
