@@ -17,6 +17,7 @@ use impact_records::language::Language;
 use impact_records::message::{Message, Value};
 use impact_records::message_table;
 use impact_report::catalog::Catalog;
+use impact_report::differences::{PrintedDifference, p_equals};
 use impact_report::locale::Locale;
 use impact_report::{CampaignsContent, Format, Paper, ReportOptions};
 
@@ -223,23 +224,6 @@ impl Given {
     }
 }
 
-/// The least p-value that is printed.
-const LEAST_P: f64 = 1e-4;
-
-/// A p-value to four decimals.
-fn p_value(p: f64, locale: Locale<'_>) -> String {
-    match p < LEAST_P {
-        true => format!("< {}", locale.digits(&LEAST_P.to_string())),
-        false => locale.fixed(p, 4),
-    }
-}
-
-/// A p-value behind its name.
-fn p_equals(p: f64, locale: Locale<'_>) -> String {
-    let equals = if p < LEAST_P { "" } else { "= " };
-    format!("p {equals}{}", p_value(p, locale))
-}
-
 /// Words of the table, and the report's usual title.
 #[derive(Debug, Clone, Copy, strum::EnumIter, strum::IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
@@ -251,7 +235,6 @@ enum Word {
     Interval,
     Independent,
     P,
-    RangeTo,
     CorrectedFor(usize),
     Together,
     Shared,
@@ -268,10 +251,10 @@ fn decided_by(comparison: &Comparison, locale: Locale<'_>) -> String {
     let count = comparison.differences.len();
     let word = |word: Word| locale.message(&word);
     let corrected = comparison.p_value().map(|p| match count {
-        1 => p_equals(p, locale),
+        1 => format!("p {}", p_equals(p, locale)),
         _ => {
             let corrected = word(Word::CorrectedFor(count));
-            format!("{}, {corrected}", p_equals(p, locale))
+            format!("p {}, {corrected}", p_equals(p, locale))
         }
     });
     let together = comparison.unchanged.filter(|_| count > 1).map(|test| {
@@ -279,7 +262,7 @@ fn decided_by(comparison: &Comparison, locale: Locale<'_>) -> String {
             locale.fixed(test.statistic, 3),
             p_equals(test.p_value, locale),
         );
-        format!("{}: F = {f}, {p}", word(Word::Together))
+        format!("{}: F = {f}, p {p}", word(Word::Together))
     });
     let all: Vec<String> = corrected.into_iter().chain(together).collect();
     match all.is_empty() {
@@ -288,11 +271,15 @@ fn decided_by(comparison: &Comparison, locale: Locale<'_>) -> String {
     }
 }
 
+/// A text without the markup of symbols, which a terminal does not set: `f0` and `x_st`.
+fn plain(text: &str) -> String {
+    text.replace(['$', '{', '}'], "").replace("f_0", "f0")
+}
+
 /// The differences as lines.
 fn table(comparison: &Comparison, locale: Locale<'_>) -> String {
     let word = |word: Word| locale.message(&word);
-    // a terminal sets no symbols
-    let said = |message: &dyn Message| locale.message(message).replace(['$', '_', '{', '}'], "");
+    let said = |message: &dyn Message| plain(&locale.message(message));
     let mut text = String::new();
     for (i, campaign) in comparison.campaigns.iter().enumerate() {
         text += &format!("{:>3}  {}\n", i + 1, campaign.name);
@@ -306,25 +293,31 @@ fn table(comparison: &Comparison, locale: Locale<'_>) -> String {
         Word::P,
     ];
     let [campaign, parameter, difference, interval, independent, p] = heads.map(word);
-    let to = word(Word::RangeTo);
-    text += &format!(
-        "\n{campaign:>9} {parameter:>21} {difference:>12} {interval:>28} {independent:>12} {p:>8}\n"
-    );
-    for d in &comparison.differences {
-        let digits = |text: String| locale.digits(&text).replace('\u{2212}', "-");
-        let number = |value: f64| digits(format!("{value:.4e}"));
-        let [low, high] = d.interval95.map(number);
-        let [least, most] = d.independent_interval95;
-        let half = digits(format!("{:.2e}", 0.5 * (most - least)));
-        text += &format!(
-            "{:>9} {:>21} {:>12} {:>28} {:>12} {:>8}\n",
-            d.campaign + 1,
-            d.parameter.name(),
-            number(d.value),
-            format!("{low} {to} {high}"),
-            format!("± {half}"),
-            p_value(d.p_value, locale)
-        );
+    let line = |cells: [&str; 6]| {
+        let [campaign, parameter, difference, interval, independent, p] = cells;
+        format!(
+            "{campaign:>9} {parameter:>9} {difference:>22} {interval:>28} {independent:>14} {p:>8}\n"
+        )
+    };
+    text.push('\n');
+    text += &line([
+        &campaign,
+        &parameter,
+        &difference,
+        &interval,
+        &independent,
+        &p,
+    ]);
+    let differences = comparison.differences.iter();
+    for d in differences.filter_map(|d| PrintedDifference::of(d, locale)) {
+        text += &line([
+            &d.campaign,
+            &plain(d.parameter),
+            &d.value,
+            &d.interval,
+            &d.independent,
+            &d.p_value,
+        ]);
     }
     let [shared, named] = [Word::Shared, Word::Named].map(word);
     text += &format!(
@@ -343,20 +336,21 @@ fn table(comparison: &Comparison, locale: Locale<'_>) -> String {
 mod tests {
     use super::*;
     use impact_records::message::{boxed, faults};
+    use impact_report::differences::p_value;
 
     #[test]
     fn a_p_value_is_never_printed_as_zero() {
         let english = Locale::default();
-        assert_eq!(p_value(0.0, english), "< 0.0001");
-        assert_eq!(p_value(0.000_12, english), "0.0001");
-        assert_eq!(p_value(0.25, english), "0.2500");
+        assert_eq!(p_value(0.0, english), "< 0.001");
+        assert_eq!(p_value(0.001_2, english), "0.001");
+        assert_eq!(p_value(0.25, english), "0.250");
         let catalog = Catalog::of(Language::of_code("de").expect("German"));
         let german = Locale {
             decimal_comma: true,
             catalog: Some(&catalog),
         };
-        assert_eq!(p_value(0.25, german), "0,2500");
-        assert_eq!(p_equals(0.0, german), "p < 0,0001");
+        assert_eq!(p_value(0.25, german), "0,250");
+        assert_eq!(p_equals(0.0, german), "< 0,001");
     }
     #[test]
     fn every_word_has_its_texts() {

@@ -1,7 +1,7 @@
 //! Estimates in a line of the terminal.
 
 use impact_identification::identify::{Estimate, Status};
-use impact_records::signal::whole;
+use impact_records::signal::digits::decimals_for;
 
 /// A value with half of its 95 % interval.
 pub(super) fn with_error(estimate: &Estimate) -> String {
@@ -9,8 +9,7 @@ pub(super) fn with_error(estimate: &Estimate) -> String {
         return "not identifiable".to_owned();
     };
     let half = 0.5 * (high - low);
-    let decimals = (1.0 - half.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0);
-    let decimals = whole::index(decimals);
+    let decimals = decimals_for(half);
     let weak = match estimate.status {
         Status::Weak => " (weak)",
         Status::Identified | Status::NotIdentifiable => "",
@@ -34,10 +33,7 @@ mod tests {
         let text = |value, half, status| with_error(&estimate(value, half, status));
         assert_eq!(text(0.9, 0.0123, Status::Identified), "0.900 ± 0.012");
         assert_eq!(text(12.6, 2.0, Status::Weak), "12.6 ± 2.0 (weak)");
-        assert_eq!(
-            text(0.9, 0.0, Status::Identified),
-            "0.900000000 ± 0.000000000"
-        );
+        assert_eq!(text(0.9, 0.0, Status::Identified), "0.9000 ± 0.0000");
         let open = Estimate {
             value: None,
             interval95: None,

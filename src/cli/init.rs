@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::{Exit, Failure, Verbosity};
-use impact_campaign::campaign::infer::{self, FolderContents};
+use impact_campaign::campaign::infer::{self, FolderContents, InferredChannel};
 use impact_campaign::campaign::template;
 use impact_records::message::counted;
 use labfiles::open;
@@ -90,13 +90,25 @@ fn print_summary(path: &Path, found: &FolderContents, verbosity: Verbosity) {
     }
     let assigned = found.channels.iter().filter(|c| c.role.is_some()).count();
     verbosity.info(&format!(
-        "{}: {} with {} ({}), {assigned} of {} channels assigned to a role. Complete it, then run: impactid \
+        "{}: {} with {} ({}), {assigned} of {} channels assigned to a role{}. Complete it, then run: impactid \
          check {}",
         path.display(),
         counted(found.files, "file"),
         counted(found.records, "record"),
         found.format,
         found.channels.len(),
+        without_role(found),
         path.display()
     ));
+}
+
+/// The signals without a role, as the end of a sentence.
+fn without_role(found: &FolderContents) -> String {
+    let signal = |c: &&InferredChannel| c.role.is_none() && !c.is_time && c.samples > 1;
+    let names = found.channels.iter().filter(signal);
+    let names: Vec<&str> = names.map(|c| c.name.as_str()).collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    format!(" (not {})", names.join(", "))
 }

@@ -10,6 +10,7 @@ use super::{Exit, Failure, Progress, Verbosity, interrupt};
 use impact_campaign::pipeline::plan;
 use impact_identification::identify::boundary_plan::BoundaryPlan;
 use impact_records::motion::Motion;
+use impact_records::signal::digits::decimals_for;
 
 /// Arguments of `impactid plan`.
 #[derive(Debug, Args)]
@@ -69,16 +70,16 @@ impl Plan {
 
 /// How to step through the ends of z = 1, for R from the boundaries alone.
 fn boundaries(plan: &BoundaryPlan) -> String {
-    let (now, then) = (plan.half_width95_now, plan.half_width95_then);
+    let [now, then] = [plan.half_width95_now, plan.half_width95_then].map(uncertainty);
     let mut text = if plan.halved {
         format!(
-            "R from the measured boundaries alone is ± {now:.2e} (95 %); it would be ± {then:.2e} with these upward \
+            "R from the measured boundaries alone is ± {now} (95 %); it would be ± {then} with these upward \
              sweeps past the end of z = 1:\n"
         )
     } else {
         format!(
-            "R from the measured boundaries alone is ± {now:.2e} (95 %). Finer steps do not halve it: with these it \
-             would be ± {then:.2e}, and the rest is what acts on boundaries beside R (f0, β, x_st and clearances as \
+            "R from the measured boundaries alone is ± {now} (95 %). Finer steps do not halve it: with these it \
+             would be ± {then}, and the rest is what acts on boundaries beside R (f0, β, x_st and clearances as \
              they are known, the length of contacts):\n"
         )
     };
@@ -98,6 +99,14 @@ fn boundaries(plan: &BoundaryPlan) -> String {
     text
 }
 
+/// Standard errors from the middle of a normal distribution to either end of its 95 % interval.
+const NORMAL_95: f64 = 1.96;
+
+/// An uncertainty with two significant digits.
+fn uncertainty(value: f64) -> String {
+    format!("{value:.0$}", decimals_for(value))
+}
+
 fn print_table(found: &plan::MeasurementPlan) {
     print_settings(found);
     if let Some(plan) = &found.boundaries {
@@ -107,26 +116,28 @@ fn print_table(found: &plan::MeasurementPlan) {
 
 fn print_settings(found: &plan::MeasurementPlan) {
     if let (Some(r), Some(error)) = (found.restitution, found.restitution_error_now) {
-        println!("R = {r:.6}, standard error now {error:.2e}");
+        let half = NORMAL_95 * error;
+        let decimals = decimals_for(half);
+        println!("R = {r:.decimals$} ± {half:.decimals$} (95 %) now");
     }
     if found.proposals.is_empty() {
         return;
     }
     println!(
         "{:>4} {:>12} {:>13} {:>8} {:>8} {:>6} {:>10} {:>15}",
-        "", "drive, Hz", "clearance, mm", "η", "ρ", "z", "approach", "error of R then"
+        "", "drive, Hz", "clearance, mm", "η", "ρ", "z", "approach", "± of R then"
     );
     for (i, p) in found.proposals.iter().enumerate() {
         let motion = Motion::periodic(1, p.periods_n).label();
         println!(
-            "{:>4} {:>12.3} {:>13.4} {:>8.4} {:>8.4} {motion:>6} {:>10} {:>15.2e}",
+            "{:>4} {:>12.3} {:>13.4} {:>8.4} {:>8.4} {motion:>6} {:>10} {:>15}",
             format!("P{}", i + 1),
             p.frequency_hz,
             1e3 * p.clearance_m,
             p.frequency_ratio,
             p.clearance_ratio,
             p.approach.name(),
-            p.restitution_error_after
+            uncertainty(NORMAL_95 * p.restitution_error_after)
         );
     }
 }
@@ -152,7 +163,7 @@ mod tests {
         let text = boundaries(&plan(true));
         assert!(
             text.starts_with(
-                "R from the measured boundaries alone is ± 5.70e-2 (95 %); it would be ± 2.00e-2"
+                "R from the measured boundaries alone is ± 0.057 (95 %); it would be ± 0.020"
             ),
             "{text}"
         );

@@ -8,7 +8,7 @@ use super::load::load_campaign;
 use super::progress::{LATER, Progress};
 use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::{Failure, Verbosity, interrupt};
-use impact_campaign::pipeline::{self, Completed, Destination, checkpoint};
+use impact_campaign::pipeline::{self, Completed, Destination, PipelineError, checkpoint};
 use impact_identification::identify::{Finding, Identification, VerdictKind};
 
 /// From how many records on checkpoints are written; `IMPACTID_KEEP_FROM` sets another number, for
@@ -52,8 +52,12 @@ impl RunOptions<'_> {
             also: None,
             fits: bar.fits(),
         };
-        let done = pipeline::run(&resolved, &destination, &|s, d, t| bar.step(s, d, t))?;
+        let done = pipeline::run(&resolved, &destination, &|s, d, t| bar.step(s, d, t));
         drop(bar);
+        if let Err(PipelineError::AnswerUnwritten { answer, .. }) = &done {
+            print_verdict(answer, verbosity);
+        }
+        let done = done?;
         print_completed(&done, verbosity);
         print_report_paths(&resolved, out, verbosity);
         Ok(done)

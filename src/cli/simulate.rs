@@ -31,7 +31,7 @@ const EXAMPLE: &str = "\
 Example:
   impactid simulate --eta 0.95 --rho 0.7 --phase 0.7854 --restitution 0 --damping-ratio 0.1 \\
       --start=-1,1.5,-3,2.5 --periods 3 --out fig2/
-  impactid simulate --eta 2 --rho 0.2 --skip-periods 300 --periods 12 --out chaos/
+  impactid simulate --eta 2.8 --rho 0.02 --skip-periods 300 --periods 12 --out chaos/
   impactid simulate campaign --seed 1 --restitution 0.9 --damping-ratio 0.07 --out synthetic/
 
 A motion writes its time series (motion), motion-impacts, motion-poincare and \
@@ -183,6 +183,9 @@ pub(super) struct Campaign {
     /// and hum, at half to one and a half times the strengths below), or EFFECT[=STRENGTH],… as listed below
     #[arg(long, value_name = "RIG", default_value = "exact")]
     pub rig: RigSpec,
+    /// Upward sweeps that pass the motions between ρ′ and z = 1 in small steps: z = 1/5 to 1/2, 2/2, chaos
+    #[arg(long)]
+    pub beats: bool,
     /// A rig without faults: no noise, no rounding, no filter, no asymmetry
     #[arg(long)]
     pub ideal: bool,
@@ -240,6 +243,7 @@ impl Campaign {
             records: self
                 .records
                 .map_or(DEFAULT_RECORDS, std::num::NonZeroUsize::get),
+            beats: self.beats,
             seed: self.seed,
             rig_seed: self.rig_seed,
         };

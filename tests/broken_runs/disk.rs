@@ -35,9 +35,13 @@ fn a_failed_write_is_reported_and_the_old_output_stays() {
     let lab = campaign(8);
     fs::create_dir(lab.path("out")).expect("a folder");
     lab.write("out/report.pdf", "the report of yesterday");
-    let limited = "trap '' XFSZ; ulimit -f 8; exec impactid -q run campaign.toml --out out";
+    let limited = "trap '' XFSZ; ulimit -f 8; exec impactid run campaign.toml --out out";
     let (code, said) = shell(&lab, limited);
     assert_eq!(code, Some(2), "{said}");
+    // what was computed is not lost
+    let answer = said.find("The rig has").or(said.find("The data do not"));
+    assert!(answer < said.find("could not be written"), "{said}");
+    assert!(answer.is_some(), "{said}");
     assert_yesterday_is_left(&lab, &said);
 }
 

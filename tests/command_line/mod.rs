@@ -24,6 +24,27 @@ fn help_of_each_command_shows_an_example_and_ends_with_0() {
     assert_eq!(lab.run(&["--version"]).code, 0);
 }
 
+/// The example of `simulate` that writes into `chaos/` is chaotic.
+#[test]
+fn valid_the_example_called_chaos_is_chaotic() {
+    let lab = Lab::new();
+    let help = lab.run(&["simulate", "--help"]).said;
+    let line = help.lines().find(|l| l.ends_with("--out chaos/"));
+    let words: Vec<&str> = line.expect("the example").split_whitespace().collect();
+    let value = |name: &str| words[1 + words.iter().position(|w| *w == name).expect(name)];
+    let (eta, rho) = (value("--eta"), value("--rho"));
+    let sweep = [
+        "-q", "sweep", "--rho", rho, "--steps", "2", "--out", "sweep", "--eta",
+    ];
+    let range = format!("{eta}..{eta}1");
+    assert_eq!(lab.run(&[&sweep[..], &[&range]].concat()).code, 0);
+    let table = lab.read("sweep/sweep.csv");
+    assert!(
+        table.lines().nth(1).expect("a row").contains(",chaotic,"),
+        "{table}"
+    );
+}
+
 #[test]
 fn check_changes_nothing() {
     let lab = Lab::new();

@@ -26,7 +26,7 @@ fn valid_each_kind_of_record_is_shown_with_its_evidence() {
     let hello = page.hello().header;
     let (state, campaign) = (&hello["state"], &hello["campaign"]);
     let records = campaign["records"].as_array().expect("records");
-    assert_eq!(records.len(), 200);
+    assert_eq!(records.len(), 220);
     for label in ["0", "1", "1/2", "2/1", "undetermined"] {
         let record = records.iter().find(|r| r["motion"]["label"] == label);
         let id = record.unwrap_or_else(|| panic!("no record with z = {label}"))["id"].as_str();

@@ -64,6 +64,18 @@ fn commands() -> Vec<Case> {
             ],
         ),
         case(
+            "a folder of results in place of a campaign",
+            |lab| {
+                std::fs::create_dir(lab.path("results")).expect("a folder");
+                lab.write("results/campaign.resolved.json", "{}");
+            },
+            &["plan", "results", "--out", "out"],
+            &[
+                "results: it is a folder of results",
+                "name the campaign.toml that they were computed from",
+            ],
+        ),
+        case(
             "run on several campaigns, one of which is not there",
             |_| {},
             &[

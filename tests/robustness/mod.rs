@@ -191,7 +191,7 @@ fn document() -> String {
             let words: Vec<String> = case
                 .says
                 .iter()
-                .map(|s| format!("“{}”", s.replace('|', "\\|")))
+                .map(|s| format!("“{}”", s.replace('|', "\\|").replace('<', "\\<")))
                 .collect();
             text += &format!(
                 "| {number} | {} | {} | {} |\n",

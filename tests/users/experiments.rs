@@ -252,6 +252,49 @@ fn valid_springs_from_init_to_the_report() {
     assert_eq!(found["methods"]["free_decay"]["fits"], true);
 }
 
+/// A phone on a spring as phyphox exports "Acceleration (without g)": three axes and their size, one of which moves.
+fn phone() -> Vec<(String, Vec<u8>)> {
+    let run = |k: usize| {
+        let mut text = String::from(
+            "\"Time (s)\",\"Linear Acceleration x (m/s^2)\",\"Linear Acceleration y (m/s^2)\",\
+             \"Linear Acceleration z (m/s^2)\",\"Absolute acceleration (m/s^2)\"\n",
+        );
+        let (natural, ratio) = (std::f64::consts::TAU * 1.2, 0.01_f64);
+        for i in 0..4000 {
+            let t = i as f64 * 0.00997;
+            let since = t - 2.0 - 0.3 * k as f64;
+            let swing = -0.05
+                * natural.powi(2)
+                * (-ratio * natural * since).exp()
+                * (natural * (1.0 - ratio * ratio).sqrt() * since).cos();
+            let noise = |axis: usize| 0.01 * scatter(i * i, k + 7 * axis);
+            let [x, y, z] = [0, 1, 2].map(noise);
+            let z = if since < 0.0 { z } else { z + swing };
+            let size = x.hypot(y).hypot(z);
+            let _ = writeln!(text, "{t:.9E},{x:.9E},{y:.9E},{z:.9E},{size:.9E}");
+        }
+        (
+            format!("Acceleration without g {}.csv", k + 1),
+            text.into_bytes(),
+        )
+    };
+    (0..3).map(run).collect()
+}
+
+#[test]
+fn valid_a_phone_on_a_spring_from_init_to_the_report() {
+    let folder = Folder::of(&phone());
+    let found = folder.play();
+    let campaign = folder.campaign();
+    assert!(
+        campaign.contains("channel = \"Linear Acceleration z\""),
+        "{campaign}"
+    );
+    let joint = &found["joint"];
+    assert!(holds(&found, "natural_frequency_hz", 1.2), "{joint}");
+    assert!(holds(&found, "damping_ratio", 0.01), "{joint}");
+}
+
 /// A ball on paper followed by a camera of 1000 frames a second, in millimetres below the start; R falls
 /// with the speed.
 fn paper() -> Vec<(String, Vec<u8>)> {

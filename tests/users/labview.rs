@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use super::rig::{Take, assert_the_answer_is_true, done, takes};
 use crate::support::Lab;
 
 /// Columns of the simulated rig, their heads as saved, and the factors from V.
@@ -16,45 +17,29 @@ const COLUMNS: [(&str, &str, f64); 5] = [
     ("integrator_x", "Weg x [mm]", 2.0),
 ];
 
-/// Samples a second.
-const RATE: f64 = 2000.0;
-
-/// A record as the program converts it, as `LabVIEW` writes it.
-fn saved(record: &str) -> String {
-    let mut lines = record.lines().filter(|l| !l.starts_with('#'));
-    let heads: Vec<&str> = lines.next().expect("heads").split(',').collect();
-    let place = |name: &str| heads.iter().position(|h| h.starts_with(name)).expect(name);
-    let columns = COLUMNS.map(|(name, head, factor)| (place(name), head, factor));
-    let titles = columns.map(|c| c.1).join(";");
-    let mut text = format!("Zeit [s];{titles}\r\n");
-    for (i, line) in lines.enumerate() {
-        let cells: Vec<f64> = line
-            .split(',')
-            .map(|c| c.parse().expect("a number"))
-            .collect();
-        let _ = write!(text, "{:.4}", i as f64 / RATE);
-        for (at, _, factor) in columns {
-            let _ = write!(text, ";{:.6}", factor * cells[at]);
+/// A record as `LabVIEW` writes it.
+fn saved(take: &Take) -> String {
+    let columns = COLUMNS.map(|(name, _, factor)| take.channel(name, factor));
+    let mut text = String::new();
+    for (i, time) in take.times().iter().enumerate() {
+        let _ = write!(text, "{time:.4}");
+        for column in &columns {
+            let _ = write!(text, ";{:.6}", column[i]);
         }
         text.push_str("\r\n");
     }
-    text.replace('.', ",").replace("Geschw,", "Geschw.")
+    let titles = COLUMNS.map(|c| c.1).join(";");
+    format!("Zeit [s];{titles}\r\n{}", text.replace('.', ","))
 }
 
 /// The run table as a laboratory book, and the records beside it.
-fn save(lab: &Lab, folder: &Path) {
-    let runs = lab.read("rig/runs.csv");
+fn save(takes: &[Take], folder: &Path) {
     let mut book = String::from("Datei;Frequenz [Hz];Spalt [mm];Richtung\r\n");
-    for (number, run) in runs.lines().skip(1).enumerate() {
-        let cells: Vec<&str> = run.split(',').collect();
-        let [_, record, frequency, clearance, sweep] = cells[..] else {
-            panic!("{run}")
-        };
+    for (number, take) in takes.iter().enumerate() {
         let name = format!("Lauf_{number:03}.csv");
-        let text = saved(&lab.read(&format!("records/{record}.csv")));
-        fs::write(folder.join(&name), text).expect("room");
-        let way = if sweep == "up" { "auf" } else { "ab" };
-        let row = format!("{frequency};{clearance}").replace('.', ",");
+        fs::write(folder.join(&name), saved(take)).expect("room");
+        let way = if take.upward { "auf" } else { "ab" };
+        let row = format!("{};{}", take.frequency_hz, take.clearance_mm).replace('.', ",");
         let _ = write!(book, "{name};{row};{way}\r\n");
     }
     fs::write(folder.join("Laborbuch.csv"), book).expect("room");
@@ -63,18 +48,9 @@ fn save(lab: &Lab, folder: &Path) {
 #[test]
 fn valid_labview_files_with_decimal_commas_from_init_to_the_report() {
     let lab = Lab::new();
-    let run = |arguments: &[&str]| {
-        let ran = lab.run(arguments);
-        assert_eq!(ran.code, 0, "{arguments:?}: {}", ran.said);
-        ran.said
-    };
-    let rig = ["--rig", "exact", "--seed", "51", "--records", "60"];
-    let simulate = ["-q", "simulate", "campaign", "--out", "rig"];
-    run(&[&simulate[..], &rig].concat());
-    run(&["-q", "convert", "rig/records.h5", "--out", "records.csv"]);
-    fs::create_dir(lab.path("day")).expect("a folder");
-    save(&lab, &lab.path("day"));
-    run(&["init", "day"]);
+    let takes = takes(&lab, &["--rig", "exact", "--seed", "51", "--records", "60"]);
+    save(&takes, &lab.path("day"));
+    done(&lab, &["init", "day"]);
     // what the user knows and no file states
     for channel in ["Geschw. y", "Weg x"] {
         let line = format!("channel = \"{channel}\"");
@@ -84,29 +60,5 @@ fn valid_labview_files_with_decimal_commas_from_init_to_the_report() {
             &format!("{line}\nhigh_pass = \"0.5 Hz\""),
         );
     }
-    let checked = run(&["check", "day/campaign.toml"]);
-    assert!(
-        checked.contains("60 of 60 records can be used"),
-        "{checked}"
-    );
-    run(&["run", "day/campaign.toml", "--out", "results"]);
-    assert!(lab.path("results/report.pdf").exists());
-    let found: serde_json::Value =
-        serde_json::from_str(&lab.read("results/identification.json")).expect("JSON");
-    let truth: serde_json::Value = serde_json::from_str(&lab.read("rig/truth.json")).expect("JSON");
-    let parameters = [
-        "restitution",
-        "natural_frequency_hz",
-        "damping_ratio",
-        "static_deflection_m",
-    ];
-    for parameter in parameters {
-        let interval = &found["joint"][parameter]["interval95"];
-        let [low, high] = [0, 1].map(|i| interval[i].as_f64().expect("an interval"));
-        let true_value = truth[parameter].as_f64().expect("a number");
-        assert!(
-            low <= true_value && true_value <= high,
-            "{parameter}: {interval}"
-        );
-    }
+    assert_the_answer_is_true(&lab, 60);
 }

@@ -1,8 +1,12 @@
 //! What a new user does: the commands of the tutorial as written, the script that reads the
 //! results, the manual pages and the shell completions.
 
+mod accelerometer;
 mod experiments;
 mod labview;
+mod matlab;
+mod rig;
+mod workbook;
 
 use std::fs;
 use std::path::{Path, PathBuf};

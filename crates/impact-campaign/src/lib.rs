@@ -18,6 +18,7 @@
 //!     faults: Faults::default(),
 //!     rig: RigSpec::exact(),
 //!     records: 12,
+//!     beats: false,
 //!     seed: 5,
 //!     rig_seed: None,
 //! };

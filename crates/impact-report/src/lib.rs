@@ -34,6 +34,7 @@
 
 pub mod catalog;
 mod content;
+pub mod differences;
 mod document;
 mod error;
 pub mod figures;

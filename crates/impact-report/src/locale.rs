@@ -7,7 +7,7 @@ use impact_records::language::Language;
 use impact_records::message::{Message, Print, filled, sentence};
 use impact_records::motion::Motion;
 use impact_records::record::Role;
-use impact_records::signal::whole;
+use impact_records::signal::digits::decimal_exponent;
 
 /// What the reader chose about numbers and language.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -113,7 +113,7 @@ impl Locale<'_> {
                 "–".into()
             };
         }
-        let exponent = decimal_exponent(value, digits);
+        let exponent = decimal_exponent(value, whole_digits(digits));
         if (-4..6).contains(&exponent) {
             let decimals = usize::try_from(whole_digits(digits) - 1 - exponent).unwrap_or(0);
             self.fixed(value, decimals)
@@ -141,14 +141,6 @@ impl Print for Locale<'_> {
         // a dollar would begin a symbol
         name.replace('$', "\u{ff04}")
     }
-}
-
-/// Exponent of ten of a number once rounded to some digits (0.99996 to four digits is 1.000).
-pub(crate) fn decimal_exponent(value: f64, digits: usize) -> i32 {
-    let exponent = whole::integer(value.abs().log10().floor());
-    let digits = whole_digits(digits);
-    let rounded = (value.abs() / 10f64.powi(exponent - digits + 1)).round();
-    exponent + i32::from(rounded >= 10f64.powi(digits))
 }
 
 /// A count of digits, of which a number has few.

@@ -1,9 +1,10 @@
 //! Parameters and methods as printed: names, symbols, units, digits.
 
-use super::locale::{Locale, decimal_exponent};
+use super::locale::Locale;
 use crate::phrase::Phrase;
 use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::{Estimate, Method};
+pub(super) use impact_records::signal::digits::decimals_for;
 
 /// How a parameter is named and printed.
 #[derive(Debug, Clone, Copy)]
@@ -72,14 +73,6 @@ pub(super) fn method_inline(method: Method, locale: Locale<'_>) -> String {
         Some(language) if !language.capital_nouns() => name.to_lowercase(),
         _ => name,
     }
-}
-
-/// Decimals at which an uncertainty shows two significant digits.
-pub(super) fn decimals_for(uncertainty: f64) -> usize {
-    if !(uncertainty.is_finite() && uncertainty > 0.0) {
-        return 4;
-    }
-    usize::try_from(1 - decimal_exponent(uncertainty, 2)).map_or(0, |digits| digits.min(9))
 }
 
 /// Standard errors from the middle of a normal distribution to either end of its 95 % interval.

@@ -7,7 +7,8 @@ mod biff;
 mod cells;
 mod compound;
 
-use std::io::Cursor;
+use std::fs::File;
+use std::io::{Cursor, Read as _};
 use std::path::Path;
 
 use calamine::{Data, DataRef, Reader as _, Xls, Xlsx};
@@ -53,16 +54,7 @@ impl Reader for Workbook {
 /// # Errors
 /// If the file cannot be read, is no workbook, or none of its sheets holds a table.
 pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
-    let bytes = whole(path)?;
-    let sheets = if bytes.starts_with(ZIP) {
-        refuse_bomb(path, &bytes)?;
-        caught(|| xlsx(path, bytes))
-    } else {
-        refuse_scattered(path, &bytes)?;
-        caught(|| xls(path, bytes))
-    };
-    let sheets =
-        sheets.unwrap_or_else(|| Err(damaged(path, "contents that contradict each other")))?;
+    let sheets = sheets(path)?;
     let mut notes = Vec::new();
     let mut datasets: Vec<DatasetInfo> = Vec::new();
     let (mut tables, mut places) = (Vec::new(), Vec::new());
@@ -90,6 +82,33 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         ));
     }
     opened("excel", path, datasets, notes, Workbook { tables, places })
+}
+
+/// The tables of a workbook's sheets, as text with tabs between the cells; `None` if the file is no workbook.
+///
+/// # Errors
+/// If the file cannot be read, or is a damaged workbook.
+pub fn workbook_tables(path: &Path) -> Result<Option<Vec<Vec<u8>>>, ReadError> {
+    let mut front = Vec::new();
+    let read = File::open(path).and_then(|f| f.take(COMPOUND.len() as u64).read_to_end(&mut front));
+    read.map_err(|e| ReadError::io(path, &e))?;
+    if !recognises(&front) {
+        return Ok(None);
+    }
+    let tables = sheets(path)?.into_iter().filter_map(|(_, text)| text.ok());
+    Ok(Some(tables.collect()))
+}
+
+fn sheets(path: &Path) -> Result<Sheets, ReadError> {
+    let bytes = whole(path)?;
+    let sheets = if bytes.starts_with(ZIP) {
+        refuse_bomb(path, &bytes)?;
+        caught(|| xlsx(path, bytes))
+    } else {
+        refuse_scattered(path, &bytes)?;
+        caught(|| xls(path, bytes))
+    };
+    sheets.unwrap_or_else(|| Err(damaged(path, "contents that contradict each other")))
 }
 
 fn whole(path: &Path) -> Result<Vec<u8>, ReadError> {

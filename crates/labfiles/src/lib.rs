@@ -72,6 +72,7 @@ mod uff;
 pub mod units;
 mod wav;
 
+pub use excel::workbook_tables;
 pub use open::open;
 pub use parquet::guard::is_caught as panic_is_caught;
 pub use plain::read_text;

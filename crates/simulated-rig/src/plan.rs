@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::truth::Truth;
-use impact_oscillator::model::boundary::eta_s2;
+use impact_oscillator::model::boundary::{eta_s2, etas_grazing, etas_s1};
 use impact_oscillator::model::params::Machine;
 use impact_records::record::Sweep;
+use impact_records::signal::whole;
 
 /// One setting: a record is taken there once the motion has settled.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -115,6 +116,68 @@ impl Plan {
     }
 }
 
+/// Clearance ratios of sweeps through beats: z = 2/1 below ρ = 1; between ρ′ and z = 1 at 2 z = 2/2, at 3.5 z = 1/3, at 5
+/// z = 1/4 and 1/5.
+const BEAT_GAPS: [f64; 4] = [0.6, 2.0, 3.5, 5.0];
+/// Share of a gap's records between ρ′ and z = 1.
+const BEAT_SHARE: f64 = 0.4;
+
+impl Plan {
+    /// A plan of about `records` records whose upward sweeps pass the beat motions from ρ′ to s1 of z = 1 in small steps: z
+    /// = 1/5 to 1/2, 2/2 and chaos, as in the paper's Figs. 12 and 13.
+    pub fn through_beats(truth: &Truth, records: usize) -> Self {
+        let (f0, x_st) = (truth.natural_frequency_hz(), truth.static_deflection_m());
+        let resonance_steps = (records / 10).clamp(4, 24);
+        let sweeps = records.saturating_sub(resonance_steps);
+        let open = OPEN_GAP * 0.5 / truth.damping_ratio() * x_st;
+        let mut steps = Vec::with_capacity(records);
+        let grid = frequencies(f0, (0.7, 1.5), resonance_steps);
+        push_sweep(&mut steps, &grid, open, Sweep::Up);
+        for (i, rho) in BEAT_GAPS.into_iter().enumerate() {
+            let part = |i: usize| sweeps * i / BEAT_GAPS.len();
+            let count = (part(i + 1) - part(i)).max(10);
+            let fine = beats(truth, rho, whole::index(BEAT_SHARE * count as f64));
+            let left = count - fine.len();
+            let (up, down) = (left.div_ceil(2), left / 2);
+            let lowest = fine.first().copied().unwrap_or(0.75);
+            let top = highest(truth.damping_ratio(), rho);
+            let coarse = match fine.last() {
+                Some(last) => spread((*last, top), up + 1).split_off(1),
+                None => spread((lowest, top), up),
+            };
+            let hertz = |eta: &f64| round_to(eta * f0, 0.01);
+            let rising: Vec<f64> = fine.iter().chain(&coarse).map(hertz).collect();
+            let falling = spread((lowest, top), down);
+            let falling: Vec<f64> = falling.iter().rev().map(hertz).collect();
+            let clearance_m = round_to(rho * x_st, 1e-5);
+            push_sweep(&mut steps, &rising, clearance_m, Sweep::Up);
+            push_sweep(&mut steps, &falling, clearance_m, Sweep::Down);
+        }
+        Self { steps }
+    }
+}
+
+/// Frequency ratios from half a step below ρ′ to half a step beyond s1 of z = 1; none where the gap has no ρ′ below
+/// resonance.
+fn beats(truth: &Truth, rho: f64, count: usize) -> Vec<f64> {
+    let machine = truth.machine();
+    let Some(grazing) = etas_grazing(&machine, rho)
+        .first()
+        .copied()
+        .filter(|eta| *eta < 1.0)
+    else {
+        return Vec::new();
+    };
+    let doublings = etas_s1(&machine, rho, 1);
+    let Some(end) = doublings.iter().map(|p| p.eta).find(|eta| *eta > grazing) else {
+        return Vec::new();
+    };
+    let step = (end - grazing) / count.saturating_sub(2).max(1) as f64;
+    (0..count)
+        .map(|i| grazing + (i as f64 - 0.5) * step)
+        .collect()
+}
+
 fn chosen_gaps(sweeps: usize) -> Vec<f64> {
     let wanted = (sweeps / 40).clamp(1, GAPS.len());
     // Spread over the list, the middle of the hysteresis region first.
@@ -134,12 +197,18 @@ fn highest(damping_ratio: f64, rho: f64) -> f64 {
     (end + 0.2).clamp(1.3, 2.3)
 }
 
-fn frequencies(natural_frequency_hz: f64, (from, to): (f64, f64), count: usize) -> Vec<f64> {
+fn frequencies(natural_frequency_hz: f64, range: (f64, f64), count: usize) -> Vec<f64> {
+    let etas = spread(range, count);
+    etas.iter()
+        .map(|eta| round_to(eta * natural_frequency_hz, 0.01))
+        .collect()
+}
+
+/// Evenly spread values, both ends among them.
+fn spread((from, to): (f64, f64), count: usize) -> Vec<f64> {
+    let last = count.saturating_sub(1).max(1) as f64;
     (0..count)
-        .map(|i| {
-            let eta = from + (to - from) * i as f64 / (count - 1).max(1) as f64;
-            round_to(eta * natural_frequency_hz, 0.01)
-        })
+        .map(|i| from + (to - from) * i as f64 / last)
         .collect()
 }
 
@@ -188,6 +257,24 @@ mod tests {
                     "{step}"
                 );
             }
+        }
+    }
+
+    #[test]
+    fn sweeps_through_beats_begin_below_grazing_and_end_beyond_z_1() {
+        let truth = Truth::symmetric(0.9, 12.6, 0.07, 1e-3);
+        let plan = Plan::through_beats(&truth, 220);
+        assert_eq!(plan.steps.len(), 220);
+        for (rho, grazing, doubling) in [(2.0, 0.7142, 0.9586), (5.0, 0.9203, 0.9917)] {
+            let at = |s: &&Step| s.clearance_m == rho * 1e-3 && s.sweep == Sweep::Up;
+            let rising = plan.steps.iter().filter(at).map(|s| s.frequency_hz / 12.6);
+            let rising: Vec<f64> = rising.collect();
+            assert!(
+                rising[0] < grazing && rising[1] > grazing - 2e-3,
+                "{rising:?}"
+            );
+            let within = rising.iter().filter(|eta| **eta < doubling);
+            assert!((17..=19).contains(&within.count()), "{rising:?}");
         }
     }
 

@@ -229,7 +229,7 @@ pub(super) fn list_rows(
 ) -> Vec<Discovered> {
     let path = shared.folder.join(table);
     let mut faults = FaultCollector::new(&path);
-    let mut rows = run_table::read(&path, &mut faults);
+    let mut rows = run_table::read(shared.folder, table, &mut faults);
     refuse_twice(&rows, &mut faults);
     context.faults.extend(faults.into_diagnostics().0);
     rows.retain(|row| shared.lists(&shared.folder.join(&row.file)));

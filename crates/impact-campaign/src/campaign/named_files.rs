@@ -42,9 +42,14 @@ impl NamedFiles {
             return Err(faults.into_diagnostics());
         }
         let folder = campaign.parent().unwrap_or(Path::new("")).to_path_buf();
-        let run_table = value(&written.records.run_table).map(|t| folder.join(t));
-        let rows = run_table.as_ref().map_or(Vec::new(), |table| {
-            run_table::read(table, &mut FaultCollector::new(table))
+        let table = value(&written.records.run_table);
+        let run_table = table.as_ref().map(|name| folder.join(name));
+        let rows = table.map_or(Vec::new(), |name| {
+            run_table::read(
+                &folder,
+                &name,
+                &mut FaultCollector::new(&folder.join(&name)),
+            )
         });
         Ok(Self {
             patterns: value(&written.records.files).map_or(Vec::new(), |f| f.0),

@@ -12,6 +12,9 @@ use super::lines::Text;
 use super::nearest::nearest;
 use super::written::WrittenCampaign;
 
+/// A file that a folder of results has.
+pub(super) const RESULTS: &str = "campaign.resolved.json";
+
 /// The text of campaign.toml; `None`, and a fault, where it cannot be read.
 pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
     let error = match labfiles::read_text(path) {
@@ -20,6 +23,10 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
     };
     let unreadable = || format!("campaign.toml cannot be read: {error}");
     let (message, remedy) = match (path.is_dir(), error.kind()) {
+        (true, _) if path.join(RESULTS).exists() => (
+            "it is a folder of results".to_owned(),
+            "name the campaign.toml that they were computed from: campaign.resolved.json states it as `file`",
+        ),
         (true, _) => (
             "it is a folder".to_owned(),
             "name the campaign.toml in it; `impactid init DIR` writes one",

@@ -1,4 +1,4 @@
-//! The run table: a CSV file with one row per record, units in its header.
+//! The run table: a CSV file or a sheet of a workbook with one row per record, units in its header.
 
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
@@ -85,27 +85,62 @@ struct Header {
     factor: [f64; COLUMNS.len()],
 }
 
-/// Read a run table; rows with a fault are left out, and each fault is noted.
-pub(super) fn read(path: &Path, faults: &mut FaultCollector) -> Vec<Row> {
-    let bytes = match std::fs::read(path) {
-        Ok(bytes) => bytes,
+/// The text of a run table, and whether it is a sheet of a workbook.
+fn text_of(path: &Path, faults: &mut FaultCollector) -> Option<(String, bool)> {
+    let mut refuse = |what: String| {
+        let remedy = "check run_table in [records]";
+        faults.fault(Code::UnreadableFile, None, "", what, remedy);
+    };
+    let tables = match labfiles::workbook_tables(path) {
+        Ok(tables) => tables,
         Err(error) => {
-            let what = format!("the run table cannot be read: {error}");
-            faults.fault(
-                Code::UnreadableFile,
-                None,
-                "",
-                what,
-                "check run_table in [records]",
-            );
-            return Vec::new();
+            refuse(format!("the run table cannot be read: {}", error.found));
+            return None;
         }
     };
-    let text = decode(&bytes);
+    let Some(tables) = tables else {
+        return match std::fs::read(path) {
+            Ok(bytes) => Some((decode(&bytes), false)),
+            Err(error) => {
+                refuse(format!("the run table cannot be read: {error}"));
+                None
+            }
+        };
+    };
+    let sheet = tables.into_iter().map(|bytes| decode(&bytes)).find(|text| {
+        let mut reader = reader(text, separator(text));
+        reader
+            .headers()
+            .is_ok_and(|names| lists_sheets(names.iter()))
+    });
+    if sheet.is_none() {
+        refuse("no sheet of the workbook is a run table: none has the columns 'dataset' and 'clearance' or 'drive_frequency'".to_owned());
+    }
+    sheet.map(|text| (text, true))
+}
+
+/// Whether the headings of a sheet are those of a run table: the names of other sheets, and a setting.
+pub(super) fn lists_sheets<'a>(headings: impl Iterator<Item = &'a str>) -> bool {
+    let columns: Vec<usize> = headings
+        .filter_map(|name| column_of(name).or_else(|| column_of(units::split_unit(name).0)))
+        .collect();
+    let has = |name: &str| columns.iter().any(|c| COLUMNS[*c] == name);
+    has("dataset") && (has("clearance") || has("drive_frequency"))
+}
+
+/// Read the run table `name` of a folder; rows with a fault are left out, and each fault is noted. The rows of a
+/// workbook's sheet are records of that workbook where no column names files.
+pub(super) fn read(folder: &Path, name: &str, faults: &mut FaultCollector) -> Vec<Row> {
+    let Some((text, in_workbook)) = text_of(&folder.join(name), faults) else {
+        return Vec::new();
+    };
+    let workbook = in_workbook.then_some(name);
     let separator = separator(&text);
     let mut reader = reader(&text, separator);
     let header = match reader.headers() {
-        Ok(names) if names.iter().any(|n| !n.is_empty()) => read_header(&names.clone(), faults),
+        Ok(names) if names.iter().any(|n| !n.is_empty()) => {
+            read_header(&names.clone(), in_workbook, faults)
+        }
         _ => {
             let what = "the run table is empty".to_owned();
             faults.fault(
@@ -137,6 +172,7 @@ pub(super) fn read(path: &Path, faults: &mut FaultCollector) -> Vec<Row> {
                 record,
                 header: &header,
                 mark,
+                workbook,
             };
             read_row(&cells, &mut bad, faults)
         })
@@ -189,7 +225,11 @@ fn separator(text: &str) -> u8 {
         .unwrap_or(b',')
 }
 
-fn read_header(names: &csv::StringRecord, faults: &mut FaultCollector) -> Header {
+fn read_header(
+    names: &csv::StringRecord,
+    in_workbook: bool,
+    faults: &mut FaultCollector,
+) -> Header {
     let mut header = Header {
         factor: [1.0; COLUMNS.len()],
         ..Header::default()
@@ -221,7 +261,7 @@ fn read_header(names: &csv::StringRecord, faults: &mut FaultCollector) -> Header
             }
         }
     }
-    if header.at[0].is_none() {
+    if header.at[0].is_none() && !in_workbook {
         let what = "the run table has no column 'file'".to_owned();
         faults.fault(
             Code::Missing,
@@ -361,7 +401,8 @@ fn is_of_digits(cell: &str) -> bool {
 
 fn read_row(cells: &Cells<'_>, bad: &mut BadCells, faults: &mut FaultCollector) -> Option<Row> {
     let line = cells.line();
-    let Some(file) = cells.text(0) else {
+    let file = cells.text(0).or_else(|| cells.workbook.map(str::to_owned));
+    let Some(file) = file else {
         faults.fault(
             Code::Missing,
             Some(line),
@@ -391,6 +432,8 @@ struct Cells<'a> {
     header: &'a Header,
     /// The decimal mark of the table.
     mark: char,
+    /// The workbook of which the table is a sheet.
+    workbook: Option<&'a str>,
 }
 
 impl Cells<'_> {
@@ -484,7 +527,8 @@ mod tests {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), text).unwrap();
         let mut faults = FaultCollector::new(file.path());
-        let rows = read(file.path(), &mut faults);
+        let name = file.path().to_string_lossy();
+        let rows = read(Path::new(""), &name, &mut faults);
         let all = faults.into_diagnostics().0;
         let said = |d: &super::super::diagnostic::Diagnostic| {
             let line = d.place.line.map_or(String::new(), |l| format!("{l}: "));

@@ -217,14 +217,13 @@ fn describe(channel: &InferredChannel) -> String {
     format!("{name} ({unit}, {} samples{range}{time})", channel.samples)
 }
 
-fn table(
+/// The line of a channel's unit; the unit, if the file states one or the channel is a rate by its name.
+fn unit_line(
     text: &mut String,
     role: Role,
     channel: &InferredChannel,
     found: &FolderContents,
-) -> std::fmt::Result {
-    writeln!(text, "[channels.{}]", role.name())?;
-    writeln!(text, "channel = {}", quoted(&channel.name))?;
+) -> Result<Option<units::Unit>, std::fmt::Error> {
     let known = channel.unit.as_deref().and_then(units::parse_unit);
     let stated = units::unit_of(channel.unit.as_deref(), &channel.name);
     let turns = (stated.is_none() && infer::is_rate(channel)).then_some("rad/s");
@@ -244,11 +243,28 @@ fn table(
                 "unit = \"{usual}\"               # CHECK: the file states {stated}"
             )?;
         }
-        (None, None, _) => writeln!(
-            text,
-            "# unit = \"V\"               # FILL IN: the file states none"
-        )?,
+        (None, None, usual) => {
+            let calibrated = usual.map_or(String::new(), |symbol| {
+                format!("; \"{}\" if it is calibrated", symbol.replace('²', "2"))
+            });
+            writeln!(
+                text,
+                "# unit = \"V\"               # FILL IN: the file states none{calibrated}"
+            )?;
+        }
     }
+    Ok(unit)
+}
+
+fn table(
+    text: &mut String,
+    role: Role,
+    channel: &InferredChannel,
+    found: &FolderContents,
+) -> std::fmt::Result {
+    writeln!(text, "[channels.{}]", role.name())?;
+    writeln!(text, "channel = {}", quoted(&channel.name))?;
+    let unit = unit_line(text, role, channel, found)?;
     if let Experiment::Events(content) = found.experiment {
         return events(text, content);
     }
@@ -295,7 +311,13 @@ fn table(
             channel.sign
         )?;
     }
-    if matches!(role, Role::VelocityX | Role::VelocityY) {
+    let integrated = [
+        Role::VelocityX,
+        Role::VelocityY,
+        Role::DisplacementX,
+        Role::DisplacementY,
+    ];
+    if integrated.contains(&role) {
         writeln!(
             text,
             "# high_pass = \"0.5 Hz\"       # corner of an integrator's high-pass"

@@ -93,6 +93,7 @@ mod tests {
             faults: simulated_rig::Faults::default(),
             rig: simulated_rig::RigSpec::exact(),
             records: 12,
+            beats: false,
             seed: 5,
             rig_seed: None,
         };

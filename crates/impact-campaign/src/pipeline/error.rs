@@ -1,5 +1,6 @@
 //! Why the pipeline stops, and how it reports its progress.
 
+use impact_identification::identify::Identification;
 use impact_oscillator::model::ModelError;
 use impact_records::record::Flag;
 use labfiles::ReadError;
@@ -23,6 +24,14 @@ pub enum PipelineError {
     /// An output could not be written.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// The answer is computed, and an output could not be written.
+    #[error("{source}")]
+    AnswerUnwritten {
+        /// The answer.
+        answer: Box<Identification>,
+        /// Why.
+        source: Box<Self>,
+    },
     /// An input could not be read.
     #[error(transparent)]
     Read(#[from] ReadError),
@@ -116,6 +125,7 @@ impl PipelineError {
     pub fn remedy(&self) -> String {
         match self {
             Self::Output(error) => error.remedy().to_owned(),
+            Self::AnswerUnwritten { source, .. } => source.remedy(),
             Self::Read(error) => error.remedy.clone(),
             Self::Store { .. } => {
                 "run the previous stage again; the stages are ingest, classify, identify, report"

@@ -95,12 +95,18 @@ pub(super) fn complete(
     );
     let (report, tables) = (report?, tables?);
     progress("write", 0, 1);
-    store::forget(out)?;
-    store::write_resolved(campaign, out)?;
-    tables::write(&tables, out)?;
-    identify::write(&found, out)?;
-    report::write(&report, out)?;
-    store::keep(&observed, &found, out)?;
+    let written = store::forget(out)
+        .and_then(|()| store::write_resolved(campaign, out))
+        .and_then(|()| tables::write(&tables, out))
+        .and_then(|()| identify::write(&found, out))
+        .and_then(|()| report::write(&report, out))
+        .and_then(|()| store::keep(&observed, &found, out));
+    if let Err(error) = written {
+        return Err(PipelineError::AnswerUnwritten {
+            answer: Box::new(found.identification),
+            source: Box::new(error),
+        });
+    }
     checkpoint::remove(out);
     report::remove_live_state(out);
     Ok(Completed {

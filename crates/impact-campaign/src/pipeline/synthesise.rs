@@ -29,6 +29,9 @@ pub struct Recipe {
     pub rig: RigSpec,
     /// Number of records.
     pub records: usize,
+    /// Whether the sweeps pass the motions between ρ′ and z = 1 in small steps.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub beats: bool,
     /// Seed of everything random.
     pub seed: u64,
     /// Seed of the rig's own errors (gains, corners, gaps, effects), if they are those of another
@@ -90,12 +93,17 @@ const SHARED: &str = r#"["clearances", "delays", "asymmetries", "harmonics", "fo
 /// # Errors
 /// Where the truth lies outside the model's range or a file cannot be written.
 pub fn write_campaign(recipe: &Recipe, out: &Path) -> Result<usize, PipelineError> {
-    let plan = Plan::for_rig(
-        recipe.truth.natural_frequency_hz(),
-        recipe.truth.damping_ratio(),
-        recipe.truth.static_deflection_m(),
-        recipe.records,
-    );
+    let truth = &recipe.truth;
+    let plan = if recipe.beats {
+        Plan::through_beats(truth, recipe.records)
+    } else {
+        Plan::for_rig(
+            truth.natural_frequency_hz(),
+            truth.damping_ratio(),
+            truth.static_deflection_m(),
+            recipe.records,
+        )
+    };
     let mut recipe = recipe.clone();
     let rig_seed = recipe.seed_of_rig();
     let effects = recipe.rig.draw(&mut recipe.truth, &plan, rig_seed);

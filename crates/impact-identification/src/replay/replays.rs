@@ -50,8 +50,12 @@ const SHOWN_PERIODS: u32 = 4;
 /// Drive periods that are shown of a motion without a period.
 const IRREGULAR_PERIODS: u32 = 10;
 
+/// Rank of motions without a period among the types that are compared; they are shown last.
+const IRREGULAR: u8 = 1;
+
 /// Indices of the records to compare: those named, else the surest of each type of motion of the
-/// campaign, periodic motions with impacts first.
+/// campaign. Where there are more types than comparisons, z = 1/n and p/1 come first, then chaos, other periodic motions and
+/// z = 0.
 pub(super) fn chosen_records(input: &Input<'_>) -> Vec<usize> {
     let observations = input.observations;
     let find = |name: &String| observations.iter().position(|o| o.record == *name);
@@ -63,9 +67,14 @@ pub(super) fn chosen_records(input: &Input<'_>) -> Vec<usize> {
     for (i, o) in observations.iter().enumerate() {
         let rank = match &o.classification.motion {
             _ if o.excluded() || o.drive.is_none() => continue,
-            Motion::Periodic { .. } => 0,
-            Motion::Impactless => 1,
-            Motion::Beat | Motion::Chaotic => 2,
+            Motion::Periodic {
+                impacts_p,
+                periods_n,
+                ..
+            } if *impacts_p == 1 || *periods_n == 1 => 0,
+            Motion::Beat | Motion::Chaotic => IRREGULAR,
+            Motion::Periodic { .. } => 2,
+            Motion::Impactless => 3,
             _ => continue,
         };
         let key = (rank, o.classification.motion.label());
@@ -74,7 +83,9 @@ pub(super) fn chosen_records(input: &Input<'_>) -> Vec<usize> {
             best.insert(key, i);
         }
     }
-    best.into_values().take(MOST_COMPARISONS).collect()
+    let mut shown: Vec<((u8, String), usize)> = best.into_iter().take(MOST_COMPARISONS).collect();
+    shown.sort_by_key(|((rank, _), _)| (*rank == IRREGULAR, *rank));
+    shown.into_iter().map(|(_, i)| i).collect()
 }
 
 /// Confidence first, then the strength of the motion over its noise.

@@ -4,6 +4,7 @@
 
 pub mod columns;
 pub mod decay;
+pub mod digits;
 pub mod drift;
 pub mod interpolation;
 pub mod local_fit;

@@ -31,7 +31,12 @@ pub(super) fn comparison(comparison: &ReplayedRecord, locale: Locale<'_>) -> Str
     let letter = comparison.letter.to_string();
     let mut text = locale.translate_with(Phrase::CaptionPoint, &[("letter", &letter)]);
     let label = locale.motion(&comparison.motion);
-    text.push_str(&format!(", $z$ = {label}"));
+    let symbol = if comparison.motion.is_periodic() {
+        "$z$ = "
+    } else {
+        ""
+    };
+    text.push_str(&format!(", {symbol}{label}"));
     if let (Some(eta), Some(rho)) = (comparison.eta, comparison.rho) {
         let (eta, rho) = (locale.fixed(eta, 3), locale.fixed(rho, 3));
         let values = [("eta", eta.as_str()), ("rho", rho.as_str())];

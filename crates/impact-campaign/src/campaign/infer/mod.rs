@@ -10,6 +10,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::discovery::Opener;
+use super::read::RESULTS;
 use super::run_table;
 use impact_records::record::{Role, time_axis};
 use impact_records::signal::robust;
@@ -92,7 +93,12 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
             found.run_table = Some(slashed(&relative));
             continue;
         }
-        match open(path) {
+        let opened_path = open(path);
+        if let (None, Ok(source)) = (&found.run_table, &opened_path) {
+            let lists = source.format() == "excel" && source.datasets().iter().any(lists_sheets);
+            found.run_table = lists.then(|| slashed(&relative));
+        }
+        match opened_path {
             Ok(source) if holds_record(source.as_ref()) => opened.push((relative, source)),
             Ok(_) => found.others.push(slashed(&relative)),
             Err(error) => found.refused.push((slashed(&relative), error.found)),
@@ -115,7 +121,7 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
     for (path, source) in &records {
         let used = of(source.as_ref());
         let sets = source.datasets().iter().enumerate();
-        let others = sets.filter(|(i, _)| !used.contains(i));
+        let others = sets.filter(|(i, set)| !used.contains(i) && !lists_sheets(set));
         let named = others.map(|(_, set)| format!("{}: {}", slashed(path), set.name));
         found.others.extend(named);
     }
@@ -133,6 +139,11 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
     }
     experiment::infer(&places, &mut found);
     found
+}
+
+/// Whether a sheet is a run table of the workbook's other sheets.
+fn lists_sheets(set: &DatasetInfo) -> bool {
+    run_table::lists_sheets(set.channels.iter().map(|c| c.name.as_str()))
 }
 
 /// A record: a dataset of a file.
@@ -240,9 +251,6 @@ fn collect(folder: &Path, depth: usize, seen: &mut HashSet<PathBuf>, paths: &mut
         }
     }
 }
-
-/// A file that a folder of results has.
-const RESULTS: &str = "campaign.resolved.json";
 
 /// Files that hold no records by their ending.
 fn is_other(path: &Path) -> bool {

@@ -257,8 +257,9 @@ fn kind(channel: &InferredChannel) -> Kind {
         Some(Dimension::Force) => return Kind::Drive,
         _ => {}
     }
-    const DRIVES: [&str; 9] = [
-        "drive", "gen", "exc", "hammer", "force", "input", "shaker", "erreg", "anreg",
+    const DRIVES: [&str; 11] = [
+        "drive", "gen", "exc", "hammer", "force", "load", "input", "shaker", "erreg", "anreg",
+        "kraft",
     ];
     match () {
         () if has(&DRIVES) => Kind::Drive,

@@ -15,7 +15,7 @@ keys! {
     pub struct RecordsTable {
         /// a glob or a list of globs: `"records/*.h5"`; `**` goes through folders
         files: Placed<OneOrMany>;
-        /// a CSV table instead of `files`, see below
+        /// a CSV table, or a workbook with a sheet of settings, instead of `files`, see below
         run_table: Placed<String>;
         /// for files that state none, `"2 kHz"`; of a camera that numbers its frames, their rate
         sample_rate: Placed<WrittenQuantity>;

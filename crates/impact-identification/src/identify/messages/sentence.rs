@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::parameters::Coordinate;
 use impact_records::message::{Message, Value};
-use impact_records::signal::whole;
+use impact_records::signal::digits::decimals_for;
 use impact_records::{message_table, messages};
 
 /// A parameter with its value as a sentence states it.
@@ -34,8 +34,7 @@ impl Message for StatedValue {
             _ => (1.0, ""),
         };
         let (value, half) = (scale * self.value, scale * self.half_width);
-        // two significant digits of the half width; the cast is of 0 to 8
-        let decimals = whole::index((1.0 - half.max(1e-9).log10().floor()).clamp(0.0, 8.0));
+        let decimals = decimals_for(half);
         vec![
             ("parameter", Value::Message(&self.parameter)),
             ("value", Value::Number(value, decimals)),

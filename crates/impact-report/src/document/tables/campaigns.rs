@@ -1,7 +1,8 @@
 //! The tables of campaigns compared: their estimates, the differences, what they share.
 
 use super::column::{Column, table};
-use super::estimates::{LEAST_P, estimate_cells, p_value};
+use super::estimates::estimate_cells;
+use crate::differences::PrintedDifference;
 use crate::document::model::{Rich, Table};
 use crate::document::verdict::headline;
 use crate::figures::correlation::name;
@@ -11,12 +12,6 @@ use crate::phrase::Phrase;
 use impact_identification::compare::{AcrossCampaigns, Comparison, Difference};
 use impact_identification::identify::parameters::Coordinate;
 use impact_records::message::Message;
-
-/// A p-value as printed behind its name.
-pub(crate) fn p_equals(p: f64, locale: Locale<'_>) -> String {
-    let relation = if p < LEAST_P { "" } else { "= " };
-    format!("{relation}{}", p_value(p, locale))
-}
 
 /// The campaigns with their joint estimates.
 pub(crate) fn campaigns(comparison: &Comparison, locale: Locale<'_>) -> Option<Table> {
@@ -60,17 +55,9 @@ pub(crate) fn differences(comparison: &Comparison, locale: Locale<'_>) -> Option
 }
 
 fn row(d: &Difference, locale: Locale<'_>) -> Vec<Rich> {
-    let Some(look) = parameters::parameter(d.parameter) else {
+    let Some(printed) = PrintedDifference::of(d, locale) else {
         return vec![Rich::default(); 7];
     };
-    let half = |[low, high]: [f64; 2]| 0.5 * (high - low) * look.factor;
-    let own = half(d.interval95);
-    let decimals = parameters::decimals_for(own);
-    let with_unit = |text: String| match look.unit {
-        "" => text,
-        unit => format!("{text}\u{2009}{unit}"),
-    };
-    let value = locale.fixed(d.value * look.factor, decimals);
     let [relative, low, high] = d.relative.map(|r| 100.0 * r);
     let relative_half = 0.5 * (high - low);
     let few = parameters::decimals_for(relative_half);
@@ -81,16 +68,13 @@ fn row(d: &Difference, locale: Locale<'_>) -> Vec<Rich> {
     );
     let freedom = d.degrees_of_freedom.filter(|n| *n < 1000.0);
     [
-        (d.campaign + 1).to_string(),
-        look.symbol.to_owned(),
-        with_unit(format!("{value} ± {}", locale.fixed(own, decimals))),
+        printed.campaign,
+        printed.parameter.to_owned(),
+        printed.value,
         relative,
-        with_unit(format!(
-            "± {}",
-            locale.fixed(half(d.independent_interval95), decimals)
-        )),
+        printed.independent,
         freedom.map_or("∞".into(), |n| locale.fixed(n, 0)),
-        p_value(d.p_value, locale),
+        printed.p_value,
     ]
     .map(Rich::from)
     .to_vec()

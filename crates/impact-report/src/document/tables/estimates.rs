@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::column::{Column, table};
 use crate::content::ReportContent;
+use crate::differences::p_value;
 use crate::document::model::{Rich, Table};
 use crate::document::verdict::headline;
 use crate::locale::Locale;
@@ -14,8 +15,6 @@ use impact_identification::identify::{Method, MethodResult, ParameterSet};
 
 /// Size of the type of the methods' tables, points.
 const SIZE: f64 = 7.5;
-/// Smaller p-values are printed as smaller than this.
-pub(super) const LEAST_P: f64 = 1e-3;
 
 /// The columns of the estimates, as [`estimate_cells`] fills them.
 fn estimate_columns() -> impl Iterator<Item = Column> {
@@ -130,15 +129,6 @@ fn method_row(name: String, method: &MethodResult, locale: Locale<'_>) -> Vec<Ri
         Rich::from(locale.text(&fits)),
     ]);
     row
-}
-
-/// A p-value as printed.
-pub(super) fn p_value(p: f64, locale: Locale<'_>) -> String {
-    if p < LEAST_P {
-        format!("< {}", locale.fixed(LEAST_P, 3))
-    } else {
-        locale.fixed(p, 3)
-    }
 }
 
 /// Whether the methods agree, pair by pair.

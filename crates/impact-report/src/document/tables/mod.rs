@@ -10,7 +10,7 @@ mod records;
 pub(super) use brackets::brackets;
 pub(super) use budget::budget;
 pub use budget::budget_source;
-pub(super) use campaigns::{campaigns, differences, p_equals, separate, shared};
+pub(super) use campaigns::{campaigns, differences, separate, shared};
 pub(super) use estimates::{agreement, methods, specimen_methods, specimens};
 pub(super) use records::records;
 
