@@ -434,6 +434,18 @@ mod tests {
     }
 
     #[test]
+    fn results_lead_to_their_inputs_from_another_directory() {
+        // paths of the example begin at the workspace, and tests run in their crate
+        let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../../reports/example");
+        let campaign = read_resolved(Path::new(example)).unwrap();
+        let table = campaign.run_table.iter();
+        let files = campaign.records.iter().map(|r| &r.file).chain(table);
+        for file in files.chain([&campaign.file]) {
+            assert!(file.exists(), "{}", file.display());
+        }
+    }
+
+    #[test]
     fn new_observations_leave_no_residuals_of_others() {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path();
