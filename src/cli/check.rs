@@ -73,9 +73,10 @@ impl Check {
         }
         print_counts(&outcome.diagnostics, usable, verbosity);
         let all = outcome.diagnostics.0.len();
-        Ok(match outcome.diagnostics.count(Severity::Note) == all {
-            true => Exit::Done,
-            false => Exit::BadInput,
+        Ok(if outcome.diagnostics.count(Severity::Note) == all {
+            Exit::Done
+        } else {
+            Exit::BadInput
         })
     }
 }

@@ -265,9 +265,10 @@ fn decided_by(comparison: &Comparison, locale: Locale<'_>) -> String {
         format!("{}: F = {f}, p {p}", word(Word::Together))
     });
     let all: Vec<String> = corrected.into_iter().chain(together).collect();
-    match all.is_empty() {
-        true => String::new(),
-        false => format!(" ({})", all.join("; ")),
+    if all.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", all.join("; "))
     }
 }
 

@@ -196,9 +196,10 @@ impl Report {
         let mut campaign = store::read_resolved(&folder)?;
         self.options.apply(&mut campaign.report, verbosity)?;
         let (observed, found) = store::read_for_report(&folder)?;
-        let command = match store::is_staged(&folder) {
-            true => commands(&campaign.file, &folder, &self.options),
-            false => command_line(&campaign.file, &folder, &self.options),
+        let command = if store::is_staged(&folder) {
+            commands(&campaign.file, &folder, &self.options)
+        } else {
+            command_line(&campaign.file, &folder, &self.options)
         };
         note_missing(&campaign, verbosity);
         let bar = Progress::new(verbosity, "report", 1);

@@ -8,7 +8,7 @@ use super::sources::all_sources;
 /// Functions that take or give a tuple of more than two.
 const WIDE_TUPLES: usize = 40;
 /// Choices by `match` on a boolean, and public functions that take one.
-const BOOLEANS: usize = 67;
+const BOOLEANS: usize = 15;
 /// Names that two public types have.
 const TWICE: usize = 12;
 

@@ -195,9 +195,10 @@ fn motion_capture_states_its_rate_as_frequency() {
 #[test]
 fn runs_side_by_side_are_records_of_their_own_length_and_rate() {
     let row = |i: u32| {
-        let short = match i < 30 {
-            true => format!("{:.3},{:.2}", f64::from(i) * 0.01, 7.0),
-            false => ",".to_owned(),
+        let short = if i < 30 {
+            format!("{:.3},{:.2}", f64::from(i) * 0.01, 7.0)
+        } else {
+            ",".to_owned()
         };
         format!("{:.3},{:.2},{short}", f64::from(i) * 0.02, f64::from(i))
     };
@@ -378,9 +379,10 @@ const LVM: &str = "LabVIEW Measurement\t\nWriter_Version\t2\nReader_Version\t2\n
 #[test]
 fn each_channel_of_an_lvm_file_may_have_its_own_x_column() {
     let row = |i: u32| {
-        let slow = match i < 20 {
-            true => format!("{:.3}\t0.2", 0.3 + f64::from(i) * 2e-3),
-            false => "\t".to_owned(),
+        let slow = if i < 20 {
+            format!("{:.3}\t0.2", 0.3 + f64::from(i) * 2e-3)
+        } else {
+            "\t".to_owned()
         };
         format!("{:.3}\t0.1\t{slow}", f64::from(i) * 1e-3)
     };

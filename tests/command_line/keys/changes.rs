@@ -144,9 +144,10 @@ fn filtered(lab: &Lab) {
 pub(super) fn add(lab: &Lab, table: &str, line: &str) {
     let head = format!("[{table}]\n");
     let text = lab.read("campaign.toml");
-    match text.contains(&head) {
-        true => lab.edit(&head, &format!("{head}{line}\n")),
-        false => lab.write("campaign.toml", &format!("{text}\n{head}{line}\n")),
+    if text.contains(&head) {
+        lab.edit(&head, &format!("{head}{line}\n"));
+    } else {
+        lab.write("campaign.toml", &format!("{text}\n{head}{line}\n"));
     }
 }
 

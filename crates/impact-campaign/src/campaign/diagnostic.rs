@@ -141,9 +141,10 @@ impl Diagnostic {
 
     /// A flag of a record of the campaign.
     pub fn of_flag(file: &Path, record: &str, flag: &Flag) -> Self {
-        let severity = match flag.excludes {
-            true => Severity::Record,
-            false => Severity::Note,
+        let severity = if flag.excludes {
+            Severity::Record
+        } else {
+            Severity::Note
         };
         let place = Place::of_record(file, record, flag.channel.as_deref().unwrap_or(""));
         let code = Code::Flag(flag.code);

@@ -109,9 +109,10 @@ fn damping_estimate(value: f64, spread: Spread) -> Estimate {
     let half = spread.half95();
     let most = value + half;
     let undamped = value <= half;
-    let status = match undamped || spread.error > estimate::limits(Coordinate::Damping).0 * value {
-        true => Status::Weak,
-        false => Status::Identified,
+    let status = if undamped || spread.error > estimate::limits(Coordinate::Damping).0 * value {
+        Status::Weak
+    } else {
+        Status::Identified
     };
     Estimate {
         value: Some(value.max(0.0)),
@@ -142,9 +143,10 @@ fn judge(result: &mut MethodResult, decays: &[&Decay], spread: f64) {
     let told = plain || damping_changes || frequency_changes;
     let fits = result.fits != Some(false) && plain && !damping_changes && !frequency_changes;
     result.fits = Some(fits);
-    let of_residuals = match told {
-        true => Remark::DecaysUnexplained { share, structure },
-        false => Remark::DecaysHaveStructure { share, structure },
+    let of_residuals = if told {
+        Remark::DecaysUnexplained { share, structure }
+    } else {
+        Remark::DecaysHaveStructure { share, structure }
     };
     result.remarks.insert(0, of_residuals);
     if !fits {

@@ -391,9 +391,10 @@ impl IdentificationRun<'_> {
         };
         let waveforms = succeeded(&trajectories).or(succeeded(&resonance));
         let delayed = waveforms.is_some() && self.selection.blocks.delay_impacts(&start);
-        let impacts = match delayed {
-            true => methods::impacts(&self.selection.blocks, &self.evidence.nominal, start),
-            false => impacts,
+        let impacts = if delayed {
+            methods::impacts(&self.selection.blocks, &self.evidence.nominal, start)
+        } else {
+            impacts
         };
         let flights = self.selection.flights(start);
         self.together(

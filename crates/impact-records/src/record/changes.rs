@@ -126,9 +126,10 @@ pub(super) fn listing(times: &[f64]) -> Listing {
         Listing::Changes(closings) => closings.closed_s > LONGEST_CONTACT_S,
         _ => false,
     };
-    match long || (rise > 1 && rise as f64 > MOST_RISE * (gaps.len() - 1) as f64) {
-        true => Listing::Unclear(gaps.len(), rise),
-        false => found,
+    if long || (rise > 1 && rise as f64 > MOST_RISE * (gaps.len() - 1) as f64) {
+        Listing::Unclear(gaps.len(), rise)
+    } else {
+        found
     }
 }
 

@@ -21,9 +21,10 @@ impl Drawn<'_> {
         let data = self
             .locale
             .translate_with(Phrase::CaptionData, &[("file", &file)]);
-        let caption = match caption.is_empty() || figure.csv.is_empty() {
-            true => caption.to_owned(),
-            false => format!("{caption} {data}"),
+        let caption = if caption.is_empty() || figure.csv.is_empty() {
+            caption.to_owned()
+        } else {
+            format!("{caption} {data}")
         };
         Some(FigureRef {
             name: figure.name.clone(),

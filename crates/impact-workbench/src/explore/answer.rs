@@ -36,9 +36,10 @@ const LONGEST: Duration = Duration::from_secs(20);
 /// Answer a request.
 pub(super) fn answer(session: &Session, request: &Request, job: &Job) {
     let longest = request.ask.is_single().then_some(LONGEST);
-    let found = match request.ask.is_given_up() {
-        true => job.patience(longest).work(|| ask(session, request, job)),
-        false => Ok(ask(session, request, job)),
+    let found = if request.ask.is_given_up() {
+        job.patience(longest).work(|| ask(session, request, job))
+    } else {
+        Ok(ask(session, request, job))
     };
     let stop = match found {
         Ok(answered) => answered,

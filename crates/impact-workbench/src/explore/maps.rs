@@ -67,9 +67,10 @@ pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
     let before_boundaries = job.first_tiles();
     let machine = state.machine();
     let fast = UnitMass::of(&machine).is_some();
-    let levels: &[(usize, usize)] = match fast {
-        true => &[COARSE, MAP_CELLS, FINE],
-        false => &[COARSE, MAP_CELLS],
+    let levels: &[(usize, usize)] = if fast {
+        &[COARSE, MAP_CELLS, FINE]
+    } else {
+        &[COARSE, MAP_CELLS]
     };
     let tiles = Tiles {
         state,
@@ -227,9 +228,12 @@ fn curve(
     (kind, n, of): (&str, u32, Boundary),
     job: &Job,
 ) -> Result<Frame, Stop> {
-    let point = |eta: &f64| match job.is_stale() {
-        true => Err(Stop::Stale),
-        false => Ok(of(machine, *eta, n)),
+    let point = |eta: &f64| {
+        if job.is_stale() {
+            Err(Stop::Stale)
+        } else {
+            Ok(of(machine, *eta, n))
+        }
     };
     let found: Vec<Option<BoundaryPoint>> = etas.iter().map(point).collect::<Result<_, _>>()?;
     let rho = |p: &Option<BoundaryPoint>| p.map_or(f64::NAN, |p| p.rho);

@@ -216,9 +216,10 @@ pub(super) fn run(state: &State, periods: f64, facts: bool, job: &Job) -> Result
         .with("cursor", cursor)
         .with("gap", machine.gap(state.cursor.rho))
         .with("two_masses", machine.y.is_some());
-    let frame = match facts {
-        true => now(state, &machine, &simulator.snapshot(), frame)?,
-        false => frame,
+    let frame = if facts {
+        now(state, &machine, &simulator.snapshot(), frame)?
+    } else {
+        frame
     };
     let frame = frame
         .column("periods", taus.iter().map(|t| t / period))

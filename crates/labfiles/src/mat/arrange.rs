@@ -367,9 +367,12 @@ impl<'t> Builder<'t> {
     fn record(&mut self, leaves: &[usize]) {
         let tree = self.tree;
         let first = &tree.leaves[leaves[0]];
-        let inner = |leaf: &Leaf| match leaf.tail == leaf.name {
-            true => tree.variables[leaf.variable].name.clone(),
-            false => leaf.tail.clone(),
+        let inner = |leaf: &Leaf| {
+            if leaf.tail == leaf.name {
+                tree.variables[leaf.variable].name.clone()
+            } else {
+                leaf.tail.clone()
+            }
         };
         let mut named: Vec<_> = leaves
             .iter()

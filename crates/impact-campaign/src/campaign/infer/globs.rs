@@ -72,9 +72,10 @@ fn patterns(
         let compiled = glob::Pattern::new(&pattern);
         compiled.is_ok_and(|p| p.matches(&slashed(other)))
     };
-    match shared.len() > folder.len() && !others.iter().any(matches) {
-        true => vec![pattern],
-        false => names.iter().map(|name| escaped(name)).collect(),
+    if shared.len() > folder.len() && !others.iter().any(matches) {
+        vec![pattern]
+    } else {
+        names.iter().map(|name| escaped(name)).collect()
     }
 }
 

@@ -11,9 +11,12 @@ pub(super) fn assign(channels: &mut [InferredChannel]) {
     let second = axes.has_second(channels) || groups.second.is_some();
     // what is measured of one mass alone is that of mass x, whatever it is called
     let alone = !second || !axes.has_first(channels, &groups);
-    let place = |i: usize, c: &InferredChannel| match alone {
-        true => (false, None),
-        false => (true, axes.side(i, c)),
+    let place = |i: usize, c: &InferredChannel| {
+        if alone {
+            (false, None)
+        } else {
+            (true, axes.side(i, c))
+        }
     };
     for &role in Role::ALL {
         let best = channels

@@ -49,14 +49,16 @@ fn asked(evidence: &Evidence<'_>, observations: &[&Observation]) -> Vec<Coordina
 fn why(parameter: Coordinate, observations: &[&Observation]) -> Note {
     let any = |of: &dyn Fn(&Observation) -> bool| observations.iter().any(|o| of(o));
     if parameter == Coordinate::Restitution {
-        return match any(&|o| !o.impacts.is_empty()) {
-            true => Note::NotDetermined { parameter },
-            false => Note::WithoutImpact,
+        return if any(&|o| !o.impacts.is_empty()) {
+            Note::NotDetermined { parameter }
+        } else {
+            Note::WithoutImpact
         };
     }
-    match any(&|o| o.frequency_hz().is_some()) {
-        true => Note::NotDetermined { parameter },
-        false => Note::NoFrequency,
+    if any(&|o| o.frequency_hz().is_some()) {
+        Note::NotDetermined { parameter }
+    } else {
+        Note::NoFrequency
     }
 }
 

@@ -38,9 +38,10 @@ pub fn contradicted(observations: &[Observation]) -> Option<Finding> {
     }
     let ratio = robust::median(&ratios)?;
     let alike = ratios.iter().all(|r| (r / ratio - 1.0).abs() < ONE_CAUSE);
-    Some(match alike {
-        true => Finding::FrequenciesOffAlike { ratio, records, of },
-        false => Finding::FrequenciesOff { records, of },
+    Some(if alike {
+        Finding::FrequenciesOffAlike { ratio, records, of }
+    } else {
+        Finding::FrequenciesOff { records, of }
     })
 }
 

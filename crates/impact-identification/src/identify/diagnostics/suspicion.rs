@@ -27,12 +27,11 @@ const GAP_SURE: f64 = 3.4;
 
 /// Whether a gap is so far off that it is named, where clearances have a standard uncertainty.
 fn is_named(odd: &OddGap, uncertainty_m: f64) -> bool {
-    match uncertainty_m > 0.0 {
-        true => odd.z_score.abs() > GAP_SURE,
-        false => {
-            let relative = (odd.fitting_m / odd.stated_m - 1.0).abs();
-            odd.z_score.abs() > SURE && relative > GAP_LIMIT
-        }
+    if uncertainty_m > 0.0 {
+        odd.z_score.abs() > GAP_SURE
+    } else {
+        let relative = (odd.fitting_m / odd.stated_m - 1.0).abs();
+        odd.z_score.abs() > SURE && relative > GAP_LIMIT
     }
 }
 
@@ -122,19 +121,16 @@ pub fn odd_gap(
     uncertainty_m: f64,
 ) -> Option<OddGap> {
     let block = &blocks.trajectory;
-    let odd: Vec<OddGap> = match uncertainty_m > 0.0 {
-        true => {
-            let gaps = blocks.gaps_m.iter().enumerate();
-            gaps.filter_map(|(i, gap)| beyond_stated(found, i, *gap, uncertainty_m))
-                .collect()
-        }
-        false => {
-            let gaps = stated_gaps(&block.records);
-            let shifts = gaps.iter();
-            shifts
-                .filter_map(|gap| shift(block, weight, &found.fit, found.factor, *gap))
-                .collect()
-        }
+    let odd: Vec<OddGap> = if uncertainty_m > 0.0 {
+        let gaps = blocks.gaps_m.iter().enumerate();
+        gaps.filter_map(|(i, gap)| beyond_stated(found, i, *gap, uncertainty_m))
+            .collect()
+    } else {
+        let gaps = stated_gaps(&block.records);
+        let shifts = gaps.iter();
+        shifts
+            .filter_map(|gap| shift(block, weight, &found.fit, found.factor, *gap))
+            .collect()
     };
     odd.into_iter()
         .max_by(|a, b| a.z_score.abs().total_cmp(&b.z_score.abs()))

@@ -47,9 +47,10 @@ pub fn judge_resonance(result: &mut MethodResult, block: &ResonanceBlock, fitted
     }
     let deviation = robust::rms(&deviations);
     result.fits = Some(deviation < RESONANCE_DEVIATION);
-    result.remarks.push(match deviation < RESONANCE_DEVIATION {
-        true => Remark::OneDegreeOfFreedom { deviation },
-        false => Remark::NotOneDegreeOfFreedom { deviation },
+    result.remarks.push(if deviation < RESONANCE_DEVIATION {
+        Remark::OneDegreeOfFreedom { deviation }
+    } else {
+        Remark::NotOneDegreeOfFreedom { deviation }
     });
 }
 
@@ -183,13 +184,14 @@ fn judge_law(result: &mut MethodResult, block: &ImpactBlock, evidence: &Evidence
         return;
     }
     let samples = contact_samples(block, evidence);
-    result.remarks.push(match samples > 1.5 {
-        true => Remark::LongContact {
+    result.remarks.push(if samples > 1.5 {
+        Remark::LongContact {
             slower,
             faster,
             samples,
-        },
-        false => Remark::RestitutionChanges { slower, faster },
+        }
+    } else {
+        Remark::RestitutionChanges { slower, faster }
     });
     let ends = [slower.restitution, faster.restitution];
     if let Some(estimate) = &mut result.parameters.restitution {

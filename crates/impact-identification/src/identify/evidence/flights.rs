@@ -47,9 +47,10 @@ impl Node {
         let shifts = self
             .corner_shifts
             .map(|shift| shift.map_or(0.0, |s| parameters.corner_shift_m_s(&s)));
-        let shifts = match together {
-            true => [shifts[0] + shifts[1], 0.0],
-            false => shifts,
+        let shifts = if together {
+            [shifts[0] + shifts[1], 0.0]
+        } else {
+            shifts
         };
         [self.before_m_s, self.after_m_s].map(|speeds| [0, 1].map(|m| speeds[m] + shifts[m]))
     }
@@ -141,9 +142,10 @@ impl FlightRecord {
             Some(row)
         };
         let rows: Vec<Vector4<f64>> = (0..2).filter_map(of).collect();
-        match self.sum_alone() {
-            true => vec![rows.iter().sum()],
-            false => rows,
+        if self.sum_alone() {
+            vec![rows.iter().sum()]
+        } else {
+            rows
         }
     }
 
@@ -213,20 +215,19 @@ fn flight_record(rig: RigKind, index: usize, o: &Observation) -> Option<FlightRe
 /// `together`: the approach speed is all that is known, or that there is; `missed`: relative error of a speed beside
 /// its noise; `integrated`: whether the error of the impact's time counts in it.
 fn node(together: bool, impact: &Impact, (missed, integrated): (f64, bool)) -> Option<Node> {
-    let (before_m_s, after_m_s, masses) = match together {
-        false => {
-            let (x, y) = (impact.x?, impact.y?);
-            (
-                [x.before_m_s, y.before_m_s],
-                [x.after_m_s, y.after_m_s],
-                2.0f64,
-            )
-        }
-        true => (
+    let (before_m_s, after_m_s, masses) = if together {
+        (
             [impact.approach_speed_before_m_s?, 0.0],
             [impact.approach_speed_after_m_s?, 0.0],
             1.0,
-        ),
+        )
+    } else {
+        let (x, y) = (impact.x?, impact.y?);
+        (
+            [x.before_m_s, y.before_m_s],
+            [x.after_m_s, y.after_m_s],
+            2.0f64,
+        )
     };
     let closing = impact.approach_speed_before_m_s?;
     let noise = impact.speed_error_m_s? / masses.sqrt();

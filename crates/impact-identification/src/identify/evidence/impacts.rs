@@ -238,9 +238,10 @@ impl ImpactBlock {
             .filter(|i| i.x.is_some() || i.y.is_some());
         Self {
             free,
-            first_value_only: match rig == RigKind::Double && with_speeds.any(|i| !sees_both(i)) {
-                true => Some(FirstValueOnly::OneOfTwo),
-                false => differentiated(observations).then_some(FirstValueOnly::Differentiated),
+            first_value_only: if rig == RigKind::Double && with_speeds.any(|i| !sees_both(i)) {
+                Some(FirstValueOnly::OneOfTwo)
+            } else {
+                differentiated(observations).then_some(FirstValueOnly::Differentiated)
             },
             push: push(observations),
             ..Self::of_pairs(pairs, relative_error)

@@ -90,9 +90,10 @@ impl Jump {
     pub fn about(&self, boundary_hz: f64, variance_hz2: f64) -> Tilt {
         let setting = self.setting.hypot(variance_hz2.max(0.0).sqrt());
         let found = self.derivatives(boundary_hz, setting);
-        match found[0] < LEAST {
-            true => self.far(boundary_hz, setting),
-            false => Tilt::of(found),
+        if found[0] < LEAST {
+            self.far(boundary_hz, setting)
+        } else {
+            Tilt::of(found)
         }
     }
 
@@ -127,9 +128,10 @@ impl Jump {
     /// By how much the ends lie above the boundary (of a falling sweep: below), and the sign of that over the
     /// boundary.
     fn ends(&self, boundary: f64) -> (f64, f64, f64) {
-        match self.rising {
-            true => (self.low - boundary, self.high - boundary, -1.0),
-            false => (boundary - self.high, boundary - self.low, 1.0),
+        if self.rising {
+            (self.low - boundary, self.high - boundary, -1.0)
+        } else {
+            (boundary - self.high, boundary - self.low, 1.0)
         }
     }
 
@@ -165,9 +167,10 @@ impl Jump {
         };
         let density = density(score) / s;
         [
-            match lacking {
-                true => normal(-score) - mixed,
-                false => normal(score) + mixed,
+            if lacking {
+                normal(-score) - mixed
+            } else {
+                normal(score) + mixed
             },
             mixed / e,
             (mixed / e - density) / e,

@@ -138,9 +138,10 @@ const SHORT_CONTACT_MS: f64 = 0.1;
 pub fn impact_bias(block: &ImpactBlock, waveforms: &Fit, effects: Effects) -> f64 {
     let length = Effect::ContactDuration;
     let untold = !waveforms.free.contains(&Coordinate::Effect(length));
-    let contact_ms = match untold && !block.free && effects.iter().any(|e| e == length) {
-        true => length.accepted(),
-        false => waveforms.parameters.effect(length),
+    let contact_ms = if untold && !block.free && effects.iter().any(|e| e == length) {
+        length.accepted()
+    } else {
+        waveforms.parameters.effect(length)
     };
     let noticed = (contact_ms / SHORT_CONTACT_MS).clamp(-1.0, 1.0);
     let delays_s = robust::range(waveforms.parameters.delays_s);
@@ -190,9 +191,10 @@ fn impacts(
     // Where R differs between bounces or records, an impact far from the others is one of that structure.
     let structure = structure::structure(&structure::ratios(&block, observations));
     // Such ratios differ from record to record.
-    let outliers = match block.first_value_only.is_some() || structure.is_some() {
-        true => Vec::new(),
-        false => block.extract_outliers(OUTLYING_IMPACT),
+    let outliers = if block.first_value_only.is_some() || structure.is_some() {
+        Vec::new()
+    } else {
+        block.extract_outliers(OUTLYING_IMPACT)
     };
     within_record::share(&mut block);
     (block, outliers)

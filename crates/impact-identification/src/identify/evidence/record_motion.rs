@@ -344,12 +344,13 @@ impl<'a> RecordMotion<'a> {
     /// The terms of the channels that have a gain, none of the others.
     fn only(&self, values: &[Terms], gain: usize) -> Vec<Terms> {
         let all = self.channels.iter().zip(values);
-        all.map(
-            |(channel, terms)| match gain_index(channel.role) == Some(gain) {
-                true => *terms,
-                false => Terms::default(),
-            },
-        )
+        all.map(|(channel, terms)| {
+            if gain_index(channel.role) == Some(gain) {
+                *terms
+            } else {
+                Terms::default()
+            }
+        })
         .collect()
     }
 

@@ -89,9 +89,10 @@ impl ResonancePoint {
     fn turn(&self, predicted: &[Predicted]) -> Complex<f64> {
         let pairs = self.measured().zip(predicted).zip(&self.errors);
         let sum: Complex<f64> = pairs.map(|((m, p), e)| m * p.value.conj() / (e * e)).sum();
-        match sum.norm() > 0.0 {
-            true => sum / sum.norm(),
-            false => Complex::new(1.0, 0.0),
+        if sum.norm() > 0.0 {
+            sum / sum.norm()
+        } else {
+            Complex::new(1.0, 0.0)
         }
     }
 }

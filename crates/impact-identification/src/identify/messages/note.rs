@@ -130,8 +130,9 @@ fn digits(value: f64) -> usize {
 
 /// A standard error of a parameter: relative or, of R, absolute.
 fn width(parameter: Coordinate, standard_error: f64) -> Value<'static> {
-    match parameter.is_logarithm() {
-        true => Value::Percent(standard_error, 2),
-        false => Value::Number(standard_error, 2),
+    if parameter.is_logarithm() {
+        Value::Percent(standard_error, 2)
+    } else {
+        Value::Number(standard_error, 2)
     }
 }

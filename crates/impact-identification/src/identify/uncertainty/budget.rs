@@ -71,9 +71,10 @@ impl Further {
     /// Its row, of a joint fit of so many methods.
     fn row(&self, estimated: &[(usize, Coordinate)], methods: usize) -> Row {
         let by_methods = self.source == UncertaintySource::BetweenMethods;
-        let (evaluation, freedom) = match by_methods {
-            true => (Evaluation::A, Some(methods.saturating_sub(1).max(1) as f64)),
-            false => (Evaluation::B, None),
+        let (evaluation, freedom) = if by_methods {
+            (Evaluation::A, Some(methods.saturating_sub(1).max(1) as f64))
+        } else {
+            (Evaluation::B, None)
         };
         let of_clock = (self.source == UncertaintySource::Clock).then_some(1.0);
         Row {

@@ -279,9 +279,10 @@ impl<'a> Search<'a> {
             speed_error_m_s: Some(error),
             x: Some(of_body(0)),
             y: (self.bodies.len() > 1).then(|| of_body(1)),
-            source: match touched {
-                true => DetectionSource::Both,
-                false => DetectionSource::Velocity,
+            source: if touched {
+                DetectionSource::Both
+            } else {
+                DetectionSource::Velocity
             },
             ..Impact::timed(time / self.rate_hz, time_error / self.rate_hz)
         };

@@ -84,9 +84,10 @@ pub(super) fn begin(samples: &[f64]) -> Option<(usize, usize)> {
 /// The first sample that may be of the decay, of a period in samples: the motion may have begun before its
 /// first great excursion, unless the mass was held there before it was released.
 pub(super) fn earliest((first, held): (usize, usize), period: f64) -> usize {
-    match (held - first) as f64 > HELD * period {
-        true => held,
-        false => first.saturating_sub(whole::index(BEFORE * period)),
+    if (held - first) as f64 > HELD * period {
+        held
+    } else {
+        first.saturating_sub(whole::index(BEFORE * period))
     }
 }
 

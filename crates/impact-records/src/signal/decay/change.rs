@@ -177,9 +177,10 @@ pub(super) fn course(prepared: &Prepared, viscous: &Point, rate_hz: f64) -> Cour
     let error = shapes.error(best, 1) / natural;
     let limit = (law != DampingLaw::Unknown).then_some(best.rates[1] / natural);
     let limits = limit.map(|l| [l - error, l + error]);
-    let ends = match parts.is_empty() {
-        true => vec![at(0.125), at(0.875)],
-        false => parts.iter().map(|p| p.damping_ratio).collect(),
+    let ends = if parts.is_empty() {
+        vec![at(0.125), at(0.875)]
+    } else {
+        parts.iter().map(|p| p.damping_ratio).collect()
     };
     let values = ends.into_iter().chain(limits.into_iter().flatten());
     let range = crate::signal::robust::range(values);

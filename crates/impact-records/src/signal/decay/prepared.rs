@@ -114,17 +114,19 @@ impl Prepared {
         if let Some(known) = known {
             modes::subtract(&mut cleared[begun.1..], known);
         }
-        let start = match begun.0 < begun.1 {
-            true => blows::earliest(begun, std::f64::consts::TAU / rates[0]),
-            false => begun.1,
+        let start = if begun.0 < begun.1 {
+            blows::earliest(begun, std::f64::consts::TAU / rates[0])
+        } else {
+            begun.1
         };
         let (first, found) = begin(&cleared, start, rates)?;
         let factor = found.factor;
         let mut own = samples[first..].to_vec();
         let beside = modes::remove(&mut own, found.point.per_sample(factor), known);
-        let point = match beside.is_empty() {
-            true => found.point,
-            false => first_fit(&own, rates)?.point,
+        let point = if beside.is_empty() {
+            found.point
+        } else {
+            first_fit(&own, rates)?.point
         };
         own.truncate(end(&own, factor, &point));
         let mut series = Series::plain(means(&own, factor));
@@ -353,9 +355,10 @@ fn end(samples: &[f64], factor: usize, point: &Point) -> usize {
     let step = digit(samples);
     let sigma = point.rates[1].max(f64::MIN_POSITIVE);
     let lost = (LOST / sigma).min(1e9);
-    let counted = match step > 0.0 && amplitude > 4.0 * step {
-        true => ((amplitude / (1.5 * step)).ln() / sigma).min(1e9),
-        false => f64::INFINITY,
+    let counted = if step > 0.0 && amplitude > 4.0 * step {
+        ((amplitude / (1.5 * step)).ln() / sigma).min(1e9)
+    } else {
+        f64::INFINITY
     };
     let periods = 4.0 * std::f64::consts::TAU / point.rates[0];
     let least = periods.min(lost).max(16.0);
