@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use super::rig::{RATE_HZ, Take, assert_the_answer_is_true, done, takes};
+use super::rig::{RATE_HZ, Take, assert_the_answer_is_true, done, state, takes};
 use crate::support::Lab;
 
 /// A g in m/s², and the accelerometer's sensitivity.
@@ -67,11 +67,6 @@ fn valid_an_accelerometer_in_millivolts_from_init_to_the_report() {
     assert!(written.contains("machine = \"single\""), "{written}");
     assert!(written.contains("channel = \"load cell\""), "{written}");
     // what the user knows and no file states
-    let line = "channel = \"acceleration\"";
-    lab.replace(
-        "day/campaign.toml",
-        line,
-        &format!("{line}\nscale = \"100 mV/g\""),
-    );
+    state(&lab, "acceleration", "scale = \"100 mV/g\"");
     assert_the_answer_is_true(&lab, 60);
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use super::rig::{Take, assert_the_answer_is_true, done, takes};
+use super::rig::{Take, assert_the_answer_is_true, done, state, takes};
 use crate::support::Lab;
 
 /// Columns of the simulated rig, their heads as saved, and the factors from V.
@@ -53,12 +53,7 @@ fn valid_labview_files_with_decimal_commas_from_init_to_the_report() {
     done(&lab, &["init", "day"]);
     // what the user knows and no file states
     for channel in ["Geschw. y", "Weg x"] {
-        let line = format!("channel = \"{channel}\"");
-        lab.replace(
-            "day/campaign.toml",
-            &line,
-            &format!("{line}\nhigh_pass = \"0.5 Hz\""),
-        );
+        state(&lab, channel, "high_pass = \"0.5 Hz\"");
     }
     assert_the_answer_is_true(&lab, 60);
 }

@@ -3,7 +3,7 @@
 
 use std::fs;
 
-use super::rig::{Take, assert_the_answer_is_true, done, takes};
+use super::rig::{Take, assert_the_answer_is_true, done, state, takes};
 use crate::support::Lab;
 
 /// Kinds of elements of a MAT file of level 5.
@@ -111,18 +111,12 @@ fn valid_matlab_structs_from_init_to_the_report() {
         ("vx", "m/s"),
         ("vy", "m/s"),
     ] {
-        let line = format!("channel = \"rec.{channel}\"");
-        lab.replace(
-            "day/campaign.toml",
-            &line,
-            &format!("{line}\nunit = \"{unit}\""),
+        state(
+            &lab,
+            &format!("rec.{channel}"),
+            &format!("unit = \"{unit}\""),
         );
     }
-    let line = "channel = \"rec.vy\"";
-    lab.replace(
-        "day/campaign.toml",
-        line,
-        &format!("{line}\nhigh_pass = \"0.5 Hz\""),
-    );
+    state(&lab, "rec.vy", "high_pass = \"0.5 Hz\"");
     assert_the_answer_is_true(&lab, 60);
 }

@@ -33,6 +33,12 @@ impl Take {
     }
 }
 
+/// State a key of a channel that `init` has written.
+pub(super) fn state(lab: &Lab, channel: &str, key: &str) {
+    let line = format!("channel = \"{channel}\"");
+    lab.replace("day/campaign.toml", &line, &format!("{line}\n{key}"));
+}
+
 /// Run the program; it must do what it is asked.
 pub(super) fn done(lab: &Lab, arguments: &[&str]) -> String {
     let ran = lab.run(arguments);

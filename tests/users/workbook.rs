@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::rig::{Take, assert_the_answer_is_true, done, takes};
+use super::rig::{Take, assert_the_answer_is_true, done, state, takes};
 use crate::support::Lab;
 
 /// Files of an archive that stores them as they are.
@@ -173,11 +173,6 @@ fn valid_a_workbook_with_a_sheet_of_settings_from_init_to_the_report() {
         "machine = \"single\"",
         "machine = \"double\"",
     );
-    let line = "channel = \"displacement x\"";
-    lab.replace(
-        "day/campaign.toml",
-        line,
-        &format!("{line}\nhigh_pass = \"0.5 Hz\""),
-    );
+    state(&lab, "displacement x", "high_pass = \"0.5 Hz\"");
     assert_the_answer_is_true(&lab, 45);
 }

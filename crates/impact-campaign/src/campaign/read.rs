@@ -10,10 +10,8 @@ use toml::de::{DeArray, DeTable, DeValue, Deserializer};
 use super::diagnostic::{Code, FaultCollector};
 use super::lines::Text;
 use super::nearest::nearest;
+use super::resolved::RESOLVED;
 use super::written::WrittenCampaign;
-
-/// A file that a folder of results has.
-pub(super) const RESULTS: &str = "campaign.resolved.json";
 
 /// The text of campaign.toml; `None`, and a fault, where it cannot be read.
 pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
@@ -23,7 +21,7 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
     };
     let unreadable = || format!("campaign.toml cannot be read: {error}");
     let (message, remedy) = match (path.is_dir(), error.kind()) {
-        (true, _) if path.join(RESULTS).exists() => (
+        (true, _) if path.join(RESOLVED).exists() => (
             "it is a folder of results".to_owned(),
             "name the campaign.toml that they were computed from: campaign.resolved.json states it as `file`",
         ),

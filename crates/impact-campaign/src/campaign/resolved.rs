@@ -17,6 +17,9 @@ use impact_records::motion::{ClassifySettings, LateChannel};
 use impact_records::record::Setting;
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup};
 
+/// Its name in a folder of results, which every one has.
+pub(crate) const RESOLVED: &str = "campaign.resolved.json";
+
 /// A campaign ready to be analysed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ResolvedCampaign {

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
+use crate::campaign::resolved::{RESOLVED, RecordEntry, ResolvedCampaign};
 use crate::pipeline::identify::{self, IdentificationFile};
 use crate::pipeline::json::{read_json, store_error, write_json};
 use crate::pipeline::observe::each_record;
@@ -16,7 +16,6 @@ use impact_records::record::{ContactContent, Flag, Record, Role};
 use labfiles::hdf5_write::{AttributeValue, CampaignWriter, ColumnToWrite, RecordTable};
 use labfiles::units::{Dimension, Quantity, Unit};
 
-const RESOLVED: &str = "campaign.resolved.json";
 const INGESTED: &str = "ingested.h5";
 const INGESTED_CAMPAIGN: &str = "ingested.json";
 const OBSERVATIONS: &str = "observations.json.gz";

@@ -258,6 +258,13 @@ impl ParameterSet {
         }
     }
 
+    /// Replace the estimate of a physical coordinate, if there is one.
+    pub fn change(&mut self, coordinate: Coordinate, of: impl FnOnce(&Estimate) -> Estimate) {
+        if let Some(Some(estimate)) = self.slot(coordinate) {
+            *estimate = of(estimate);
+        }
+    }
+
     /// Place of the estimate of a physical coordinate.
     pub fn slot(&mut self, coordinate: Coordinate) -> Option<&mut Option<Estimate>> {
         match coordinate {

@@ -58,7 +58,8 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
 
 /// The evidence behind the low-pass that fits its waveforms best, where one was found that is not stated.
 fn behind_low_pass(evidence: &Evidence<'_>) -> Option<Refiltered> {
-    if undeclared_low_pass::filtered(evidence).is_empty() {
+    let channels = undeclared_low_pass::filtered(evidence);
+    if channels.is_empty() {
         return None;
     }
     let mut selection = Selection::new(evidence);
@@ -88,7 +89,7 @@ fn behind_low_pass(evidence: &Evidence<'_>) -> Option<Refiltered> {
             residuals: open.residuals,
         })
     };
-    undeclared_low_pass::settled(evidence, &fit)
+    undeclared_low_pass::settled(evidence, &channels, &fit)
 }
 
 /// The same where all filters are known.
@@ -226,9 +227,9 @@ fn widen_over_speed(
 ) -> Option<f64> {
     let by = verdict::open_by_speed(methods)?;
     for result in methods.values_mut().chain([joint]) {
-        if let Some(estimate) = &mut result.parameters.restitution {
-            *estimate = estimate::wider(Coordinate::Restitution, estimate, by);
-        }
+        let parameter = Coordinate::Restitution;
+        let parameters = &mut result.parameters;
+        parameters.change(parameter, |e| estimate::wider(parameter, e, by));
     }
     Some(by)
 }
@@ -242,15 +243,12 @@ fn widen_apart(
 ) -> Vec<(Coordinate, f64)> {
     let fit = succeeded(&fits.joint).map(|f| &f.fit);
     let carried = fit.map_or_else(Vec::new, |fit| carried_on(fit, &apart));
+    let parameters = &mut joint.parameters;
     for (parameter, by) in &apart {
-        if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
-            *estimate = estimate::widened(*parameter, estimate, *by);
-        }
+        parameters.change(*parameter, |e| estimate::widened(*parameter, e, *by));
     }
     for (parameter, by) in &carried {
-        if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
-            *estimate = estimate::wider(*parameter, estimate, *by);
-        }
+        parameters.change(*parameter, |e| estimate::wider(*parameter, e, *by));
     }
     [apart, carried].concat()
 }

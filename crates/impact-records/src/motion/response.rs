@@ -34,31 +34,25 @@ impl Response {
         self.real.hypot(self.imaginary)
     }
 
-    /// What a low-pass was given that made this of it.
-    fn before(&self, filter: LowPass, frequency_hz: f64) -> Self {
-        let rate = Complex::new(0.0, std::f64::consts::TAU * frequency_hz);
-        let passed = filter.transfer(rate);
-        let value = Complex::new(self.real, self.imaginary) / passed;
+    fn times(&self, factor: Complex<f64>) -> Self {
+        let value = Complex::new(self.real, self.imaginary) * factor;
         Self {
             real: value.re,
             imaginary: value.im,
-            error: self.error / passed.norm(),
+            error: self.error * factor.norm(),
             ..*self
         }
+    }
+
+    /// What a low-pass was given that made this of it.
+    fn before(&self, filter: LowPass, frequency_hz: f64) -> Self {
+        self.times(transfer(filter, frequency_hz).inv())
     }
 
     /// The same measured values if the channel has passed another low-pass than was assumed.
     #[must_use]
     pub fn behind_low_pass(&self, [assumed, other]: [LowPass; 2], frequency_hz: f64) -> Self {
-        let rate = Complex::new(0.0, std::f64::consts::TAU * frequency_hz);
-        let passed = assumed.transfer(rate);
-        let value = Complex::new(self.real, self.imaginary) * passed;
-        let measured = Self {
-            real: value.re,
-            imaginary: value.im,
-            error: self.error * passed.norm(),
-            ..*self
-        };
+        let measured = self.times(transfer(assumed, frequency_hz));
         measured.before(other, frequency_hz)
     }
 
@@ -68,16 +62,16 @@ impl Response {
         // To divide by iω/(iω + ω_c) is to multiply by 1 − iω_c/ω.
         let undoing =
             |corner_hz: Option<f64>| Complex::new(1.0, -corner_hz.unwrap_or(0.0) / frequency_hz);
-        let factor = undoing(high_pass_hz) / undoing(self.high_pass_hz);
-        let value = Complex::new(self.real, self.imaginary) * factor;
         Self {
-            real: value.re,
-            imaginary: value.im,
-            error: self.error * factor.norm(),
             high_pass_hz,
-            ..*self
+            ..self.times(undoing(high_pass_hz) / undoing(self.high_pass_hz))
         }
     }
+}
+
+/// What a low-pass makes of a unit amplitude at a frequency.
+fn transfer(filter: LowPass, frequency_hz: f64) -> Complex<f64> {
+    filter.transfer(Complex::new(0.0, std::f64::consts::TAU * frequency_hz))
 }
 
 /// Response of all motion channels of a record to its drive.

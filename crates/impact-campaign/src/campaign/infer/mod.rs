@@ -10,7 +10,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::discovery::Opener;
-use super::read::RESULTS;
+use super::resolved::RESOLVED;
 use super::run_table;
 use impact_records::record::{Role, time_axis};
 use impact_records::signal::robust;
@@ -233,7 +233,7 @@ fn collect(folder: &Path, depth: usize, seen: &mut HashSet<PathBuf>, paths: &mut
     let real = folder.canonicalize();
     let new = real.is_ok_and(|real| seen.insert(real));
     let entries = std::fs::read_dir(folder);
-    let (Ok(entries), true) = (entries, new && !folder.join(RESULTS).exists()) else {
+    let (Ok(entries), true) = (entries, new && !folder.join(RESOLVED).exists()) else {
         return;
     };
     let mut entries: Vec<_> = entries.filter_map(Result::ok).collect();

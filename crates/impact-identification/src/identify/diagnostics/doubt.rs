@@ -60,8 +60,8 @@ pub fn parted(suspicions: Vec<Suspicion>) -> (Vec<Finding>, Vec<Doubt>) {
 /// Widen a joint result by all that is in doubt.
 pub fn widen(joint: &mut MethodResult, doubts: &[Doubt]) {
     for doubt in doubts {
-        if let Some(Some(estimate)) = joint.parameters.slot(doubt.parameter) {
-            *estimate = estimate::in_doubt(doubt.parameter, estimate, doubt.by, doubt.note.clone());
-        }
+        joint.parameters.change(doubt.parameter, |e| {
+            estimate::in_doubt(doubt.parameter, e, doubt.by, doubt.note.clone())
+        });
     }
 }

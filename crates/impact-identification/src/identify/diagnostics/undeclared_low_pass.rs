@@ -56,14 +56,14 @@ pub struct Costs {
     pub residuals: usize,
 }
 
-/// The evidence with the filter that fits best, by fits of its waveforms. Where a change of the force explains as
+/// The evidence with the filter of some channels that fits best, by fits of its waveforms. Where a change of the force explains as
 /// much as one pole does, the filter, which is known to be there, is taken, and what it lowers stays open.
 pub fn settled(
     evidence: &Evidence<'_>,
+    channels: &[LateChannel],
     fit: &dyn Fn(&Evidence<'_>) -> Option<Costs>,
 ) -> Option<Refiltered> {
-    let channels = filtered(evidence);
-    let refiltered = |filter| refiltered(evidence, &channels, filter);
+    let refiltered = |filter| refiltered(evidence, channels, filter);
     let costs = |order: u32, corner: f64| fit(&refiltered((order, corner, 1.0)).evidence(evidence));
     let more_poles = costs(2, 1.0)?;
     let one_pole = LOWERED.map(|lowered| costs(1, corner(lowered)));
@@ -152,7 +152,7 @@ fn refiltered(
         };
         observations
             .iter_mut()
-            .for_each(|o| refilter(o, &is, assumed));
+            .for_each(|o| refilter(o, &is, [assumed, other]));
     }
     Refiltered {
         observations,
@@ -160,23 +160,20 @@ fn refiltered(
     }
 }
 
-/// Replace the low-pass that was assumed of a channel of one record.
-fn refilter(observation: &mut Observation, channel: &LateChannel, assumed: LowPass) {
-    let Some(other) = channel.low_pass else {
-        return;
-    };
+/// Replace the low-pass that was assumed of a channel of one record by another.
+fn refilter(observation: &mut Observation, channel: &LateChannel, filters: [LowPass; 2]) {
     let late = observation.late.iter_mut();
     late.filter(|l| l.role == channel.role)
         .for_each(|l| *l = *channel);
     if let Some(folded) = &mut observation.folded {
         let channels = Arc::make_mut(folded).channels.iter_mut();
         let own = channels.filter(|c| c.role == channel.role);
-        own.for_each(|c| c.low_pass = Some(other));
+        own.for_each(|c| c.low_pass = channel.low_pass);
     }
     let frequency_hz = observation.frequency_hz();
     for response in &mut observation.response {
         if let Some(f) = frequency_hz.filter(|_| response.role == channel.role) {
-            *response = response.behind_low_pass([assumed, other], f);
+            *response = response.behind_low_pass(filters, f);
         }
     }
 }
@@ -242,7 +239,7 @@ mod tests {
                 residuals: 4,
             })
         };
-        let settled = settled(&evidence, &fit).expect("a filter");
+        let settled = settled(&evidence, &filtered(&evidence), &fit).expect("a filter");
         let late = settled.observations[0].late[0];
         // the delay as a whole stays as it was measured
         let filter = late.low_pass.expect("a filter");
