@@ -296,7 +296,7 @@ fn every_dependency_is_used() {
 
 /// The layers of the identification in order: a unit of `identify` (a file or a folder) imports only from
 /// those before it.
-const LAYERS: [&str; 27] = [
+const LAYERS: [&str; 22] = [
     "method",
     "parameters",
     "solver",
@@ -306,22 +306,17 @@ const LAYERS: [&str; 27] = [
     "method_fit",
     "estimate",
     "answer",
+    "methods",
     "plan",
     "replay",
     "residuals",
-    "methods",
-    "flight_times",
-    "decay",
-    "bracket_midpoints",
-    "joint",
-    "starts",
     "uncertainty",
-    "selection",
     "identification",
     "first_values",
     "published",
     "diagnostics",
     "results",
+    "widening",
     "run",
     "boundary_plan",
 ];

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::identify::estimate::{Estimate, ParameterSet};
-use crate::identify::evidence::contact_law::ContactLaw;
-use crate::identify::evidence::structure::{Grouping, ImpactGroups};
 use crate::identify::messages::{Finding, GroupPoint, PairAgreement, Remark, Sentence};
 use crate::identify::method::Method;
+use crate::identify::methods::impacts::contact_law::ContactLaw;
+use crate::identify::methods::impacts::structure::{Grouping, ImpactGroups};
 use crate::identify::parameters::Coordinate;
 use crate::identify::solver::{Fit, FitReport, Prior};
 use impact_records::message::{Message, Value, plain, plain_all, sentence};

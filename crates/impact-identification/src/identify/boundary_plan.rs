@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::answer::MethodResult;
 use crate::identify::evidence::Evidence;
-use crate::identify::evidence::boundary::{BoundaryBlock, predicted_hz};
-use crate::identify::methods::{self, succeeded};
+use crate::identify::methods::boundaries::block::{BoundaryBlock, predicted_hz};
+use crate::identify::methods::boundaries::posterior::{self, Posterior};
+use crate::identify::methods::boundaries::result;
+use crate::identify::methods::boundaries::surroundings::Surroundings;
+use crate::identify::methods::impacts;
+use crate::identify::methods::selection::Selection;
 use crate::identify::parameters::Parameters;
-use crate::identify::results;
-use crate::identify::selection::Selection;
-use crate::identify::uncertainty::posterior::{self, Posterior};
-use crate::identify::uncertainty::surroundings::Surroundings;
 use impact_records::motion::{BoundaryKind, Bracket};
 
 /// A sweep in small steps through a bracket.
@@ -56,14 +56,14 @@ impl<'a> Alone<'a> {
     /// impacts tell.
     fn of(evidence: &'a Evidence<'a>, fitted: Option<&Parameters>) -> Option<Self> {
         let mut selection = Selection::new(evidence);
-        let resonance = selection.resonance();
-        let curve = succeeded(&resonance)?;
+        let resonance = selection.fit_resonance();
+        let curve = resonance.as_ref()?.as_ref().ok()?;
         let start = match fitted {
             Some(fitted) => *fitted,
             None => {
                 let about = curve.fit.parameters;
-                let impacts = methods::impacts(&selection.blocks, &evidence.nominal, about);
-                let restitution = succeeded(&impacts)?.fit.parameters.restitution;
+                let impacts = impacts::fit::from(&selection.blocks, &evidence.nominal, about);
+                let restitution = impacts?.ok()?.fit.parameters.restitution;
                 Parameters {
                     restitution: restitution.clamp(0.0, 1.0),
                     ..about
@@ -99,7 +99,7 @@ fn half_width(found: &Posterior) -> f64 {
 pub fn restitution(evidence: &Evidence<'_>) -> Option<MethodResult> {
     let alone = Alone::of(evidence, None)?;
     let blocks = &alone.selection.blocks;
-    Some(results::posterior(blocks, &alone.posterior, &alone.curve))
+    Some(result::by_posterior(blocks, &alone.posterior, &alone.curve))
 }
 
 /// The coarsest steps through the ends of z = 1 with which the boundaries alone would hold R in half of its interval now,
@@ -174,7 +174,7 @@ fn sweeps(block: &BoundaryBlock, parts: u32) -> Vec<FineSweep> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::evidence::boundary::tests::bracket;
+    use crate::identify::methods::boundaries::block::tests::bracket;
     use impact_records::event::RigKind;
 
     #[test]

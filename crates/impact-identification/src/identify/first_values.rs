@@ -3,16 +3,29 @@
 use std::collections::BTreeMap;
 
 use crate::identify::evidence::Evidence;
-use crate::identify::evidence::impacts::ImpactBlock;
-use crate::identify::methods::{self, FitResult, succeeded};
+use crate::identify::method::Method;
+use crate::identify::methods::fit::FitResult;
+use crate::identify::methods::found::Found;
+use crate::identify::methods::impacts::{self, block::ImpactBlock};
+use crate::identify::methods::selection::Selection;
 use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::selection::Selection;
 use crate::identify::statistics::scatter::Spread;
 use impact_records::motion::Observation;
 
-/// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
-pub(super) fn start(evidence: &Evidence<'_>, resonance: &Option<FitResult>) -> Parameters {
-    if let Some(found) = succeeded(resonance) {
+/// First values: those of the resonance curve, with R of the speeds at impacts.
+pub(super) fn first_values(selection: &Selection<'_>, resonance: Option<FitResult>) -> Found {
+    let (blocks, nominal) = (&selection.blocks, &selection.evidence.nominal);
+    let begin = start(selection.evidence, resonance.as_ref());
+    let impacts = impacts::fit::from(blocks, nominal, begin);
+    let mut found = Found::new(with_restitution(begin, &impacts, &blocks.impact));
+    found.set(Method::Resonance, resonance);
+    found.set(Method::Impacts, impacts);
+    found
+}
+
+/// Where waveforms start but for R: the resonance curve's, else the stated values, else guesses of scale.
+pub(super) fn start(evidence: &Evidence<'_>, resonance: Option<&FitResult>) -> Parameters {
+    if let Some(Ok(found)) = resonance {
         return found.fit.parameters;
     }
     let nominal = &evidence.nominal;
@@ -41,12 +54,13 @@ pub(super) fn start(evidence: &Evidence<'_>, resonance: &Option<FitResult>) -> P
 }
 
 /// R as the impacts tell it, if only by ratios that give a first value.
-pub(super) fn with_restitution(
+fn with_restitution(
     start: Parameters,
     impacts: &Option<FitResult>,
     block: &ImpactBlock,
 ) -> Parameters {
-    let told = succeeded(impacts).map(|found| found.fit.parameters.restitution);
+    let told = impacts.as_ref().and_then(|i| i.as_ref().ok());
+    let told = told.map(|found| found.fit.parameters.restitution);
     let told = told.or(block
         .typical_ratio()
         .filter(|_| block.first_value_only.is_some()));
@@ -76,16 +90,15 @@ pub(super) fn part_alone(
         ..*evidence
     };
     let mut selection = Selection::new(&evidence);
-    let resonance = selection.resonance();
-    let begin = start(&evidence, &resonance);
-    let impacts = methods::impacts(&selection.blocks, &evidence.nominal, begin);
-    let begin = with_restitution(begin, &impacts, &selection.blocks.impact);
-    let trajectories = selection.trajectories(begin);
+    let resonance = selection.fit_resonance();
+    let mut found = first_values(&selection, resonance);
+    found.set(
+        Method::Trajectories,
+        selection.fit_trajectories(found.begin),
+    );
     let mut told = BTreeMap::new();
-    for found in [&trajectories, &resonance, &impacts]
-        .into_iter()
-        .filter_map(succeeded)
-    {
+    let first = [Method::Trajectories, Method::Resonance, Method::Impacts];
+    for found in first.into_iter().filter_map(|method| found.of(method)) {
         for (_, parameter) in found.fit.estimated() {
             let value = found.fit.parameters.coordinate(parameter);
             if let Some(spread) = found.spread(parameter) {

@@ -1,23 +1,19 @@
 //! Identification: parameters fitted to what was measured, with uncertainty and a verdict.
 //!
 //! The result is plain data ([`Identification`]), written as `identification.json`. [`run`] leads from
-//! [`evidence`] (what was measured, as residuals of the model) over [`solver`] (least squares) to
+//! [`evidence`] over [`methods`] (what was measured, as residuals of the model, and fits of it by [`solver`]) to
 //! [`uncertainty`] and [`diagnostics`] (does the model fit, do the methods agree, was there a mistake). What it states is typed
 //! ([`messages`]); sentences are made when it is printed.
 
 mod answer;
 pub mod boundary_plan;
-pub mod bracket_midpoints;
-pub mod decay;
 pub mod diagnostics;
 pub mod estimate;
 pub mod evidence;
 mod first_values;
 #[cfg(test)]
 mod fixture;
-pub mod flight_times;
 mod identification;
-pub mod joint;
 pub mod messages;
 pub mod method;
 pub mod method_fit;
@@ -29,12 +25,11 @@ pub mod replay;
 pub mod residuals;
 pub mod results;
 pub mod run;
-pub mod selection;
 pub mod solver;
 pub mod specimens;
-mod starts;
 pub mod statistics;
 pub mod uncertainty;
+mod widening;
 
 pub use answer::{Agreement, Allowed, JointFit, MethodResult, Verdict, VerdictKind};
 pub use estimate::{Estimate, ParameterSet, Status};

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::JointFit;
 use crate::identify::evidence::Evidence;
-use crate::identify::evidence::trajectory::{TrajectoryBlock, distinct_phases};
-use crate::identify::evidence::trajectory_record::TrajectoryRecord;
-use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
+use crate::identify::methods::trajectories::block::{TrajectoryBlock, distinct_phases};
+use crate::identify::methods::trajectories::record::TrajectoryRecord;
+use crate::identify::methods::weighing::LEAST_ALLOWANCE;
 use crate::identify::parameters::{Coordinate, GAIN_ROLES, Parameters};
 use crate::identify::solver::normal::inverse;
 use crate::identify::solver::{Fit, Problem};

@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::identify::evidence::trajectory::channel_value;
+use crate::identify::methods::trajectories::block::channel_value;
 use crate::identify::parameters::Parameters;
 use impact_oscillator::atlas::MapSettings;
 use impact_oscillator::atlas::map::{End, Start, march_from};

@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::identify::evidence::Blocks;
 use crate::identify::method::Method;
+use crate::identify::methods::blocks::Blocks;
 use crate::identify::parameters::Parameters;
 use crate::identify::solver::Block;
 use impact_records::signal::robust;

@@ -3,14 +3,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::identify::answer::{MethodResult, Verdict, VerdictKind};
+use crate::identify::estimate;
 use crate::identify::estimate::Status;
 use crate::identify::evidence::Evidence;
 use crate::identify::identification::{Identification, SpecimenResult};
 use crate::identify::messages::{Finding, Item, LeftOut, Note, Sentence};
 use crate::identify::method::Method;
+use crate::identify::methods::decays;
 use crate::identify::parameters::Coordinate;
 use crate::identify::run::identify;
-use crate::identify::{decay, estimate};
 use impact_records::motion::{Bracket, Observation};
 
 /// Identify a campaign: as a whole if it holds one specimen, else each specimen by itself.
@@ -25,7 +26,7 @@ pub fn identify_campaign(evidence: &Evidence<'_>) -> Identification {
     if names.len() < 2 {
         return identify(evidence);
     }
-    let misfiled = decay::misfiled(evidence.observations);
+    let misfiled = decays::misfiled(evidence.observations);
     let mut whole = Whole {
         left_out: misfiled.clone(),
         ..Whole::default()

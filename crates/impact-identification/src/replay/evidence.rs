@@ -1,10 +1,10 @@
 //! What each method used: resonance curves, speeds at impacts, residuals, correlation.
 
 use super::input::Input;
-use crate::identify::evidence::contact_law::Law;
-use crate::identify::evidence::impacts::SpeedPair;
-use crate::identify::evidence::impacts_of_bulk;
-use crate::identify::evidence::resonance::predicted;
+use crate::identify::methods::blocks::impacts_of_bulk;
+use crate::identify::methods::impacts::block::SpeedPair;
+use crate::identify::methods::impacts::contact_law::Law;
+use crate::identify::methods::resonance::block::predicted;
 use crate::identify::parameters::Coordinate;
 use crate::identify::residuals::MethodResiduals;
 use crate::identify::{Method, MethodResult, SpecimenResult};

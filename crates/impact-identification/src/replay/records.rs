@@ -1,7 +1,7 @@
 //! Records and brackets with their place in the (η, ρ) plane, and counts over all of them.
 
 use super::input::Input;
-use crate::identify::evidence::boundary::predicted_hz;
+use crate::identify::methods::boundaries::block::predicted_hz;
 use crate::identify::{Method, Reason};
 use impact_records::motion::{BoundaryKind, Bracket, Motion, Observation};
 use impact_records::record::{FlagCode, Sweep};

@@ -15,7 +15,7 @@ use impact_campaign::pipeline::watch::Live;
 use impact_campaign::pipeline::{
     Observed, PipelineError, Progress, identify, inputs, layout, store,
 };
-use impact_identification::identify::evidence::Blocks;
+use impact_identification::identify::methods::blocks::Blocks;
 use impact_identification::identify::parameters::Parameters;
 use impact_identification::identify::{Estimate, Identification};
 use impact_identification::replay::{self, Input, PlacedRecord};

@@ -11,13 +11,14 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::identify::answer::MethodResult;
 use crate::identify::estimate::{Estimate, Status, estimate_within};
-use crate::identify::evidence::{Blocks, Evidence};
+use crate::identify::evidence::Evidence;
 use crate::identify::first_values::part_alone;
 use crate::identify::messages::{Finding, Note, StatedValue};
 use crate::identify::method::Method;
+use crate::identify::methods::blocks::Blocks;
+use crate::identify::methods::selection::Selection;
 use crate::identify::parameters::effect::Effect;
 use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::selection::Selection;
 use crate::identify::solver::Problem;
 use crate::identify::solver::normal::{Normal, inverse};
 use crate::identify::solver::placed_rows::PlacedRows;

@@ -4,8 +4,8 @@
 //! The first order about a fit, which finds smaller errors of a gap, may then accuse another gap.
 
 use crate::identify::diagnostics::suspicion::{OddGap, recover};
-use crate::identify::evidence::Blocks;
-use crate::identify::evidence::trajectory_record::TrajectoryRecord;
+use crate::identify::methods::blocks::Blocks;
+use crate::identify::methods::trajectories::record::TrajectoryRecord;
 use crate::identify::parameters::Parameters;
 use crate::identify::solver::mean_squares;
 use impact_records::signal::robust;

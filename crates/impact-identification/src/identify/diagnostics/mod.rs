@@ -10,7 +10,6 @@ pub mod contradicting_gap;
 pub mod doubt;
 pub mod late_channel;
 pub mod missing;
-pub mod momentum;
 pub mod settling;
 pub mod stated_clearances;
 pub mod stated_frequencies;

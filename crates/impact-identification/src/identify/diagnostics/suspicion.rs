@@ -6,11 +6,12 @@
 
 use nalgebra::DVector;
 
-use crate::identify::evidence::trajectory::TrajectoryBlock;
-use crate::identify::evidence::trajectory_record::TrajectoryRecord;
-use crate::identify::evidence::{Blocks, Nominal};
+use crate::identify::evidence::Nominal;
 use crate::identify::messages::Finding;
 use crate::identify::method_fit::MethodFit;
+use crate::identify::methods::blocks::Blocks;
+use crate::identify::methods::trajectories::block::TrajectoryBlock;
+use crate::identify::methods::trajectories::record::TrajectoryRecord;
 use crate::identify::parameters::{Coordinate, GAIN_ROLES, Parameters};
 use crate::identify::solver::{Block, Fit, Prior, mean_squares};
 use impact_records::signal::columns::dot;

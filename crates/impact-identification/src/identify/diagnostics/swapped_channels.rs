@@ -4,11 +4,11 @@
 use std::sync::Arc;
 
 use crate::identify::diagnostics::suspicion::SURE;
-use crate::identify::evidence::Blocks;
-use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
-use crate::identify::joint::Weights;
 use crate::identify::messages::Finding;
 use crate::identify::method::Method;
+use crate::identify::methods::blocks::Blocks;
+use crate::identify::methods::joint::Weights;
+use crate::identify::methods::weighing::LEAST_ALLOWANCE;
 use crate::identify::parameters::gain_index;
 use impact_records::record::Role;
 

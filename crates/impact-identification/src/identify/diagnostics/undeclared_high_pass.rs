@@ -2,9 +2,9 @@
 //! one of them had, then another one beside it, as long as that explains far more.
 
 use crate::identify::diagnostics::suspicion::SURE;
-use crate::identify::evidence::Blocks;
-use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
 use crate::identify::messages::Finding;
+use crate::identify::methods::blocks::Blocks;
+use crate::identify::methods::weighing::LEAST_ALLOWANCE;
 use crate::identify::parameters::gain_index;
 use crate::identify::solver::Fit;
 use impact_records::record::Role;

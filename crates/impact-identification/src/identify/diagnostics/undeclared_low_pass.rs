@@ -2,9 +2,15 @@
 //! the waveforms tell the rest: behind one pole an amplitude at the frequency f is smaller by ½(f/`f_c`)², behind
 //! more of them, as far as second order in f/`f_c` goes, it is not. The waveforms are fitted with either.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::identify::evidence::{Evidence, Nominal};
+use crate::identify::first_values::start;
+use crate::identify::methods::blocks::Blocks;
+use crate::identify::methods::joint;
+use crate::identify::methods::selection::Selection;
+use crate::identify::parameters::effect::EffectKind;
 use crate::identify::parameters::gain_index;
 use impact_records::motion::{LateChannel, Observation};
 use impact_records::record::LowPass;
@@ -38,8 +44,45 @@ impl Refiltered {
     }
 }
 
+/// The evidence behind the low-pass that fits its waveforms best, where one was found that is not stated.
+pub fn behind(evidence: &Evidence<'_>) -> Option<Refiltered> {
+    let channels = filtered(evidence);
+    if channels.is_empty() {
+        return None;
+    }
+    let mut selection = Selection::new(evidence);
+    let resonance = selection.fit_resonance();
+    let begin = start(evidence, resonance.as_ref());
+    let found = selection.fit_trajectories(begin)?.ok()?;
+    let fitted = found.fit.parameters.ideal();
+    let records = &selection.blocks.trajectory.records;
+    let kept: BTreeSet<usize> = records.iter().map(|r| r.observation).collect();
+    let both = joint::curve_and_waveforms();
+    let fit = |evidence: &Evidence<'_>| {
+        let begin = evidence.nominal.applied(fitted);
+        let mut blocks = Blocks::new(evidence);
+        blocks
+            .trajectory
+            .records
+            .retain(|r| kept.contains(&r.observation));
+        blocks.allow_least(&begin);
+        let simple = Nominal {
+            effects: evidence.nominal.effects.without(EffectKind::ForceFrequency),
+            ..evidence.nominal
+        };
+        let fitted = |nominal: &Nominal| joint::rough(&blocks, begin, &both, nominal);
+        let open = fitted(&evidence.nominal)?;
+        Some(Costs {
+            open: open.cost,
+            simple: fitted(&simple)?.cost,
+            residuals: open.residuals,
+        })
+    };
+    settled(evidence, &channels, &fit)
+}
+
 /// The channels whose jumps show a low-pass that is not stated.
-pub fn filtered(evidence: &Evidence<'_>) -> Vec<LateChannel> {
+fn filtered(evidence: &Evidence<'_>) -> Vec<LateChannel> {
     let late = evidence.observations.first().map_or(&[][..], |o| &o.late);
     let filtered = late.iter().filter(|l| l.low_pass.is_some());
     filtered.copied().collect()
@@ -47,18 +90,18 @@ pub fn filtered(evidence: &Evidence<'_>) -> Vec<LateChannel> {
 
 /// Sums of squares of a fit of all waveforms.
 #[derive(Clone, Copy)]
-pub struct Costs {
+struct Costs {
     /// Where the force may change with the frequency.
-    pub open: f64,
+    open: f64,
     /// Where it may not: such a change and one pole lower amplitudes alike.
-    pub simple: f64,
+    simple: f64,
     /// Residuals.
-    pub residuals: usize,
+    residuals: usize,
 }
 
 /// The evidence with the filter of some channels that fits best, by fits of its waveforms. Where a change of the force explains as
 /// much as one pole does, the filter, which is known to be there, is taken, and what it lowers stays open.
-pub fn settled(
+fn settled(
     evidence: &Evidence<'_>,
     channels: &[LateChannel],
     fit: &dyn Fn(&Evidence<'_>) -> Option<Costs>,

@@ -1,133 +1,13 @@
 //! Whether the model fits each method's data, and the verdict.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::identify::answer::{Agreement, MethodResult, Verdict, VerdictKind};
-use crate::identify::estimate::{Estimate, Status, not_identifiable};
-use crate::identify::evidence::Evidence;
-use crate::identify::evidence::contact_law::CurvePoint;
-use crate::identify::evidence::impacts::ImpactBlock;
-use crate::identify::evidence::resonance::{self, ResonanceBlock};
-use crate::identify::evidence::structure::Grouping;
-use crate::identify::evidence::trajectory::TrajectoryBlock;
+use crate::identify::estimate::{Estimate, Status};
 use crate::identify::messages::cause::Cause;
-use crate::identify::messages::{Finding, Note, Remark, Sentence, SpeedPoint, StatedValue};
+use crate::identify::messages::{Finding, Note, Remark, Sentence, StatedValue};
 use crate::identify::method::Method;
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::Block;
-use crate::identify::statistics::quantile::NORMAL_975;
-use impact_records::motion::Observation;
-use impact_records::signal::robust;
-
-/// Relative deviation of responses from which one degree of freedom does not fit.
-const RESONANCE_DEVIATION: f64 = 0.15;
-/// Relative deviation of waveforms from which the orbit does not fit.
-const WAVEFORM_DEVIATION: f64 = 0.08;
-/// Change of R over the measured speeds from which a constant R does not fit.
-const RESTITUTION_CHANGE: f64 = 0.02;
-
-/// Judge whether the impactless records are those of one degree of freedom for each mass.
-pub fn judge_resonance(result: &mut MethodResult, block: &ResonanceBlock, fitted: &Parameters) {
-    let mut deviations = Vec::new();
-    for point in &block.points {
-        for r in &point.responses {
-            let model = resonance::predicted(
-                fitted,
-                block.rig,
-                r.role,
-                point.frequency_hz,
-                point.drive_amplitude,
-            );
-            let apart = match point.phase_error_rad {
-                Some(_) => (r.real - model.re).hypot(r.imaginary - model.im),
-                None => (r.amplitude() - model.norm()).abs(),
-            };
-            deviations.push(apart / model.norm().max(r.amplitude()));
-        }
-    }
-    let deviation = robust::rms(&deviations);
-    result.fits = Some(deviation < RESONANCE_DEVIATION);
-    result.remarks.push(if deviation < RESONANCE_DEVIATION {
-        Remark::OneDegreeOfFreedom { deviation }
-    } else {
-        Remark::NotOneDegreeOfFreedom { deviation }
-    });
-}
-
-/// Judge whether the waveforms are those of the closed-form orbits.
-pub fn judge_trajectories(result: &mut MethodResult, block: &TrajectoryBlock, fitted: &Parameters) {
-    let mut ratios = Vec::new();
-    for item in 0..block.items() {
-        let Some(residuals) = block.residuals(item, fitted) else {
-            continue;
-        };
-        let channels = &block.records[item].folded.channels;
-        let (mut apart, mut whole, mut k) = (0.0, 0.0, 0);
-        for channel in channels {
-            let mean = robust::mean(&channel.points.iter().map(|p| p.value).collect::<Vec<_>>());
-            for p in &channel.points {
-                let weight = f64::from(p.samples) / channel.noise.powi(2);
-                apart += residuals[k].powi(2);
-                whole += weight * (p.value - mean).powi(2);
-                k += 1;
-            }
-        }
-        ratios.push((apart / whole.max(f64::MIN_POSITIVE)).sqrt());
-    }
-    let Some(deviation) = robust::median(&ratios) else {
-        return;
-    };
-    result.fits = Some(deviation < WAVEFORM_DEVIATION);
-    let share = deviation;
-    result.remarks.push(Remark::WaveformsUnexplained { share });
-}
-
-/// Judge whether impacts are instantaneous with one R: first by a structure over bounces and records,
-/// then by the contact law; the records of the impacts that it rests on say how long a contact lasts. Then
-/// whether they stand for all impacts.
-pub fn judge_impacts(
-    result: &mut MethodResult,
-    block: &ImpactBlock,
-    evidence: &Evidence<'_>,
-    structure: Option<Grouping>,
-) {
-    judge_law(result, block, evidence);
-    if let Some(grouping) = structure {
-        result.judge_structure(grouping);
-    }
-    judge_contacts(result, evidence.observations);
-}
-
-/// Share of the impacts with speeds whose speeds can be used from which they stand for all.
-const USABLE: f64 = 0.25;
-/// Impacts below which a share says nothing.
-const FEWEST_IMPACTS: usize = 20;
-
-/// Judge whether the impacts that R rests on stand for all.
-fn judge_contacts(result: &mut MethodResult, observations: &[Observation]) {
-    let usable = observations.iter().filter(|o| !o.excluded());
-    let impacts = usable.flat_map(|o| &o.impacts);
-    let with_speeds = impacts.filter(|i| {
-        i.approach_speed_before_m_s
-            .and(i.approach_speed_after_m_s)
-            .is_some()
-    });
-    let (used, of) = (result.observations, with_speeds.count());
-    if of >= FEWEST_IMPACTS && (used as f64) < USABLE * of as f64 {
-        result.fits = Some(false);
-        result.remarks.push(Remark::FewUsable { used, of });
-    }
-}
-
-/// Speeds that impacts seem to gain are not those of impacts: they tell no R.
-pub fn judge_gained(result: &mut MethodResult, point: CurvePoint) {
-    result.fits = Some(false);
-    result.remarks.push(Remark::SpeedsGained {
-        speed_m_s: point.speed_m_s,
-        ratio: point.restitution,
-    });
-    result.parameters.restitution = Some(not_identifiable(Note::NotOfImpacts));
-}
+use crate::identify::parameters::Coordinate;
 
 /// R from the impacts alone that is not one number makes the joint R no better.
 pub fn carry_over(joint: &mut MethodResult, methods: &BTreeMap<Method, MethodResult>) {
@@ -151,62 +31,6 @@ pub fn open_by_speed(methods: &BTreeMap<Method, MethodResult>) -> Option<f64> {
         }
         _ => None,
     })
-}
-
-/// Judge by the contact law.
-fn judge_law(result: &mut MethodResult, block: &ImpactBlock, evidence: &Evidence<'_>) {
-    let Some(law) = &result.contact_law else {
-        return;
-    };
-    let (Some([a, b]), [Some(slow), Some(fast)]) =
-        (law.extremes(), [law.curve.first(), law.curve.last()])
-    else {
-        return;
-    };
-    let change = (a.restitution - b.restitution).abs();
-    let changes = law.is_not_constant() && change > RESTITUTION_CHANGE;
-    result.fits = Some(!changes);
-    let [slower, faster] = [a, b].map(|p| SpeedPoint {
-        speed_m_s: p.speed_m_s,
-        restitution: p.restitution,
-    });
-    if law.is_not_constant() && !changes {
-        let little = Remark::RestitutionChangesLittle { slower, faster };
-        result.remarks.push(little);
-        return;
-    }
-    if !changes {
-        result.remarks.push(Remark::RestitutionConstant {
-            slow_m_s: slow.speed_m_s,
-            fast_m_s: fast.speed_m_s,
-            within: change.max(NORMAL_975 * a.standard_error).max(1e-3),
-        });
-        return;
-    }
-    let samples = contact_samples(block, evidence);
-    result.remarks.push(if samples > 1.5 {
-        Remark::LongContact {
-            slower,
-            faster,
-            samples,
-        }
-    } else {
-        Remark::RestitutionChanges { slower, faster }
-    });
-    let ends = [slower.restitution, faster.restitution];
-    if let Some(estimate) = &mut result.parameters.restitution {
-        estimate.is_not_one_number(&ends);
-    }
-}
-
-/// Samples over which a velocity jumps at the impacts, in the median record.
-fn contact_samples(block: &ImpactBlock, evidence: &Evidence<'_>) -> f64 {
-    let used: BTreeSet<usize> = block.pairs.iter().map(|p| p.observation).collect();
-    let samples: Vec<f64> = used
-        .into_iter()
-        .map(|i| evidence.observations[i].jump_samples as f64)
-        .collect();
-    robust::median(&samples).unwrap_or(1.0)
 }
 
 /// What a verdict is made from.
@@ -351,6 +175,7 @@ mod tests {
     use super::*;
     use crate::identify::estimate::{estimate, estimate_within};
     use crate::identify::messages::PairAgreement;
+    use crate::identify::statistics::quantile::NORMAL_975;
     use crate::identify::statistics::scatter::Spread;
 
     /// A joint result with standard errors of R and ln f0.

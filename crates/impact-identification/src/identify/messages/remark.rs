@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::{DampingPoint, Item, Note};
-use crate::identify::evidence::structure::ImpactGroup;
 use crate::identify::messages::cause::Cause;
 use crate::identify::method::Method;
+use crate::identify::methods::impacts::structure::ImpactGroup;
 use crate::identify::statistics::quantile::NORMAL_975;
 use impact_records::message::{Message, Value};
 use impact_records::signal::decay::DampingLaw;

@@ -297,7 +297,7 @@ fn bend(place: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::evidence::impacts::PUSH_OF_LAWS;
+    use crate::identify::methods::impacts::block::PUSH_OF_LAWS;
     use crate::identify::parameters::contact_laws::{Coefficients, Law};
 
     /// R, g and h from an independent program in Python that integrates flights and contact from first touch

@@ -9,12 +9,13 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
-use crate::identify::evidence::{Blocks, Evidence, Nominal};
-use crate::identify::joint;
+use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::method::{Estimator, Method};
+use crate::identify::methods::blocks::Blocks;
+use crate::identify::methods::boundaries::posterior::{self, Posterior};
+use crate::identify::methods::boundaries::surroundings::Surroundings;
+use crate::identify::methods::joint;
 use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::uncertainty::posterior::{self, Posterior};
-use crate::identify::uncertainty::surroundings::Surroundings;
 
 /// Least standard errors of the coordinates.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,9 +8,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::evidence::Blocks;
 use crate::identify::method::Method;
 use crate::identify::method_fit::MethodFit;
+use crate::identify::methods::blocks::Blocks;
 use crate::identify::parameters::Coordinate;
 use crate::identify::solver::Problem;
 use crate::identify::statistics::quantile::student_975;

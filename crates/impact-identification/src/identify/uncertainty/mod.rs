@@ -1,5 +1,5 @@
 //! Uncertainty beyond the covariance: profile likelihoods, a bootstrap over records, and what each
-//! method contributed. Beside it: the posterior of brackets ([`posterior`]), how far curves of the plane
+//! method contributed. Beside it: how far curves of the plane
 //! may be off ([`band`]), the least error that any estimator can have ([`bound`]), and how often intervals
 //! hold the truth ([`coverage`]).
 
@@ -7,10 +7,7 @@ pub mod band;
 pub mod bound;
 pub mod budget;
 pub mod coverage;
-pub mod posterior;
 pub mod profile;
-pub mod propagation;
-pub mod surroundings;
 
 pub use profile::ProfileCurve;
 

@@ -1,0 +1,41 @@
+//! Multiple shooting: all four parameters from records followed from impact to impact.
+
+pub mod block;
+mod fit;
+mod result;
+mod select;
+
+use crate::identify::answer::MethodResult;
+use crate::identify::method::Method;
+use crate::identify::methods::Identifier;
+use crate::identify::methods::found::Found;
+use crate::identify::methods::selection::Selection;
+
+/// Multiple shooting.
+pub struct Flights;
+
+impl Identifier for Flights {
+    fn method(&self) -> Method {
+        Method::Flights
+    }
+
+    fn fit(&self, selection: &mut Selection<'_>, found: &mut Found) {
+        let fitted = selection.fit_flights(found.start());
+        found.set(self.method(), fitted);
+    }
+
+    fn weight(&self, _: &Selection<'_>, found: &Found) -> Option<f64> {
+        let fitted = found.of(self.method())?;
+        found.joins_flights().then(|| 1.0 / fitted.factor)
+    }
+
+    fn records(&self, selection: &Selection<'_>) -> Vec<usize> {
+        let records = selection.blocks.flight.records.iter();
+        records.map(|r| r.observation).collect()
+    }
+
+    fn result(&self, selection: &Selection<'_>, found: &Found) -> Option<MethodResult> {
+        let fitted = found.attempt(self.method())?;
+        Some(result::result(&selection.blocks, fitted))
+    }
+}

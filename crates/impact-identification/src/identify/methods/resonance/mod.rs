@@ -1,0 +1,45 @@
+//! The resonance curve: f0, β and `x_st` from the records without impacts.
+
+pub mod block;
+pub mod fit;
+mod result;
+mod select;
+
+use crate::identify::answer::MethodResult;
+use crate::identify::method::Method;
+use crate::identify::methods::Identifier;
+use crate::identify::methods::fit::FitResult;
+use crate::identify::methods::found::Found;
+use crate::identify::methods::selection::Selection;
+
+/// The resonance curve.
+pub struct Resonance;
+
+impl Identifier for Resonance {
+    fn method(&self) -> Method {
+        Method::Resonance
+    }
+
+    /// Beside the first fit, which gives the waveforms their start, from where they are.
+    fn fit(&self, selection: &mut Selection<'_>, found: &mut Found) {
+        if let Some(waveforms) = found.waveforms().map(|f| f.fit.parameters) {
+            let before = found.take(self.method());
+            let fitted = selection.fit_resonance_again(before, &waveforms);
+            found.set(self.method(), fitted);
+        }
+    }
+
+    fn fit_again(&self, selection: &Selection<'_>, found: &Found) -> Option<FitResult> {
+        fit::from(&selection.blocks, &selection.evidence.nominal, found.begin)
+    }
+
+    fn records(&self, selection: &Selection<'_>) -> Vec<usize> {
+        let points = selection.blocks.resonance.points.iter();
+        points.map(|p| p.observation).collect()
+    }
+
+    fn result(&self, selection: &Selection<'_>, found: &Found) -> Option<MethodResult> {
+        let fitted = found.attempt(self.method())?;
+        Some(result::result(&selection.blocks, fitted))
+    }
+}

@@ -1,0 +1,50 @@
+//! Trajectories: all four parameters from the waveforms of periodic records.
+
+pub mod block;
+pub mod fit;
+pub mod nearest_orbit;
+pub mod record;
+pub mod record_motion;
+pub mod reduced_record;
+mod result;
+pub(super) mod select;
+mod starts;
+
+use crate::identify::answer::MethodResult;
+use crate::identify::method::Method;
+use crate::identify::methods::Identifier;
+use crate::identify::methods::fit::FitResult;
+use crate::identify::methods::found::Found;
+use crate::identify::methods::selection::Selection;
+use crate::identify::solver::Precision;
+
+/// The waveforms.
+pub struct Trajectories;
+
+impl Identifier for Trajectories {
+    fn method(&self) -> Method {
+        Method::Trajectories
+    }
+
+    fn fit(&self, selection: &mut Selection<'_>, found: &mut Found) {
+        found.set(self.method(), selection.fit_trajectories(found.begin));
+    }
+
+    fn fit_again(&self, selection: &Selection<'_>, found: &Found) -> Option<FitResult> {
+        let (blocks, nominal) = (&selection.blocks, &selection.evidence.nominal);
+        fit::from(blocks, nominal, found.begin, Precision::Result)
+    }
+
+    fn records(&self, selection: &Selection<'_>) -> Vec<usize> {
+        let records = selection.blocks.trajectory.records.iter();
+        records.map(|r| r.observation).collect()
+    }
+
+    fn result(&self, selection: &Selection<'_>, found: &Found) -> Option<MethodResult> {
+        let fitted = found.attempt(self.method())?;
+        let Selection {
+            blocks, evidence, ..
+        } = selection;
+        Some(result::result(blocks, fitted, evidence))
+    }
+}
