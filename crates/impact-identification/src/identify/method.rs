@@ -60,6 +60,31 @@ impl Method {
         Self::Flights,
     ];
 
+    /// Those each item of whose block is one record, which can be left out or compared by itself.
+    pub const BY_RECORD: [Self; 2] = [Self::Resonance, Self::Trajectories];
+
+    /// Those whose residuals are kept: of records and of impacts.
+    pub const WITH_RESIDUALS: [Self; 3] = [Self::Resonance, Self::Trajectories, Self::Impacts];
+
+    /// Whether impacts act on what it observes.
+    pub fn observes_impacts(self) -> bool {
+        !matches!(self, Self::Resonance | Self::FreeDecay)
+    }
+
+    /// Whether it takes a motion for settled: the others follow one from impact to impact, or from turn to turn,
+    /// whether it has settled or not.
+    pub fn observes_settled_motion(self) -> bool {
+        matches!(
+            self,
+            Self::Resonance | Self::Trajectories | Self::Boundaries
+        )
+    }
+
+    /// Whether its R is that of the bodies as a whole, not that at the contact.
+    pub fn observes_whole_bodies(self) -> bool {
+        matches!(self, Self::Trajectories | Self::Boundaries)
+    }
+
     /// Name in `identification.json`: that of the report.
     pub fn name(self) -> &'static str {
         self.into()

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use crate::identify::method::Method;
 use crate::identify::methods::blocks::Blocks;
 use crate::identify::parameters::Parameters;
-use crate::identify::solver::Block;
 use impact_records::signal::robust;
 use impact_records::signal::thinning::thinned;
 
@@ -33,12 +32,10 @@ pub struct MethodResiduals {
 }
 
 impl MethodResiduals {
-    /// Of a block at parameters, whose items are of these observations; `None` of too few.
-    fn of(
-        (method, block, owners): (Method, &dyn Block, Vec<usize>),
-        at: &Parameters,
-    ) -> Option<Self> {
-        let items = owners.into_par_iter().enumerate();
+    /// Of a method's block at parameters; `None` of too few.
+    fn of(method: Method, blocks: &Blocks, at: &Parameters) -> Option<Self> {
+        let block = blocks.of(method)?;
+        let items = blocks.owners(method).into_par_iter().enumerate();
         let of_items: Vec<(usize, Vec<f64>)> = items
             .filter_map(|(item, owner)| Some((owner, block.residuals(item, at)?)))
             .collect();
@@ -59,21 +56,8 @@ impl MethodResiduals {
 /// Residuals of the resonance curve, the trajectories and the impacts at the fitted parameters, with
 /// the weights of the fit; without a method that has fewer than five.
 pub(super) fn residuals(blocks: &Blocks, fitted: &Parameters) -> Vec<MethodResiduals> {
-    let resonance = blocks.resonance.points.iter().map(|p| p.observation);
-    let trajectory = blocks.trajectory.records.iter().map(|r| r.observation);
-    let impact = blocks.impact.pairs.iter().map(|p| p.observation);
-    let all: [(Method, &dyn Block, Vec<usize>); 3] = [
-        (Method::Resonance, &blocks.resonance, resonance.collect()),
-        (
-            Method::Trajectories,
-            &blocks.trajectory,
-            trajectory.collect(),
-        ),
-        (Method::Impacts, &blocks.impact, impact.collect()),
-    ];
-    let found = all
-        .into_iter()
-        .filter_map(|of| MethodResiduals::of(of, fitted));
+    let each = Method::WITH_RESIDUALS.into_iter();
+    let found = each.filter_map(|method| MethodResiduals::of(method, blocks, fitted));
     found.collect()
 }
 

@@ -432,7 +432,7 @@ impl IdentificationRun<'_> {
             effects: nominal.effects.without(EffectKind::Pickup),
             ..*nominal
         };
-        let curve = Weights::from([(Method::Resonance, 1.0)]);
+        let curve = joint::curve();
         // without what delays, gains and asymmetries took of it
         let begin = nominal.applied(start.ideal());
         let fit = |blocks: &Blocks| joint::rough(blocks, begin, &curve, &open);

@@ -41,13 +41,12 @@ fn differs(pair: &PairAgreement, pairs: usize) -> bool {
 /// Which R is which, where the speeds at impacts tell another one than waveforms or boundaries: R of the contact,
 /// and R of the whole bodies.
 pub fn which_restitution(agreement: &Agreement) -> Option<Remark> {
-    let bodies = [Method::Trajectories, Method::Boundaries];
     let of = |pair: &PairAgreement| {
         let impact = pair.methods.iter().position(|m| *m == Method::Impacts)?;
         let other = 1 - impact;
         let method = pair.methods[other];
         let differs = pair.parameter == Coordinate::Restitution && pair.p_value < LEVEL;
-        (differs && bodies.contains(&method)).then(|| Remark::WhichRestitution {
+        (differs && method.observes_whole_bodies()).then(|| Remark::WhichRestitution {
             at_impact: pair.values[impact],
             of_bodies: pair.values[other],
             method,

@@ -137,21 +137,10 @@ fn by_rows(
 ) -> Option<usize> {
     let mut records: Vec<(usize, PlacedRows)> = Vec::new();
     for ((block, weight), method) in problem.blocks.iter().zip(present) {
-        let owners: Vec<usize> = match method {
-            Method::Resonance => blocks
-                .resonance
-                .points
-                .iter()
-                .map(|p| p.observation)
-                .collect(),
-            Method::Trajectories => blocks
-                .trajectory
-                .records
-                .iter()
-                .map(|r| r.observation)
-                .collect(),
-            _ => continue,
-        };
+        if !Method::BY_RECORD.contains(method) {
+            continue;
+        }
+        let owners = blocks.owners(*method);
         let rows = problem.rows_of(*block, *weight, at);
         if rows.len() == owners.len() {
             records.extend(owners.into_iter().map(|i| ranks[i]).zip(rows));

@@ -5,9 +5,8 @@ use std::sync::Arc;
 
 use crate::identify::diagnostics::suspicion::SURE;
 use crate::identify::messages::Finding;
-use crate::identify::method::Method;
 use crate::identify::methods::blocks::Blocks;
-use crate::identify::methods::joint::Weights;
+use crate::identify::methods::joint::{self, Weights};
 use crate::identify::methods::weighing::LEAST_ALLOWANCE;
 use crate::identify::parameters::gain_index;
 use impact_records::record::Role;
@@ -33,8 +32,8 @@ pub fn swapped(
             .filter_map(|filters| cost(&interchanged(blocks, filters)?, weights))
             .min_by(|a, b| a.0.total_cmp(&b.0))
     };
-    let alone = Weights::from([(Method::Resonance, 1.0)]);
-    let both = Weights::from([(Method::Resonance, 1.0), (Method::Trajectories, 1.0)]);
+    let alone = joint::curve();
+    let both = joint::curve_and_waveforms();
     // Often the resonance curve alone, or a few waveforms beside it, speak against it.
     let few = allowed_least(thinned(blocks));
     for (weights, against) in [(&alone, 2.0), (&both, 1.0)] {

@@ -31,12 +31,8 @@ impl Cause {
     pub fn reaches(self, method: Method) -> bool {
         match self {
             Self::Channel | Self::Change => true,
-            Self::Contact => !matches!(method, Method::Resonance | Method::FreeDecay),
-            // the others follow a motion from impact to impact, or from turn to turn, whether it has settled or not
-            Self::Unsettled => matches!(
-                method,
-                Method::Resonance | Method::Trajectories | Method::Boundaries
-            ),
+            Self::Contact => method.observes_impacts(),
+            Self::Unsettled => method.observes_settled_motion(),
             Self::Statement | Self::Effect | Self::Symptom => false,
         }
     }

@@ -28,7 +28,7 @@ impl Selection<'_> {
         let (mut owners, mut records) = (Vec::new(), Vec::new());
         let mut others = problem.priors_normal(at);
         for ((block, weight), method) in problem.blocks.iter().zip(present) {
-            if matches!(method, Method::Resonance | Method::Trajectories) {
+            if Method::BY_RECORD.contains(method) {
                 let rows = problem.rows_of(*block, *weight, at);
                 owners.extend((0..rows.len()).map(|i| (*method, i)));
                 records.extend(rows);
@@ -82,10 +82,8 @@ impl Selection<'_> {
         // the last first, so that the places of the others stay
         influential.sort_unstable_by_key(|(method, place)| (*method, Reverse(*place)));
         for (method, place) in influential {
-            let observation = match method {
-                Method::Resonance => self.blocks.resonance.points.remove(place).observation,
-                _ => self.blocks.trajectory.records.remove(place).observation,
-            };
+            let observation = self.blocks.owners(method)[place];
+            self.blocks.remove(method, place);
             self.note(observation, Reason::Influential { method });
         }
     }

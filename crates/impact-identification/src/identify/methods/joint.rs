@@ -84,6 +84,11 @@ pub fn rough(
     problem.fit(start).ok()
 }
 
+/// The weight of the resonance curve alone, by its noise.
+pub fn curve() -> Weights {
+    Weights::from([(Method::Resonance, 1.0)])
+}
+
 /// The weights of waveforms and resonance curve, each by its noise.
 pub fn curve_and_waveforms() -> Weights {
     Weights::from([(Method::Resonance, 1.0), (Method::Trajectories, 1.0)])

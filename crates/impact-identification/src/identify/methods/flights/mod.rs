@@ -30,8 +30,7 @@ impl Identifier for Flights {
     }
 
     fn records(&self, selection: &Selection<'_>) -> Vec<usize> {
-        let records = selection.blocks.flight.records.iter();
-        records.map(|r| r.observation).collect()
+        selection.blocks.owners(self.method())
     }
 
     fn result(&self, selection: &Selection<'_>, found: &Found) -> Option<MethodResult> {

@@ -60,8 +60,7 @@ impl Identifier for Impacts {
     }
 
     fn records(&self, selection: &Selection<'_>) -> Vec<usize> {
-        let pairs = selection.blocks.impact.pairs.iter();
-        pairs.map(|p| p.observation).collect()
+        selection.blocks.owners(self.method())
     }
 
     fn result(&self, selection: &Selection<'_>, found: &Found) -> Option<MethodResult> {

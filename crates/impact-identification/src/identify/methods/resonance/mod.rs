@@ -34,8 +34,7 @@ impl Identifier for Resonance {
     }
 
     fn records(&self, selection: &Selection<'_>) -> Vec<usize> {
-        let points = selection.blocks.resonance.points.iter();
-        points.map(|p| p.observation).collect()
+        selection.blocks.owners(self.method())
     }
 
     fn result(&self, selection: &Selection<'_>, found: &Found) -> Option<MethodResult> {

@@ -36,8 +36,7 @@ impl Identifier for Trajectories {
     }
 
     fn records(&self, selection: &Selection<'_>) -> Vec<usize> {
-        let records = selection.blocks.trajectory.records.iter();
-        records.map(|r| r.observation).collect()
+        selection.blocks.owners(self.method())
     }
 
     fn result(&self, selection: &Selection<'_>, found: &Found) -> Option<MethodResult> {
