@@ -3,7 +3,6 @@
 
 pub mod axis;
 pub mod canvas;
-mod compact;
 pub mod csv;
 pub mod dots;
 mod drawing;
