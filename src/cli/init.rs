@@ -68,9 +68,14 @@ fn name_of(folder: &Path) -> String {
 }
 
 fn none_found(folder: &Path, found: &FolderContents) -> Failure {
-    let refused = match found.refused.first() {
-        Some((file, why)) => format!("; {file}: {why}"),
-        None => String::new(),
+    let refused = match (found.refused.first(), found.others.first()) {
+        (Some((file, why)), _) => format!("; {file}: {why}"),
+        (None, Some(file)) => {
+            format!(
+                "; {file} was read, but is neither a series of 16 samples or more nor a list of times"
+            )
+        }
+        (None, None) => String::new(),
     };
     Failure::new(
         format!("no record found in {}{refused}", folder.display()),

@@ -22,42 +22,62 @@ const WORDS: [&str; 7] = [
 /// Words of time stamps that count from 1970.
 const EPOCHS: [&str; 5] = ["timestamp", "zeitstempel", "epoch", "unix", "posix"];
 
-/// Units below a second, spelled out, and their lengths in s.
-const SPELLED: [(&str, f64); 17] = [
-    ("milliseconds", 1e-3),
-    ("millisekunden", 1e-3),
-    ("millisecond", 1e-3),
-    ("millisec", 1e-3),
-    ("millis", 1e-3),
+/// How units below a second begin in the languages that laboratories write, and their lengths in s.
+const FRACTIONS: [(&str, f64); 8] = [
+    ("milli", 1e-3),
+    ("mili", 1e-3),
+    ("милли", 1e-3),
+    ("micro", 1e-6),
+    ("mikro", 1e-6),
+    ("микро", 1e-6),
+    ("nano", 1e-9),
+    ("нано", 1e-9),
+];
+
+/// How `second` begins in them.
+const SECOND: [&str; 5] = ["sec", "sek", "seg", "san", "сек"];
+
+/// Short forms of units below a second.
+const SHORT: [(&str, f64); 8] = [
     ("msecs", 1e-3),
     ("msec", 1e-3),
-    ("microseconds", 1e-6),
-    ("mikrosekunden", 1e-6),
-    ("microsecond", 1e-6),
-    ("microsec", 1e-6),
-    ("micros", 1e-6),
+    ("msek", 1e-3),
+    ("мс", 1e-3),
     ("usecs", 1e-6),
     ("usec", 1e-6),
-    ("nanoseconds", 1e-9),
-    ("nanos", 1e-9),
+    ("мкс", 1e-6),
     ("nsec", 1e-9),
 ];
 
-/// Units of a second and longer, spelled out.
-const LONG: [(&str, f64); 12] = [
+/// Units of a second and longer, spelled out; the first of them name a time axis by themselves.
+const LONG: [(&str, f64); 23] = [
     ("seconds", 1.0),
     ("second", 1.0),
     ("secs", 1.0),
     ("sec", 1.0),
     ("sekunden", 1.0),
     ("secondes", 1.0),
+    ("segundos", 1.0),
+    ("secondi", 1.0),
+    ("sekundy", 1.0),
+    ("sekunder", 1.0),
+    ("секунды", 1.0),
     ("minutes", 60.0),
     ("minuten", 60.0),
+    ("minutos", 60.0),
+    ("minuti", 60.0),
+    ("minuty", 60.0),
     ("min", 60.0),
     ("hours", 3600.0),
     ("stunden", 3600.0),
+    ("heures", 3600.0),
+    ("horas", 3600.0),
+    ("hodiny", 3600.0),
     ("h", 3600.0),
 ];
+
+/// Those that name a time axis by themselves.
+const SECONDS: usize = 11;
 
 /// Symbols of units below and at a second.
 const SYMBOLS: [(&str, f64); 6] = [
@@ -79,6 +99,19 @@ fn of_time(to_si: f64) -> Unit {
 fn in_table(table: &[(&str, f64)], word: &str) -> Option<Unit> {
     let found = table.iter().find(|(name, _)| *name == word);
     found.map(|(_, to_si)| of_time(*to_si))
+}
+
+/// The unit below a second that a word in lower case spells out: `millis`, `Millisekunden`, `milisegundos`, `msec`.
+fn spelled(word: &str) -> Option<Unit> {
+    let of = |(begin, to_si): &(&str, f64)| {
+        let rest = word.strip_prefix(begin)?;
+        let second = rest == "s" || SECOND.iter().any(|s| rest.starts_with(s));
+        second.then(|| of_time(*to_si))
+    };
+    FRACTIONS
+        .iter()
+        .find_map(of)
+        .or_else(|| in_table(&SHORT, word))
 }
 
 /// The words of a name in lower case, also those of `timeMs`.
@@ -118,10 +151,10 @@ pub fn is_time_name(name: &str) -> bool {
     let Some(first) = words.first() else {
         return false;
     };
-    let spelled = |w: &String| in_table(&SPELLED, w).is_some();
-    let known = |w: &String| WORDS.contains(&w.as_str()) || spelled(w) || glued(w).is_some();
+    let known =
+        |w: &String| WORDS.contains(&w.as_str()) || spelled(w).is_some() || glued(w).is_some();
     let alone = words.len() == 1
-        && (in_table(&LONG[..6], first).is_some()
+        && (in_table(&LONG[..SECONDS], first).is_some()
             || ["ms", "us", "µs", "μs"].contains(&first.as_str()));
     let since = words.get(1).is_some_and(|w| w == "since") && unit_of_symbol(first).is_some();
     FIRST_WORDS.contains(&first.as_str())
@@ -137,7 +170,7 @@ fn glued(word: &str) -> Option<Unit> {
         .iter()
         .find_map(|time| word.strip_prefix(time))?;
     let short = ["ms", "us", "µs", "μs"].contains(&unit);
-    in_table(&SPELLED, unit).or_else(|| unit_of_symbol(unit).filter(|_| short))
+    spelled(unit).or_else(|| unit_of_symbol(unit).filter(|_| short))
 }
 
 fn unit_of_symbol(word: &str) -> Option<Unit> {
@@ -156,8 +189,8 @@ fn unit_of_text(text: &str) -> Option<Unit> {
         .replace("10⁻³", "1e-3")
         .replace("10⁻⁶", "1e-6");
     known
-        .or_else(|| in_table(&SPELLED, &lower))
-        .or_else(|| in_table(&SPELLED, &joined).filter(|_| lower.starts_with(char::is_alphabetic)))
+        .or_else(|| spelled(&lower))
+        .or_else(|| spelled(&joined).filter(|_| lower.starts_with(char::is_alphabetic)))
         .or_else(|| in_table(&LONG, &lower))
         .or_else(|| unit_of_symbol(&lower))
         .or_else(|| {
@@ -177,11 +210,11 @@ fn unit_in_name(name: &str) -> Option<Unit> {
     let words = words(name);
     let joined = || {
         let mut pairs = words.windows(2).map(|w| w.concat());
-        pairs.find_map(|w| in_table(&SPELLED, &w))
+        pairs.find_map(|w| spelled(&w))
     };
-    let spelled = words
+    let fraction = words
         .iter()
-        .find_map(|w| in_table(&SPELLED, w).or_else(|| glued(w)))
+        .find_map(|w| spelled(w).or_else(|| glued(w)))
         .or_else(joined);
     let long = || words.iter().find_map(|w| in_table(&LONG, w));
     let last = || {
@@ -195,7 +228,7 @@ fn unit_in_name(name: &str) -> Option<Unit> {
         let symbol = words.first().filter(|w| since && w.chars().count() > 1);
         symbol.and_then(|w| unit_of_symbol(w))
     };
-    spelled.or_else(last).or_else(first).or_else(long)
+    fraction.or_else(last).or_else(first).or_else(long)
 }
 
 /// Whether a text is a unit of time.
@@ -258,6 +291,7 @@ impl AxisUnit {
     /// assert_eq!(seconds(None, "timestamp", &[1_486_512_345_678.0]), Some(1e-3));
     /// assert_eq!(seconds(None, "Time", &[0.0, 0.5]), Some(1.0));
     /// assert_eq!(seconds(None, "Time", &[0.0, 10.0, 20.0]), None);
+    /// assert_eq!(seconds(None, "Tiempo (milisegundos)", &[0.0, 0.5]), Some(1e-3));
     /// ```
     pub fn of(unit: Option<&str>, name: &str, values: &[f64]) -> Self {
         let first = values.iter().copied().find(|v| v.is_finite());
@@ -419,8 +453,12 @@ fn counts_days(times: &[f64]) -> bool {
 /// A time without a unit beyond this is no time in s since the start of a record: 32 years.
 const LONGEST_S: f64 = 1e9;
 
-/// Whether times without a unit may be of any unit: whole numbers, as counts of ms and of samples are, or
-/// beyond 10⁹.
+/// A step and a length in s of records that are too slow and too long to be of vibrations: more likely ms.
+const SLOW_STEP_S: f64 = 0.05;
+const SLOW_RECORD_S: f64 = 300.0;
+
+/// Whether times without a unit may be of any unit: whole numbers, as counts of ms and of samples are, beyond 10⁹, or
+/// with steps and a length that are those of ms.
 fn is_undetermined(times: &[f64]) -> bool {
     let mut finite = times.iter().filter(|t| t.is_finite()).peekable();
     let Some(&&first) = finite.peek() else {
@@ -428,7 +466,9 @@ fn is_undetermined(times: &[f64]) -> bool {
     };
     let whole = finite.clone().all(|t| t.fract() == 0.0);
     let moves = finite.clone().any(|t| *t != first);
-    (whole && moves) || finite.any(|t| t.abs() > LONGEST_S)
+    let step = crate::rate::median_step(times).unwrap_or(0.0);
+    let slow = step >= SLOW_STEP_S && finite.clone().any(|t| t - first > SLOW_RECORD_S);
+    (whole && moves) || slow || finite.any(|t| t.abs() > LONGEST_S)
 }
 
 #[cfg(test)]

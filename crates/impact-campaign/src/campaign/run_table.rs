@@ -165,7 +165,7 @@ pub(super) fn read(folder: &Path, name: &str, faults: &mut FaultCollector) -> Ve
         return Vec::new();
     };
     let mut bad = BadCells::default();
-    let rows: Vec<Row> = records
+    let mut rows: Vec<Row> = records
         .iter()
         .filter_map(|record| {
             let cells = Cells {
@@ -178,11 +178,21 @@ pub(super) fn read(folder: &Path, name: &str, faults: &mut FaultCollector) -> Ve
         })
         .collect();
     bad.note(faults);
+    for row in &mut rows {
+        row.file = beside(folder, name, &row.file).unwrap_or_else(|| row.file.clone());
+    }
     if rows.is_empty() && !faults.blocks() {
         let what = "the run table has a header and no records".to_owned();
         faults.fault(Code::Missing, None, "", what, "write one line per record");
     }
     rows
+}
+
+/// The path of a file that is not in the campaign's folder but in that of the run table, below the campaign's.
+fn beside(folder: &Path, table: &str, file: &str) -> Option<String> {
+    let below = Path::new(table).parent()?.join(file);
+    let moved = !folder.join(file).exists() && folder.join(&below).exists();
+    moved.then(|| below.to_string_lossy().into_owned())
 }
 
 /// Whether a text begins as a run table does: with a header that has the column of files.

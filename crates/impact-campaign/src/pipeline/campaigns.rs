@@ -10,7 +10,9 @@ use crate::pipeline::identify::{FILE, IdentificationFile, versions};
 use crate::pipeline::report::ReportFile;
 use crate::pipeline::{PipelineError, layout};
 use impact_identification::compare::{Campaign, Comparison, Difference};
+use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::{Identification, JointFit, ParameterSet, VerdictKind};
+use impact_report::kit::csv::Csv;
 use impact_report::{CampaignsContent, Format, Report, ReportOptions};
 
 /// Name of the result's file.
@@ -153,33 +155,28 @@ pub fn files(
         serde_json::to_string_pretty(&written).map_err(PipelineError::in_table(COMPARISON))?;
     let mut files = vec![
         (COMPARISON.to_owned(), (json + "\n").into_bytes()),
-        (TABLE.to_owned(), table(comparison)?),
+        (TABLE.to_owned(), table(comparison).into_bytes()),
     ];
     files.extend(report.all_files(formats)?);
     Ok(files)
 }
 
-/// One line of comparison.csv; SI, differences against the first campaign.
-#[derive(Serialize)]
-struct Line<'a> {
-    campaign: &'a str,
-    measured: Option<&'a str>,
-    parameter: &'static str,
-    value: Option<f64>,
-    low95: Option<f64>,
-    high95: Option<f64>,
-    difference: Option<f64>,
-    difference_low95: Option<f64>,
-    difference_high95: Option<f64>,
-    independent_low95: Option<f64>,
-    independent_high95: Option<f64>,
-    p_value: Option<f64>,
-}
-
-/// The estimates of all campaigns and their differences as CSV.
-fn table(comparison: &Comparison) -> Result<Vec<u8>, PipelineError> {
-    use impact_identification::identify::parameters::Coordinate;
-    let mut writer = csv::Writer::from_writer(Vec::new());
+/// The estimates of all campaigns and their differences against the first, SI, as CSV.
+fn table(comparison: &Comparison) -> String {
+    let mut csv = Csv::new(&[
+        "campaign",
+        "measured",
+        "parameter",
+        "value",
+        "low95",
+        "high95",
+        "difference",
+        "difference_low95",
+        "difference_high95",
+        "independent_low95",
+        "independent_high95",
+        "p_value",
+    ]);
     for (number, campaign) in comparison.campaigns.iter().enumerate() {
         for parameter in Coordinate::PHYSICAL {
             let Some(estimate) = campaign.parameters.get(parameter) else {
@@ -188,24 +185,21 @@ fn table(comparison: &Comparison) -> Result<Vec<u8>, PipelineError> {
             let mut all = comparison.differences.iter();
             let found = all.find(|d| d.campaign == number && d.parameter == parameter);
             let of = |pick: fn(&Difference) -> f64| found.map(pick);
-            let line = Line {
-                campaign: &campaign.name,
-                measured: campaign.measured.as_deref(),
-                parameter: parameter.name(),
-                value: estimate.value,
-                low95: estimate.interval95.map(|i| i[0]),
-                high95: estimate.interval95.map(|i| i[1]),
-                difference: of(|d| d.value),
-                difference_low95: of(|d| d.interval95[0]),
-                difference_high95: of(|d| d.interval95[1]),
-                independent_low95: of(|d| d.independent_interval95[0]),
-                independent_high95: of(|d| d.independent_interval95[1]),
-                p_value: of(|d| d.p_value),
-            };
-            writer
-                .serialize(line)
-                .map_err(PipelineError::in_table(TABLE))?;
+            let measured = campaign.measured.as_deref().unwrap_or_default();
+            csv.row()
+                .texts(&[&campaign.name, measured, parameter.name()])
+                .exact(&[
+                    estimate.value,
+                    estimate.interval95.map(|i| i[0]),
+                    estimate.interval95.map(|i| i[1]),
+                    of(|d| d.value),
+                    of(|d| d.interval95[0]),
+                    of(|d| d.interval95[1]),
+                    of(|d| d.independent_interval95[0]),
+                    of(|d| d.independent_interval95[1]),
+                    of(|d| d.p_value),
+                ]);
         }
     }
-    writer.into_inner().map_err(PipelineError::in_table(TABLE))
+    csv.finish()
 }

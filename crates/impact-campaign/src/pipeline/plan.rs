@@ -10,6 +10,7 @@ use crate::pipeline::{Observed, PipelineError, Progress, identify, report};
 use impact_identification::identify::boundary_plan::{BoundaryPlan, halving};
 use impact_identification::identify::plan::{Obstacle, Proposal, propose};
 use impact_records::motion::Motion;
+use impact_report::kit::csv::Csv;
 use labfiles::output::write_together;
 
 /// What is written as plan.json.
@@ -74,22 +75,29 @@ pub fn plan(
 }
 
 fn csv(proposals: &[Proposal]) -> String {
-    let mut text = String::from(
-        "rank,drive_frequency_hz,clearance_m,frequency_ratio,clearance_ratio,motion,approach,\
-         restitution_error_after\n",
-    );
+    let mut csv = Csv::new(&[
+        "rank",
+        "drive_frequency_hz",
+        "clearance_m",
+        "frequency_ratio",
+        "clearance_ratio",
+        "motion",
+        "approach",
+        "restitution_error_after",
+    ]);
     for (i, p) in proposals.iter().enumerate() {
         let motion = Motion::periodic(1, p.periods_n).label();
-        text.push_str(&format!(
-            "{},{:.4},{:.7},{:.5},{:.5},{motion},{},{:.3e}\n",
-            i + 1,
+        let setting = [
             p.frequency_hz,
             p.clearance_m,
             p.frequency_ratio,
             p.clearance_ratio,
-            p.approach.name(),
-            p.restitution_error_after
-        ));
+        ];
+        csv.row()
+            .numbers(&[Some((i + 1) as f64)])
+            .numbers(&setting.map(Some))
+            .texts(&[&motion, p.approach.name()])
+            .numbers(&[Some(p.restitution_error_after)]);
     }
-    text
+    csv.finish()
 }

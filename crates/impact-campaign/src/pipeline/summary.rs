@@ -6,10 +6,11 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::identify;
-use super::json::{store_error, write_json};
+use super::json::write_json;
 use super::{Completed, PipelineError};
 use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::{Estimate, ParameterSet, VerdictKind};
+use impact_report::kit::csv::Csv;
 use labfiles::output::write_bytes;
 
 /// Name of the summary as a table.
@@ -106,72 +107,68 @@ impl RunSummary {
     /// # Errors
     /// Where one cannot be written.
     pub fn write(&self, out: &Path) -> Result<(), PipelineError> {
-        let path = out.join(CSV);
-        let table = self.csv().map_err(|e| store_error(&path, e))?;
-        write_bytes(&path, &table)?;
+        write_bytes(&out.join(CSV), self.csv().as_bytes())?;
         write_json(&out.join(JSON), self)
     }
 
-    fn csv(&self) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
-        let mut table = csv::Writer::from_writer(Vec::new());
-        let mut heads: Vec<String> = ["campaign", "folder", "exit_code", "verdict", "records"]
-            .map(String::from)
-            .to_vec();
-        heads.push("usable_records".to_owned());
+    fn csv(&self) -> String {
+        let first = [
+            "campaign",
+            "folder",
+            "exit_code",
+            "verdict",
+            "records",
+            "usable_records",
+        ];
+        let mut heads: Vec<String> = first.map(String::from).to_vec();
         for parameter in Coordinate::PHYSICAL {
             let name = parameter.name();
-            heads.extend(
-                ["", "_standard_error", "_low", "_high", "_status"].map(|e| format!("{name}{e}")),
-            );
+            let ends = ["", "_standard_error", "_low", "_high", "_status"];
+            heads.extend(ends.map(|end| format!("{name}{end}")));
         }
         heads.push("error".to_owned());
-        table.write_record(&heads)?;
+        let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+        let mut csv = Csv::new(&heads);
         for row in &self.campaigns {
-            table.write_record(row.cells())?;
+            row.write(csv.row());
         }
-        Ok(table.into_inner()?)
+        csv.finish()
     }
 }
 
 impl SummaryRow {
-    fn cells(&self) -> Vec<String> {
-        let mut cells = vec![
-            self.campaign.clone(),
-            self.folder.clone(),
-            self.exit_code.to_string(),
-        ];
+    fn write(&self, csv: &mut Csv) {
+        csv.texts(&[&self.campaign, &self.folder])
+            .exact(&[Some(f64::from(self.exit_code))]);
         match &self.outcome {
             RunOutcome::Result(found) => {
-                cells.push(found.verdict.name().to_owned());
-                cells.push(found.records.to_string());
-                cells.push(found.usable_records.to_string());
+                csv.texts(&[found.verdict.name()])
+                    .exact(&[found.records, found.usable_records].map(|n| Some(n as f64)));
                 for parameter in Coordinate::PHYSICAL {
-                    cells.extend(estimate_cells(found.joint.get(parameter)));
+                    write_estimate(found.joint.get(parameter), csv);
                 }
-                cells.push(String::new());
             }
             RunOutcome::Errors(faults) => {
-                cells.resize(6 + 5 * Coordinate::PHYSICAL.len(), String::new());
+                csv.texts(&vec![""; 3 + 5 * Coordinate::PHYSICAL.len()]);
                 let messages: Vec<&str> = faults.iter().map(|f| f.message.as_str()).collect();
-                cells.push(messages.join("; "));
+                csv.texts(&[&messages.join("; ")]);
             }
         }
-        cells
     }
 }
 
-fn estimate_cells(estimate: Option<&Estimate>) -> [String; 5] {
+fn write_estimate(estimate: Option<&Estimate>, csv: &mut Csv) {
     let Some(estimate) = estimate else {
-        return Default::default();
+        csv.texts(&[""; 5]);
+        return;
     };
-    let number = |v: Option<f64>| v.map(|v| v.to_string()).unwrap_or_default();
-    [
-        number(estimate.value),
-        number(estimate.standard_error),
-        number(estimate.interval95.map(|i| i[0])),
-        number(estimate.interval95.map(|i| i[1])),
-        estimate.status.name().to_owned(),
-    ]
+    csv.exact(&[
+        estimate.value,
+        estimate.standard_error,
+        estimate.interval95.map(|i| i[0]),
+        estimate.interval95.map(|i| i[1]),
+    ])
+    .texts(&[estimate.status.name()]);
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use polars::error::PolarsError;
 use polars::prelude::{Column, DataFrame};
 use polars_io::parquet::write::ParquetWriter;
 
-use impact_report::kit::csv::quoted;
+use impact_report::kit::csv::Csv;
 
 /// Most rows in a row group of a Parquet file.
 const ROW_GROUP: usize = 1 << 18;
@@ -97,13 +97,14 @@ impl Table {
     /// The table as CSV; numbers in the shortest form that reads back exactly, missing ones empty.
     pub fn csv(&self) -> String {
         let names: Vec<&str> = self.columns.iter().map(|c| c.0.as_str()).collect();
-        let mut text = names.join(",") + "\n";
+        let mut csv = Csv::new(&names);
         for row in 0..self.rows() {
-            let cells = self.columns.iter().map(|(_, values)| values.cell(row));
-            text += &cells.collect::<Vec<_>>().join(",");
-            text.push('\n');
+            csv.row();
+            for (_, values) in &self.columns {
+                values.write(row, &mut csv);
+            }
         }
-        text
+        csv.finish()
     }
 
     /// The table as Parquet.
@@ -170,14 +171,15 @@ impl Values {
         }
     }
 
-    fn cell(&self, row: usize) -> String {
-        let text = match self {
-            Self::Numbers(v) => v[row].filter(|x| x.is_finite()).map(|x| x.to_string()),
-            Self::Counts(v) => v[row].map(|x| x.to_string()),
-            Self::Flags(v) => v[row].map(|x| x.to_string()),
-            Self::Texts(v) => v[row].as_deref().map(|x| quoted(x).into_owned()),
+    fn write(&self, row: usize, csv: &mut Csv) {
+        match self {
+            Self::Numbers(v) => csv.exact(&[v[row]]),
+            Self::Counts(v) => csv.exact(&[v[row].map(f64::from)]),
+            Self::Flags(v) => {
+                csv.texts(&[v[row].map_or("", |yes| if yes { "true" } else { "false" })])
+            }
+            Self::Texts(v) => csv.texts(&[v[row].as_deref().unwrap_or_default()]),
         };
-        text.unwrap_or_default()
     }
 
     fn column(&self, name: &str) -> Column {

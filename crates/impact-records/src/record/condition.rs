@@ -142,12 +142,14 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
         // Without a drive a body comes to rest.
         flags.extend(held(record));
     }
-    flags.extend(frozen(record));
+    let displacements =
+        |c: &&mut Channel| matches!(c.role, Role::DisplacementX | Role::DisplacementY);
+    let moving = record.channels.iter_mut().filter(displacements);
+    let frozen: Vec<Flag> = moving.filter_map(without_frozen).collect();
+    // one camera takes all of them
+    flags.extend(frozen.into_iter().next());
     record.flags.extend(flags);
 }
-
-/// Fewest samples without a change that count as a frozen picture.
-const FEWEST_FROZEN: usize = 2;
 
 /// Part of the way that a motion would have made while the picture stood still, from which its jump is the
 /// motion that went on unseen.
@@ -156,23 +158,57 @@ const UNSEEN_PART: f64 = 0.7;
 /// Steps of the converter a sample from which a motion does not rest by rounding, nor by noise of a few steps.
 const STEPS_A_SAMPLE: f64 = 10.0;
 
-/// Displacements that stand still in the midst of a motion and then jump by as much as it would have gone on:
-/// a camera that repeats a picture. What moves by many steps of the converter a sample cannot rest by its rounding.
-fn frozen(record: &Record) -> Option<Flag> {
-    let moving = |c: &&Channel| matches!(c.role, Role::DisplacementX | Role::DisplacementY);
-    record.channels.iter().filter(moving).find_map(|channel| {
-        let frozen = frozen_stretches(&channel.values);
-        let (first, length) = *frozen.first()?;
-        let found = format!(
-            "channel '{}' stands still {} times in the midst of a motion and then jumps, the first time for {} \
-             samples from sample {first} on: its pictures were frozen",
-            channel.name,
-            frozen.len(),
-            length + 1
-        );
-        let remedy = "leave out those records, or record again with a camera that keeps its pace";
-        Some(Flag::new(FlagCode::FrozenFrames, Some(&channel.name), found, remedy).excluding(false))
-    })
+/// Samples on either side of a frozen picture between which it is interpolated, and the most that are.
+const AROUND: usize = 3;
+
+/// Displacements that stand still in the midst of a motion and then jump by as much as it would have gone on: a camera
+/// that repeats pictures. What moves by many steps of the converter a sample cannot rest by its rounding. Repeated
+/// pictures, which show the motion late, are replaced by a polynomial through those around them.
+fn without_frozen(channel: &mut Channel) -> Option<Flag> {
+    let frozen = frozen_stretches(&channel.values);
+    let (first, length) = *frozen.first()?;
+    let values = &mut channel.values;
+    let replaced = frozen.iter().filter(|s| interpolate(values, &frozen, **s));
+    let replaced = replaced.count();
+    let found = format!(
+        "channel '{}' stands still {} times in the midst of a motion and then jumps, the first time for {} samples \
+         from sample {first} on: its pictures were frozen ({replaced} of these are interpolated)",
+        channel.name,
+        frozen.len(),
+        length + 1
+    );
+    let remedy = "leave out those records, or record again with a camera that keeps its pace";
+    let flag = Flag::new(FlagCode::FrozenFrames, Some(&channel.name), found, remedy);
+    Some(flag.excluding(false))
+}
+
+/// Replace the repeated pictures of a stretch by Lagrange's polynomial through those around it; whether they could be.
+fn interpolate(
+    values: &mut [f64],
+    all: &[(usize, usize)],
+    (first, length): (usize, usize),
+) -> bool {
+    let repeated = |i: usize| {
+        all.iter()
+            .any(|(from, n)| (from + 1..=from + n).contains(&i))
+    };
+    let before = (0..=first).rev().filter(|i| !repeated(*i)).take(AROUND);
+    let after = (first + length + 1..values.len()).filter(|i| !repeated(*i));
+    let nodes: Vec<usize> = before.chain(after.take(AROUND)).collect();
+    if length > AROUND || nodes.len() < 2 * AROUND {
+        return false;
+    }
+    let at = |place: usize| -> f64 {
+        let term = |i: &usize| {
+            let others = nodes.iter().filter(|k| *k != i);
+            let factor = others.map(|k| (place as f64 - *k as f64) / (*i as f64 - *k as f64));
+            values[*i] * factor.product::<f64>()
+        };
+        nodes.iter().map(term).sum()
+    };
+    let between: Vec<f64> = (first + 1..=first + length).map(at).collect();
+    values[first + 1..=first + length].copy_from_slice(&between);
+    true
 }
 
 /// Where samples stand still although the motion goes on: the first sample and the number of steps.
@@ -187,7 +223,7 @@ fn frozen_stretches(values: &[f64]) -> Vec<(usize, usize)> {
             .take_while(|k| step(*k) == 0.0)
             .count();
         let after = i + length;
-        if length >= FEWEST_FROZEN && after + 2 < values.len() {
+        if length > 0 && after + 2 < values.len() {
             let (before, jump, next) = (step(i - 1), step(after), step(after + 1));
             let unseen = UNSEEN_PART * (length + 1) as f64 * before.abs().min(next.abs());
             let fast = before.abs().min(next.abs()) >= moving;
@@ -578,8 +614,31 @@ mod tests {
         assert_eq!(
             record.flags[0].message,
             "channel 'displacement_x' stands still 1 times in the midst of a motion and then jumps, the first \
-             time for 4 samples from sample 100 on: its pictures were frozen"
+             time for 4 samples from sample 100 on: its pictures were frozen (1 of these are interpolated)"
         );
+        let off = record.channels[0].values.iter().zip(&moving);
+        let off = off
+            .map(|(found, whole)| (found - whole).abs())
+            .fold(0.0, f64::max);
+        assert!(off < 0.02, "{off}");
+    }
+
+    #[test]
+    fn valid_single_repeated_pictures_are_replaced_by_the_motion_between_their_neighbours() {
+        // 2 Hz at 30 pictures a second, every seventh repeated
+        let whole: Vec<f64> = (0..300).map(|i| (0.42 * f64::from(i)).sin()).collect();
+        let repeated: Vec<f64> = (0..300)
+            .map(|i| whole[i - usize::from(i % 7 == 6)])
+            .collect();
+        let mut record = Record::of(30.0, &[(Role::DisplacementX, &repeated)]);
+        inspect(&mut record, &[None], false);
+        assert_eq!(record.flags[0].code, FlagCode::FrozenFrames);
+        let off = record.channels[0].values.iter().zip(&whole);
+        let worst = off
+            .map(|(found, whole)| (found - whole).abs())
+            .fold(0.0, f64::max);
+        // next to a turn a repeated picture is not told from a motion that turns
+        assert!(worst < 0.09, "{worst}");
     }
 
     #[test]

@@ -1,11 +1,11 @@
-//! A figure's data as CSV, so that a reader can draw it again.
+//! Tables as CSV: of figures with the digits that one shows, of results with all.
 
 use std::borrow::Cow;
 
 use impact_records::signal::whole;
 
 /// Rows of text and numbers under a header; short rows are filled with empty fields.
-pub(crate) struct Csv {
+pub struct Csv {
     text: String,
     columns: usize,
     filled: usize,
@@ -13,7 +13,7 @@ pub(crate) struct Csv {
 
 impl Csv {
     /// A table with these columns.
-    pub(crate) fn new(header: &[&str]) -> Self {
+    pub fn new(header: &[&str]) -> Self {
         let mut csv = Self {
             text: String::new(),
             columns: header.len(),
@@ -24,13 +24,13 @@ impl Csv {
     }
 
     /// Begins a row.
-    pub(crate) fn row(&mut self) -> &mut Self {
+    pub fn row(&mut self) -> &mut Self {
         self.end_row();
         self
     }
 
-    /// Text fields.
-    pub(crate) fn texts(&mut self, fields: &[&str]) -> &mut Self {
+    /// Text fields, in quotes where they need them.
+    pub fn texts(&mut self, fields: &[&str]) -> &mut Self {
         for field in fields {
             self.begin_field();
             self.text.push_str(&quoted(field));
@@ -38,12 +38,23 @@ impl Csv {
         self
     }
 
-    /// Number fields; missing ones stay empty.
-    pub(crate) fn numbers(&mut self, fields: &[Option<f64>]) -> &mut Self {
+    /// Number fields of nine digits; missing ones stay empty.
+    pub fn numbers(&mut self, fields: &[Option<f64>]) -> &mut Self {
         for field in fields {
             self.begin_field();
             if let Some(value) = field.filter(|v| v.is_finite()) {
                 Decimal::of(value).write(&mut self.text);
+            }
+        }
+        self
+    }
+
+    /// Number fields in the shortest form that reads back exactly; missing ones stay empty.
+    pub fn exact(&mut self, fields: &[Option<f64>]) -> &mut Self {
+        for field in fields {
+            self.begin_field();
+            if let Some(value) = field.filter(|v| v.is_finite()) {
+                self.text.push_str(&value.to_string());
             }
         }
         self
@@ -65,14 +76,14 @@ impl Csv {
     }
 
     /// The whole table.
-    pub(crate) fn finish(mut self) -> String {
+    pub fn finish(mut self) -> String {
         self.end_row();
         self.text
     }
 }
 
 /// A text as a field of a CSV file.
-pub fn quoted(text: &str) -> Cow<'_, str> {
+fn quoted(text: &str) -> Cow<'_, str> {
     if text.contains([',', '"', '\n', '\r']) {
         Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"")))
     } else {

@@ -54,6 +54,13 @@ const CANDIDATES: [(Separator, u8); 9] = [
 /// count: there may be a preamble before the table.
 pub(crate) fn detect(lines: &[&[u8]]) -> Option<Dialect> {
     let judged = judged(lines);
+    if is_column_of_decimals(lines, judged) {
+        return Some(Dialect {
+            separator: Separator::Byte(b';'),
+            notation: Notation::plain(b','),
+            columns: 1,
+        });
+    }
     let mut best: Option<(f64, Dialect)> = None;
     let parted = is_parted(judged);
     let candidates = CANDIDATES
@@ -80,6 +87,31 @@ pub(crate) fn detect(lines: &[&[u8]]) -> Option<Dialect> {
         }
     }
     best.map(|(_, dialect)| dialect)
+}
+
+/// Whether lines are one column of numbers with a decimal comma, not two columns of whole numbers: the comma parts
+/// digits alone, and the heading is one cell, or what follows the comma has as many digits everywhere and begins
+/// with a zero somewhere, as no number does.
+fn is_column_of_decimals(lines: &[&[u8]], judged: &[&[u8]]) -> bool {
+    let halves = |line: &&[u8]| {
+        let line = line.trim_ascii();
+        let comma = line.iter().position(|b| *b == b',')?;
+        let (whole, part) = (&line[..comma], &line[comma + 1..]);
+        let unsigned = whole.strip_prefix(b"-").unwrap_or(whole);
+        let digits = |text: &[u8]| !text.is_empty() && text.iter().all(u8::is_ascii_digit);
+        (digits(unsigned) && digits(part)).then(|| part.to_vec())
+    };
+    let Some(parts) = judged.iter().map(halves).collect::<Option<Vec<_>>>() else {
+        return false;
+    };
+    let heading = lines.iter().rev().find(|line| halves(line).is_none());
+    let is_one = |line: &&[u8]| {
+        let letters = line.iter().any(u8::is_ascii_alphabetic);
+        letters && !line.iter().any(|b| b",;\t|".contains(b))
+    };
+    let alike = parts.windows(2).all(|w| w[0].len() == w[1].len());
+    let zeros = parts.iter().any(|p| p.len() > 1 && p[0] == b'0');
+    !parts.is_empty() && (heading.is_some_and(is_one) || (alike && zeros))
 }
 
 /// Whether nearly all lines have as many tabs, semicolons or bars, and some: blanks are part of their cells then.
@@ -254,6 +286,12 @@ mod tests {
         is("1, 2, 3\n4, 5, 6", Separator::Byte(b','), b'.', 3);
         is("1\n2\n3", tab, b'.', 1);
         is("0,5\n0,7\n", Separator::Byte(b','), b'.', 2);
+        // one number to a line, by its heading and by what follows the comma
+        let lone = Separator::Byte(b';');
+        is("Weg [mm]\n3,00000\n2,99931\n-1,5", lone, b',', 1);
+        is("Zeit in ms\n400,0\n761,3", lone, b',', 1);
+        is("3,00\n2,99\n2,05", lone, b',', 1);
+        is("a,b\n3,10\n2,99\n2,45", Separator::Byte(b','), b'.', 2);
         is(
             "2024-05-01 12:00:00;1,5\n2024-05-01 12:00:01;1,6",
             Separator::Byte(b';'),

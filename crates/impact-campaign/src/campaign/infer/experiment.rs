@@ -45,7 +45,22 @@ pub(super) fn is_event_list(set: &DatasetInfo) -> bool {
     };
     let rows = set.channels.iter().map(|c| c.samples).max().unwrap_or(0);
     let timed = set.channels.iter().filter(|c| of_time(c)).count();
-    (3..=MOST_EVENTS).contains(&rows) && timed > 0 && timed == set.channels.len()
+    let numbers = |c: &&labfiles::ChannelInfo| !of_time(c) && numbers_rows(c);
+    let counted = set.channels.iter().filter(numbers).count();
+    (3..=MOST_EVENTS).contains(&rows) && timed > 0 && timed + counted == set.channels.len()
+}
+
+/// Words that name a column of the numbers of events.
+const NUMBERED: [&str; 15] = [
+    "n", "nr", "no", "i", "k", "index", "row", "zeile", "bounce", "hit", "impact", "event",
+    "number", "aufprall", "rebond",
+];
+
+/// Whether a column without a unit is called as one that numbers the rows.
+fn numbers_rows(channel: &labfiles::ChannelInfo) -> bool {
+    let name = channel.name.to_lowercase();
+    let bare = name.trim_matches(|c: char| !c.is_alphanumeric());
+    channel.unit.is_none() && (name.trim() == "#" || NUMBERED.contains(&bare))
 }
 
 /// The column of times of a list of changes.

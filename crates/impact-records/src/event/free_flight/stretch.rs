@@ -3,6 +3,7 @@
 use crate::event::free_flight::fall::Fall;
 use crate::event::kinematics::{Body, Series};
 use crate::signal::local_fit::LocalFit;
+use crate::signal::whole;
 
 /// Most samples of a stretch.
 const MOST: usize = 1500;
@@ -16,6 +17,12 @@ const UNEVEN: f64 = 4e-3;
 const IN_NOISE: f64 = 2.0;
 /// F of one more power of time above which a stretch is no flight.
 const BENT: f64 = 16.0;
+/// Standard errors by which the speed beside a fall may differ between a stretch and the parts of it next to the fall.
+const KINKED: f64 = 3.0;
+/// Those parts, as shares of the stretch.
+const NEAREST: [f64; 2] = [0.5, 0.25];
+/// Standard errors of a velocity from which a sample moves.
+const MOVES: f64 = 4.0;
 /// Samples by which a stretch is shortened: one in this many.
 const STEP: usize = 8;
 /// Standard error of a speed beside all others, relative.
@@ -80,14 +87,19 @@ impl Stretch {
         }
     }
 
-    /// Standard error of the velocity at a time, m/s.
-    pub(super) fn error(&self, time: f64) -> f64 {
+    /// Standard error of the velocity at a time by the noise, m/s.
+    fn noise_error(&self, time: f64) -> f64 {
         let factor = if self.of_displacement {
             self.fit.slope_error_factor(time) * self.rate_hz
         } else {
             self.fit.error_factor(time)
         };
-        (self.deviation * factor)
+        self.deviation * factor
+    }
+
+    /// Standard error of the velocity at a time, m/s.
+    pub(super) fn error(&self, time: f64) -> f64 {
+        self.noise_error(time)
             .hypot(SPEED_SCATTER * self.speed(time).abs())
             .hypot(self.unlike)
     }
@@ -105,11 +117,12 @@ struct Signal<'a> {
     least: usize,
     noise: f64,
     of_displacement: bool,
+    rate_hz: f64,
 }
 
 impl<'a> Signal<'a> {
     /// The velocity as measured; a displacement where the velocity was derived from it.
-    fn of(body: &'a Body, greatest_m_s: f64) -> Option<Self> {
+    fn of(body: &'a Body, (rate_hz, greatest_m_s): (f64, f64)) -> Option<Self> {
         let velocity = body.velocity.as_ref()?;
         let derived = |d: &&Series| d.role == velocity.role;
         Some(match body.displacement.as_ref().filter(derived) {
@@ -119,6 +132,7 @@ impl<'a> Signal<'a> {
                 least: 6,
                 noise: displacement.noise,
                 of_displacement: true,
+                rate_hz,
             },
             None => Self {
                 values: &velocity.values,
@@ -126,12 +140,44 @@ impl<'a> Signal<'a> {
                 least: 4,
                 noise: velocity.noise.max(UNEVEN * greatest_m_s),
                 of_displacement: false,
+                rate_hz,
             },
         })
     }
 
+    /// The longest stretch of a window that free flight explains and that is one with its part beside the fall: a push
+    /// that ends within it bends it too little to be seen in its scatter.
+    fn longest(&self, side: Side, (first, last): (usize, usize)) -> Option<Stretch> {
+        let nearest = |count: usize| match side {
+            Side::Before => (last - count, last),
+            Side::After => (first, first + count),
+        };
+        let edge = match side {
+            Side::Before => last as f64,
+            Side::After => first as f64,
+        };
+        let mut count = last - first;
+        while count >= self.least {
+            if let Some(stretch) = self.flight(nearest(count)) {
+                let parts = NEAREST.map(|share| whole::index((share * count as f64).round()));
+                let parts = parts.into_iter().filter(|part| *part >= self.least);
+                let parts = parts.filter_map(|part| self.flight(nearest(part)));
+                let kinks: Vec<Kink> = parts.map(|part| Kink::of(&stretch, &part, edge)).collect();
+                if kinks.iter().all(|kink| kink.deviates <= KINKED) {
+                    let unlike = kinks.iter().map(|kink| kink.beyond_m_s);
+                    return Some(Stretch {
+                        unlike: unlike.fold(0.0, f64::max),
+                        ..stretch
+                    });
+                }
+            }
+            count -= (count / STEP).max(1);
+        }
+        None
+    }
+
     /// A fit of samples that free flight explains; `None` where it does not.
-    fn flight(&self, (first, last): (usize, usize)) -> Option<(LocalFit, f64)> {
+    fn flight(&self, (first, last): (usize, usize)) -> Option<Stretch> {
         let fit = LocalFit::new(self.values, first, last, self.degree)?;
         let count = last - first;
         let freedom = count.checked_sub(self.degree + 1).filter(|f| *f > 0)? as f64;
@@ -147,7 +193,35 @@ impl<'a> Signal<'a> {
             }
         }
         let correlated = correlation(self.values, &fit, first, last);
-        Some((fit, scatter.max(0.5 * self.noise) * correlated))
+        Some(Stretch {
+            fit,
+            of_displacement: self.of_displacement,
+            rate_hz: self.rate_hz,
+            deviation: scatter.max(0.5 * self.noise) * correlated,
+            unlike: 0.0,
+            samples: (first, last),
+        })
+    }
+}
+
+/// How far the speeds of a stretch and of a part of it differ beside the fall.
+struct Kink {
+    /// In standard errors of the difference.
+    deviates: f64,
+    /// Beyond its standard error, m/s.
+    beyond_m_s: f64,
+}
+
+impl Kink {
+    /// The variance of the difference of two nested fits is that of their variances.
+    fn of(whole: &Stretch, part: &Stretch, time: f64) -> Self {
+        let apart = (whole.speed(time) - part.speed(time)).abs();
+        let variance = part.noise_error(time).powi(2) - whole.noise_error(time).powi(2);
+        let expected = variance.max(0.0) + (SPEED_SCATTER * whole.speed(time)).powi(2);
+        Self {
+            deviates: apart / expected.sqrt().max(f64::MIN_POSITIVE),
+            beyond_m_s: (apart.powi(2) - expected).max(0.0).sqrt(),
+        }
     }
 }
 
@@ -175,7 +249,7 @@ pub(super) fn find(
     bounds: (usize, usize),
     (rate_hz, greatest_m_s): (f64, f64),
 ) -> Option<Stretch> {
-    let signal = Signal::of(body, greatest_m_s)?;
+    let signal = Signal::of(body, (rate_hz, greatest_m_s))?;
     let velocity = body.velocity.as_ref()?;
     let middle = 0.5 * (fall.first + fall.last) as f64;
     let beside = BESIDE + (fall.last - fall.first) / 2;
@@ -187,26 +261,10 @@ pub(super) fn find(
     let later = std::iter::successors(Some(0), |s| Some(s + s / 4 + 1));
     let later = later.take_while(|s| *s <= ringing);
     let stretches = later.filter_map(|skipped| {
-        let (first, last) = window(&velocity.values, side, fall, bounds, skipped, greatest_m_s)?;
-        let mut count = last - first;
-        while count >= signal.least {
-            let samples = match side {
-                Side::Before => (last - count, last),
-                Side::After => (first, first + count),
-            };
-            if let Some((fit, deviation)) = signal.flight(samples) {
-                return Some(Stretch {
-                    fit,
-                    of_displacement: signal.of_displacement,
-                    rate_hz,
-                    deviation,
-                    unlike: 0.0,
-                    samples,
-                });
-            }
-            count -= (count / STEP).max(1);
-        }
-        None
+        signal.longest(
+            side,
+            window(velocity, side, fall, bounds, (skipped, greatest_m_s))?,
+        )
     });
     let stretches: Vec<Stretch> = stretches.collect();
     let best = stretches
@@ -217,7 +275,7 @@ pub(super) fn find(
         Side::After => fall.last,
     };
     Some(Stretch {
-        unlike: unlike(&stretches, best, edge as f64),
+        unlike: best.unlike.hypot(unlike(&stretches, best, edge as f64)),
         ..best.clone()
     })
 }
@@ -238,18 +296,19 @@ fn unlike(stretches: &[Stretch], best: &Stretch, time: f64) -> f64 {
     (squares.max(0.0) / weights).sqrt()
 }
 
-/// Samples beside a fall on which the body moves in one direction: friction changes where it turns.
+/// Samples beside a fall, some of them skipped, on which the body moves in one direction: friction changes where it
+/// turns. One that is at rest moves by the noise of its velocity to either side.
 fn window(
-    velocity: &[f64],
+    velocity: &Series,
     side: Side,
     fall: Fall,
     (low, high): (usize, usize),
-    skipped: usize,
-    greatest_m_s: f64,
+    (skipped, greatest_m_s): (usize, f64),
 ) -> Option<(usize, usize)> {
-    let turned = |edge: usize, i: usize| {
-        velocity[i] * velocity[edge] < 0.0 && velocity[i].abs() > 0.02 * greatest_m_s
-    };
+    let moves_m_s = (0.02 * greatest_m_s).max(MOVES * velocity.noise);
+    let velocity = &velocity.values;
+    let turned =
+        |edge: usize, i: usize| velocity[i] * velocity[edge] < 0.0 && velocity[i].abs() > moves_m_s;
     match side {
         Side::Before => {
             let edge = fall.first.checked_sub(skipped).filter(|e| *e >= low)?;

@@ -56,8 +56,7 @@ pub(super) fn parts(samples: &[f64]) -> Vec<(usize, usize)> {
                 .iter()
                 .all(|h| *h < BLOW * greatest)
         {
-            // nothing but rest before the first blow
-            out.push((0, edge));
+            // nothing but rest before the first blow: what hums in it is no decay
             continue;
         }
         out.push((from, edge));
