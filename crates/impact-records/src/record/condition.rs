@@ -401,11 +401,11 @@ fn clipped_spikes(channel: &Channel, spikes: &[Range<usize>], stated: bool) -> O
 }
 
 /// Number of samples at both rails. A mass that rests at its stop shows a plateau of displacement
-/// at one side, which is no rail.
+/// at one side, which is no rail, unless it leaves it as fast as it came.
 fn at_rails(channel: &Channel, low: f64, high: f64, step: f64) -> usize {
     let rails = [low, high].map(|rail| at_rail(&channel.values, rail, step));
     let displacement = matches!(channel.role, Role::DisplacementX | Role::DisplacementY);
-    if displacement && rails.contains(&0) {
+    if displacement && rails.contains(&0) && ![low, high].iter().any(|r| is_cut(channel, *r)) {
         0
     } else {
         rails[0] + rails[1]
@@ -414,6 +414,33 @@ fn at_rails(channel: &Channel, low: f64, high: f64, step: f64) -> usize {
 
 /// Number of samples in runs at a rail that were entered and left in motion, by more than a crest's
 /// steps. A body at rest is no rail: at zero, or before or after its motion.
+/// Crests from which an end of a range is seen.
+const CRESTS: usize = 3;
+/// Relative difference of the speeds before and after it.
+const SAME_SPEED: f64 = 0.05;
+
+/// Whether several crests are cut off at a value: the motion leaves it as fast as it came, which from a stop it does
+/// not.
+fn is_cut(channel: &Channel, rail: f64) -> bool {
+    let values = &channel.values;
+    let mut ratios = Vec::new();
+    let mut start = 2;
+    while start + 1 < values.len() {
+        let length = values[start..].iter().take_while(|v| **v == rail).count();
+        let end = start + length;
+        if length >= 3 && values[start - 1] != rail && end + 1 < values.len() {
+            let (before, after) = (
+                values[start - 1] - values[start - 2],
+                values[end] - values[end + 1],
+            );
+            ratios.push(after / before);
+        }
+        start = end + 1;
+    }
+    let enough = ratios.len() >= CRESTS;
+    enough && robust::median(&ratios).is_some_and(|ratio| (ratio - 1.0).abs() < SAME_SPEED)
+}
+
 fn at_rail(values: &[f64], rail: f64, step: f64) -> usize {
     if rail == 0.0 {
         return 0;
@@ -591,6 +618,27 @@ mod tests {
             "{}",
             flags[0].message
         );
+    }
+
+    #[test]
+    fn valid_crests_cut_off_at_one_end_are_told_from_a_stop() {
+        let decay = |i: usize| (0.1 * i as f64).sin() * (-0.002 * i as f64).exp();
+        let cut: Vec<f64> = (0..1000).map(|i| decay(i).max(-0.6)).collect();
+        let mut record = Record::of(100.0, &[(Role::DisplacementX, &cut)]);
+        inspect(&mut record, &[None], false);
+        assert_eq!(record.flags[0].code, FlagCode::Clipped);
+        assert!(record.excluded());
+        // a mass that meets a stop, rests there and leaves it half as fast
+        let stop: Vec<f64> = (0..1000)
+            .map(|i| match i % 60 {
+                0..20 => 20.0 - f64::from(i % 60),
+                20..30 => 0.0,
+                _ => f64::from(i % 60 - 30) * 0.5,
+            })
+            .collect();
+        let mut record = Record::of(100.0, &[(Role::DisplacementX, &stop)]);
+        inspect(&mut record, &[None], false);
+        assert!(record.flags.iter().all(|f| f.code != FlagCode::Clipped));
     }
 
     #[test]

@@ -151,7 +151,10 @@ fn is_to_be_mended(remark: &Remark) -> bool {
 fn is_plain(remark: &Remark) -> bool {
     matches!(
         remark,
-        Remark::TimesScatter { .. } | Remark::MassRatio { .. } | Remark::FlightsLeftOut { .. }
+        Remark::TimesScatter { .. }
+            | Remark::RestitutionScatters { .. }
+            | Remark::MassRatio { .. }
+            | Remark::FlightsLeftOut { .. }
     )
 }
 

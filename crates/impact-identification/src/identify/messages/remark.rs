@@ -201,6 +201,11 @@ pub enum Remark {
         /// Standard error of a time, s.
         error_s: f64,
     },
+    /// R of the flights' ratios scatters from impact to impact by more than the times do.
+    RestitutionScatters {
+        /// Standard deviation over R.
+        share: f64,
+    },
     /// One record has another R than all others, which agree; it is left out.
     OddRecord {
         /// Its name.
@@ -393,6 +398,7 @@ message_table! { "remark": Remark;
         value = Value::Number(*ratio, 3),
         half = Value::Number(*half_width, 3);
     Self::TimesScatter { error_s } => error = Value::Number(1e3 * error_s, 2);
+    Self::RestitutionScatters { share } => share = Value::Number(1e2 * share, 1);
     Self::OddRecord { record, restitution, others } =>
         record = Value::Name(record),
         own = Value::Number(*restitution, 3),

@@ -1,18 +1,19 @@
 //! R from the times of impacts alone: under a constant force a flight lasts 2v/a, so that each flight is
 //! R times as long as the one before.
 //!
-//! The times of a record are a geometric row, `t_k = t_0 + T_0 (1 + R + … + R^(k−1))`; R, `t_0` and `T_0` are
-//! fitted to them by least squares with the error of each time as the noise. That error is the scatter of
-//! differences of the flights' logarithms into which neither R nor a steady change of it enters, so that what R
-//! does along the bounces is not taken for noise.
+//! The times of a record are a geometric row, `t_k = t_0 + T_0 (1 + R + … + R^(k−1))` ([`rows`]). What scatters about
+//! it are errors of the times and R itself, from impact to impact ([`scatter`]).
 
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+mod rows;
+mod scatter;
 
 use crate::identify::answer::MethodResult;
 use crate::identify::estimate;
 use crate::identify::messages::Remark;
 use crate::identify::method::Method;
 use crate::identify::methods::Identifier;
+use crate::identify::methods::flight_times::rows::{Fitted, Row, Rows, fitted, rows};
+use crate::identify::methods::flight_times::scatter::{RowEstimate, Scatter};
 use crate::identify::methods::found::Found;
 use crate::identify::methods::impacts::structure::{
     self, GroupedRatio, Grouping, ImpactGroup, ImpactGroups,
@@ -41,43 +42,16 @@ impl Identifier for FlightTimes {
     }
 }
 
-/// Ratios of a flight to the one before, relative to the median, outside of which an impact was missed
-/// or something else was heard.
-const PLAUSIBLE: [f64; 2] = [0.6, 1.6];
-/// Greatest ratio that is possible but for errors of the times.
-const GREATEST: f64 = 1.05;
 /// Standard error of a time that neither its source nor the scatter states, s.
 const USUAL_ERROR_S: f64 = 2e-3;
-/// Differences from which the scatter states the error of the times.
-const ENOUGH: usize = 3;
 /// Questions among which the false alarms are shared: a trend over bounces, and differences between records.
 const QUESTIONS: f64 = 2.0;
-/// Differences of a row's logarithms for each independent one: 1 + 2Σρ² of third differences of flights, fourth of
-/// the times, whose correlations are −56, 28, −8 and 1 over 70.
-const PER_INDEPENDENT: f64 = 2.63;
 /// Probability from which the record furthest off is none of the others (Grubbs 1969, at his 5 %).
 const ODD: f64 = 0.05;
 /// Change of R over the bounces of a record, or of one record from the others, that matters.
 const MATTERS: f64 = 0.005;
 /// Records from which one is told from the others.
 const SEVERAL: usize = 4;
-
-/// Consecutive impacts of a record, none missing between them.
-#[derive(Debug, Clone)]
-struct Row {
-    record: usize,
-    /// Number of its first flight in the record.
-    first: usize,
-    times_s: Vec<f64>,
-}
-
-/// The geometric row that fits.
-#[derive(Debug, Clone, Copy)]
-struct Fitted {
-    restitution: f64,
-    /// Standard error of R for a standard error of 1 s of each time.
-    error_per_s: f64,
-}
 
 /// Whether R of a record rests on the times of its impacts: it has neither drive nor speeds.
 pub fn is_timed(o: &Observation) -> bool {
@@ -102,16 +76,16 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     if fits.is_empty() {
         return None;
     }
-    let noise = time_noise(&fits, &records);
-    let error_s = noise.error;
+    let scatter = Scatter::of(&fits, stated_error_s(&records));
     let all: Vec<ImpactGroup> = fits
         .iter()
-        .map(|(row, fit)| ImpactGroup {
+        .zip(&scatter.rows)
+        .map(|((row, _), own)| ImpactGroup {
             group: observations[row.record].record.clone(),
             impacts: row.times_s.len(),
             speed_m_s: None,
-            restitution: fit.restitution,
-            standard_error: fit.error_per_s * error_s,
+            restitution: own.restitution,
+            standard_error: own.error,
         })
         .collect();
     let odd = odd_record(&all);
@@ -121,9 +95,9 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     let rows: Vec<(&Row, Fitted)> = indices.iter().map(|i| fits[*i]).collect();
     let (value, error) = weighted(&groups);
     let error = error.hypot(error_of_contacts(&rows, &groups, observations));
-    let ratios: Vec<GroupedRatio> = rows
+    let ratios: Vec<GroupedRatio> = indices
         .iter()
-        .flat_map(|(row, _)| ratios(row, error_s))
+        .flat_map(|i| ratios(fits[*i].0, &scatter.rows[*i]))
         .collect();
     let mut result = MethodResult {
         observations: rows.iter().map(|(row, _)| row.times_s.len()).sum(),
@@ -131,14 +105,23 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         fits: Some(true),
         ..MethodResult::default()
     };
-    let spread = Spread { error, ..noise };
+    let spread = Spread {
+        freedom: scatter.freedom,
+        ..Spread::known(error)
+    };
     let restitution = estimate::estimate_within(Coordinate::Restitution, value, spread, None);
     result.parameters.restitution = Some(restitution);
     result.impact_groups = Some(ImpactGroups {
         by_record: all.clone(),
         ..structure::groups(&ratios, observations)
     });
-    result.remarks.push(Remark::TimesScatter { error_s });
+    let times = scatter
+        .times_s
+        .map(|error_s| Remark::TimesScatter { error_s });
+    let own = scatter
+        .own
+        .map(|share| Remark::RestitutionScatters { share });
+    result.remarks.extend(times.into_iter().chain(own));
     result
         .remarks
         .extend(not_used(left_out, &missed, observations));
@@ -149,13 +132,17 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
             others: value,
         });
     }
-    let scatter = ratios.len() > 1 && !rows.is_empty();
-    let grouping = if trend(&rows, noise) {
+    let several = ratios.len() > 1 && !rows.is_empty();
+    let rises = scatter::trend(&rows).is_some_and(|trend| {
+        let chance = student_tail(trend.deviates, trend.freedom);
+        chance < structure::FALSE_ALARMS / QUESTIONS && trend.change > MATTERS
+    });
+    let grouping = if rises {
         Some(Grouping::Bounce)
     } else {
         between_records(&groups).or_else(|| structure::structure(&ratios))
     };
-    if let Some(grouping) = grouping.filter(|_| scatter) {
+    if let Some(grouping) = grouping.filter(|_| several) {
         result.judge_structure(grouping);
     }
     Some(result)
@@ -206,53 +193,6 @@ fn error_of_contacts(
     mean.abs() / 3f64.sqrt()
 }
 
-/// Whether R changes along the bounces, by its logarithm as a line over their number in all records.
-fn trend(rows: &[(&Row, Fitted)], noise: Spread) -> bool {
-    let (mut weight, mut sum, mut longest) = (0.0, 0.0, 0);
-    for (row, _) in rows {
-        let Some((slope, error_per_s)) = slope(&row.times_s) else {
-            continue;
-        };
-        let own = (error_per_s * noise.error).powi(-2);
-        weight += own;
-        sum += own * slope;
-        longest = longest.max(row.times_s.len());
-    }
-    if !(weight > 0.0) {
-        return false;
-    }
-    let slope = sum / weight;
-    let change = (slope * (longest as f64 - 3.0)).abs();
-    let chance = student_tail(slope * weight.sqrt(), noise.freedom);
-    chance < structure::FALSE_ALARMS / QUESTIONS && change > MATTERS
-}
-
-/// Change of R from bounce to bounce along a row, with its standard error for a standard error of 1 s of each
-/// time: weighted least squares of the ratios over their number, the errors of neighbours being correlated.
-fn slope(times_s: &[f64]) -> Option<(f64, f64)> {
-    let flights: Vec<f64> = times_s.windows(2).map(|w| w[1] - w[0]).collect();
-    let count = flights.len().checked_sub(1).filter(|n| *n > 2)?;
-    let ratio = |k: usize| flights[k + 1] / flights[k];
-    // the ratio's slopes over the three times that it has
-    let slopes = |k: usize| {
-        let (r, t) = (ratio(k), flights[k]);
-        [r / t, -(1.0 + r) / t, 1.0 / t]
-    };
-    let covariance = DMatrix::from_fn(count, count, |i, k| {
-        let (a, b) = (slopes(i), slopes(k));
-        let shared = |n: usize| (n + i).checked_sub(k).and_then(|m| b.get(m)).copied();
-        // time number i + n of the row is number i + n − k of ratio k
-        (0..3).map(|n| a[n] * shared(n).unwrap_or(0.0)).sum::<f64>()
-    });
-    let whitened = covariance.cholesky()?;
-    let design = DMatrix::from_fn(count, 2, |i, k| if k == 0 { 1.0 } else { i as f64 });
-    let values = DVector::from_fn(count, |i, _| ratio(i));
-    let weighted = whitened.solve(&design);
-    let inverse = (design.transpose() * &weighted).try_inverse()?;
-    let found = &inverse * (weighted.transpose() * values);
-    Some((found[1], inverse[(1, 1)].max(0.0).sqrt()))
-}
-
 /// Whether R differs between records by more than the errors of their times.
 fn between_records(groups: &[ImpactGroup]) -> Option<Grouping> {
     let ratio = |g: &ImpactGroup| GroupedRatio {
@@ -297,156 +237,6 @@ fn odd_record(groups: &[ImpactGroup]) -> Option<usize> {
 /// Difference of R from the other records' that is looked at.
 const STRANGE: f64 = 0.02;
 
-/// The rows of all records.
-#[derive(Default)]
-struct Rows {
-    rows: Vec<Row>,
-    /// Flights that belong to none.
-    left_out: usize,
-    /// Where an impact is missing: the record's index and the time, s.
-    missed: Vec<(usize, f64)>,
-}
-
-/// The rows of all records, parted where a flight does not follow from the one before.
-fn rows(records: &[(usize, &Observation)]) -> Rows {
-    let flights = |o: &Observation| -> Vec<f64> {
-        let times = o.impacts.windows(2);
-        times.map(|w| w[1].time_s - w[0].time_s).collect()
-    };
-    let ratios = |o: &Observation| -> Vec<f64> {
-        let flights = flights(o);
-        flights.windows(2).map(|w| w[1] / w[0]).collect()
-    };
-    let all = records.iter().flat_map(|(_, o)| ratios(o));
-    let all: Vec<f64> = all.filter(|r| *r < GREATEST).collect();
-    let mut found = Rows::default();
-    let Some(median) = robust::median(&all) else {
-        return found;
-    };
-    let plausible = |r: f64| r > PLAUSIBLE[0] * median && r < (PLAUSIBLE[1] * median).min(GREATEST);
-    for (record, o) in records {
-        let flights = flights(o);
-        let ratios = ratios(o);
-        let missed: Vec<usize> = (1..flights.len())
-            .filter(|k| two_in_one(&ratios, *k, median))
-            .collect();
-        let first = |k: &usize| (*record, o.impacts[*k].time_s + flights[*k] / (1.0 + median));
-        found.missed.extend(missed.iter().map(first));
-        let mut begin = 0;
-        for end in 1..=flights.len() {
-            let beside = missed.contains(&end) || missed.contains(&(end - 1));
-            let goes_on = end < flights.len() && !beside && plausible(ratios[end - 1]);
-            if goes_on {
-                continue;
-            }
-            if end - begin < 2 {
-                found.left_out += end - begin;
-            } else {
-                found.rows.push(Row {
-                    record: *record,
-                    first: begin,
-                    times_s: o.impacts[begin..=end].iter().map(|i| i.time_s).collect(),
-                });
-            }
-            begin = end;
-        }
-    }
-    found
-}
-
-/// Whether a flight is two, the impact between them missing: the ratios to the flight before and of the one
-/// after are R(1 + R) and R²/(1 + R), nearer to that than to R both.
-fn two_in_one(ratios: &[f64], flight: usize, restitution: f64) -> bool {
-    let (Some(to), Some(from)) = (ratios.get(flight - 1), ratios.get(flight)) else {
-        return false;
-    };
-    let (sum, half) = (1.0 + restitution, 0.5 * (1.0 + restitution).ln());
-    let near = |ratio: f64, two: f64| (ratio / two).ln().abs() < half;
-    near(*to, restitution * sum) && near(*from, restitution.powi(2) / sum)
-}
-
-/// Gauss–Newton for `t_0`, `T_0` and R from the ratio of the first two flights.
-fn fitted(times_s: &[f64]) -> Option<Fitted> {
-    times_s.len().checked_sub(3)?;
-    let (first, second) = (times_s[1] - times_s[0], times_s[2] - times_s[1]);
-    let mut at = Vector3::new(times_s[0], first, second / first);
-    let mut normal = Matrix3::zeros();
-    for _ in 0..40 {
-        normal = Matrix3::zeros();
-        let mut right = Vector3::zeros();
-        let (mut sum, mut slope, mut power, mut power_slope) = (0.0, 0.0, 1.0, 0.0);
-        for time in times_s {
-            let row = Vector3::new(1.0, sum, at[1] * slope);
-            let residual = time - at[0] - at[1] * sum;
-            normal += row * row.transpose();
-            right += row * residual;
-            sum += power;
-            slope += power_slope;
-            power_slope = power_slope * at[2] + power;
-            power *= at[2];
-        }
-        let step = normal.try_inverse()? * right;
-        at += step;
-        if step[2].abs() < 1e-12 {
-            break;
-        }
-    }
-    let variance = normal.try_inverse()?[(2, 2)];
-    (at[2].is_finite() && at[2] > 0.0 && variance > 0.0).then(|| Fitted {
-        restitution: at[2],
-        error_per_s: variance.sqrt(),
-    })
-}
-
-/// Standard error of the times, s: by what no R and no steady change of it explains, at least as their source
-/// states; and how well it is known.
-fn time_noise(fits: &[(&Row, Fitted)], records: &[(usize, &Observation)]) -> Spread {
-    let errors: Vec<f64> = records
-        .iter()
-        .flat_map(|(_, o)| o.impacts.iter().map(|i| i.time_error_s))
-        .collect();
-    let stated = robust::median(&errors).unwrap_or(0.0);
-    let of = |factors: &[f64]| -> Vec<f64> {
-        let rows = fits.iter();
-        rows.flat_map(|(row, _)| differences(&row.times_s, factors))
-            .collect()
-    };
-    let third = of(&[-1.0, 3.0, -3.0, 1.0]);
-    let differences = if third.len() < ENOUGH {
-        of(&[1.0, -2.0, 1.0])
-    } else {
-        third
-    };
-    if differences.len() < ENOUGH {
-        return Spread::known(stated.max(USUAL_ERROR_S));
-    }
-    let scatter = robust::rms(&differences);
-    if stated >= scatter {
-        return Spread::known(stated);
-    }
-    Spread {
-        freedom: (differences.len() as f64 / PER_INDEPENDENT).max(1.0),
-        ..Spread::known(scatter)
-    }
-}
-
-/// Differences of the logarithms of a row's flights, each over its standard error for one of 1 s of each time.
-fn differences(times_s: &[f64], factors: &[f64]) -> Vec<f64> {
-    let flights: Vec<f64> = times_s.windows(2).map(|w| w[1] - w[0]).collect();
-    let of = |flights: &[f64]| {
-        let value: f64 = flights.iter().zip(factors).map(|(t, f)| f * t.ln()).sum();
-        // each time ends one flight and begins the next
-        let weights: Vec<f64> = flights.iter().zip(factors).map(|(t, f)| f / t).collect();
-        let inner = weights
-            .windows(2)
-            .map(|w| (w[0] - w[1]).powi(2))
-            .sum::<f64>();
-        let ends = weights[0].powi(2) + weights[weights.len() - 1].powi(2);
-        value / (inner + ends).sqrt()
-    };
-    flights.windows(factors.len()).map(of).collect()
-}
-
 /// Weighted mean of the records with the greater of inner and outer standard error.
 fn weighted(groups: &[ImpactGroup]) -> (f64, f64) {
     let weight = |g: &ImpactGroup| g.standard_error.max(1e-9).powi(-2);
@@ -464,19 +254,24 @@ fn weighted(groups: &[ImpactGroup]) -> (f64, f64) {
     (mean, (chi2 / freedom).max(1.0).sqrt() / all.sqrt())
 }
 
+/// Standard error of the times that their source states, s.
+fn stated_error_s(records: &[(usize, &Observation)]) -> Option<f64> {
+    let impacts = records.iter().flat_map(|(_, o)| &o.impacts);
+    let errors: Vec<f64> = impacts.map(|i| i.time_error_s).collect();
+    robust::median(&errors).filter(|error| *error > 0.0)
+}
+
 /// Each flight over the one before.
-fn ratios(row: &Row, error_s: f64) -> impl Iterator<Item = GroupedRatio> + '_ {
-    let triples = row.times_s.windows(3).enumerate();
-    triples.map(move |(k, t)| {
-        let (before, after) = (t[1] - t[0], t[2] - t[1]);
-        let ratio = after / before;
-        let slopes = [ratio, 1.0 + ratio, 1.0].map(|s| s / before);
+fn ratios(row: &Row, own: &RowEstimate) -> impl Iterator<Item = GroupedRatio> {
+    let triples = row.times_s.windows(3).zip(&own.ratio_errors).enumerate();
+    triples.map(|(k, (t, error))| {
+        let ratio = (t[2] - t[1]) / (t[1] - t[0]);
         GroupedRatio {
             record: row.record,
             bounce: row.first + k,
             speed_m_s: None,
             ratio,
-            error: error_s * slopes.iter().map(|s| s * s).sum::<f64>().sqrt(),
+            error: ratio * error,
         }
     })
 }
@@ -696,5 +491,75 @@ mod tests {
         let (r, error) = restitution(&all);
         assert!((r - 0.763).abs() < 2.0 * error, "{r} ± {error}");
         assert!(error < 0.01);
+    }
+
+    /// A standard normal deviate.
+    fn normal(rng: &mut rand_chacha::ChaCha8Rng) -> f64 {
+        use rand_distr::{Distribution, StandardNormal};
+        StandardNormal.sample(rng)
+    }
+
+    #[test]
+    fn prop_intervals_hold_r_whether_the_times_scatter_or_r_itself() {
+        use rand::SeedableRng;
+        const LISTS: usize = 150;
+        // relative scatter of R, scatter of the times in s, impacts; the times are stated to 0.1 ms
+        let cases = [
+            (0.0, 1e-4, 10),
+            (0.0, 1e-3, 8),
+            (5e-3, 1e-4, 10),
+            (2e-2, 1e-4, 10),
+            (3e-2, 5e-4, 8),
+            (2e-2, 1e-4, 6),
+        ];
+        for (number, (own, scatter_s, impacts)) in cases.into_iter().enumerate() {
+            let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(20_261_127 + number as u64);
+            let held = (0..LISTS).filter(|_| {
+                let mut times = vec![1.0];
+                let mut flight = 0.6;
+                for _ in 1..impacts {
+                    times.push(times[times.len() - 1] + flight);
+                    flight *= 0.8 * (1.0 + own * normal(&mut rng));
+                }
+                let measured: Vec<f64> = times
+                    .iter()
+                    .map(|t| t + scatter_s * normal(&mut rng))
+                    .collect();
+                let found = pooled(&[timed("a", &measured)]).expect("a result");
+                let interval = found.parameters.restitution.and_then(|r| r.interval95);
+                interval.is_some_and(|[low, high]| low <= 0.8 && 0.8 <= high)
+            });
+            let share = held.count() as f64 / LISTS as f64;
+            assert!(share > 0.9, "{own} {scatter_s} {impacts}: {share}");
+        }
+    }
+
+    #[test]
+    fn valid_r_that_scatters_from_impact_to_impact_is_named_with_its_scatter() {
+        use rand::SeedableRng;
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(5);
+        let lists: Vec<Observation> = (0..4)
+            .map(|k| {
+                let mut times = vec![1.0];
+                let mut flight = 0.6;
+                for _ in 0..10 {
+                    times.push(times[times.len() - 1] + flight);
+                    flight *= 0.85 * (1.0 + 0.02 * normal(&mut rng));
+                }
+                timed(&format!("list {k}"), &times)
+            })
+            .collect();
+        let found = pooled(&lists).expect("a result");
+        let share = found.remarks.iter().find_map(|r| match r {
+            Remark::RestitutionScatters { share } => Some(*share),
+            _ => None,
+        });
+        assert!(
+            (share.expect("a scatter") - 0.02).abs() < 0.006,
+            "{share:?}"
+        );
+        // one of the two, not both
+        let times = |r: &Remark| matches!(r, Remark::TimesScatter { .. });
+        assert!(!found.remarks.iter().any(times));
     }
 }

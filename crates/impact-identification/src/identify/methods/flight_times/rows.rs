@@ -1,0 +1,130 @@
+//! Rows of consecutive impacts, and the geometric row of times that fits each.
+
+use nalgebra::{Matrix3, Vector3};
+
+use impact_records::motion::Observation;
+use impact_records::signal::robust;
+
+/// Ratios of a flight to the one before, relative to the median, outside of which an impact was missed
+/// or something else was heard.
+const PLAUSIBLE: [f64; 2] = [0.6, 1.6];
+/// Greatest ratio that is possible but for errors of the times.
+const GREATEST: f64 = 1.05;
+
+/// Consecutive impacts of a record, none missing between them.
+#[derive(Debug, Clone)]
+pub(super) struct Row {
+    pub(super) record: usize,
+    /// Number of its first flight in the record.
+    pub(super) first: usize,
+    pub(super) times_s: Vec<f64>,
+}
+
+/// The geometric row that fits.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fitted {
+    pub(super) restitution: f64,
+    /// Standard error of R for a standard error of 1 s of each time.
+    pub(super) error_per_s: f64,
+}
+
+/// The rows of all records.
+#[derive(Default)]
+pub(super) struct Rows {
+    pub(super) rows: Vec<Row>,
+    /// Flights that belong to none.
+    pub(super) left_out: usize,
+    /// Where an impact is missing: the record's index and the time, s.
+    pub(super) missed: Vec<(usize, f64)>,
+}
+
+/// The rows of all records, parted where a flight does not follow from the one before.
+pub(super) fn rows(records: &[(usize, &Observation)]) -> Rows {
+    let flights = |o: &Observation| -> Vec<f64> {
+        let times = o.impacts.windows(2);
+        times.map(|w| w[1].time_s - w[0].time_s).collect()
+    };
+    let ratios = |o: &Observation| -> Vec<f64> {
+        let flights = flights(o);
+        flights.windows(2).map(|w| w[1] / w[0]).collect()
+    };
+    let all = records.iter().flat_map(|(_, o)| ratios(o));
+    let all: Vec<f64> = all.filter(|r| *r < GREATEST).collect();
+    let mut found = Rows::default();
+    let Some(median) = robust::median(&all) else {
+        return found;
+    };
+    let plausible = |r: f64| r > PLAUSIBLE[0] * median && r < (PLAUSIBLE[1] * median).min(GREATEST);
+    for (record, o) in records {
+        let flights = flights(o);
+        let ratios = ratios(o);
+        let missed: Vec<usize> = (1..flights.len())
+            .filter(|k| two_in_one(&ratios, *k, median))
+            .collect();
+        let first = |k: &usize| (*record, o.impacts[*k].time_s + flights[*k] / (1.0 + median));
+        found.missed.extend(missed.iter().map(first));
+        let mut begin = 0;
+        for end in 1..=flights.len() {
+            let beside = missed.contains(&end) || missed.contains(&(end - 1));
+            let goes_on = end < flights.len() && !beside && plausible(ratios[end - 1]);
+            if goes_on {
+                continue;
+            }
+            if end - begin < 2 {
+                found.left_out += end - begin;
+            } else {
+                found.rows.push(Row {
+                    record: *record,
+                    first: begin,
+                    times_s: o.impacts[begin..=end].iter().map(|i| i.time_s).collect(),
+                });
+            }
+            begin = end;
+        }
+    }
+    found
+}
+
+/// Whether a flight is two, the impact between them missing: the ratios to the flight before and of the one
+/// after are R(1 + R) and R²/(1 + R), nearer to that than to R both.
+fn two_in_one(ratios: &[f64], flight: usize, restitution: f64) -> bool {
+    let (Some(to), Some(from)) = (ratios.get(flight - 1), ratios.get(flight)) else {
+        return false;
+    };
+    let (sum, half) = (1.0 + restitution, 0.5 * (1.0 + restitution).ln());
+    let near = |ratio: f64, two: f64| (ratio / two).ln().abs() < half;
+    near(*to, restitution * sum) && near(*from, restitution.powi(2) / sum)
+}
+
+/// Gauss–Newton for `t_0`, `T_0` and R from the ratio of the first two flights.
+pub(super) fn fitted(times_s: &[f64]) -> Option<Fitted> {
+    times_s.len().checked_sub(3)?;
+    let (first, second) = (times_s[1] - times_s[0], times_s[2] - times_s[1]);
+    let mut at = Vector3::new(times_s[0], first, second / first);
+    let mut normal = Matrix3::zeros();
+    for _ in 0..40 {
+        normal = Matrix3::zeros();
+        let mut right = Vector3::zeros();
+        let (mut sum, mut slope, mut power, mut power_slope) = (0.0, 0.0, 1.0, 0.0);
+        for time in times_s {
+            let row = Vector3::new(1.0, sum, at[1] * slope);
+            let residual = time - at[0] - at[1] * sum;
+            normal += row * row.transpose();
+            right += row * residual;
+            sum += power;
+            slope += power_slope;
+            power_slope = power_slope * at[2] + power;
+            power *= at[2];
+        }
+        let step = normal.try_inverse()? * right;
+        at += step;
+        if step[2].abs() < 1e-12 {
+            break;
+        }
+    }
+    let variance = normal.try_inverse()?[(2, 2)];
+    (at[2].is_finite() && at[2] > 0.0 && variance > 0.0).then(|| Fitted {
+        restitution: at[2],
+        error_per_s: variance.sqrt(),
+    })
+}
