@@ -274,3 +274,76 @@ fn a_fall_is_one_contact_whole_and_not_what_slows_the_bodies_before_it() {
         assert!(last.last.abs_diff(519) <= 2, "{braked}: {falls:?}");
     }
 }
+
+/// Positions of two riders by a camera: x is pushed until some time, coasts freely, and meets y at 1.4 s, whose speed
+/// is given; a contact of 20 ms, equal masses.
+fn ridden(
+    restitution: f64,
+    [x_m_s, y_m_s]: [f64; 2],
+    pushed_s: f64,
+    noise: (f64, &mut rand_chacha::ChaCha8Rng),
+) -> [Vec<f64>; 2] {
+    use rand_distr::{Distribution, StandardNormal};
+    let (rate_hz, fine, contact_s, hit_s) = (200.0, 20, 0.02, 1.4);
+    let closing = x_m_s - y_m_s;
+    let changed = |t: f64| {
+        let share = ((t - hit_s) / contact_s).clamp(0.0, 1.0);
+        0.5 * (1.0 + restitution) * closing * (0.5 - 0.5 * (std::f64::consts::PI * share).cos())
+    };
+    let (mut places, mut at) = ([Vec::new(), Vec::new()], [0.0, 0.0]);
+    let (deviation, rng) = noise;
+    for i in 0..600 * fine {
+        let t = f64::from(i) / (rate_hz * f64::from(fine));
+        let speeds = [
+            x_m_s * (t / pushed_s).min(1.0) - changed(t),
+            y_m_s + changed(t),
+        ];
+        if i % fine == 0 {
+            for (place, at) in places.iter_mut().zip(at) {
+                let noise: f64 = StandardNormal.sample(rng);
+                place.push(at + deviation * noise);
+            }
+        }
+        for (at, speed) in at.iter_mut().zip(speeds) {
+            *at += speed / (rate_hz * f64::from(fine));
+        }
+    }
+    let [x, y] = places;
+    [x, y.into_iter().map(|v| -v).collect()]
+}
+
+#[test]
+fn prop_a_push_that_ends_within_a_flight_and_a_body_at_rest_leave_r_in_its_interval() {
+    use rand::SeedableRng;
+    // R, speeds, end of the push, noise
+    let cases = [
+        (0.8, [0.5, -0.1], 1.3, 2e-4),
+        (0.8, [0.5, -0.1], 1.35, 2e-4),
+        (0.6, [0.5, -0.1], 1.2, 5e-5),
+        (0.8, [0.5, 0.0], 0.4, 2e-4),
+        (1.0, [0.5, 0.0], 0.4, 1e-4),
+    ];
+    for (number, (restitution, speeds, pushed_s, noise)) in cases.into_iter().enumerate() {
+        let (mut found, mut held) = (0, 0);
+        for seed in 0..30 {
+            let mut rng =
+                rand_chacha::ChaCha8Rng::seed_from_u64(20_261 + 100 * number as u64 + seed);
+            let [x, y] = ridden(restitution, speeds, pushed_s, (noise, &mut rng));
+            let record = Record::of(
+                200.0,
+                &[(Role::DisplacementX, &x), (Role::DisplacementY, &y)],
+            );
+            let kinematics = Kinematics::of(&record, RigKind::Double, 1);
+            for impact in detect(&kinematics, RigKind::Double, &[]).impacts {
+                let before = impact.approach_speed_before_m_s.unwrap();
+                let ratio = -impact.approach_speed_after_m_s.unwrap() / before;
+                let error = impact.speed_error_m_s.unwrap();
+                let half = 1.96 * error * (1.0 + ratio * ratio).sqrt() / before;
+                found += 1;
+                held += usize::from((ratio - restitution).abs() < half);
+            }
+        }
+        assert!(found >= 24, "{number}: {found} found");
+        assert!(held * 100 >= 88 * found, "{number}: {held} of {found} held");
+    }
+}
