@@ -106,6 +106,8 @@ flag_codes! {
     SwappedMasses = "swapped_masses",
     /// Two channels have opposite signs.
     OppositeSign = "opposite_sign",
+    /// Two masses change their velocities at different times.
+    SeparateBodies = "separate_bodies",
     /// The scales of two channels contradict each other.
     ScalesContradict = "scales_contradict",
     /// The drive channel holds no harmonic tone.

@@ -138,6 +138,11 @@ pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
     };
     let flies = |d: &Detection| !d.impacts.is_empty();
     let notes = |d: &Detection, code| d.flags.iter().any(|f| f.code == code);
+    if two && most(&|d| notes(d, FlagCode::SeparateBodies)) {
+        // balls thrown side by side: each is a rig of its own
+        keep_one_mass(&mut found.channels);
+        return infer(places, found);
+    }
     let along = |d: &Detection| notes(d, FlagCode::OppositeSign);
     if most(&|d| flies(d) || along(d)) {
         found.experiment = Experiment::FreeFlight(rig);

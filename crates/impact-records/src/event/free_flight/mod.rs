@@ -113,6 +113,10 @@ impl Force {
     }
 }
 
+/// Change of one body over what shows one, and what shows one over that of the other, from which one body alone meets
+/// something.
+const ALONE: f64 = 1.5;
+
 /// An impact, or why a fall is none.
 enum Found {
     Impact(Box<Impact>, Option<usize>),
@@ -120,7 +124,21 @@ enum Found {
     NoFlight(f64, Side),
     /// The speed at the impact is beyond any that was measured.
     Beyond(f64),
+    /// One of two bodies changes its velocity, and the other flies on.
+    OneBody,
     Nothing,
+}
+
+fn separate_bodies(alone: usize, impacts: usize) -> Flag {
+    Flag::new(
+        FlagCode::SeparateBodies,
+        None,
+        format!(
+            "the two masses do not meet: {alone} times one of them changes its velocity and the other flies on, {impacts} \
+             times both do"
+        ),
+        "measure each by itself: machine = \"single\" with one motion channel, a campaign for each",
+    )
 }
 
 impl<'a> Search<'a> {
@@ -174,6 +192,7 @@ impl<'a> Search<'a> {
             ..FreeFlights::default()
         };
         let (mut cut, mut hidden, mut beyond) = (Vec::new(), Vec::new(), Vec::new());
+        let mut alone = 0;
         for index in 0..self.falls.len() {
             match self.impact(index, closed) {
                 Found::Impact(impact, left_out) => {
@@ -182,8 +201,16 @@ impl<'a> Search<'a> {
                 }
                 Found::NoFlight(time_s, side) => hidden.push((time_s, side)),
                 Found::Beyond(time_s) => beyond.push(time_s),
+                Found::OneBody => alone += 1,
                 Found::Nothing => {}
             }
+        }
+        if alone > found.impacts.len() + 1 {
+            return FreeFlights {
+                impacts: Vec::new(),
+                flags: vec![separate_bodies(alone, found.impacts.len())],
+                ..found
+            };
         }
         found.flags.extend(cut_flag(&cut, self.rate_hz));
         found.flags.extend(hidden_flag(&hidden));
@@ -254,13 +281,24 @@ impl<'a> Search<'a> {
             1 => separation > CHANGED * error,
             _ => separation > -CHANGED * error.max(0.02 * approach),
         };
-        let changed = before.iter().zip(&after).all(|(b, a)| {
-            let drop = b.speed(begin) - a.speed(end);
-            drop > (CHANGED * b.error(time).hypot(a.error(time))).max(0.02 * approach)
-        });
+        let pairs = before.iter().zip(&after);
+        // each body's change over what shows one
+        let changes: Vec<f64> = pairs
+            .map(|(b, a)| {
+                let shows = (CHANGED * b.error(time).hypot(a.error(time))).max(0.02 * approach);
+                (b.speed(begin) - a.speed(end)) / shows
+            })
+            .collect();
+        let changed = |change: &f64| *change > 1.0;
+        if changes.len() > 1
+            && changes.iter().any(|c| *c > ALONE)
+            && changes.iter().any(|c| c.abs() < 1.0 / ALONE)
+        {
+            return Found::OneBody;
+        }
         if approach < CHANGED * error
             || !rebounds
-            || !changed
+            || !changes.iter().all(changed)
             || separation > GREATEST_RATIO * approach
             || approach + separation < EXPLAINED * self.drop(fall)
         {

@@ -17,21 +17,30 @@ pub(super) fn search(
     let with = |signs: [f64; 2]| {
         let turned = turned(kinematics, rig, signs);
         let found = Search::new(&turned, rig).impacts(closed);
-        (!found.impacts.is_empty()).then_some(found)
+        (!found.impacts.is_empty() || is_separate(&found)).then_some(found)
     };
     if let Some(mut found) = with([-1.0, -1.0]) {
-        found.flags.insert(0, away(rig));
+        if !is_separate(&found) {
+            found.flags.insert(0, away(rig));
+        }
         return Some(found);
     }
     if rig == RigKind::Single || seen {
         return None;
     }
-    let along_one_axis = with([1.0, -1.0]).is_some() || with([-1.0, 1.0]).is_some();
+    let meet = |signs| with(signs).is_some_and(|found| !is_separate(&found));
+    let along_one_axis = meet([1.0, -1.0]) || meet([-1.0, 1.0]);
     along_one_axis.then(|| FreeFlights {
         flags: vec![same_direction()],
         jump_samples: 1,
         ..FreeFlights::default()
     })
+}
+
+/// Whether two bodies do not meet each other.
+fn is_separate(found: &FreeFlights) -> bool {
+    let mut flags = found.flags.iter();
+    flags.any(|f| f.code == FlagCode::SeparateBodies)
 }
 
 fn away(rig: RigKind) -> Flag {

@@ -347,3 +347,42 @@ fn prop_a_push_that_ends_within_a_flight_and_a_body_at_rest_leave_r_in_its_inter
         assert!(held * 100 >= 88 * found, "{number}: {held} of {found} held");
     }
 }
+
+#[test]
+fn two_balls_that_bounce_side_by_side_are_no_two_masses() {
+    // heights above the floor, m, dropped together, 240 pictures a second
+    let height = |restitution: f64| -> Vec<f64> {
+        let (g, mut speed, mut fallen) = (9.81f64, 0.0, 0.0);
+        let mut place = 1.0;
+        let mut out = Vec::new();
+        for i in 0..24 * 600 {
+            if i % 24 == 0 {
+                out.push(place);
+            }
+            let dt = 1.0 / (240.0 * 24.0);
+            speed -= g * dt;
+            place += speed * dt;
+            if place < 0.0 && speed < 0.0 {
+                fallen += 1.0;
+                (place, speed) = (0.0, -restitution * speed);
+            }
+        }
+        assert!(fallen > 3.0);
+        out
+    };
+    let (x, y) = (height(0.9), height(0.6));
+    let record = Record::of(
+        240.0,
+        &[(Role::DisplacementX, &x), (Role::DisplacementY, &y)],
+    );
+    let kinematics = Kinematics::of(&record, RigKind::Double, 1);
+    let found = detect(&kinematics, RigKind::Double, &[]);
+    assert!(found.impacts.is_empty(), "{found:?}");
+    assert_eq!(
+        found.flags[0].code,
+        FlagCode::SeparateBodies,
+        "{:?}",
+        found.flags
+    );
+    assert!(found.flags[0].excludes);
+}
