@@ -145,8 +145,9 @@ impl<'a> Signal<'a> {
         })
     }
 
-    /// The longest stretch of a window that free flight explains and that is one with its part beside the fall: a push
-    /// that ends within it bends it too little to be seen in its scatter.
+    /// The longest stretch of a window that free flight explains and that is one with its part beside the fall and with
+    /// itself bent by one more power of time: a push that ends within it, or drag, bends it too little to be seen in its
+    /// scatter.
     fn longest(&self, side: Side, (first, last): (usize, usize)) -> Option<Stretch> {
         let nearest = |count: usize| match side {
             Side::Before => (last - count, last),
@@ -162,7 +163,10 @@ impl<'a> Signal<'a> {
                 let parts = NEAREST.map(|share| whole::index((share * count as f64).round()));
                 let parts = parts.into_iter().filter(|part| *part >= self.least);
                 let parts = parts.filter_map(|part| self.flight(nearest(part)));
-                let kinks: Vec<Kink> = parts.map(|part| Kink::of(&stretch, &part, edge)).collect();
+                let others = parts.chain(self.bent(&stretch));
+                let kinks: Vec<Kink> = others
+                    .map(|other| Kink::of(&stretch, &other, edge))
+                    .collect();
                 if kinks.iter().all(|kink| kink.deviates <= KINKED) {
                     let unlike = kinks.iter().map(|kink| kink.beyond_m_s);
                     return Some(Stretch {
@@ -174,6 +178,16 @@ impl<'a> Signal<'a> {
             count -= (count / STEP).max(1);
         }
         None
+    }
+
+    /// A stretch with one more power of time.
+    fn bent(&self, stretch: &Stretch) -> Option<Stretch> {
+        let (first, last) = stretch.samples;
+        let fit = LocalFit::new(self.values, first, last, self.degree + 1)?;
+        Some(Stretch {
+            fit,
+            ..stretch.clone()
+        })
     }
 
     /// A fit of samples that free flight explains; `None` where it does not.
@@ -204,7 +218,7 @@ impl<'a> Signal<'a> {
     }
 }
 
-/// How far the speeds of a stretch and of a part of it differ beside the fall.
+/// How far the speeds of a stretch and of a part of it, or of it bent, differ beside the fall.
 struct Kink {
     /// In standard errors of the difference.
     deviates: f64,
