@@ -188,7 +188,7 @@ impl Given {
                 "give results folders of `impactid run`, or campaign.toml files",
             ));
         }
-        let described = path.is_file() && path.extension().is_some_and(|e| e == "toml");
+        let described = path.is_file() && path.extension().is_none_or(|e| e != "json");
         if !described {
             return Ok(Self::Results(campaigns::read(path, number)?));
         }
