@@ -71,6 +71,7 @@ fn name_and_value(text: &str) -> Result<(String, String), NotNameAndValue> {
 
 impl Convert {
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+        self.refuse_own_input()?;
         let target = match self.to {
             Some(To::Hdf5) => Some(Target::Hdf5),
             Some(To::Parquet) => Some(Target::Parquet),
@@ -114,6 +115,20 @@ impl Convert {
         let records = counted(count, "record");
         verbosity.info(&format!("{records} written to {}", written.display()));
         Ok(Exit::Done)
+    }
+
+    /// Refuse to write over a file that is read.
+    fn refuse_own_input(&self) -> Result<(), Failure> {
+        let Ok(out) = self.out.canonicalize() else {
+            return Ok(());
+        };
+        let is_out = |file: &&PathBuf| file.canonicalize().is_ok_and(|file| file == out);
+        self.files.iter().find(is_out).map_or(Ok(()), |file| {
+            Err(Failure::new(
+                format!("{} is read and would be written over", file.display()),
+                "name another file with --out",
+            ))
+        })
     }
 }
 
