@@ -67,7 +67,12 @@ pub(super) fn list_files(
     for pattern in &files.get_ref().0 {
         let found = expand(shared.folder, pattern);
         if found.is_empty() && shared.taken.is_none() {
-            let what = format!("no file matches '{pattern}' in {}", shared.folder.display());
+            let folder = if shared.folder.as_os_str().is_empty() {
+                Path::new(".")
+            } else {
+                shared.folder
+            };
+            let what = format!("no file matches '{pattern}' in {}", folder.display());
             let remedy = if pattern.contains('\\') {
                 "write / between folders, as in \"sub/*.csv\", on Windows too"
             } else {
