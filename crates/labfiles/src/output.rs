@@ -54,6 +54,12 @@ impl OutputError {
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Locked { .. } => "wait until it has ended, or name another folder with --out",
+            // Windows replaces no file that another program has open
+            Self::File { path, source }
+                if source.kind() == io::ErrorKind::PermissionDenied && path.is_file() =>
+            {
+                "close it in other programs, or name a folder that you may write into with --out"
+            }
             Self::Folder { source, .. } | Self::File { source, .. } => remedy_for(source.kind()),
         }
     }
