@@ -97,10 +97,14 @@ pub(super) fn list_files(
     all
 }
 
-/// The files that a glob matches, folders left out.
+/// The files that a glob matches; folders and hidden files are left out, as `init` does.
 pub(super) fn expand(folder: &Path, pattern: &str) -> Vec<PathBuf> {
     let whole = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
-    let Ok(paths) = glob::glob(&whole.to_string_lossy()) else {
+    let visible = glob::MatchOptions {
+        require_literal_leading_dot: true,
+        ..glob::MatchOptions::new()
+    };
+    let Ok(paths) = glob::glob_with(&whole.to_string_lossy(), visible) else {
         return Vec::new();
     };
     paths
