@@ -1,6 +1,6 @@
 //! `impactid boundary`: single points of the boundaries in the (η, ρ) plane.
 
-use clap::{Args, ValueEnum};
+use clap::{ArgGroup, Args, ValueEnum};
 use serde_json::{Value, json};
 
 use super::machine::{MachineArgs, motion, refused};
@@ -11,7 +11,10 @@ use impact_oscillator::atlas::{At, Boundary as Sought, BoundaryQuery, Point, bou
 
 /// Arguments of `impactid boundary`.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLE)]
+#[command(
+    after_help = EXAMPLE,
+    group = ArgGroup::new("place").required(true).args(["eta", "rho"])
+)]
 pub(super) struct Boundary {
     /// Which boundary
     #[arg(long, value_enum)]
@@ -23,15 +26,10 @@ pub(super) struct Boundary {
     #[command(flatten)]
     machine: MachineArgs,
     /// Frequency ratio η at which the clearance ρ is sought
-    #[arg(long, value_name = "ETA", required_unless_present = "rho")]
+    #[arg(long, value_name = "ETA")]
     eta: Option<f64>,
     /// Clearance ρ at which η is sought, up to η = 2.5 n
-    #[arg(
-        long,
-        value_name = "RHO",
-        conflicts_with = "eta",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "RHO", allow_negative_numbers = true)]
     rho: Option<f64>,
     /// Print JSON
     #[arg(long)]

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::load::load_campaign;
 use super::progress::Progress;
-use super::report_args::{language_parser, paper_parser, quoted};
+use super::report_args::{each_once, language_parser, paper_parser, quoted};
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
@@ -101,7 +101,7 @@ impl Compare {
             command_line: self.typed(),
         };
         let comparison = &content.comparison;
-        let files = campaigns::files(&content, &self.format, &self.options())?;
+        let files = campaigns::files(&content, &each_once(&self.format), &self.options())?;
         pipeline::report::write(&files, &self.out)?;
         if self.json {
             print_json(comparison)?;
@@ -188,7 +188,7 @@ impl Given {
                 "give results folders of `impactid run`, or campaign.toml files",
             ));
         }
-        let described = path.is_file() && path.extension().is_some_and(|e| e == "toml");
+        let described = path.is_file() && path.extension().is_none_or(|e| e != "json");
         if !described {
             return Ok(Self::Results(campaigns::read(path, number)?));
         }

@@ -90,6 +90,7 @@ impl Convert {
             )
         };
         let target = target.ok_or_else(unknown)?;
+        self.refuse_own_input(target)?;
         let log = ReadLog::new(verbosity);
         let sources = self
             .files
@@ -114,6 +115,25 @@ impl Convert {
         let records = counted(count, "record");
         verbosity.info(&format!("{records} written to {}", written.display()));
         Ok(Exit::Done)
+    }
+
+    /// Refuse to write over a file that is read: the output itself, or one of the folder that several
+    /// records are written into as CSV, which have the names of their files there.
+    fn refuse_own_input(&self, target: Target) -> Result<(), Failure> {
+        let folder = self.out.with_extension("").canonicalize().ok();
+        let folder = folder.filter(|_| target == Target::Csv && self.files.len() > 1);
+        let out = self.out.canonicalize().ok();
+        let is_out = |file: &&PathBuf| {
+            let file = file.canonicalize().ok();
+            let within = file.as_deref().and_then(Path::parent);
+            file.is_some() && (file == out || within.is_some() && within == folder.as_deref())
+        };
+        self.files.iter().find(is_out).map_or(Ok(()), |file| {
+            Err(Failure::new(
+                format!("{} is read and would be written over", file.display()),
+                "name another file with --out",
+            ))
+        })
     }
 }
 

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::machine::at_least;
 use super::simulate::within;
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Progress, Verbosity};
@@ -17,7 +18,7 @@ use simulated_rig::RigSpec;
 #[command(after_help = EXAMPLE)]
 pub(super) struct Coverage {
     /// Number of campaigns
-    #[arg(long, value_name = "N", default_value_t = 100)]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = at_least::<1>())]
     campaigns: usize,
     /// Sweep past the end of z = 1 at several gaps in steps of this share of f0, for R from the measured
     /// boundaries [default: campaigns of every motion]
@@ -87,7 +88,7 @@ impl Coverage {
 
 fn table(found: &coverage::Coverage) -> String {
     let mut text = format!(
-        "{:13} {:21} {:>4} {:>7} {:>10} {:>10} {:>10} {:>9} {:>8} {:>10}\n",
+        "{:17} {:21} {:>4} {:>7} {:>10} {:>10} {:>10} {:>9} {:>8} {:>10}\n",
         "method",
         "parameter",
         "n",
@@ -143,7 +144,7 @@ fn tallies(found: &Tallies) -> String {
 
 fn score_line(method: &str, parameter: &str, s: &Score) -> String {
     format!(
-        "{method:13} {parameter:21} {:>4} {:>7} {:>10.2e} {:>10.2e} {:>10.2e} {:>9.2} {:>6.1} % {:>10.2e}\n",
+        "{method:17} {parameter:21} {:>4} {:>7} {:>10.2e} {:>10.2e} {:>10.2e} {:>9.2} {:>6.1} % {:>10.2e}\n",
         s.estimates,
         s.refused,
         s.bias,

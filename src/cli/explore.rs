@@ -127,6 +127,11 @@ fn read(path: &Path) -> Result<String, Failure> {
     fs::read_to_string(path).map_err(|e| Failure::io(path, &e))
 }
 
+/// Whether a text is that of a study: it states `damping_ratio` outside of all tables.
+fn is_study(text: &str) -> bool {
+    toml::from_str::<toml::Table>(text).is_ok_and(|table| table.contains_key("damping_ratio"))
+}
+
 /// What a path is: a folder is one of results; a file with `damping_ratio` is a study.
 fn open(path: &Path, verbosity: Verbosity) -> Result<Session, Failure> {
     if !path.exists() {
@@ -141,12 +146,8 @@ fn open(path: &Path, verbosity: Verbosity) -> Result<Session, Failure> {
         let (campaign, notes) = OpenCampaign::read(path, &|s, d, t| bar.step(s, d, t))?;
         return Ok(Session::of_campaign(campaign, notes));
     }
-    let text = read(path)?;
-    let table: toml::Table = toml::from_str(&text).map_err(|e| {
-        let remedy = "name a folder of results, a campaign.toml or a study";
-        Failure::new(format!("{}: {e}", path.display()), remedy)
-    })?;
-    if table.contains_key("damping_ratio") {
+    let study = fs::read_to_string(path).ok().filter(|text| is_study(text));
+    if let Some(text) = study {
         let study: Study = toml::from_str(&text).map_err(|e| {
             let remedy = "correct the place named; the studies shipped are examples";
             Failure::new(format!("{}: {e}", path.display()), remedy)

@@ -73,7 +73,7 @@ impl Failure {
     /// A file that could not be read or written.
     pub(crate) fn io(path: &Path, error: &std::io::Error) -> Self {
         Self::new(
-            format!("{}: {error}", path.display()),
+            format!("{}: {}", path.display(), labfiles::said(error)),
             "check path and permissions",
         )
     }

@@ -120,8 +120,8 @@ impl MotionArgs {
 const CAMPAIGN_HELP: &str = "\
 Example:
   impactid simulate campaign --seed 1 --restitution 0.9 --damping-ratio 0.07 --out synthetic/
-  impactid simulate campaign --rig realistic --out synthetic/
-  impactid simulate campaign --rig contact=0.3,friction --out synthetic/
+  impactid simulate campaign --rig realistic --out realistic/
+  impactid simulate campaign --rig contact=0.3,friction --out soft-contact/
 
 Effects and the strengths they have if none is given (0 switches one off):
   gaps=0.003               each stated gap is off; standard deviation over x_st
@@ -249,8 +249,9 @@ impl Campaign {
         };
         let count = write_campaign(&recipe, &self.out)?;
         verbosity.info(&format!(
-            "{count} synthetic records in {0}; next: impactid run {0}/campaign.toml --out results/",
-            self.out.display()
+            "{count} synthetic records in {}; next: impactid run {} --out results/",
+            self.out.display(),
+            self.out.join("campaign.toml").display()
         ));
         Ok(Exit::Done)
     }

@@ -39,6 +39,7 @@ use ::hdf5::{AttrValue, FileBuilder};
 
 use crate::hdf5_write::record::Folder;
 use crate::output::write_whole_or;
+use crate::system::said;
 
 pub use crate::hdf5_write::record::{AttributeValue, ColumnToWrite, RecordTable, Stored};
 
@@ -49,7 +50,7 @@ const LAYOUT_VERSION: i64 = 1;
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The file system refused.
-    #[error("{} could not be written: {source}", path.display())]
+    #[error("{} could not be written: {}", path.display(), said(source))]
     Io {
         /// The file.
         path: PathBuf,

@@ -65,6 +65,7 @@ mod plain;
 mod rate;
 mod source;
 pub mod summary;
+mod system;
 mod tdms;
 mod text;
 pub mod timing;
@@ -77,6 +78,7 @@ pub use open::open;
 pub use parquet::guard::is_caught as panic_is_caught;
 pub use plain::read_text;
 pub use source::{ChannelInfo, Clock, DatasetInfo, ReadError, Samples, Source, StoredType};
+pub use system::said;
 
 #[cfg(test)]
 mod conformance;

@@ -11,6 +11,8 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
+use crate::system::said;
+
 /// Name of the lock in an output folder.
 const LOCK_NAME: &str = ".impactid.lock";
 
@@ -24,7 +26,7 @@ const PART_ENDING: &str = ".impactid-part";
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     /// The folder could not be created or written into.
-    #[error("the folder {} cannot be written into: {source}", path.display())]
+    #[error("the folder {} cannot be written into: {}", path.display(), said(source))]
     Folder {
         /// The folder.
         path: PathBuf,
@@ -32,7 +34,7 @@ pub enum OutputError {
         source: io::Error,
     },
     /// The file could not be written whole.
-    #[error("{} could not be written: {source}", path.display())]
+    #[error("{} could not be written: {}", path.display(), said(source))]
     File {
         /// The file.
         path: PathBuf,
@@ -52,6 +54,12 @@ impl OutputError {
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Locked { .. } => "wait until it has ended, or name another folder with --out",
+            // Windows replaces no file that another program has open
+            Self::File { path, source }
+                if source.kind() == io::ErrorKind::PermissionDenied && path.is_file() =>
+            {
+                "close it in other programs, or name a folder that you may write into with --out"
+            }
             Self::Folder { source, .. } | Self::File { source, .. } => remedy_for(source.kind()),
         }
     }

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 pub use crate::channel::{ChannelInfo, Clock, StoredType};
 use crate::clocks;
+use crate::system::said;
 
 /// A dataset (one record) as its file describes it, before its samples are read.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -162,7 +163,7 @@ impl ReadError {
             std::io::ErrorKind::PermissionDenied => "Allow reading the file.",
             _ => "Check the disk and copy the file again.",
         };
-        Self::new(path, "a readable file", error.to_string(), remedy)
+        Self::new(path, "a readable file", said(error), remedy)
     }
 }
 

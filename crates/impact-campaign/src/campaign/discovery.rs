@@ -67,7 +67,12 @@ pub(super) fn list_files(
     for pattern in &files.get_ref().0 {
         let found = expand(shared.folder, pattern);
         if found.is_empty() && shared.taken.is_none() {
-            let what = format!("no file matches '{pattern}' in {}", shared.folder.display());
+            let folder = if shared.folder.as_os_str().is_empty() {
+                Path::new(".")
+            } else {
+                shared.folder
+            };
+            let what = format!("no file matches '{pattern}' in {}", folder.display());
             let remedy = if pattern.contains('\\') {
                 "write / between folders, as in \"sub/*.csv\", on Windows too"
             } else {
@@ -92,10 +97,14 @@ pub(super) fn list_files(
     all
 }
 
-/// The files that a glob matches, folders left out.
+/// The files that a glob matches; folders and hidden files are left out, as `init` does.
 pub(super) fn expand(folder: &Path, pattern: &str) -> Vec<PathBuf> {
     let whole = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
-    let Ok(paths) = glob::glob(&whole.to_string_lossy()) else {
+    let visible = glob::MatchOptions {
+        require_literal_leading_dot: true,
+        ..glob::MatchOptions::new()
+    };
+    let Ok(paths) = glob::glob_with(&whole.to_string_lossy(), visible) else {
         return Vec::new();
     };
     paths

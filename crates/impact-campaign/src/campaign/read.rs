@@ -19,7 +19,7 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
         Ok(text) => return Some(text),
         Err(error) => error,
     };
-    let unreadable = || format!("campaign.toml cannot be read: {error}");
+    let unreadable = || format!("campaign.toml cannot be read: {}", labfiles::said(&error));
     let (message, remedy) = match (path.is_dir(), error.kind()) {
         (true, _) if path.join(RESOLVED).exists() => (
             "it is a folder of results".to_owned(),

@@ -102,7 +102,8 @@ fn text_of(path: &Path, faults: &mut FaultCollector) -> Option<(String, bool)> {
         return match std::fs::read(path) {
             Ok(bytes) => Some((decode(&bytes), false)),
             Err(error) => {
-                refuse(format!("the run table cannot be read: {error}"));
+                let said = labfiles::said(&error);
+                refuse(format!("the run table cannot be read: {said}"));
                 None
             }
         };

@@ -37,8 +37,8 @@ pub fn read(folder: &Path, measurement: usize) -> Result<Vec<Campaign>, Pipeline
         reason,
         remedy,
     };
-    let text =
-        std::fs::read_to_string(&file).map_err(|e| unusable(e.to_string(), missing(folder)))?;
+    let text = std::fs::read_to_string(&file)
+        .map_err(|e| unusable(labfiles::said(&e), missing(folder)))?;
     let again = || {
         format!(
             "identify the campaign again into another folder than {}: impactid run CAMPAIGN.TOML --out DIR",

@@ -27,6 +27,6 @@ pub(super) fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<
 /// # Errors
 /// If the file is missing or not what is expected.
 pub(super) fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, PipelineError> {
-    let text = std::fs::read_to_string(path).map_err(|e| store_error(path, e))?;
+    let text = std::fs::read_to_string(path).map_err(|e| store_error(path, labfiles::said(&e)))?;
     serde_json::from_str(&text).map_err(|e| store_error(path, e))
 }

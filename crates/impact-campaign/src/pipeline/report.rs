@@ -168,7 +168,7 @@ pub fn catalog(stated: &StatedOptions) -> Result<Option<Catalog>, PipelineError>
         path: path.display().to_string(),
         reason,
     };
-    let text = labfiles::read_text(path).map_err(|error| unusable(error.to_string()))?;
+    let text = labfiles::read_text(path).map_err(|error| unusable(labfiles::said(&error)))?;
     let catalog = Catalog::read(&text).map_err(|error| unusable(error.to_string()))?;
     Ok(Some(catalog))
 }
@@ -176,7 +176,7 @@ pub fn catalog(stated: &StatedOptions) -> Result<Option<Catalog>, PipelineError>
 fn options(stated: &StatedOptions) -> Result<ReportOptions, PipelineError> {
     let unreadable = |path: &Path, error: std::io::Error| PipelineError::ReportFile {
         path: path.display().to_string(),
-        reason: error.to_string(),
+        reason: labfiles::said(&error),
     };
     let template =
         |path: &PathBuf| labfiles::read_text(path).map_err(|error| unreadable(path, error));

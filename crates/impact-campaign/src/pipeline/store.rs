@@ -305,7 +305,7 @@ fn kept(out: &Path) -> Result<Option<(Vec<Observation>, Vec<MethodResiduals>)>, 
     }
     gzip_json::read(&path)
         .map(Some)
-        .map_err(|e| store_error(&path, e))
+        .map_err(|e| store_error(&path, labfiles::said(&e)))
 }
 
 /// Whether a folder holds the calibrated records of stage 1.
@@ -316,7 +316,9 @@ pub fn is_staged(out: &Path) -> bool {
 /// Remove a file that no longer holds, if it is there.
 fn remove(path: &Path) -> Result<(), PipelineError> {
     match std::fs::remove_file(path) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(store_error(path, e)),
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+            Err(store_error(path, labfiles::said(&e)))
+        }
         _ => Ok(()),
     }
 }
@@ -380,7 +382,7 @@ fn staged_residuals(out: &Path) -> Result<Vec<MethodResiduals>, PipelineError> {
         });
     }
     let path = of_stage(out, RESIDUALS, "residuals")?;
-    gzip_json::read(&path).map_err(|e| store_error(&path, e))
+    gzip_json::read(&path).map_err(|e| store_error(&path, labfiles::said(&e)))
 }
 
 /// The identification of stage 3 or of a run, without the residuals.
@@ -399,7 +401,7 @@ pub fn read_observed(out: &Path) -> Result<Observed, PipelineError> {
     let path = of_stage(out, WAVEFORMS, "waveforms")?;
     let mut observed = Observed::bracketed(staged_observations(out)?);
     let waveforms: Vec<Option<Folded>> =
-        gzip_json::read(&path).map_err(|e| store_error(&path, e))?;
+        gzip_json::read(&path).map_err(|e| store_error(&path, labfiles::said(&e)))?;
     for (observation, folded) in observed.observations.iter_mut().zip(waveforms) {
         observation.folded = folded.map(Arc::new);
     }
@@ -409,7 +411,7 @@ pub fn read_observed(out: &Path) -> Result<Observed, PipelineError> {
 /// The observations of stage 2 without their waveforms.
 fn staged_observations(out: &Path) -> Result<Vec<Observation>, PipelineError> {
     let path = of_stage(out, OBSERVATIONS, "observations")?;
-    gzip_json::read(&path).map_err(|e| store_error(&path, e))
+    gzip_json::read(&path).map_err(|e| store_error(&path, labfiles::said(&e)))
 }
 
 #[cfg(test)]

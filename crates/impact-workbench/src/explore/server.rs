@@ -103,7 +103,7 @@ impl Server {
         let port = port.unwrap_or(0);
         let refused = |e: std::io::Error| ExploreError::Port {
             port,
-            reason: e.to_string(),
+            reason: labfiles::said(&e),
         };
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(refused)?;
         listener.set_nonblocking(true).map_err(refused)?;
