@@ -287,12 +287,15 @@ impl IdentificationRun<'_> {
             let estimate = estimates.get(parameter)?;
             let value = estimate.value?;
             let unit = parameter.slope(value);
-            let freedom = found.spread(parameter)?.freedom;
+            let spread = found.spread(parameter)?;
             // what the estimate is off this fit where it is that of a method alone
             let off = found.fit.parameters.coordinate(parameter) - parameter.of_physical(value);
+            let standard_uncertainty = (estimate.standard_error? / unit).hypot(off);
+            let further = standard_uncertainty.powi(2) - spread.error.powi(2);
+            let freedom = spread.with(further.max(0.0).sqrt()).freedom;
             Some(Allowed {
                 parameter,
-                standard_uncertainty: (estimate.standard_error? / unit).hypot(off),
+                standard_uncertainty,
                 degrees_of_freedom: freedom.is_finite().then_some(freedom),
             })
         });

@@ -10,7 +10,6 @@ use super::jobs::Job;
 use super::{ExploreError, State};
 use impact_campaign::pipeline::identify::evidence;
 use impact_identification::identify::methods::boundaries::block::predicted_hz;
-use impact_identification::identify::methods::joint;
 use impact_identification::identify::parameters::Parameters;
 use impact_identification::identify::plan::propose;
 use impact_identification::identify::solver::Block;
@@ -164,7 +163,7 @@ pub(super) fn residuals(campaign: &OpenCampaign, state: &State, job: &Job) -> Re
         if job.is_stale() {
             return Err(Stop::Stale);
         }
-        let block = joint::block(method, &campaign.blocks).filter(|b| b.items() > 0);
+        let block = campaign.blocks.of(method).filter(|b| b.items() > 0);
         let Some(block) = block else { continue };
         let found = misfit(block, &at);
         if let Some(weight) = weights.and_then(|w| w.get(&method)) {

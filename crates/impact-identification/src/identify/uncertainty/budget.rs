@@ -13,7 +13,7 @@ use crate::identify::method_fit::MethodFit;
 use crate::identify::methods::blocks::Blocks;
 use crate::identify::parameters::Coordinate;
 use crate::identify::solver::Problem;
-use crate::identify::statistics::quantile::student_975;
+use crate::identify::statistics::quantile::NORMAL_975;
 
 /// Where an uncertainty comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -210,14 +210,16 @@ pub fn budget(
     let apart = |c: Coordinate| further.iter().map(|f| f.of(c)).fold(0.0, f64::hypot);
     let combined = estimated.iter().filter_map(|(_, parameter)| {
         let spread = found.spread(*parameter)?;
-        let standard_uncertainty = spread.error.hypot(apart(*parameter));
-        let coverage_factor = student_975(spread.freedom);
+        let further = apart(*parameter);
+        let whole = spread.with(further);
+        // as the estimate's interval is widened
+        let expanded_uncertainty = spread.half95().hypot(NORMAL_975 * further);
         Some(Combined {
             parameter: *parameter,
-            standard_uncertainty,
-            degrees_of_freedom: finite(spread.freedom),
-            coverage_factor,
-            expanded_uncertainty: coverage_factor * standard_uncertainty,
+            standard_uncertainty: whole.error,
+            degrees_of_freedom: finite(whole.freedom),
+            coverage_factor: expanded_uncertainty / whole.error,
+            expanded_uncertainty,
         })
     });
     Budget {

@@ -42,8 +42,6 @@ impl Identifier for FlightTimes {
     }
 }
 
-/// Standard error of a time that neither its source nor the scatter states, s.
-const USUAL_ERROR_S: f64 = 2e-3;
 /// Questions among which the false alarms are shared: a trend over bounces, and differences between records.
 const QUESTIONS: f64 = 2.0;
 /// Probability from which the record furthest off is none of the others (Grubbs 1969, at his 5 %).
