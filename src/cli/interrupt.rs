@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use labfiles::output::{Lock, OutputError};
+use signal_hook::consts::{SIGINT, SIGTERM};
 
 /// Exit code of a program that the user interrupted (128 + SIGINT).
 const INTERRUPTED: i32 = 130;
@@ -80,7 +81,11 @@ fn remember(folder: PathBuf) -> bool {
 /// What a signal sets; `None` where the system does not allow it.
 fn flag_of_signals() -> Option<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+    #[cfg(unix)]
+    const ENDS: [i32; 3] = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
+    #[cfg(not(unix))]
+    const ENDS: [i32; 2] = [SIGINT, SIGTERM];
+    for signal in ENDS {
         signal_hook::flag::register(signal, Arc::clone(&flag)).ok()?;
     }
     Some(flag)

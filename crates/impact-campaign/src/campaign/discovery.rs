@@ -97,7 +97,8 @@ pub(super) fn list_files(
     all
 }
 
-/// The files that a glob matches; folders and hidden files are left out, as `init` does.
+/// The files that a glob matches, links that lead nowhere among them, so that they are named; folders and hidden files
+/// are left out, as `init` does.
 pub(super) fn expand(folder: &Path, pattern: &str) -> Vec<PathBuf> {
     let whole = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
     let visible = glob::MatchOptions {
@@ -109,7 +110,7 @@ pub(super) fn expand(folder: &Path, pattern: &str) -> Vec<PathBuf> {
     };
     paths
         .filter_map(Result::ok)
-        .filter(|p| p.is_file())
+        .filter(|p| p.is_file() || (p.is_symlink() && !p.exists()))
         .collect()
 }
 

@@ -75,7 +75,7 @@ pub enum PipelineError {
         expected: String,
     },
     /// No record of the campaign could be used.
-    #[error("none of the {} records can be used", .0.len())]
+    #[error("{}", none_usable(.0.len()))]
     NothingUsable(Vec<RefusedRecord>),
     /// A template, a table of words or a logo could not be read.
     #[error("{path}: {reason}")]
@@ -151,5 +151,12 @@ impl PipelineError {
                 "this is an error of the program: please report it with the command line".to_owned()
             }
         }
+    }
+}
+
+fn none_usable(records: usize) -> String {
+    match records {
+        1 => "the record cannot be used".to_owned(),
+        many => format!("none of the {many} records can be used"),
     }
 }

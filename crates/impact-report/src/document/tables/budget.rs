@@ -17,6 +17,8 @@ use impact_identification::identify::uncertainty::budget::{
 const SIZE: f64 = 7.5;
 /// Least share of a parameter's variance from which a source has a row of its own.
 const LEAST_SHARE: f64 = 0.01;
+/// Degrees of freedom below which a tenth shows in the coverage factor.
+const FEW: f64 = 10.0;
 /// More degrees of freedom than this are printed as infinitely many.
 const MANY: f64 = 1e4;
 
@@ -176,7 +178,8 @@ fn stated(row: &Row, locale: Locale<'_>) -> String {
 
 fn freedom(freedom: Option<f64>, locale: Locale<'_>) -> String {
     let few = freedom.filter(|n| *n < MANY);
-    few.map_or("∞".into(), |n| locale.fixed(n, 0))
+    let places = |n: f64| usize::from(n < FEW);
+    few.map_or("∞".into(), |n| locale.fixed(n, places(n)))
 }
 
 /// The sources that matter little, together.
