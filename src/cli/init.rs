@@ -67,28 +67,40 @@ fn name_of(folder: &Path) -> String {
     )
 }
 
+/// What to do where no reader says it.
+const NAME_RECORDS: &str =
+    "name the folder that holds HDF5, CSV, Excel, LVM, TDMS, UFF, MATLAB, WAV or Parquet files";
+
+/// No record: each file with the reason, and the remedy of the first reader that refused one.
 fn none_found(folder: &Path, found: &FolderContents) -> Failure {
-    let refused = match (found.refused.first(), found.others.first()) {
-        (Some((file, why)), _) => format!("; {file}: {why}"),
-        (None, Some(file)) => {
-            format!(
-                "; {file} was read, but is neither a series of 16 samples or more nor a list of times"
-            )
-        }
-        (None, None) => String::new(),
-    };
+    let refused = found.refused.iter();
+    let refused = refused.map(|r| format!("; {}: {}", r.file, r.reason));
+    let others = found.others.iter().map(|file| {
+        format!(
+            "; {file} was read, but is neither a series of 16 samples or more nor a list of times"
+        )
+    });
+    let mut faults: String = refused.chain(others).take(NAMED).collect();
+    let all = found.refused.len() + found.others.len();
+    if let Some(more) = all.checked_sub(NAMED).filter(|n| *n > 0) {
+        faults += &format!("; {}", counted(more, "more file"));
+    }
+    let remedy = found.refused.first().map(|r| r.remedy.as_str());
     Failure::new(
-        format!("no record found in {}{refused}", folder.display()),
-        "name the folder that holds HDF5, CSV, Excel, LVM, TDMS, UFF, MATLAB, WAV or Parquet files",
+        format!("no record found in {}{faults}", folder.display()),
+        remedy.unwrap_or(NAME_RECORDS),
     )
 }
 
-/// Files that the summary names.
+/// Files that the summary and an error name.
 const NAMED: usize = 5;
 
 fn print_summary(path: &Path, found: &FolderContents, verbosity: Verbosity) {
-    for (file, why) in found.refused.iter().take(NAMED) {
-        verbosity.info(&format!("{file} is not a record: {why}"));
+    for refused in found.refused.iter().take(NAMED) {
+        verbosity.info(&format!(
+            "{} is not a record: {}",
+            refused.file, refused.reason
+        ));
     }
     if let Some(more) = found.refused.len().checked_sub(NAMED).filter(|n| *n > 0) {
         verbosity.info(&format!("{} more are no records", counted(more, "file")));
@@ -116,4 +128,42 @@ fn without_role(found: &FolderContents) -> String {
         return String::new();
     }
     format!(" (not {})", names.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impact_campaign::campaign::infer::RefusedFile;
+
+    #[test]
+    fn where_there_is_no_record_each_refused_file_is_named_with_the_readers_remedy() {
+        let refused = |k: usize| RefusedFile {
+            file: format!("t{k}.mat"),
+            reason: "it holds a table T".to_owned(),
+            remedy: format!("save table2struct(T) of {k}"),
+        };
+        let mut found = FolderContents {
+            refused: (1..=2).map(refused).collect(),
+            others: vec!["a.csv".to_owned()],
+            ..FolderContents::default()
+        };
+        let only = |found: &FolderContents| {
+            let mut problems = none_found(Path::new("r"), found).problems();
+            problems.remove(0)
+        };
+        let (message, remedy) = only(&found);
+        assert_eq!(
+            message,
+            "no record found in r; t1.mat: it holds a table T; t2.mat: it holds a table T; a.csv was read, but \
+             is neither a series of 16 samples or more nor a list of times"
+        );
+        assert_eq!(remedy, "save table2struct(T) of 1");
+        found.refused = (1..=6).map(refused).collect();
+        let (message, _) = only(&found);
+        assert!(
+            message.ends_with("t5.mat: it holds a table T; 2 more files"),
+            "{message}"
+        );
+        assert_eq!(only(&FolderContents::default()).1, NAME_RECORDS);
+    }
 }

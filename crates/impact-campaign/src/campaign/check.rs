@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 use super::diagnostic::{Code, Diagnostic, Place, Severity};
 use super::discovery::Opener;
 use super::resolved::{RecordEntry, ResolvedCampaign};
-use impact_records::event::DetectionSource;
+use impact_records::event::{DetectionSource, Impact};
 use impact_records::motion::observe;
 use impact_records::record::calibrate;
 use impact_records::record::{Flag, FlagCode, Record, Role};
@@ -23,6 +23,8 @@ pub struct Checked {
     pub diagnostics: Vec<Diagnostic>,
     /// Records that can be used.
     pub usable: usize,
+    /// Whether any of them shows what a method of identification uses: a drive, impacts with speeds, a decay.
+    telling: bool,
     /// What distinguishes each record from the others.
     fingerprints: Vec<Fingerprint>,
 }
@@ -32,6 +34,7 @@ impl Checked {
     fn and(mut self, later: Self) -> Self {
         self.diagnostics.extend(later.diagnostics);
         self.usable += later.usable;
+        self.telling |= later.telling;
         self.fingerprints.extend(later.fingerprints);
         self
     }
@@ -71,7 +74,31 @@ pub fn read_all(
     if driven {
         all.diagnostics.extend(short(&all.fingerprints));
     }
+    let nothing = nothing_stated(campaign, &all);
+    all.diagnostics.extend(nothing);
     all
+}
+
+/// A campaign that states neither a drive nor free decays nor free flights, and whose records show none of them.
+fn nothing_stated(campaign: &ResolvedCampaign, all: &Checked) -> Option<Diagnostic> {
+    let drive = campaign.channels.iter().any(|c| c.role == Role::Drive);
+    let undriven = |r: &RecordEntry| campaign.driven(r) && r.setting.stated_frequency_hz.is_none();
+    let silent = all.usable > 0 && !all.telling && !drive;
+    (silent && campaign.records.iter().all(undriven)).then(|| {
+        let place = Place {
+            file: campaign.file.clone(),
+            item: "records".to_owned(),
+            ..Place::default()
+        };
+        Diagnostic::new(
+            (Code::Missing, Severity::Campaign),
+            place,
+            "neither a drive nor free decays nor free flights are stated: nothing can be identified",
+            "write excitation = \"free_decay\" in [records] for decays after a blow or a release, flight = \
+             \"constant_force\" in [campaign] for masses that fly freely between impacts, or name the drive in \
+             [channels.drive]",
+        )
+    })
 }
 
 fn read_file(campaign: &ResolvedCampaign, entries: &[RecordEntry], open: Opener<'_>) -> Checked {
@@ -90,6 +117,10 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
     // What `run` would do with it: a record that it refuses is refused here, for the same reason.
     let (detect, classify) = (campaign.detect_settings(), campaign.classify_settings());
     let observed = observe(&record, campaign.machine, &detect, &classify);
+    let speeds = |i: &Impact| i.approach_speed_before_m_s.is_some();
+    let telling = observed.tone().is_some()
+        || !observed.decays.is_empty()
+        || observed.impacts.iter().any(speeds);
     let mut flags = observed.flags;
     if campaign.driven(entry) && !flags.iter().any(|f| f.excludes) {
         let supported = observed.impacts.iter();
@@ -114,6 +145,7 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
     Checked {
         diagnostics,
         usable,
+        telling,
         fingerprints: vec![print],
     }
 }
@@ -207,3 +239,56 @@ pub const LISTED: [FlagCode; 3] = [
     FlagCode::WrongUnit,
     FlagCode::UnitMissing,
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::resolve::load;
+
+    /// What is found in a decay of 6 Hz with a little noise, under a line of `[records]`.
+    fn found_in_decay(line: &str) -> Vec<Diagnostic> {
+        let folder = tempfile::tempdir().unwrap();
+        let row = |i: u32| {
+            let t = f64::from(i) / 500.0;
+            let w = std::f64::consts::TAU * 6.0;
+            let noise = 1e-3 * (1.7 * f64::from(i * i % 1009)).sin();
+            format!(
+                "{t:.4},{:.6}\n",
+                (-0.02 * w * t).exp() * (w * t).cos() + noise
+            )
+        };
+        let rows: String = (0..2000).map(row).collect();
+        std::fs::write(
+            folder.path().join("r.csv"),
+            format!("t (s),v (m/s)\n{rows}"),
+        )
+        .unwrap();
+        let toml = folder.path().join("campaign.toml");
+        let text = format!(
+            "[campaign]\nmachine = \"single\"\n[records]\nfiles = \"r.csv\"\n{line}\n\
+             [channels.velocity_x]\nchannel = \"v\"\n"
+        );
+        std::fs::write(&toml, text).unwrap();
+        let campaign = load(&toml, &labfiles::open).campaign.unwrap();
+        read_all(&campaign, &labfiles::open, &|_| {}).diagnostics
+    }
+
+    #[test]
+    fn a_campaign_that_states_nothing_to_identify_from_is_refused() {
+        let nothing = |all: &[Diagnostic]| {
+            let mut of_campaign = all.iter().filter(|d| d.severity == Severity::Campaign);
+            of_campaign
+                .next()
+                .map(|d| (d.message.clone(), d.remedy.clone()))
+        };
+        let (message, remedy) = nothing(&found_in_decay("")).unwrap();
+        assert_eq!(
+            message,
+            "neither a drive nor free decays nor free flights are stated: nothing can be identified"
+        );
+        assert!(remedy.contains("excitation = \"free_decay\""), "{remedy}");
+        for stated in ["excitation = \"free_decay\"", "drive_frequency = \"6 Hz\""] {
+            assert_eq!(nothing(&found_in_decay(stated)), None, "{stated}");
+        }
+    }
+}

@@ -43,8 +43,8 @@ pub struct FolderContents {
     pub channels: Vec<InferredChannel>,
     /// Attributes of its first dataset.
     pub attributes: BTreeMap<String, String>,
-    /// Files that no reader accepts, with the reason.
-    pub refused: Vec<(String, String)>,
+    /// Files that no reader accepts.
+    pub refused: Vec<RefusedFile>,
     /// Whether the file has a time axis or a sample rate.
     pub timed: bool,
     /// Whether it has neither but counts a camera's frames.
@@ -55,6 +55,17 @@ pub struct FolderContents {
     pub others: Vec<String>,
     /// What was probably measured.
     pub experiment: Experiment,
+}
+
+/// A file that no reader accepts.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RefusedFile {
+    /// The file, relative to the folder.
+    pub file: String,
+    /// What the reader found.
+    pub reason: String,
+    /// What the user can do.
+    pub remedy: String,
 }
 
 /// A channel and the role inferred for it.
@@ -101,7 +112,11 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
         match opened_path {
             Ok(source) if holds_record(source.as_ref()) => opened.push((relative, source)),
             Ok(_) => found.others.push(slashed(&relative)),
-            Err(error) => found.refused.push((slashed(&relative), error.found)),
+            Err(error) => found.refused.push(RefusedFile {
+                file: slashed(&relative),
+                reason: error.found,
+                remedy: error.remedy,
+            }),
         }
     }
     let all = opened.iter().flat_map(|(_, s)| records_in(s.as_ref()));
