@@ -97,7 +97,9 @@ pub(crate) fn open_text(text: TextFile, name: &str) -> Result<OpenedTable, ReadE
             notes.extend(axis.iter().flat_map(|a| a.note.clone()));
             let mut dataset = dataset(header, &layout, count, axis.as_ref());
             if let Makeup::OwnTimes(own) = makeup {
+                let shared = dataset.time_axis;
                 for (channel, axis) in dataset.channels.iter_mut().zip(own) {
+                    let axis = axis.filter(|axis| Some(*axis) != shared);
                     channel.clock = axis.map_or(Clock::Shared, Clock::Axis);
                 }
             }

@@ -2,6 +2,7 @@
 
 use crate::csv::columns::HeadRows;
 use crate::csv::header::Header;
+use crate::csv::time_axis::heads_pair;
 use crate::text::table::Kind;
 use crate::timing::is_time_name;
 
@@ -60,7 +61,8 @@ fn blocks(used: &[usize], times: &[usize], header: &Header) -> Vec<Vec<usize>> {
     let mut before = Vec::new();
     for (place, &column) in used.iter().enumerate() {
         let next = used.get(place + 1);
-        let named = blocks.is_empty() || is_time_name(&header.names[column]);
+        let named =
+            blocks.is_empty() || is_time_name(&header.names[column]) || heads_pair(header, column);
         let heads =
             times.contains(&column) && named && next.is_some_and(|next| !times.contains(next));
         match (heads, blocks.last_mut()) {
@@ -78,7 +80,7 @@ fn blocks(used: &[usize], times: &[usize], header: &Header) -> Vec<Vec<usize>> {
 
 fn own_times(columns: usize, blocks: &[Vec<usize>]) -> Vec<Option<usize>> {
     let mut own = vec![None; columns];
-    for block in &blocks[1..] {
+    for block in blocks {
         for &column in &block[1..] {
             own[column] = Some(block[0]);
         }
