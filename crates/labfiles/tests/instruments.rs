@@ -135,6 +135,37 @@ fn siglent_and_tektronix_begin_with_a_preamble() {
 }
 
 #[test]
+fn valid_a_line_of_a_preamble_is_no_heading() {
+    let data = rows(60, |i| format!("{:.8},{:.5}", f64::from(i) * 4e-4, 0.25));
+    let siglent = format!(
+        "Record Length,Analog:60\nSample Interval,Analog:4.00E-04\nVertical Units,CH1:V,,\nHorizontal Units,s,\n\
+         Serial Number,SDS0000,\nSoftware Version,7.1,\nSecond,Volt\n{data}"
+    );
+    let source = read("a.csv", &siglent);
+    let record = &source.datasets()[0];
+    assert_eq!(
+        named(record),
+        [("Second", Some("Second")), ("Volt", Some("Volt"))]
+    );
+    assert_eq!(record.attributes["Software Version"], "7.1");
+    assert_eq!(record.time_axis, Some(0));
+    check_rate(record, 2500.0);
+    let data = rows(60, |i| format!("{:.5E}", f64::from(i) * 0.01));
+    let yokogawa = format!(
+        "//YOKOGAWA ASCII FILE FORMAT\nHeader Size,16\n\"Model Name\",\"DL0\"\n\"BlockNumber\",1\n\
+         \"TraceName\",\"CH1\"\n\"BlockSize\",60\n\"VUnit\",\"V\"\n\"SampleRate\",2.500000E+03\n\
+         \"HResolution\",4.000000E-04\n\"HUnit\",\"s\"\n\"Date\",\"2024/05/02\"\n\
+         \"Time\",\"10:11:12\"\n\n{data}"
+    );
+    let source = read("s.csv", &yokogawa);
+    let record = &source.datasets()[0];
+    assert_eq!(named(record), [("CH1", Some("V"))]);
+    check_rate(record, 2500.0);
+    assert_eq!(real(&*source, 0, 0)[..2], [0.0, 0.01]);
+    assert_eq!(record.channels[0].samples, 60);
+}
+
+#[test]
 fn remarks_beside_a_table_are_no_channels() {
     let remarks = [
         "Record Length,2.5e+03",
