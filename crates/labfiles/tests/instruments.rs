@@ -190,6 +190,49 @@ fn remarks_beside_a_table_are_no_channels() {
 }
 
 #[test]
+fn valid_tables_beside_their_remarks_are_a_channel_each() {
+    let remarks = [
+        "Record Length",
+        "Sample Interval",
+        "Source",
+        "Vertical Units",
+    ];
+    let beside = |i: u32, channel: &str| {
+        let values = ["60", "4e-4", channel, "V"];
+        match remarks.get(i as usize) {
+            Some(key) => format!("{key},{}", values[i as usize]),
+            None => ",".to_owned(),
+        }
+    };
+    for (late, clock) in [(0.0, Clock::Shared), (1e-3, Clock::Axis(2))] {
+        let row = |i: u32| {
+            let (t, value) = (f64::from(i) * 4e-4, f64::from(i));
+            format!(
+                "{},,{t:.9},{value:.5},,{},,{:.9},{:.5},",
+                beside(i, "CH1"),
+                beside(i, "CH2"),
+                t + late,
+                -value
+            )
+        };
+        let source = read("T.CSV", &rows(60, row));
+        let record = &source.datasets()[0];
+        assert_eq!(source.datasets().len(), 1);
+        let place = |name: &str| record.channel_index(name).unwrap();
+        assert_eq!(record.time_axis, Some(place("Time")));
+        assert_eq!(record.channels.len(), if late > 0.0 { 4 } else { 3 });
+        check_rate(record, 2500.0);
+        for (name, sign) in [("CH1", 1.0), ("CH2", -1.0)] {
+            let channel = place(name);
+            assert_eq!(record.channels[channel].unit.as_deref(), Some("V"));
+            assert_eq!(real(&*source, 0, channel)[7], 7.0 * sign, "{name}");
+        }
+        assert_eq!(record.channels[place("CH2")].clock, clock);
+        assert_eq!(record.attributes["Source"], "CH1");
+    }
+}
+
+#[test]
 fn vernier_has_names_short_names_and_units() {
     let data = rows(40, |i| format!("{:.5}\t{:.6}\t", f64::from(i) * 4e-4, 0.5));
     let text = format!(
