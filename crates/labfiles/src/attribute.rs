@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::units::{Dimension, parse_unit, split_unit};
+use crate::units::{Dimension, parse_split_unit, split_unit};
 
 /// Attribute names that give samples per second, lower case.
 const RATE_KEYS: [&str; 16] = [
@@ -53,7 +53,7 @@ const START_KEYS: [&str; 7] = [
 ];
 
 /// Samples per second that the attributes state, Hz: as a rate or as a time step, in the unit
-/// after the number or in `<name>_unit(s)`.
+/// after the number, in `<name>_unit(s)` or in the name.
 ///
 /// ```
 /// let stated = |pairs: &[(&str, &str)]| {
@@ -62,6 +62,7 @@ const START_KEYS: [&str; 7] = [
 /// };
 /// assert_eq!(stated(&[("Sample Rate", "2 kHz")]), Some(2000.0));
 /// assert_eq!(stated(&[("dt", "0.5"), ("dt_units", "ms")]), Some(2000.0));
+/// assert_eq!(stated(&[("dt_ms", "0.5")]), Some(2000.0));
 /// assert_eq!(stated(&[("operator", "A")]), None);
 /// ```
 pub fn sample_rate_hz(attributes: &BTreeMap<String, String>) -> Option<f64> {
@@ -146,28 +147,33 @@ fn same_key(a: &str, b: &str) -> bool {
     a.trim().chars().map(plain).eq(b.chars())
 }
 
+/// The unit after a key in an attribute's name: `dt_ms`, `Sample Interval [ms]`.
+fn unit_in_name<'a>(name: &'a str, key: &str) -> Option<&'a str> {
+    let (bare, unit) = split_unit(name);
+    unit.filter(|_| same_key(bare, key))
+}
+
 /// A number of a dimension in SI (frequencies in Hz): a bare number is SI already.
 fn quantity(attributes: &BTreeMap<String, String>, key: &str, wanted: Dimension) -> Option<f64> {
-    let bracketed = |name: &&String| {
-        let (bare, unit) = split_unit(name);
-        unit.is_some() && name.ends_with([']', ')']) && same_key(bare, key)
-    };
-    let by_bracket = || attributes.iter().find(|(name, _)| bracketed(name));
-    let (name, text) = lookup(attributes, key).or_else(by_bracket)?;
+    let has_unit = |name: &str| unit_in_name(name, key).is_some();
+    let by_name = || attributes.iter().find(|(name, _)| has_unit(name));
+    let (name, text) = lookup(attributes, key).or_else(by_name)?;
     let (number, beside) = number_and_unit(text)?;
     let companion = ["unit", "units"]
         .iter()
         .find_map(|s| attributes.get(&format!("{name}_{s}")).map(String::as_str));
-    let in_name = || split_unit(name).1.filter(|_| bracketed(&name));
     let unit = Some(beside)
         .filter(|u| !u.is_empty())
         .or(companion)
-        .or_else(in_name);
+        .or_else(|| unit_in_name(name, key));
     match unit {
         None => Some(number),
         Some(symbol) => {
             let rate = samples_per_second(symbol).filter(|_| wanted == Dimension::Frequency);
-            let unit = || Some(parse_unit(symbol).filter(|u| u.dimension == wanted)?.to_si);
+            let unit = || {
+                let known = parse_split_unit(symbol).filter(|u| u.dimension == wanted)?;
+                Some(known.to_si)
+            };
             Some(number * rate.or_else(unit)?)
         }
     }
@@ -233,6 +239,9 @@ mod tests {
             (&[("Sample Interval [ms]", "0.4")], Some(2500.0)),
             (&[("Increment", "4e-4")], Some(2500.0)),
             (&[("dt", "0.5"), ("dt_units", "ms")], Some(2000.0)),
+            (&[("dt_ms", "0.4")], Some(2500.0)),
+            (&[("fs_kHz", "2.5")], Some(2500.0)),
+            (&[("increment_mm", "0.4")], None),
             (&[("fs", "0")], None),
             (&[("rate", "2000 mm")], None),
             (&[("clearance_m", "1")], None),

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use crate::channel::{ChannelInfo, Clock};
 
 /// When channels begin, s, as `contact=0.3|x=0`.
-const STARTS_KEY: &str = "channel_starts_s";
+pub(crate) const STARTS_KEY: &str = "channel_starts_s";
 /// The time axes and rates of channels that have their own, as `slow=axis:X_Value 2|gauge=rate:500`.
-const CLOCKS_KEY: &str = "channel_clocks";
+pub(crate) const CLOCKS_KEY: &str = "channel_clocks";
 
 /// The attributes that keep the clocks of channels under their names in the output; none where they are all alike.
 pub(crate) fn attributes(names: &[String], channels: &[ChannelInfo]) -> Vec<(String, String)> {

@@ -15,6 +15,7 @@
 //! ```
 
 mod csv;
+mod even;
 mod file_names;
 mod hdf5;
 mod item;

@@ -16,7 +16,7 @@ use crate::bytes::to_usize;
 use crate::csv::front::Front;
 pub(crate) use crate::csv::front::TEXTS_KEY;
 use crate::csv::header::Header;
-use crate::csv::parts::{Makeup, Part};
+use crate::csv::parts::{Block, Makeup, Part};
 use crate::csv::time_axis::TimeAxis;
 use crate::rate;
 use crate::source::{
@@ -89,19 +89,24 @@ pub(crate) fn open_text(text: TextFile, name: &str) -> Result<OpenedTable, ReadE
         }
         makeup => {
             let mut columns: Vec<usize> = (0..layout.kinds.len()).collect();
-            if let Makeup::BesideRemarks(part, remarks) = &makeup {
-                name_beside(&mut header, part, remarks);
-                columns.clone_from(&part.columns);
+            if let Makeup::BesideRemarks(blocks) = &makeup {
+                blocks.iter().for_each(|b| name_beside(&mut header, b));
+                columns = blocks.iter().flat_map(Block::kept).copied().collect();
             }
             let axis = time_axis::find(&header, &layout, &rows, last_row.as_deref(), count);
             notes.extend(axis.iter().flat_map(|a| a.note.clone()));
             let mut dataset = dataset(header, &layout, count, axis.as_ref());
-            if let Makeup::OwnTimes(own) = makeup {
+            if let Makeup::OwnTimes(own) = &makeup {
+                let shared = dataset.time_axis;
                 for (channel, axis) in dataset.channels.iter_mut().zip(own) {
+                    let axis = axis.filter(|axis| Some(*axis) != shared);
                     channel.clock = axis.map_or(Clock::Shared, Clock::Axis);
                 }
             }
             keep_columns(&mut dataset, &columns);
+            if let Makeup::BesideRemarks(blocks) = &makeup {
+                give_own_times(&mut dataset, &columns, blocks);
+            }
             datasets.push(dataset);
             parts.push((columns, to_usize(count)));
         }
@@ -209,22 +214,37 @@ fn run_of(
     Ok(((info, note.into_iter().collect()), rows))
 }
 
-/// Name the columns of a table beside its remarks, which become attributes.
-fn name_beside(header: &mut Header, part: &Part, remarks: &[(String, String)]) {
+/// Name the columns of a table beside its remarks, which become attributes: of several tables those of the first.
+fn name_beside(header: &mut Header, block: &Block) {
     let stated = |key: &str| {
-        remarks
-            .iter()
-            .find(|(k, _)| k == key)
-            .map(|(_, v)| v.clone())
+        let mut all = block.remarks.iter();
+        all.find(|(k, _)| k == key).map(|(_, v)| v.clone())
     };
-    for (k, (&column, name)) in part.columns.iter().zip(&part.names).enumerate() {
+    for (k, (&column, name)) in block.part.columns.iter().zip(&block.part.names).enumerate() {
         header.names[column].clone_from(name);
         header.units[column] = match k {
             0 => stated("Horizontal Units").or_else(|| Some("s".to_owned())),
             _ => stated("Vertical Units"),
         };
     }
-    header.attributes.extend(remarks.iter().cloned());
+    for (key, value) in &block.remarks {
+        let known = header.attributes.entry(key.clone());
+        known.or_insert_with(|| value.clone());
+    }
+}
+
+/// Give the channels of tables beside each other the times of their own tables.
+fn give_own_times(dataset: &mut DatasetInfo, columns: &[usize], blocks: &[Block]) {
+    let place = |column: usize| columns.iter().position(|c| *c == column);
+    for block in blocks.iter().skip(1).filter(|b| b.own_time) {
+        let Some((&time, others)) = block.part.columns.split_first() else {
+            continue;
+        };
+        for channel in others.iter().filter_map(|c| place(*c)) {
+            let clock = place(time).map_or(Clock::Shared, Clock::Axis);
+            dataset.channels[channel].clock = clock;
+        }
+    }
 }
 
 /// Keep some of a dataset's channels, by their columns.

@@ -5,12 +5,13 @@ use crate::units::{Dimension, Unit, parse_quantity_of, parse_unit, symbol_of};
 
 /// First words of the names of time axes, lower case.
 const FIRST_WORDS: [&str; 9] = [
-    "t", "zeit", "temps", "tempo", "tiempo", "čas", "cas", "elapsed", "date",
+    "t", "tout", "zeit", "temps", "tempo", "tiempo", "čas", "cas", "date",
 ];
 
 /// Words that make a name that of a time axis wherever they stand.
-const WORDS: [&str; 7] = [
+const WORDS: [&str; 8] = [
     "time",
+    "elapsed",
     "zeit",
     "timestamp",
     "zeitstempel",
@@ -145,7 +146,7 @@ fn without_digits(word: &str) -> &str {
     word.trim_end_matches(|c: char| c.is_ascii_digit())
 }
 
-/// Whether a name is that of a time axis: `t`, `Time (Run 1)`, `Zeit`, `timestamp`, `millis`, `t_us` ….
+/// Whether a name is that of a time axis: `t`, `Time (Run 1)`, `Zeit`, `timestamp`, `millis`, `t_us`, `in s` ….
 pub fn is_time_name(name: &str) -> bool {
     let words = words(name);
     let Some(first) = words.first() else {
@@ -157,7 +158,9 @@ pub fn is_time_name(name: &str) -> bool {
         && (in_table(&LONG[..SECONDS], first).is_some()
             || ["ms", "us", "µs", "μs"].contains(&first.as_str()));
     let since = words.get(1).is_some_and(|w| w == "since") && unit_of_symbol(first).is_some();
-    FIRST_WORDS.contains(&first.as_str())
+    // a heading of a unit alone
+    let bare = first == "in" && words.len() == 2 && unit_of_text(&words[1]).is_some();
+    bare || FIRST_WORDS.contains(&first.as_str())
         || words.iter().any(known)
         || alone
         || since
@@ -298,7 +301,7 @@ impl AxisUnit {
         match stated_unit(unit, name) {
             StatedUnit::Known(unit) => Self::Stated(unit),
             StatedUnit::Other(text) => Self::Other(text),
-            StatedUnit::Nothing => match first.and_then(|first| epoch_unit(name, first)) {
+            StatedUnit::Nothing => match epoch_unit(name, values) {
                 Some(unit) => Self::Epoch(unit),
                 None if counts_days(values) => Self::Days,
                 None if is_undetermined(values) => Self::Undetermined {
@@ -352,13 +355,26 @@ pub fn is_time_axis(channel: &ChannelInfo) -> bool {
     time && is_time_name(&channel.name) && channel.stored != StoredType::Text
 }
 
-/// The time axis of a dataset: of several the one that is named for no channel alone.
+/// Whether a time axis is named for no channel alone.
+pub(crate) fn is_general(name: &str) -> bool {
+    stem(name).is_empty()
+}
+
+/// Whether a time axis states its unit.
+pub(crate) fn states_unit(unit: Option<&str>, name: &str) -> bool {
+    matches!(stated_unit(unit, name), StatedUnit::Known(_))
+}
+
+/// The time axis of a dataset: of several the one that is named for no channel alone, and of those the first that
+/// states its unit.
 pub(crate) fn main_axis(channels: &[ChannelInfo]) -> Option<usize> {
     let is_axis = |c: &ChannelInfo| c.samples > 1 && is_time_axis(c);
-    let general = channels
-        .iter()
-        .position(|c| is_axis(c) && stem(&c.name).is_empty());
-    general.or_else(|| channels.iter().position(is_axis))
+    let general = |c: &ChannelInfo| is_axis(c) && is_general(&c.name);
+    let stated = |c: &ChannelInfo| general(c) && states_unit(c.unit.as_deref(), &c.name);
+    let first = |of: &dyn Fn(&ChannelInfo) -> bool| channels.iter().position(of);
+    first(&stated)
+        .or_else(|| first(&general))
+        .or_else(|| first(&is_axis))
 }
 
 /// Give the channels of a dataset with several time axes the one that is named for each: `contact.time` or
@@ -412,17 +428,32 @@ fn stem(name: &str) -> Vec<String> {
 /// Seconds since 1970 of the years 1973 and 2128: what a time stamp in s lies between.
 const EPOCH_S: [f64; 2] = [1e8, 5e9];
 
-/// The unit of a column that is called a time stamp, or an epoch, and counts from 1970: of s, ms, µs and ns
-/// one alone puts its first value into this age.
-fn epoch_unit(name: &str, first: f64) -> Option<Unit> {
+/// Seconds since 1970 of the years 2000 and 2100: dates of records, whatever their column is called.
+const DATES_S: [f64; 2] = [946_684_800.0, 4_102_444_800.0];
+/// The longest step, s, of numbers that are taken as dates by their size alone: µs since a start are as great as s
+/// since 1970 after half an hour, with steps of hundreds.
+const LONGEST_STEP_S: f64 = 0.5;
+
+/// The unit of a column that counts from 1970. Of one that is called a time stamp, or an epoch: of s, ms, µs and ns
+/// the one that puts its first value into this age. Of any other: the one that makes numbers beyond 10⁹ a date of
+/// 2000 to 2100, with steps of samples.
+fn epoch_unit(name: &str, values: &[f64]) -> Option<Unit> {
+    let first = values.iter().copied().find(|v| v.is_finite())?;
     let words = words(name);
     let counts = words
         .iter()
         .any(|w| EPOCHS.iter().any(|e| w.starts_with(e)));
     let split = words.windows(2).any(|w| w[0] == "time" && w[1] == "stamp");
-    let fits = |to_si: &f64| (EPOCH_S[0]..EPOCH_S[1]).contains(&(first * to_si));
-    let unit = [1.0, 1e-3, 1e-6, 1e-9].into_iter().find(fits)?;
-    (counts || split).then(|| of_time(unit))
+    let of_age = |[from, to]: [f64; 2]| {
+        let fits = |to_si: &f64| (from..to).contains(&(first * to_si));
+        [1.0, 1e-3, 1e-6, 1e-9].into_iter().find(fits)
+    };
+    if counts || split {
+        return of_age(EPOCH_S).map(of_time);
+    }
+    let to_si = of_age(DATES_S).filter(|_| first > LONGEST_S)?;
+    let step = crate::rate::median_step(values)?;
+    (step * to_si < LONGEST_STEP_S).then(|| of_time(to_si))
 }
 
 /// Whether values without a name climb evenly, as a time axis does, and are no mere count of rows.
@@ -501,12 +532,17 @@ mod tests {
             "Zeitstempel",
             "ms since start",
             "seconds",
+            "seconds_elapsed",
             "Time2",
+            "tout",
+            "in s",
+            "in ms",
         ] {
             assert!(is_time_name(name), "{name}");
         }
         for name in [
             "times", "velocity", "tone", "s", "min", "h", "items", "minimum", "bus", "tens",
+            "in V", "in mm", "t1", "touch",
         ] {
             assert!(!is_time_name(name), "{name}");
         }
@@ -629,13 +665,54 @@ mod tests {
 
     #[test]
     fn time_stamps_count_from_1970_in_the_unit_that_gives_this_age() {
-        let unit = |name, first| epoch_unit(name, first).map(|u| u.to_si);
+        let unit = |name, first: f64| epoch_unit(name, &[first]).map(|u| u.to_si);
         assert_eq!(unit("timestamp", 1_700_000_000.0), Some(1.0));
         assert_eq!(unit("Time Stamp", 1.7e12), Some(1e-3));
         assert_eq!(unit("epoch", 1.7e15), Some(1e-6));
         assert_eq!(unit("unix time", 1.7e18), Some(1e-9));
         assert_eq!(unit("time", 1.7e12), None);
         assert_eq!(unit("timestamp", 12_000.0), None);
+    }
+
+    #[test]
+    fn valid_great_numbers_are_dates_where_one_unit_alone_makes_them_so() {
+        let unit = |first: f64, step: f64| {
+            let values: Vec<f64> = (0..20).map(|i| first + f64::from(i) * step).collect();
+            AxisUnit::of(None, "time", &values).seconds()
+        };
+        // steps of 10 ms
+        assert_eq!(unit(1.701_234_567e9, 1e-2), Some(1.0));
+        assert_eq!(unit(1.701_234_567e12, 10.0), Some(1e-3));
+        assert_eq!(unit(1.701_234_567e15, 1e4), Some(1e-6));
+        assert_eq!(unit(1.701_234_567e18, 1e7), Some(1e-9));
+        // µs since a start 28 minutes ago, and counts of no age
+        assert_eq!(unit(1.7e9, 500.0), None);
+        assert_eq!(unit(5e9, 500.0), None);
+        assert_eq!(unit(9e17, 1e7), None);
+    }
+
+    #[test]
+    fn of_several_time_axes_the_one_that_states_its_unit_is_taken() {
+        let channel = |name: &str, unit: Option<&str>| ChannelInfo {
+            name: name.into(),
+            unit: unit.map(str::to_owned),
+            stored: StoredType::Float(64),
+            samples: 100,
+            sample_rate_hz: None,
+            start_time: None,
+            clock: Clock::Shared,
+            start_s: None,
+            properties: Default::default(),
+        };
+        let main = |names: &[(&str, Option<&str>)]| {
+            let channels: Vec<ChannelInfo> = names.iter().map(|(n, u)| channel(n, *u)).collect();
+            main_axis(&channels)
+        };
+        let elapsed = ("seconds_elapsed", None);
+        assert_eq!(main(&[("time", None), elapsed, ("x", None)]), Some(1));
+        assert_eq!(main(&[("time", None), ("Time", Some("ms"))]), Some(1));
+        assert_eq!(main(&[("t", None), ("t_contact", Some("s"))]), Some(0));
+        assert_eq!(main(&[("tout", None), ("yout", None)]), Some(0));
     }
 
     #[test]

@@ -135,6 +135,37 @@ fn siglent_and_tektronix_begin_with_a_preamble() {
 }
 
 #[test]
+fn valid_a_line_of_a_preamble_is_no_heading() {
+    let data = rows(60, |i| format!("{:.8},{:.5}", f64::from(i) * 4e-4, 0.25));
+    let siglent = format!(
+        "Record Length,Analog:60\nSample Interval,Analog:4.00E-04\nVertical Units,CH1:V,,\nHorizontal Units,s,\n\
+         Serial Number,SDS0000,\nSoftware Version,7.1,\nSecond,Volt\n{data}"
+    );
+    let source = read("a.csv", &siglent);
+    let record = &source.datasets()[0];
+    assert_eq!(
+        named(record),
+        [("Second", Some("Second")), ("Volt", Some("Volt"))]
+    );
+    assert_eq!(record.attributes["Software Version"], "7.1");
+    assert_eq!(record.time_axis, Some(0));
+    check_rate(record, 2500.0);
+    let data = rows(60, |i| format!("{:.5E}", f64::from(i) * 0.01));
+    let yokogawa = format!(
+        "//YOKOGAWA ASCII FILE FORMAT\nHeader Size,16\n\"Model Name\",\"DL0\"\n\"BlockNumber\",1\n\
+         \"TraceName\",\"CH1\"\n\"BlockSize\",60\n\"VUnit\",\"V\"\n\"SampleRate\",2.500000E+03\n\
+         \"HResolution\",4.000000E-04\n\"HUnit\",\"s\"\n\"Date\",\"2024/05/02\"\n\
+         \"Time\",\"10:11:12\"\n\n{data}"
+    );
+    let source = read("s.csv", &yokogawa);
+    let record = &source.datasets()[0];
+    assert_eq!(named(record), [("CH1", Some("V"))]);
+    check_rate(record, 2500.0);
+    assert_eq!(real(&*source, 0, 0)[..2], [0.0, 0.01]);
+    assert_eq!(record.channels[0].samples, 60);
+}
+
+#[test]
 fn remarks_beside_a_table_are_no_channels() {
     let remarks = [
         "Record Length,2.5e+03",
@@ -156,6 +187,49 @@ fn remarks_beside_a_table_are_no_channels() {
     check_rate(record, 2500.0);
     assert_eq!(record.attributes["Trigger Point"], "2.5e+02");
     assert_eq!(real(&*source, 0, 1), vec![0.5; 60]);
+}
+
+#[test]
+fn valid_tables_beside_their_remarks_are_a_channel_each() {
+    let remarks = [
+        "Record Length",
+        "Sample Interval",
+        "Source",
+        "Vertical Units",
+    ];
+    let beside = |i: u32, channel: &str| {
+        let values = ["60", "4e-4", channel, "V"];
+        match remarks.get(i as usize) {
+            Some(key) => format!("{key},{}", values[i as usize]),
+            None => ",".to_owned(),
+        }
+    };
+    for (late, clock) in [(0.0, Clock::Shared), (1e-3, Clock::Axis(2))] {
+        let row = |i: u32| {
+            let (t, value) = (f64::from(i) * 4e-4, f64::from(i));
+            format!(
+                "{},,{t:.9},{value:.5},,{},,{:.9},{:.5},",
+                beside(i, "CH1"),
+                beside(i, "CH2"),
+                t + late,
+                -value
+            )
+        };
+        let source = read("T.CSV", &rows(60, row));
+        let record = &source.datasets()[0];
+        assert_eq!(source.datasets().len(), 1);
+        let place = |name: &str| record.channel_index(name).unwrap();
+        assert_eq!(record.time_axis, Some(place("Time")));
+        assert_eq!(record.channels.len(), if late > 0.0 { 4 } else { 3 });
+        check_rate(record, 2500.0);
+        for (name, sign) in [("CH1", 1.0), ("CH2", -1.0)] {
+            let channel = place(name);
+            assert_eq!(record.channels[channel].unit.as_deref(), Some("V"));
+            assert_eq!(real(&*source, 0, channel)[7], 7.0 * sign, "{name}");
+        }
+        assert_eq!(record.channels[place("CH2")].clock, clock);
+        assert_eq!(record.attributes["Source"], "CH1");
+    }
 }
 
 #[test]

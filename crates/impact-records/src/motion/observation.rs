@@ -200,6 +200,7 @@ pub fn observe(
     let classification = classify(&detection, record.duration_s(), classifying);
     let mut flags = record.flags.clone();
     flags.append(&mut detection.flags);
+    let mut flags = without_what_follows(record, flags);
     flags.extend(contact_flag(
         record,
         &detection.impacts,
@@ -273,7 +274,21 @@ fn observe_decay(record: &Record) -> Observation {
             "check that the record is a free decay and that its motion channel is named",
         ));
     }
+    observation.flags = without_what_follows(record, observation.flags);
     observation
+}
+
+/// Flags without those that follow from what excludes the record already, as a channel that is missing: that nothing
+/// is found in it.
+fn without_what_follows(record: &Record, mut flags: Vec<Flag>) -> Vec<Flag> {
+    let follows = |f: &Flag| {
+        use FlagCode::{NoFreeDecay, NoImpact, OneMassAlone};
+        matches!(f.code, NoImpact | NoFreeDecay | OneMassAlone)
+    };
+    if record.flags.iter().any(|f| f.excludes && !follows(f)) {
+        flags.retain(|f| !follows(f));
+    }
+    flags
 }
 
 /// A record without a drive and impacts, of which nothing is fitted.
@@ -481,6 +496,26 @@ mod tests {
             );
             assert!(!found.excludes);
         }
+    }
+
+    #[test]
+    fn what_follows_from_a_missing_channel_is_not_said_beside_it() {
+        use FlagCode::{Clipped, MissingChannel, NoFreeDecay, NoImpact};
+        let flag = |code: FlagCode| Flag::new(code, None, "found", "remedy");
+        let said = |causes: &[FlagCode], all: &[FlagCode]| -> Vec<FlagCode> {
+            let mut record = Record::of(1000.0, &[]);
+            record.flags = causes.iter().map(|code| flag(*code)).collect();
+            let all = all.iter().map(|code| flag(*code)).collect();
+            let left = without_what_follows(&record, all);
+            left.iter().map(|f| f.code).collect()
+        };
+        assert_eq!(said(&[], &[NoFreeDecay]), [NoFreeDecay]);
+        for follows in [NoFreeDecay, NoImpact] {
+            let all = [MissingChannel, Clipped, follows];
+            assert_eq!(said(&all[..2], &all), all[..2]);
+        }
+        // a list that holds too few impacts says so itself
+        assert_eq!(said(&[NoImpact], &[NoImpact]), [NoImpact]);
     }
 
     #[test]

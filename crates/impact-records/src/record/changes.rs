@@ -46,8 +46,19 @@ pub(super) enum Listing {
     Impacts,
     /// The changes of a contact: closed, open, closed ….
     Changes(Closings),
-    /// Neither: of so many intervals so many are longer than the one before.
-    Unclear(usize, usize),
+    /// Neither, as intervals are longer than the one before.
+    Unclear(Rises),
+}
+
+/// Intervals that are longer than the one before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Rises {
+    /// All intervals.
+    pub(super) intervals: usize,
+    /// Those that are longer.
+    pub(super) longer: usize,
+    /// The row at the end of the first of these, counted from 1.
+    pub(super) row: usize,
 }
 
 /// The rows in which a state differs from that of the row before.
@@ -110,27 +121,36 @@ pub(super) fn closings(times: &[f64], states: &[f64], levels: Levels) -> Closing
 }
 
 /// What rising times are, s, by themselves: times that come in groups, each short beside the flights between them,
-/// are the changes of a contact, or its bounces, and the first of each group is the impact.
+/// are the changes of a contact, or its bounces, and the first of each group is the impact. Groups that last longer
+/// than a contact may be throws one after the other.
 pub(super) fn listing(times: &[f64]) -> Listing {
-    let found = match groups(times) {
-        Some(found) => Listing::Changes(found),
-        None => Listing::Impacts,
+    let contacts = groups(times).filter(|found| found.closed_s <= LONGEST_CONTACT_S);
+    let rises = match &contacts {
+        Some(closings) => rises(times, &closings.times_s),
+        None => rises(times, times),
     };
-    let impacts = match &found {
-        Listing::Changes(closings) => &closings.times_s,
-        _ => times,
-    };
-    let gaps: Vec<f64> = impacts.windows(2).map(|w| w[1] - w[0]).collect();
-    let rise = gaps.windows(2).filter(|w| w[1] > 1.05 * w[0]).count();
-    let long = match &found {
-        Listing::Changes(closings) => closings.closed_s > LONGEST_CONTACT_S,
-        _ => false,
-    };
-    if long || (rise > 1 && rise as f64 > MOST_RISE * (gaps.len() - 1) as f64) {
-        Listing::Unclear(gaps.len(), rise)
-    } else {
-        found
+    let unclear = rises.filter(|r| {
+        let most = MOST_RISE * (r.intervals - 1) as f64;
+        r.longer > 1 && r.longer as f64 > most
+    });
+    match (unclear, contacts) {
+        (Some(rises), _) => Listing::Unclear(rises),
+        (None, Some(closings)) => Listing::Changes(closings),
+        (None, None) => Listing::Impacts,
     }
+}
+
+/// The intervals between impacts, which are among the rows' times, that are longer than the one before; `None`
+/// where there are none.
+fn rises(times: &[f64], impacts: &[f64]) -> Option<Rises> {
+    let gaps: Vec<f64> = impacts.windows(2).map(|w| w[1] - w[0]).collect();
+    let longer = |k: &usize| gaps[*k] > 1.05 * gaps[k - 1];
+    let first = (1..gaps.len()).find(longer)?;
+    Some(Rises {
+        intervals: gaps.len(),
+        longer: (1..gaps.len()).filter(longer).count(),
+        row: times.iter().position(|t| *t == impacts[first + 1])? + 1,
+    })
 }
 
 /// The groups of times: the intervals are of two kinds, and none of the long ones follows another but at the ends.
@@ -248,6 +268,9 @@ mod tests {
     fn lists_that_are_neither_impacts_nor_changes_are_unclear() {
         // two throws in one list are impacts
         let throws = [bounces(0.5, 0.8, 5), bounces(9.0, 0.8, 5)].concat();
+        assert_eq!(listing(&throws), Listing::Impacts);
+        // and so are three, each far longer than a contact
+        let throws = [0.4, 60.0, 120.0].map(|at| bounces(at, 0.8, 8)).concat();
         assert_eq!(listing(&throws), Listing::Impacts);
         // passages of a gate, far longer than a contact
         let gate: Vec<f64> = bounces(0.5, 0.8, 6)

@@ -1,6 +1,6 @@
 //! Contacts that a file states as events: times, intervals, or the sound of them.
 
-use super::changes::{Closings, Listing, listing};
+use super::changes::{Closings, Listing, Rises, listing};
 use super::content::ContactContent;
 use super::{Channel, Flag, FlagCode, ListedTimes, Record, Role};
 use crate::signal::onsets;
@@ -63,7 +63,7 @@ fn impacts(times: Vec<f64>, channel: &Channel) -> Result<(Vec<f64>, f64, Option<
             let note = alternating(channel, times_s.len(), closed_s);
             Ok((times_s, closed_s, Some(note)))
         }
-        Listing::Unclear(intervals, longer) => Err(unclear(channel, intervals, longer)),
+        Listing::Unclear(rises) => Err(unclear(channel, rises)),
     }
 }
 
@@ -131,13 +131,19 @@ fn alternating(channel: &Channel, impacts: usize, closed_s: f64) -> Flag {
     .excluding(false)
 }
 
-fn unclear(channel: &Channel, intervals: usize, longer: usize) -> Flag {
+fn unclear(channel: &Channel, rises: Rises) -> Flag {
+    let Rises {
+        intervals,
+        longer,
+        row,
+    } = rises;
     Flag::new(
         FlagCode::ContactUnclear,
         Some(&channel.name),
         format!(
-            "{longer} of {intervals} intervals are longer than the one before: the rows are not the impacts of a mass \
-             that bounces, nor closed, open, closed … of a contact in turn"
+            "{longer} of {intervals} intervals are longer than the one before, the first of them the one that ends \
+             with row {row}: the rows are not the impacts of a mass that bounces, nor closed, open, closed … of a \
+             contact in turn"
         ),
         "list the times of the impacts alone, one a row, or the state of the contact in a column beside its changes",
     )
@@ -185,6 +191,17 @@ mod tests {
         let mut short = record(&[1.0, 2.0, f64::NAN]);
         settle(&mut short, ContactContent::Times, 0.0);
         assert_eq!(short.flags[0].code, FlagCode::NoImpact);
+    }
+
+    #[test]
+    fn the_row_at_which_the_intervals_grow_is_named() {
+        // passages of a gate
+        let mut gate = record(&[0.0, 0.12, 0.5, 0.62, 0.9, 1.02, 1.22, 1.34]);
+        settle(&mut gate, ContactContent::Times, 0.0);
+        assert_eq!(gate.flags[0].code, FlagCode::ContactUnclear);
+        let message = &gate.flags[0].message;
+        let start = "3 of 7 intervals are longer than the one before, the first of them the one that ends with row 3";
+        assert!(message.starts_with(start), "{message}");
     }
 
     #[test]

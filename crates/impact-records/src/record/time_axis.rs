@@ -148,6 +148,49 @@ fn nearest_step(times: &[f64]) -> f64 {
 /// Relative error of a rate that rounding of the stamps may leave.
 const COARSE: f64 = 1e-4;
 
+/// Greatest unit of printed stamps, over the usual step, at which a sample that is missing or repeated strays farther
+/// from any straight line, by half a step, than stamps that are rounded to the unit.
+const FINE_UNIT: f64 = 0.6;
+
+/// The step of even times whose stamps are whole numbers of a unit less than a step, so that single steps are a unit
+/// longer or shorter; `None` where stamps are farther than half a unit from the straight line of least greatest
+/// distance.
+fn rounded_step(times: &[f64], steps: &[f64], usual: f64) -> Option<f64> {
+    let off = steps.iter().map(|s| (s - usual).abs());
+    let unit = off.filter(|d| *d > 1e-3 * usual).reduce(f64::min)?;
+    let line = nearest_step(times);
+    let within = unit <= FINE_UNIT * usual && least_range(times, line) <= 1.05 * unit;
+    within.then_some(line)
+}
+
+/// Divisions by three of the steps among which that of least range is looked for.
+const DIVISIONS: usize = 40;
+
+/// The range of what straight lines leave of times, s, of the step near one for which it is least: twice the least
+/// greatest distance from a line whose start is free.
+fn least_range(times: &[f64], near: f64) -> f64 {
+    let range = |step: f64| {
+        let rest = times.iter().enumerate();
+        let rest = rest.map(|(i, t)| t - times[0] - i as f64 * step);
+        let ends = rest.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), r| {
+            (r.min(low), r.max(high))
+        });
+        ends.1 - ends.0
+    };
+    // a line that is farther off than this leaves more over the whole length
+    let width = 2.0 * range(near) / (times.len() - 1) as f64;
+    let (mut low, mut high) = (near - width, near + width);
+    for _ in 0..DIVISIONS {
+        let third = (high - low) / 3.0;
+        if range(low + third) < range(high - third) {
+            high -= third;
+        } else {
+            low += third;
+        }
+    }
+    range(0.5 * (low + high)).min(range(near))
+}
+
 /// The step of samples of which many share a stamp, s: that of the line through the samples at which the stamp
 /// changes, as each of them lies within one step of it; the number of stamps where those are too few to tell it.
 fn shared_step(times: &[f64]) -> Result<f64, usize> {
@@ -199,6 +242,10 @@ fn not_uniform(what: &str) -> Flag {
 
 /// An axis of equal steps but for gaps and repetitions.
 fn regular(times: &[f64], steps: &[f64], step: f64, flags: &mut Vec<Flag>) -> Option<f64> {
+    let odd = steps.iter().any(|s| *s > 1.5 * step || *s < 0.5 * step);
+    if let Some(line) = odd.then(|| rounded_step(times, steps, step)).flatten() {
+        return Some(1.0 / line);
+    }
     let known = flags.len();
     let lost: f64 = steps
         .iter()
@@ -313,6 +360,26 @@ mod tests {
         let mut t = uniform(1000, 1e-3);
         t.reverse();
         assert_eq!(codes(&inspected(&t)), ["time_backward"]);
+    }
+
+    #[test]
+    fn valid_whole_stamps_that_are_now_and_then_one_early_are_even() {
+        for early_every in [29, 40, 400] {
+            let stamp = |i: i32| f64::from(2 * i - i32::from(i % early_every == 7)) / 1000.0;
+            let t: Vec<f64> = (0..2000).map(stamp).collect();
+            let axis = inspected(&t);
+            assert!(axis.1.is_empty(), "{early_every}: {:?}", axis.1);
+            assert!((axis.0.unwrap() / 500.0 - 1.0).abs() < 1e-5, "{:?}", axis.0);
+            // a sample that is missing among them is seen
+            let mut lost = t.clone();
+            lost.remove(1000);
+            assert_eq!(codes(&inspected(&lost))[0], "dropped_samples");
+        }
+        // a sample that is repeated, and one that is missing, in stamps of a tenth of the step
+        let mut t = uniform(1000, 1e-3);
+        t[500] = t[499];
+        t[700] += 1e-4;
+        assert!(codes(&inspected(&t)).contains(&"repeated_samples"));
     }
 
     #[test]

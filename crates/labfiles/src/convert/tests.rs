@@ -406,6 +406,69 @@ fn starts_of_channels_come_back_from_every_target() {
     }
 }
 
+/// A record with a time axis of 2000 Hz, and a channel with one of its own.
+fn two_clocks(own: Samples) -> Made {
+    let even = (0..20).map(|i| f64::from(i) / 2000.0).collect();
+    let numbers = |from: f64| Samples::Real((0..20).map(|i| from + f64::from(i)).collect());
+    let mut record = made(&[
+        ("t", Some("s"), Samples::Real(even)),
+        ("x", Some("mm"), numbers(0.0)),
+        ("t2", Some("s"), own),
+        ("slow", Some("m/s"), numbers(5.0)),
+    ]);
+    let set = &mut record.datasets[0];
+    set.time_axis = Some(0);
+    for (channel, rate) in set.channels.iter_mut().zip([2000.0, 2000.0, 400.0, 400.0]) {
+        channel.sample_rate_hz = Some(rate);
+    }
+    set.channels[3].clock = Clock::Axis(2);
+    record
+}
+
+#[test]
+fn valid_universal_files_state_start_and_rate_of_each_channel() {
+    let own = (0..20).map(|i| 0.001 + f64::from(i) / 400.0).collect();
+    let sources: [Box<dyn Source>; 1] = [Box::new(two_clocks(Samples::Real(own)))];
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out.uff");
+    convert(&sources, Target::Uff, &out, &Options::default()).unwrap();
+    let back = open(&out).unwrap();
+    assert_eq!(back.datasets().len(), 1);
+    let set = &back.datasets()[0];
+    for (name, rate, start) in [("x", 2000.0, 0.0), ("slow", 400.0, 0.001)] {
+        let channel = &set.channels[set.channel_index(name).unwrap()];
+        assert_eq!(channel.sample_rate_hz, Some(rate), "{name}");
+        assert_eq!(channel.start_s, Some(start), "{name}");
+        assert_eq!(samples(&*back, 0, name), samples(&*sources[0], 0, name));
+    }
+}
+
+#[test]
+fn channels_whose_times_a_universal_file_cannot_hold_are_refused_by_name() {
+    let own = (0..20).map(|i| f64::from(i * i)).collect();
+    let uneven = two_clocks(Samples::Real(own));
+    let numbers = || Samples::Real(vec![1.0; 20]);
+    let mut unknown = made(&[
+        ("x", Some("mm"), numbers()),
+        ("contact", Some("V"), numbers()),
+    ]);
+    unknown.datasets[0].channels[0].start_s = Some(0.0);
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out.uff");
+    for (record, fault) in [
+        (uneven, "channel 'slow': the times of its own are not even"),
+        (
+            unknown,
+            "channel 'contact': its start is not known beside that of other channels",
+        ),
+    ] {
+        let sources: [Box<dyn Source>; 1] = [Box::new(record)];
+        let error = convert(&sources, Target::Uff, &out, &Options::default()).unwrap_err();
+        assert!(error.to_string().contains(fault), "{error}");
+        assert!(!out.exists());
+    }
+}
+
 /// A record of numbers that need all their bits, with attributes, and one without a rate.
 fn bits(dir: &Path) -> Vec<Box<dyn Source>> {
     let made = dir.join("made.h5");

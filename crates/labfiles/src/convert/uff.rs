@@ -2,8 +2,9 @@
 //!
 //! Line 1 of a function is the channel's name, line 2 the record's, line 3 the time, lines 4 and 5 hold
 //! attributes as `name=value; …` as far as they go in; the load case numbers the records, so that readers
-//! tell their functions apart. Of an even abscissa of time the step is written in the thirteen columns that
-//! the format has for it; a record without a rate has the sample's number as abscissa.
+//! tell their functions apart. Of an even abscissa of time start and step are written in the thirteen columns that
+//! the format has for each; a channel without a rate has the sample's number as abscissa, and one whose times cannot
+//! be written so is refused.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -11,10 +12,13 @@ use std::path::Path;
 
 use chrono::{Datelike, NaiveDateTime};
 
+use crate::clocks;
+use crate::convert::even::{self, Even};
 use crate::convert::item::{ConvertError, Item, Options, io};
 use crate::numbers::to_f32;
 use crate::output::write_whole_or;
-use crate::source::{ChannelInfo, Samples};
+use crate::source::{ChannelInfo, Clock, Samples};
+use crate::uff::Span;
 use crate::units::{Dimension, parse_unit};
 
 /// Columns of a line of identification.
@@ -35,18 +39,21 @@ pub(super) fn write(
     options: &Options,
     text: bool,
 ) -> Result<(), ConvertError> {
-    let read: Vec<_> = items
-        .iter()
-        .map(|item| Ok((item, item.read()?)))
-        .collect::<Result<_, ConvertError>>()?;
+    let mut read = Vec::with_capacity(items.len());
+    for (number, item) in items.iter().enumerate() {
+        let samples = item.read()?;
+        let record = Record {
+            item,
+            number: number + 1,
+            text,
+            single: options.single_precision,
+            times: even::of(item, &samples)?,
+        };
+        record.refuse_lost_starts(&samples)?;
+        read.push((record, samples));
+    }
     let fill = |file: &mut BufWriter<File>| {
-        for (number, (item, samples)) in read.iter().enumerate() {
-            let record = Record {
-                item,
-                number: number + 1,
-                text,
-                single: options.single_precision,
-            };
+        for (record, samples) in &read {
             record.write(samples, file)?;
         }
         Ok(())
@@ -58,12 +65,11 @@ pub(super) fn write(
 pub(super) fn notes(items: &[Item<'_>], text: bool, single: bool) -> Vec<String> {
     let mut rates: Vec<(String, Vec<&str>)> = Vec::new();
     for item in items {
-        let Some(note) = item.sample_rate_hz().and_then(rounded_rate) else {
-            continue;
-        };
-        match rates.iter_mut().find(|(known, _)| *known == note) {
-            Some((_, names)) => names.push(&item.name),
-            None => rates.push((note, vec![&item.name])),
+        for note in rates_of(item).into_iter().filter_map(rounded_rate) {
+            match rates.iter_mut().find(|(known, _)| *known == note) {
+                Some((_, names)) => names.push(&item.name),
+                None => rates.push((note, vec![&item.name])),
+            }
         }
     }
     let of = |(note, names): (String, Vec<&str>)| match names[..] {
@@ -79,6 +85,21 @@ pub(super) fn notes(items: &[Item<'_>], text: bool, single: bool) -> Vec<String>
         ));
     }
     notes
+}
+
+/// The rate that a record's channels share, or else the rates that they have, each once.
+fn rates_of(item: &Item<'_>) -> Vec<f64> {
+    let mut rates: Vec<f64> = match item.sample_rate_hz() {
+        Some(shared) => vec![shared],
+        None => item
+            .channels()
+            .iter()
+            .filter_map(|c| c.sample_rate_hz)
+            .collect(),
+    };
+    rates.sort_by(f64::total_cmp);
+    rates.dedup();
+    rates
 }
 
 /// A note if the step of a rate needs more than the thirteen columns that it has.
@@ -100,12 +121,55 @@ struct Record<'a> {
     /// Numbers as text (58), or binary (58b).
     text: bool,
     single: bool,
+    /// Of each channel.
+    times: Vec<Option<Even>>,
 }
 
+/// Part of a step by which the start that is written may be off.
+const START_OFF: f64 = 0.01;
+
 impl Record<'_> {
+    /// Refuse a channel whose start needs more columns than there are, or by whose start a reader would take it for
+    /// a record of its own.
+    fn refuse_lost_starts(&self, samples: &[Samples]) -> Result<(), ConvertError> {
+        let refuse = |channel: usize, found: &str| -> Result<(), ConvertError> {
+            Err(even::refused(self.item, channel, found).into())
+        };
+        let timed = self.times.iter().zip(samples).enumerate();
+        let mut first = None;
+        let stated = self
+            .attributes()
+            .iter()
+            .any(|l| l.contains(clocks::STARTS_KEY));
+        for (channel, (times, samples)) in timed {
+            let Some(times) = times else { continue };
+            let kept = fitted(times.start_s, NARROW).trim().parse::<f64>();
+            let near = |kept: f64| (kept - times.start_s).abs() <= START_OFF * times.step_s;
+            if !kept.is_ok_and(near) {
+                return refuse(
+                    channel,
+                    "its start has more digits than the thirteen columns hold",
+                );
+            }
+            let span = Span {
+                start_s: times.start_s,
+                length_s: samples.len() as f64 * times.step_s,
+            };
+            let first = *first.get_or_insert(span);
+            if !(stated || first.overlaps(span)) {
+                return refuse(
+                    channel,
+                    "it was taken long before or after the first channel",
+                );
+            }
+        }
+        Ok(())
+    }
+
     fn write(&self, samples: &[Samples], out: &mut dyn Write) -> std::io::Result<()> {
         let named = self.item.names().into_iter().zip(self.item.channels());
-        for ((name, info), samples) in named.zip(samples) {
+        let timed = named.zip(&self.times);
+        for (((name, info), times), samples) in timed.zip(samples) {
             let (values, complex) = match samples {
                 Samples::Real(values) => (values.clone(), false),
                 Samples::Complex(values) => (
@@ -114,15 +178,19 @@ impl Record<'_> {
                 ),
                 Samples::Text(_) => continue,
             };
-            self.function(&name, info, (&values, complex), out)?;
+            let channel = Channel {
+                name: &name,
+                info,
+                times: *times,
+            };
+            self.function(&channel, (&values, complex), out)?;
         }
         Ok(())
     }
 
     fn function(
         &self,
-        name: &str,
-        info: &ChannelInfo,
+        channel: &Channel<'_>,
         (values, complex): (&[f64], bool),
         out: &mut dyn Write,
     ) -> std::io::Result<()> {
@@ -144,7 +212,7 @@ impl Record<'_> {
             )?,
         }
         let points = values.len() / if complex { 2 } else { 1 };
-        self.header(name, info, (points, complex), out)?;
+        self.header(channel, (points, complex), out)?;
         if self.text {
             self.text(values, out)?;
         } else {
@@ -156,15 +224,15 @@ impl Record<'_> {
     /// Records 1 to 11 of a function.
     fn header(
         &self,
-        name: &str,
-        info: &ChannelInfo,
+        channel: &Channel<'_>,
         (points, complex): (usize, bool),
         out: &mut dyn Write,
     ) -> std::io::Result<()> {
+        let info = channel.info;
         let [fourth, fifth] = self.attributes();
-        let time = info.start_time.as_deref().and_then(date);
+        let time = self.start_time(info).and_then(date);
         let lines = [
-            line(name),
+            line(channel.name),
             line(&self.item.name),
             line(&time.unwrap_or_default()),
             fourth,
@@ -181,17 +249,18 @@ impl Record<'_> {
         )?;
         let kind =
             2 + 2 * u8::from(!self.single) + u8::from(complex) * if self.single { 3 } else { 2 };
-        let step = self.item.sample_rate_hz().map_or(1.0, f64::recip);
+        let (start, step) = channel
+            .times
+            .map_or((0.0, 1.0), |times| (times.start_s, times.step_s));
         writeln!(
             out,
             "{kind:10}{points:10}{:10}{}{}{}",
             1,
-            fitted(0.0, NARROW),
+            fitted(start, NARROW),
             fitted(step, NARROW),
             fitted(0.0, NARROW)
         )?;
-        let timed = self.item.sample_rate_hz().is_some();
-        let abscissa = if timed {
+        let abscissa = if channel.times.is_some() {
             axis(17, 0, "time", Some("s"))
         } else {
             axis(0, 0, "sample", None)
@@ -205,10 +274,39 @@ impl Record<'_> {
         Ok(())
     }
 
+    /// When a channel was begun: of channels whose starts the abscissae state, the earliest.
+    fn start_time<'c>(&'c self, info: &'c ChannelInfo) -> Option<&'c str> {
+        let mut times = self.times.iter().flatten();
+        if times.all(|t| t.start_s == 0.0) {
+            return info.start_time.as_deref();
+        }
+        let all = self.item.channels().iter();
+        all.filter_map(|c| c.start_time.as_deref()).min()
+    }
+
+    /// The attributes that keep the starts and rates of channels, as they are written.
+    fn clocks(&self) -> Vec<(String, String)> {
+        let written = |(info, times): (&ChannelInfo, &Option<Even>)| ChannelInfo {
+            start_s: times.map(|t| t.start_s),
+            sample_rate_hz: info.sample_rate_hz.or(times.map(|t| t.step_s.recip())),
+            clock: match info.clock {
+                Clock::Shared => Clock::Shared,
+                Clock::Axis(_) | Clock::Rate => Clock::Rate,
+            },
+            ..info.clone()
+        };
+        let channels = self.item.channels().iter().zip(&self.times);
+        let channels: Vec<ChannelInfo> = channels.map(written).collect();
+        clocks::attributes(&self.item.names(), &channels)
+    }
+
     /// The record's attributes in two lines, as far as they go in.
     fn attributes(&self) -> [String; 2] {
         let mut lines = [String::new(), String::new()];
-        for (name, value) in self.item.described() {
+        let of_clocks = |name: &str| [clocks::STARTS_KEY, clocks::CLOCKS_KEY].contains(&name);
+        let others = self.item.described().filter(|(name, _)| !of_clocks(name));
+        let others = others.map(|(name, value)| (name.clone(), value.clone()));
+        for (name, value) in self.clocks().into_iter().chain(others) {
             let pair = format!("{name}={value}");
             let plain = pair.is_ascii() && !pair.contains([';', '\n', '\r']);
             let fits = |l: &&mut String| l.len() + 2 + pair.len() <= LINE;
@@ -244,6 +342,13 @@ impl Record<'_> {
         }
         Ok(())
     }
+}
+
+/// A channel on its way into the file.
+struct Channel<'a> {
+    name: &'a str,
+    info: &'a ChannelInfo,
+    times: Option<Even>,
 }
 
 /// A line of identification: blanks where a file would be read otherwise, NONE for nothing.

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::csv::dialect::{COMMENTS, Dialect, is_value};
-use crate::text::cells::{Cells, decode_cell};
+use crate::text::cells::{Cells, Separator, decode_cell};
 use crate::text::{decode, number};
-use crate::timing::is_unit_of_time;
+use crate::timing::{is_time_name, is_unit_of_time};
 use crate::units::parse_unit;
 
 /// What the lines before the first row state.
@@ -30,7 +30,18 @@ const FURTHER_UNITS: [&str; 25] = [
 pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header, usize) {
     let mut header = Header::default();
     let (comments, plain): (Vec<&[u8]>, Vec<&[u8]>) = lines.iter().partition(|l| is_comment(l));
-    let mut rows: Vec<Vec<String>> = plain.iter().map(|l| cells(l, dialect)).collect();
+    let pairs = if dialect.columns == 1 {
+        pairs_above(&plain)
+    } else {
+        Vec::new()
+    };
+    let mut rows: Vec<Vec<String>> = if pairs.is_empty() {
+        plain.iter().map(|l| cells(l, dialect)).collect()
+    } else {
+        Vec::new()
+    };
+    let trace = trace_of(&pairs);
+    header.attributes.extend(pairs);
     take_values(&mut rows, filled, dialect, &mut header.attributes);
     let named = rows
         .iter()
@@ -46,19 +57,24 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header
         ..*dialect
     };
     let units = units_row(&rows, dialect.columns);
-    if units.is_some() {
+    let alone = units.is_some() && units_alone(&rows);
+    if units.is_some() && !alone {
         rows.pop();
     }
     let vernier = rows
         .first()
         .is_some_and(|row| row[0].starts_with("Vernier Format"));
-    if let Some(names) = grouped_names(&rows, dialect.columns) {
+    if alone {
+        header.names = rows.pop().unwrap_or_default();
+    } else if let Some(names) = grouped_names(&rows, dialect.columns) {
         header.names = names;
         rows.truncate(rows.len() - 2);
     } else if let Some(names) = names_row(&rows, dialect.columns, vernier) {
         header.names = rows.remove(names);
     } else if let Some(names) = commented_names(&comments, dialect) {
         header.names = names;
+    } else {
+        header.names.extend(trace);
     }
     for mut row in rows {
         row.truncate(filled_cells(&row));
@@ -84,6 +100,60 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header
     name_columns(&mut header, &units.unwrap_or_default(), dialect.columns);
     of_motion_capture(&mut header);
     (header, columns)
+}
+
+/// Fewest lines of a key and its value that are a preamble.
+const FEWEST_PAIRS: usize = 3;
+
+/// The keys and values of the lines `"key",value` above a column of numbers, of which no line is the heading; none
+/// where they are few.
+fn pairs_above(plain: &[&[u8]]) -> Vec<(String, String)> {
+    let pair = |line: &&[u8]| {
+        let cells: Vec<String> = Cells::new(line, Separator::Byte(b','))
+            .map(decode_cell)
+            .collect();
+        let [key, value] = <[String; 2]>::try_from(cells).ok()?;
+        let word = key.starts_with(char::is_alphabetic) && !value.is_empty();
+        word.then_some((key, value))
+    };
+    let all: Vec<(String, String)> = plain.iter().rev().map_while(pair).collect();
+    if all.len() < FEWEST_PAIRS {
+        Vec::new()
+    } else {
+        all
+    }
+}
+
+/// The heading that a preamble gives a column, as Yokogawa writes it: name and unit.
+fn trace_of(pairs: &[(String, String)]) -> Option<String> {
+    let stated = |key: &str| {
+        let found = pairs.iter().find(|(known, _)| known == key);
+        found.map(|(_, value)| value.trim())
+    };
+    let name = stated("TraceName")?;
+    Some(match stated("VUnit") {
+        Some(unit) => format!("{name} [{unit}]"),
+        None => name.to_owned(),
+    })
+}
+
+/// Whether the row of units heads the table by itself, below a preamble of keys and values that does not name the
+/// columns.
+fn units_alone(rows: &[Vec<String>]) -> bool {
+    const NAMING: [&str; 5] = ["source", "label", "trace", "channel", "x"];
+    let [preamble @ .., units] = rows else {
+        return false;
+    };
+    let Some(key) = preamble.last().and_then(|row| row.first()) else {
+        return false;
+    };
+    let lower = key.to_lowercase();
+    let names = is_time_name(key) || NAMING.iter().any(|word| lower.starts_with(word));
+    let pair = |row: &Vec<String>| filled_cells(row) == 2 && !row[0].is_empty();
+    // Second, not ms
+    let spelled = |unit: &String| is_time_name(unit) && unit.chars().count() > 2;
+    let time = units.first().is_some_and(spelled);
+    preamble.len() > FEWEST_PAIRS && preamble.iter().all(pair) && time && !names
 }
 
 /// Number of cells up to the last that is filled.
@@ -333,7 +403,6 @@ fn name_columns(header: &mut Header, units: &[Option<String>], columns: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::text::cells::Separator;
     use crate::text::number::Notation;
 
     const SEMICOLON: Dialect = Dialect {

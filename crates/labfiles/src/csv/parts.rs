@@ -2,6 +2,7 @@
 
 use crate::csv::columns::HeadRows;
 use crate::csv::header::Header;
+use crate::csv::time_axis::heads_pair;
 use crate::text::table::Kind;
 use crate::timing::is_time_name;
 
@@ -25,8 +26,26 @@ pub(crate) enum Makeup {
     Runs(Vec<Part>),
     /// One table whose columns have times of their own: for each column the one with its time.
     OwnTimes(Vec<Option<usize>>),
-    /// A table beside the remarks on it, as some oscilloscopes write: its columns, and the remarks.
-    BesideRemarks(Part, Vec<(String, String)>),
+    /// Tables beside the remarks on them, as some oscilloscopes write, one for each channel.
+    BesideRemarks(Vec<Block>),
+}
+
+/// A table beside the remarks on it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Block {
+    /// Its columns, its time first.
+    pub part: Part,
+    /// The remarks.
+    pub remarks: Vec<(String, String)>,
+    /// Whether its times are not those of the first block.
+    pub own_time: bool,
+}
+
+impl Block {
+    /// Its columns without a time that is that of the first block.
+    pub(crate) fn kept(&self) -> &[usize] {
+        &self.part.columns[usize::from(!self.own_time)..]
+    }
 }
 
 /// Find out how a table is made up; `times` are the columns that may be time axes.
@@ -36,8 +55,8 @@ pub(crate) fn find(
     rows: &HeadRows<'_>,
     times: &[usize],
 ) -> Makeup {
-    if let Some((part, remarks)) = beside_remarks(header, kinds, rows) {
-        return Makeup::BesideRemarks(part, remarks);
+    if let Some(blocks) = beside_remarks(header, kinds, rows) {
+        return Makeup::BesideRemarks(blocks);
     }
     let filled = |i: usize| rows.column(i).any(|c| !c.is_empty());
     let used: Vec<usize> = (0..kinds.len())
@@ -60,7 +79,8 @@ fn blocks(used: &[usize], times: &[usize], header: &Header) -> Vec<Vec<usize>> {
     let mut before = Vec::new();
     for (place, &column) in used.iter().enumerate() {
         let next = used.get(place + 1);
-        let named = blocks.is_empty() || is_time_name(&header.names[column]);
+        let named =
+            blocks.is_empty() || is_time_name(&header.names[column]) || heads_pair(header, column);
         let heads =
             times.contains(&column) && named && next.is_some_and(|next| !times.contains(next));
         match (heads, blocks.last_mut()) {
@@ -78,7 +98,7 @@ fn blocks(used: &[usize], times: &[usize], header: &Header) -> Vec<Vec<usize>> {
 
 fn own_times(columns: usize, blocks: &[Vec<usize>]) -> Vec<Option<usize>> {
     let mut own = vec![None; columns];
-    for block in &blocks[1..] {
+    for block in blocks {
         for &column in &block[1..] {
             own[column] = Some(block[0]);
         }
@@ -272,56 +292,85 @@ fn shared_time(
 /// Fewest remarks beside a table.
 const FEWEST_REMARKS: usize = 3;
 
-/// A table whose first columns hold remarks, a word and its value, in its first rows, and nothing below.
-fn beside_remarks(
+/// Tables each of whose first columns hold remarks, a word and its value, in its first rows, and nothing below.
+fn beside_remarks(header: &Header, kinds: &[Kind], rows: &HeadRows<'_>) -> Option<Vec<Block>> {
+    let unnamed = |i: usize| header.names[i] == format!("column_{}", i + 1);
+    let mut starts: Vec<usize> = (0..kinds.len())
+        .filter(|&i| unnamed(i) && holds_words(rows, i))
+        .collect();
+    // values that are words too
+    starts.dedup_by(|own, before| *own == *before + 1);
+    if starts.first() != Some(&0) {
+        return None;
+    }
+    let ends = starts.iter().skip(1).copied().chain([kinds.len()]);
+    let mut blocks: Vec<Block> = Vec::new();
+    for (start, end) in starts.iter().copied().zip(ends) {
+        let mut block = block(header, kinds, rows, start..end)?;
+        let same = |first: &Block| {
+            let [a, b] = [first, &block].map(|b| b.part.columns[0]);
+            rows.column(a).eq(rows.column(b))
+        };
+        block.own_time = !blocks.first().is_some_and(same);
+        if block.own_time && !blocks.is_empty() {
+            block.part.names[0] = format!("Time {}", blocks.len() + 1);
+        }
+        blocks.push(block);
+    }
+    Some(blocks)
+}
+
+/// Whether a column holds words in its first rows, and nothing below.
+fn holds_words(rows: &HeadRows<'_>, column: usize) -> bool {
+    let cells = rows.column(column).filter(|cell| !cell.is_empty());
+    let words: Vec<String> = cells.map(crate::text::decode).collect();
+    let is_word = |word: &String| word.starts_with(|c: char| c.is_alphabetic());
+    words.len() >= FEWEST_REMARKS
+        && 2 * words.len() < rows.lines.len().max(2 * FEWEST_REMARKS + 1)
+        && words.iter().all(is_word)
+}
+
+/// The table of numbers in some columns, of which the first two hold the remarks on it.
+fn block(
     header: &Header,
     kinds: &[Kind],
     rows: &HeadRows<'_>,
-) -> Option<(Part, Vec<(String, String)>)> {
-    let unnamed = |i: usize| header.names[i] == format!("column_{}", i + 1);
-    let words: Vec<(usize, String)> = rows
-        .column(0)
-        .enumerate()
-        .filter(|(_, cell)| !cell.is_empty())
-        .map(|(row, cell)| (row, crate::text::decode(cell)))
-        .collect();
-    let whole = |i: usize| kinds[i] == Kind::Number && rows.column(i).all(|c| !c.is_empty());
-    let from = (1..kinds.len()).find(|&i| (i..kinds.len()).all(whole))?;
-    let count = rows.lines.len();
-    let is_word = |(_, word): &(usize, String)| word.starts_with(|c: char| c.is_alphabetic());
-    let beside = unnamed(0)
-        && from >= 2
-        && words.len() >= FEWEST_REMARKS
-        && 2 * words.len() < count.max(2 * FEWEST_REMARKS + 1)
-        && words.iter().all(is_word);
-    if !beside || kinds.len() - from < 2 {
+    within: std::ops::Range<usize>,
+) -> Option<Block> {
+    let start = within.start;
+    let whole = |i: &usize| kinds[*i] == Kind::Number && rows.column(*i).all(|c| !c.is_empty());
+    let empty = |i: &usize| rows.column(*i).all(<[u8]>::is_empty);
+    let from = (start + 2..within.end).find(whole)?;
+    let mut after = from..within.end;
+    if !after.all(|i| whole(&i) || empty(&i)) {
         return None;
     }
-    let values: Vec<String> = rows.column(1).map(crate::text::decode).collect();
-    let value = |(row, word): (usize, String)| {
-        let value = values.get(row).filter(|v| !v.is_empty())?;
-        Some((word, value.clone()))
-    };
-    let remarks: Vec<(String, String)> = words.into_iter().filter_map(value).collect();
-    let stated = |key: &str| {
-        remarks
-            .iter()
-            .find(|(k, _)| k == key)
-            .map(|(_, v)| v.clone())
-    };
-    let mut names: Vec<String> = (from..kinds.len())
-        .map(|i| header.names[i].clone())
-        .collect();
+    let columns: Vec<usize> = (from..within.end).filter(whole).collect();
+    if columns.len() < 2 {
+        return None;
+    }
+    let words = rows.column(start).map(crate::text::decode);
+    let values = rows.column(start + 1).map(crate::text::decode);
+    let remarks = words
+        .zip(values)
+        .filter(|(k, v)| !k.is_empty() && !v.is_empty());
+    let remarks: Vec<(String, String)> = remarks.collect();
+    let mut names: Vec<String> = columns.iter().map(|&i| header.names[i].clone()).collect();
     names[0] = "Time".to_owned();
-    if let Some(source) = stated("Source").filter(|_| names.len() == 2) {
-        names[1] = source;
+    let source = remarks.iter().find(|(key, _)| key == "Source");
+    if let (Some((_, source)), 2) = (source, names.len()) {
+        names[1].clone_from(source);
     }
     let part = Part {
         name: String::new(),
-        columns: (from..kinds.len()).collect(),
+        columns,
         names,
     };
-    Some((part, remarks))
+    Some(Block {
+        part,
+        remarks,
+        own_time: true,
+    })
 }
 
 #[cfg(test)]

@@ -242,3 +242,66 @@ fn prop_mutated_tables_are_read_or_refused() {
     let seeds: Vec<Vec<u8>> = seeds.iter().map(|s| s.as_bytes().to_vec()).collect();
     survive(&seeds, open, mutate_text, 64);
 }
+
+#[test]
+fn valid_a_unit_without_a_name_heads_the_time() {
+    let s = source(b"in s,C1 in V\n0.0,9.5E-01\n4.0E-04,9.4E-01\n8.0E-04,9.3E-01\n");
+    let info = &s.datasets()[0];
+    assert_eq!(info.time_axis, Some(0));
+    assert!((info.sample_rate_hz().unwrap() - 2500.0).abs() < 1e-6);
+    let signal = &info.channels[1];
+    assert_eq!(
+        (signal.name.as_str(), signal.unit.as_deref()),
+        ("C1", Some("V"))
+    );
+}
+
+#[test]
+fn valid_times_with_a_number_are_those_of_the_run_with_that_number() {
+    let row = |k: u32| {
+        let t = f64::from(k) * 0.02;
+        let second = if k < 10 {
+            format!("{t:.4},{:.4}", 0.8 - t)
+        } else {
+            ",".to_owned()
+        };
+        format!("{t:.4},{:.4},{second}\n", 0.9 - t)
+    };
+    let rows: String = (0..14).map(row).collect();
+    let s = source(format!("t1,y1,t2,y2\n{rows}").as_bytes());
+    let names: Vec<&str> = s.datasets().iter().map(|d| d.name.as_str()).collect();
+    assert_eq!(names, ["1", "2"]);
+    for (run, samples) in [(0, 14), (1, 10)] {
+        let info = &s.datasets()[run];
+        let names: Vec<&str> = info.channels.iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(names, ["t", "y"]);
+        assert_eq!(info.time_axis, Some(0));
+        assert_eq!(info.channels[1].samples, samples);
+        assert!((info.sample_rate_hz().unwrap() - 50.0).abs() < 1e-6);
+    }
+    // temperatures, which do not climb, and a table with one of them
+    for text in [
+        "t1,p1,t2,p2\n20,1,21,2\n19,2,20,3\n20,1,21,2\n",
+        "t1,y1\n0,1\n1,2\n2,1\n",
+    ] {
+        let s = source(text.as_bytes());
+        assert_eq!(s.datasets()[0].time_axis, None, "{text}");
+    }
+}
+
+#[test]
+fn valid_a_time_that_states_its_unit_wins_over_stamps_that_do_not() {
+    let row = |k: u32| {
+        let ms = f64::from(k) * 10.0;
+        let stamp = 1_701_234_567_890_000_000u64 + u64::from(k) * 10_000_000;
+        format!("{stamp},{:.4},{:.3}\n", 1e-3 * ms, (0.3 * ms).cos())
+    };
+    let rows: String = (0..20).map(row).collect();
+    for (heading, axis) in [("time,seconds_elapsed,z", 1), ("time,level,z", 0)] {
+        let s = source(format!("{heading}\n{rows}").as_bytes());
+        let info = &s.datasets()[0];
+        assert_eq!(info.time_axis, Some(axis), "{heading}");
+        let rate = info.sample_rate_hz().unwrap();
+        assert!((rate - 100.0).abs() < 0.01, "{heading}: {rate}");
+    }
+}

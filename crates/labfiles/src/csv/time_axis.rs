@@ -5,7 +5,9 @@ use crate::csv::header::Header;
 use crate::rate;
 use crate::text::table::{Kind, Layout};
 use crate::text::{clock, decode};
-use crate::timing::{AxisUnit, StatedUnit, climbs_evenly, is_time_name, stated_unit};
+use crate::timing::{
+    AxisUnit, StatedUnit, climbs_evenly, is_general, is_time_name, stated_unit, states_unit,
+};
 use crate::units::symbol_of;
 
 /// The time axis of a table.
@@ -24,7 +26,8 @@ pub(crate) struct TimeAxis {
 }
 
 /// Find the time axis: a column of points in time, one whose name or unit is of time, or an
-/// unnamed first column that climbs evenly. It must never go back in the rows seen.
+/// unnamed first column that climbs evenly. It must never go back in the rows seen; of several columns of numbers
+/// one that is called time and states its unit wins over those that do not.
 pub(crate) fn find(
     header: &Header,
     layout: &Layout,
@@ -33,8 +36,14 @@ pub(crate) fn find(
     count: u64,
 ) -> Option<TimeAxis> {
     let candidates = (0..layout.kinds.len()).filter_map(|i| candidate(header, layout, i));
-    let mut found = candidates.filter(|c| climbs(&head_of(layout, rows, c.column)));
-    let mut axis = found.next().or_else(|| unnamed(header, layout, rows))?;
+    let found = candidates.filter(|c| climbs(&head_of(layout, rows, c.column)));
+    let found: Vec<TimeAxis> = found.collect();
+    let mut numbers = found
+        .iter()
+        .take_while(|c| layout.kinds[c.column] == Kind::Number);
+    let best = numbers.find(|c| states_unit_of_all(header, c.column));
+    let best = best.or(found.first()).cloned();
+    let mut axis = best.or_else(|| unnamed(header, layout, rows))?;
     let head = head_of(layout, rows, axis.column);
     let end = last.and_then(|cells| cell_value(layout, cells.get(axis.column)?, axis.column, rows));
     if layout.kinds[axis.column] == Kind::Time {
@@ -62,6 +71,26 @@ pub(crate) fn candidates(header: &Header, layout: &Layout, rows: &HeadRows<'_>) 
         .collect()
 }
 
+/// Whether a column is called the time of all columns and states its unit.
+fn states_unit_of_all(header: &Header, column: usize) -> bool {
+    let name = &header.names[column];
+    is_time_name(name) && is_general(name) && states_unit(header.units[column].as_deref(), name)
+}
+
+/// Whether a column is called `t` with a number, and is the time of the next column of that number, in a table that
+/// has several such pairs: `t1,y1,t2,y2`.
+pub(crate) fn heads_pair(header: &Header, column: usize) -> bool {
+    let pair = |at: usize| {
+        let number = header.names[at].strip_prefix('t')?;
+        let bare = header.names.get(at + 1)?.strip_suffix(number)?;
+        let digits = !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit());
+        let word = !bare.is_empty() && bare != "t" && !bare.ends_with(|c: char| c.is_ascii_digit());
+        (digits && word).then_some(())
+    };
+    let pairs = (0..header.names.len()).filter(|at| pair(*at).is_some());
+    pairs.count() > 1 && pair(column).is_some()
+}
+
 /// A column whose kind, name or unit is of time.
 fn candidate(header: &Header, layout: &Layout, column: usize) -> Option<TimeAxis> {
     let sure = |unit| TimeAxis {
@@ -77,7 +106,7 @@ fn candidate(header: &Header, layout: &Layout, column: usize) -> Option<TimeAxis
             let own = header.units[column].as_deref();
             match stated_unit(own, name) {
                 StatedUnit::Known(_) if own.is_some() => Some(sure(None)),
-                _ if !is_time_name(name) => None,
+                _ if !is_time_name(name) && !heads_pair(header, column) => None,
                 StatedUnit::Known(unit) => Some(sure(symbol_of(unit).map(str::to_owned))),
                 StatedUnit::Nothing => Some(sure(None)),
                 StatedUnit::Other(_) => None,

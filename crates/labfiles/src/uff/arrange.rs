@@ -5,7 +5,9 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use super::header::{Freedom, Header};
 use super::samples::{self, Side};
 use super::sets::{Function, Sets};
+use super::span::Span;
 use crate::bytes::FileBytes;
+use crate::clocks::STARTS_KEY;
 use crate::source::{ChannelInfo, Clock, DatasetInfo, StoredType};
 
 /// The datasets of a file and the origins of their channels.
@@ -29,7 +31,7 @@ fn same_abscissa(
 ) -> bool {
     let (x, y) = (&first.header, &other.header);
     if x.even && y.even && x.over_time() && y.over_time() {
-        return overlap(first, other);
+        return span(first).overlaps(span(other)) || of_stated_starts(x, y);
     }
     let alike = x.even == y.even && first.samples == other.samples && x.axes[0] == y.axes[0];
     if x.even || !alike {
@@ -42,17 +44,20 @@ fn same_abscissa(
     known.is_some() && *known == read(other)
 }
 
-/// Whether two functions at even times have half of the time of the shorter in common: they then belong to
-/// one record, even where one begins later or has another rate.
-fn overlap(first: &Function, other: &Function) -> bool {
-    let span = |f: &Function| {
-        let unit = f.header.abscissa_s();
-        let length = f.samples as f64 * f.header.increment;
-        (f.header.start * unit, length * unit)
-    };
-    let ((x, long), (y, short)) = (span(first), span(other));
-    let common = (x + long).min(y + short) - x.max(y);
-    common >= 0.5 * long.min(short) && common > 0.0
+/// The time that a function at even times covers.
+fn span(function: &Function) -> Span {
+    let unit_s = function.header.abscissa_s();
+    Span {
+        start_s: function.header.start * unit_s,
+        length_s: function.samples as f64 * function.header.increment * unit_s,
+    }
+}
+
+/// Whether two functions are channels of one record whose starts our own writer states.
+fn of_stated_starts(first: &Header, other: &Header) -> bool {
+    let mut stated = first.lines[3..].iter().filter_map(|line| pairs(line));
+    let states = stated.any(|pairs| pairs.iter().any(|(name, _)| name == STARTS_KEY));
+    states && first.lines[1..] == other.lines[1..] && first.load_case == other.load_case
 }
 
 /// Group functions that follow each other with the same abscissa, or at the same time; a channel that comes again with

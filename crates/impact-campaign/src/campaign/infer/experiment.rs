@@ -83,7 +83,7 @@ pub(super) fn changes_at(place: Place<'_>) -> Option<usize> {
 pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
     let Some(first) = places.first() else { return };
     if first.source.datasets().iter().any(is_event_list) {
-        found.experiment = Experiment::Events(events(&mut found.channels));
+        found.experiment = Experiment::Events(events(*first, &mut found.channels));
         return;
     }
     if let Some(time) = changes_at(*first) {
@@ -175,23 +175,39 @@ fn unnamed_decay(some: &[Place<'_>], channels: &[InferredChannel]) -> Option<usi
     })
 }
 
+/// Words in the names of times from one event to the next.
+const INTERVALS: [&str; 4] = ["interval", "duration", "diff", "dt"];
+/// Words in the names of flights, and of laps, whose times may be counted on.
+const FLIGHTS: [&str; 5] = ["flug", "flight", "abstand", "lap", "runde"];
+
+/// Whether a column of times holds those from one event to the next: by its name, by a name of flights whose numbers
+/// do not only rise, or by numbers of which most fall.
+fn are_intervals(name: &str, values: &[f64]) -> bool {
+    let name = name.to_lowercase();
+    let called = |words: &[&str]| words.iter().any(|word| name.contains(word));
+    let fall = values.windows(2).filter(|w| w[1] < w[0]).count();
+    called(&INTERVALS) || (called(&FLIGHTS) && fall > 0) || 2 * fall >= values.len().max(1)
+}
+
 /// The column of a list of events that states the impacts.
-fn events(channels: &mut [InferredChannel]) -> ContactContent {
-    let is_interval = |c: &InferredChannel| {
-        let name = c.name.to_lowercase();
-        ["interval", "duration", "diff", "dt"]
-            .iter()
-            .any(|w| name.contains(w))
+fn events(place: Place<'_>, channels: &mut [InferredChannel]) -> ContactContent {
+    let infos = place.set().channels.iter().enumerate();
+    let listed: Vec<usize> = infos
+        .filter(|(_, info)| !numbers_rows(info))
+        .map(|(i, _)| i)
+        .collect();
+    let interval = |i: &usize| {
+        let values = place.numbers(*i);
+        are_intervals(&channels[*i].name, &values)
     };
-    let times = channels.iter().position(|c| !is_interval(c));
-    let (at, content) = match times {
-        Some(at) => (at, ContactContent::Times),
-        None => (0, ContactContent::Intervals),
+    let (at, content) = match listed.iter().find(|i| !interval(i)) {
+        Some(at) => (Some(*at), ContactContent::Times),
+        None => (listed.first().copied(), ContactContent::Intervals),
     };
     for channel in channels.iter_mut() {
         channel.role = None;
     }
-    if let Some(channel) = channels.get_mut(at) {
+    if let Some(channel) = at.and_then(|at| channels.get_mut(at)) {
         channel.role = Some(Role::Contact);
     }
     content
@@ -348,5 +364,24 @@ fn without_acceleration(channels: &mut [InferredChannel]) {
         if drifts || unclear {
             channel.role = None;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_flights_that_fall_are_intervals_and_times_that_rise_are_not() {
+        let flights = [685.4, 548.3, 438.6, 350.9];
+        let times = [0.0, 685.4, 1233.7, 1672.3];
+        for name in ["Flugzeit", "flight", "Lap", "Zeit"] {
+            assert!(are_intervals(name, &flights), "{name}");
+            assert!(!are_intervals(name, &times), "{name}");
+        }
+        // three drops in one list, and intervals by their name
+        assert!(!are_intervals("Time", &[0.5, 0.9, 1.2, 0.5, 0.9, 1.2]));
+        assert!(are_intervals("duration", &times));
+        assert!(!are_intervals("t", &[]));
     }
 }

@@ -661,6 +661,39 @@ mod tests {
         assert!(roles.iter().flatten().count() == 2, "{roles:?}");
     }
 
+    #[test]
+    fn axes_of_one_sensor_are_those_of_one_body() {
+        let imu = [
+            ("ax_g", "", 0.02),
+            ("ay_g", "", 0.004),
+            ("az_g", "", 0.003),
+            ("gx_dps", "", 1.0),
+            ("gy_dps", "", 57.0),
+            ("gz_dps", "", 1.0),
+        ];
+        let mut expected = [None; 6];
+        expected[4] = Some(Role::VelocityX);
+        assert_eq!(roles_of(&imu), expected);
+        assert_eq!(roles_of(&imu[..3]), [Some(Role::AccelerationX), None, None]);
+    }
+
+    #[test]
+    fn a_list_of_flights_is_one_of_intervals() {
+        for (heading, list, channel, content) in [
+            (
+                "Flugzeit (ms)",
+                "685.4\n548.3\n438.6\n350.9\n280.7\n",
+                "Flugzeit",
+                "intervals",
+            ),
+            ("n,t (s)", "1,0.0\n2,0.6\n3,1.1\n4,1.5\n", "t", "times"),
+        ] {
+            let (_, text) = toml_of(&[("z.csv", format!("{heading}\n{list}"))]);
+            assert!(text.contains(&format!("channel = \"{channel}\"")), "{text}");
+            assert!(text.contains(&format!("content = \"{content}\"")), "{text}");
+        }
+    }
+
     /// A folder of records of a generator and an unnamed switch, closed in those of the numbers given.
     fn folder_of_switches(records: usize, closed: &[usize]) -> tempfile::TempDir {
         let folder = tempfile::tempdir().unwrap();

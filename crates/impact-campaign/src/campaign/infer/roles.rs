@@ -30,6 +30,24 @@ pub(super) fn assign(channels: &mut [InferredChannel]) {
             channels[index].role = Some(role);
         }
     }
+    leave_out_beside_rates(channels);
+}
+
+/// Accelerations in m/s² beside the angular rate of the same body are of another coordinate.
+fn leave_out_beside_rates(channels: &mut [InferredChannel]) {
+    let turns = |c: &InferredChannel| {
+        matches!(c.role, Some(Role::VelocityX | Role::VelocityY)) && is_rate(c)
+    };
+    if !channels.iter().any(turns) {
+        return;
+    }
+    for channel in channels {
+        let unit = units::unit_of(channel.unit.as_deref(), &channel.name);
+        let linear = unit.is_some_and(|u| u.dimension == Dimension::Acceleration);
+        if linear && channel.role.is_some_and(Role::is_motion) {
+            channel.role = None;
+        }
+    }
 }
 
 /// Whether a channel may be a signal: neither the time nor a single number, which is an attribute of its record.
@@ -127,18 +145,39 @@ const PHONES: [&str; 4] = ["linear", "gyroscope", "accelerometer", "magnetometer
 /// A name as the words that say what was measured, and the letter of an axis at its end.
 fn axis(channel: &InferredChannel) -> Option<(Vec<String>, char)> {
     let own = Role::ALL.iter().any(|role| role.name() == channel.name);
-    let mut words = words(shown(channel));
+    let mut words = words(without_unit(shown(channel)));
     let last = words.pop().filter(|_| !own)?;
     let letter = last.chars().last().filter(|c| "xyz".contains(*c))?;
     let quantity = &last[..last.len() - 1];
     if !quantity.is_empty() {
-        // ax, vy, accz
-        ["a", "v", "w", "acc", "accel", "gyr", "gyro"]
+        // ax, vy, accz, gx of a gyroscope
+        ["a", "v", "w", "g", "acc", "accel", "gyr", "gyro"]
             .contains(&quantity)
             .then_some(())?;
         words.push(quantity.to_owned());
     }
     Some((words, letter))
+}
+
+/// A name without the unit of a motion at its end: `ax_g`, `gy_dps`.
+fn without_unit(name: &str) -> &str {
+    let (bare, unit) = units::split_unit(name);
+    let of_motion = |unit: units::Unit| {
+        matches!(
+            unit.dimension,
+            Dimension::Length
+                | Dimension::Velocity
+                | Dimension::Acceleration
+                | Dimension::Angle
+                | Dimension::Frequency
+        )
+    };
+    let known = unit.and_then(units::parse_split_unit);
+    if known.is_some_and(of_motion) {
+        bare
+    } else {
+        name
+    }
 }
 
 fn words(name: &str) -> Vec<String> {
