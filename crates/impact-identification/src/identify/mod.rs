@@ -9,7 +9,10 @@ mod answer;
 pub mod boundary_plan;
 pub mod bracket_midpoints;
 pub mod decay;
+#[cfg(test)]
+mod decay_coverage;
 pub mod diagnostics;
+mod dry_friction;
 pub mod estimate;
 pub mod evidence;
 mod first_values;

@@ -764,7 +764,8 @@ impl IdentificationRun<'_> {
                 .flights
                 .as_ref()
                 .map(|a| (Method::Flights, results::flights(blocks, a))),
-            decay::pooled(self.evidence.observations).map(|result| (Method::FreeDecay, result)),
+            decay::pooled(self.evidence.observations, self.evidence.nominal.effects)
+                .map(|result| (Method::FreeDecay, result)),
             flight_times::pooled(self.evidence.observations)
                 .map(|result| (Method::FlightTimes, result)),
         ];

@@ -4,3 +4,4 @@ pub mod distribution;
 pub mod quantile;
 pub mod scatter;
 pub mod shared_gains;
+pub mod weighted;

@@ -12,8 +12,10 @@ use crate::signal::whole;
 const PARTS: usize = 4;
 /// Fewest periods of a part.
 const PERIODS_OF_A_PART: f64 = 1.5;
-/// Share of its first amplitude down to which a decay is looked at.
-const RESOLVED: f64 = 0.02;
+/// Periods from which a decay has two parts whose damping ratios can be compared.
+pub const LEAST_TESTED: f64 = 2.0 * PERIODS_OF_A_PART;
+/// Share of its first amplitude down to which the parts of a decay are looked at: a record that ends above it was cut off.
+pub const RESOLVED: f64 = 0.02;
 /// The same in standard deviations of the noise.
 const ABOVE_NOISE: f64 = 2.0;
 /// Difference of χ² from which one law is told from another (twice the difference of logarithms of the
@@ -224,7 +226,7 @@ fn parts(series: &Series, best: &Point, count: usize, variance: f64) -> Vec<Part
         let own = Series {
             values: series.values[k * length..(k + 1) * length].to_vec(),
             degree: 0,
-            noise: series.noise.clone(),
+            ..series.clone()
         };
         let middle = (k as f64 + 0.5) * length as f64;
         let rate = best.shape.rate(&best.rates, middle);

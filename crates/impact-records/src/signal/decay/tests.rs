@@ -132,7 +132,7 @@ fn each_blow_of_a_record_has_a_decay_of_its_own() {
         last.map_or(0.0, |b| value(t - b))
     });
     white(&mut samples, 2e-3, 1);
-    let found = fit_channels(&[&samples], 2000.0);
+    let found = fit_channels(&[Watched::displacement(&samples)], 2000.0);
     assert_eq!(found.len(), 5, "{found:?}");
     for (decay, blow) in found.iter().zip(blows) {
         assert!((decay.first as f64 / 2000.0 - blow).abs() < 0.1);
