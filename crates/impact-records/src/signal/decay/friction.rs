@@ -13,10 +13,11 @@
 use nalgebra::Complex;
 
 use super::least_squares::{Point, Series};
+use super::noise::Noise;
 use super::prepared::{Prepared, fitted};
 use super::shape::{Rates, Shape};
 use super::{Natural, damping_slopes};
-use crate::signal::whole;
+use crate::signal::{robust, whole};
 
 /// What of a motion a channel shows.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -49,6 +50,10 @@ pub struct BesideFriction {
     pub freedom: f64,
     /// Friction over stiffness, over the displacement's first amplitude.
     pub rest_ratio: f64,
+    /// Periods until the mass sticks, or the decay is over.
+    pub periods: f64,
+    /// Whether it sticks before that.
+    pub sticks: bool,
 }
 
 /// Rate λ = −σ + i`ω_d` of a fit.
@@ -187,11 +192,10 @@ pub(super) fn slopes(series: &Series, rates: Rates) -> [Vec<f64>; 2] {
 
 /// The first turning point, in samples, from which no more than a swing is left: the displacement falls by 2 r from
 /// one to the next and sticks within r.
-fn last_turn(point: &Point, series: &Series) -> Option<usize> {
+fn last_turn(point: &Point, quantity: Quantity, count: usize) -> Option<usize> {
     let rest = point.friction().filter(|r| *r > 0.0)?;
-    let count = series.values.len();
     let response = Response::of(point.rates, Quantity::Displacement, count as f64);
-    let own = displacement(point, series.quantity);
+    let own = displacement(point, quantity);
     let rate = rate(&point.rates);
     let sticks = |k: &usize| {
         let there = (own * (rate * response.turn(*k)).exp()).re + rest * response.turns[*k];
@@ -202,27 +206,63 @@ fn last_turn(point: &Point, series: &Series) -> Option<usize> {
     Some(whole::index(response.turn(turns.find(sticks)?).ceil()))
 }
 
-/// Fewest periods that are fitted beside friction.
-const LEAST_PERIODS: f64 = 1.0;
-/// Rounds in which the end of the motion follows from the fit.
-const ROUNDS: usize = 4;
+/// Periods of the first fit of a motion that may come to rest: three quarters, the least that has two turning points.
+const FIRST_PERIODS: f64 = 0.75;
+/// Most fits until the end of a motion is found: each may be twice as long as the one before.
+const MOST_FITS: usize = 24;
+
+/// Where a motion comes to rest by fits of more and more of it, if it does.
+fn rests_at(series: &Series, viscous: &Point) -> Option<usize> {
+    let count = series.values.len();
+    let first = whole::index(FIRST_PERIODS * std::f64::consts::TAU / viscous.rates[0]);
+    let mut length = first.min(count);
+    for _ in 0..MOST_FITS {
+        let point = part(series, length).descend(Shape::Rubbed, viscous.rates)?;
+        let end = last_turn(&point, series.quantity, count).unwrap_or(count);
+        if end <= length || length == count {
+            return Some(end.max(first)).filter(|e| *e < count);
+        }
+        length = end.min(2 * length);
+    }
+    None
+}
+
+/// The first values of a series, in white noise.
+fn part(series: &Series, length: usize) -> Series {
+    Series {
+        values: series.values[..length].to_vec(),
+        noise: Noise::default(),
+        ..series.clone()
+    }
+}
+
+/// Bayes' criterion of a motion up to a value and rest after it (Schwarz 1978).
+fn criterion(series: &Series, viscous: &Point, end: usize) -> Option<f64> {
+    let count = series.values.len();
+    let point = part(series, end).descend(Shape::Rubbed, viscous.rates)?;
+    let tail = &series.values[end..];
+    let centre = robust::mean(tail);
+    let rests: f64 = tail.iter().map(|v| (v - centre).powi(2)).sum();
+    let squares = (point.squares + rests).max(f64::MIN_POSITIVE);
+    // the end and the place
+    let more = if end < count { 2.0 } else { 0.0 };
+    Some(count as f64 * squares.ln() + more * (count as f64).ln())
+}
 
 /// The series of a decay up to where its mass sticks, and the fit. The noise is that beside this fit, unless a rate of
 /// decay that changes in another way leaves less.
 fn settled(prepared: &Prepared, viscous: &Point) -> Option<(Series, Point)> {
     let mut series = prepared.series.clone();
+    let count = series.values.len();
+    let ends = [rests_at(&series, viscous), Some(count)];
+    let scored = ends.into_iter().flatten();
+    let scored = scored.filter_map(|e| Some((e, criterion(&series, viscous, e)?)));
+    let (end, _) = scored.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    series.values.truncate(end);
     let mut point = series.descend(Shape::Rubbed, viscous.rates)?;
-    let own_noise = matches!(prepared.free.shape, Shape::Viscous | Shape::Rubbed);
-    for _ in 0..ROUNDS {
-        if own_noise {
-            point = fitted(&mut series, Shape::Rubbed, &point)?;
-        }
-        let least = whole::index(LEAST_PERIODS * std::f64::consts::TAU / point.rates[0]);
-        let Some(end) = last_turn(&point, &series) else {
-            break;
-        };
-        series.values.truncate(end.max(least));
-        point = series.descend(Shape::Rubbed, point.rates)?;
+    let own_noise = end < count || matches!(prepared.free.shape, Shape::Viscous | Shape::Rubbed);
+    if own_noise {
+        point = fitted(&mut series, Shape::Rubbed, &point)?;
     }
     Some((series, point))
 }
@@ -247,5 +287,65 @@ pub(super) fn beside(prepared: &Prepared, viscous: &Point, hz: f64) -> Option<Be
         added_error,
         freedom: series.freedom(&point),
         rest_ratio: point.friction()? / displacement(&point, series.quantity).norm(),
+        periods: series.values.len() as f64 * natural.frequency,
+        sticks: series.values.len() < prepared.series.values.len(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::released;
+    use super::super::{Watched, fit_channels};
+    use super::*;
+
+    /// Differences of a series, at the same times.
+    fn differentiated(values: &[f64], rate_hz: f64) -> Vec<f64> {
+        let inner = values.windows(3).map(|w| 0.5 * (w[2] - w[0]) * rate_hz);
+        inner.collect()
+    }
+
+    #[test]
+    fn valid_f0_beta_and_friction_are_recovered_from_motions_under_both() {
+        for (damping_ratio, rest, periods) in [
+            (0.05, 0.02, 2.0),
+            (0.05, 0.02, 6.0),
+            (0.08, 0.03, 3.0),
+            (0.01, 4e-3, 10.0),
+            (0.002, 1e-3, 40.0),
+        ] {
+            let samples = released(3.0, damping_ratio, rest, (180.0, periods));
+            let channel = Watched::displacement(&samples);
+            let found = fit_channels(&[channel], 180.0)[0].beside_friction.unwrap();
+            assert!(
+                (found.natural_frequency_hz / 3.0 - 1.0).abs() < 1e-5,
+                "{found:?}"
+            );
+            assert!(
+                (found.damping_ratio / damping_ratio - 1.0).abs() < 1e-3,
+                "{found:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn valid_velocities_and_accelerations_tell_the_friction_too() {
+        let fine = released(3.0, 0.02, 8e-3, (18_000.0, 4.0));
+        let velocity = differentiated(&fine, 18_000.0);
+        let acceleration = differentiated(&velocity, 18_000.0);
+        for (quantity, values) in [
+            (Quantity::Velocity, velocity),
+            (Quantity::Acceleration, acceleration),
+        ] {
+            let values: Vec<f64> = values.into_iter().step_by(100).collect();
+            let channel = Watched {
+                values: &values,
+                quantity,
+            };
+            let found = fit_channels(&[channel], 180.0)[0].beside_friction.unwrap();
+            assert!(
+                (found.damping_ratio / 0.02 - 1.0).abs() < 0.01,
+                "{quantity:?} {found:?}"
+            );
+        }
+    }
 }

@@ -34,8 +34,10 @@ pub(super) struct Point {
     pub(super) squares: f64,
 }
 
-/// Rounds in which the turning points and the fit follow from each other: each leaves less than a fifth of their error.
-const TURNS: usize = 4;
+/// Most rounds in which the turning points and the fit follow from each other.
+const TURNS: usize = 20;
+/// Change of a turning point, of a radian, that moves the motion by less than a thousandth of a part of r.
+const TURNED: f64 = 1e-4;
 
 impl Series {
     /// Samples of which nothing is known but an offset and white noise.
@@ -229,8 +231,12 @@ impl Series {
         rates[..2].copy_from_slice(&start[..2]);
         let mut point = self.project(Shape::Viscous, rates)?;
         for _ in 0..TURNS {
-            let [omega, sigma, ..] = point.rates;
+            let [omega, sigma, _, before] = point.rates;
             let turn = friction::turning(&point, self.quantity);
+            let settled = point.shape == shape && (turn - before).abs() * omega < TURNED;
+            if settled {
+                break;
+            }
             point = self.converge(shape, [omega, sigma, 0.0, turn])?;
         }
         Some(point)

@@ -111,7 +111,8 @@ impl Decay {
     }
 }
 
-/// Fewest periods that a fit needs: one and a half, as far as they are known beforehand.
+/// Fewest periods that a fit needs, until a mass sticks under dry friction too: one and a half, as far as they are known
+/// beforehand.
 const LEAST_PERIODS: f64 = 1.4;
 
 /// Fit the first free decay of the samples of one channel.
@@ -248,6 +249,10 @@ fn of_part(channel: Watched<'_>, rate_hz: f64) -> Option<Decay> {
     if !(whole.residual_ratio < MOST_LEFT) {
         return None;
     }
+    let beside_friction = friction::beside(&prepared, &viscous, hz);
+    if beside_friction.is_some_and(|b| b.sticks && b.periods < LEAST_PERIODS) {
+        return None;
+    }
     Some(Decay {
         natural_frequency_hz: natural.frequency * hz,
         natural_frequency_error_hz: natural.frequency_error * hz,
@@ -261,7 +266,7 @@ fn of_part(channel: Watched<'_>, rate_hz: f64) -> Option<Decay> {
         structured_ratio: whole.structured_ratio,
         fading: whole.fading,
         beside: prepared.beside(whole.amplitude, rate_hz),
-        beside_friction: friction::beside(&prepared, &viscous, hz),
+        beside_friction,
         course: change::course(&prepared, &viscous, rate_hz),
         channel: 0,
         periods: whole.samples as f64 * natural.frequency / prepared.factor as f64,
