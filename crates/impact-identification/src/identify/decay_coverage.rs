@@ -165,7 +165,7 @@ const NOISES: [Noise; 4] = [
 const PERIODS: [f64; 8] = [1.5, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0, 200.0];
 
 #[test]
-#[ignore = "a study: prints the coverage; DECAY_COVERAGE states records of each kind, seed, effects (all or none) and friction"]
+#[ignore = "a study: prints the coverage; DECAY_COVERAGE: records of each kind, seed, all or none (effects), friction, longest"]
 fn the_coverage_of_the_intervals_is_printed() {
     let stated = std::env::var("DECAY_COVERAGE").unwrap_or_default();
     let mut words = stated.split_whitespace();
@@ -176,11 +176,12 @@ fn the_coverage_of_the_intervals_is_printed() {
         _ => Effects::all(),
     };
     let wanted: Option<f64> = words.next().and_then(|w| w.parse().ok());
+    let longest = words.next().and_then(|w| w.parse().ok()).unwrap_or(200.0);
     println!("noise friction periods found f0 beta half_f0 half_beta identified wrong");
     for noise in NOISES {
         for friction in [0.0, 0.05, 0.2, 0.5] {
             for periods in PERIODS {
-                if wanted.is_some_and(|w| w != friction) {
+                if wanted.is_some_and(|w| w != friction) || periods > longest {
                     continue;
                 }
                 let case = Case {
