@@ -1,10 +1,11 @@
 """How often the 95 % intervals of f0 and β of free decays hold the truth.
 
 Decays are drawn at random: frequency, damping ratio, phase, offset, rate, and how many periods the record holds; beside
-each lies noise of one kind. Each record is a specimen of its own, so that `impactid` states f0 and β of each with an
-interval; one that is left open, or not found, counts for nothing.
+each lies noise of one kind, and dry friction may take a part of the first cycle's loss. Each record is a specimen of its
+own, so that `impactid` states f0 and β of each with an interval; one that is left open, or not found, counts for nothing.
 
     python3 decay_coverage.py --binary target/release/impactid --work FOLDER [--seed 1] [--records 200] [--kinds white,slow]
+        [--friction 0.2] [--without-friction]
 
 Prints for each kind of noise and each range of periods how many decays were found, the shares that the intervals of f0
 and β hold, and their median half widths.
@@ -17,7 +18,7 @@ import subprocess
 
 import numpy
 
-KINDS = ["white", "coloured", "slow", "quantised", "hum", "friction"]
+KINDS = ["white", "coloured", "slow", "quantised", "hum"]
 PERIODS = {"1.5-2": (1.5, 2.0), "2-5": (2.0, 5.0), "5-20": (5.0, 20.0), "20-200": (20.0, 200.0)}
 
 
@@ -53,7 +54,7 @@ def rubbed(natural, damping, friction, amplitude, times):
     return out
 
 
-def decay(rng, kind, periods):
+def decay(rng, kind, periods, friction):
     """Samples of one decay, m, with its truth."""
     f0 = float(10 ** rng.uniform(-0.5, 2.3))
     damping = float(10 ** rng.uniform(-2.7, numpy.log10(0.5))) if periods[1] <= 5 else float(10 ** rng.uniform(-3.3, -1.2))
@@ -65,14 +66,11 @@ def decay(rng, kind, periods):
         per_period = rng.uniform(12, 30)
     rate = per_period * omega / (2 * numpy.pi)
     times = numpy.arange(int(turns * per_period)) / rate
-    amplitude, phase = 10 ** rng.uniform(-4, -2), rng.uniform(0, 2 * numpy.pi)
+    amplitude, phase = 10 ** rng.uniform(-4, -2), rng.uniform(0, numpy.pi)
     noise = amplitude * 10 ** rng.uniform(-3.5, -1.5)
-    if kind == "friction":
-        friction = amplitude * 10 ** rng.uniform(-4.5, -3.0)
-        values = rubbed(natural, damping, friction, amplitude, times)
-        values += noise * 0.1 * rng.standard_normal(len(times))
-    else:
-        values = amplitude * numpy.exp(-damping * natural * times) * numpy.cos(omega * times + phase)
+    # 4 r of 4 r + 2πβA in the first cycle
+    rest = 0.5 * numpy.pi * damping * amplitude * friction / (1 - friction)
+    values = rubbed(natural, damping, rest, amplitude, times + phase / omega)
     count = len(times)
     if kind == "white":
         values += noise * rng.standard_normal(count)
@@ -93,19 +91,20 @@ def decay(rng, kind, periods):
     return times, values, {"f0": f0, "beta": damping, "turns": turns}
 
 
-def written(folder, seed, kind, name, records):
+def written(folder, seed, kind, name, options):
     folder.mkdir(parents=True, exist_ok=True)
-    truth = {}
+    truth, records = {}, options.records
     table = "file,specimen\n" + "".join(f"r{k:03}.csv,r{k:03}\n" for k in range(records))
     (folder / "runs.csv").write_text(table)
     for number in range(records):
         rng = numpy.random.default_rng([seed, KINDS.index(kind), list(PERIODS).index(name), number])
-        times, values, truth[f"r{number:03}"] = decay(rng, kind, PERIODS[name])
+        times, values, truth[f"r{number:03}"] = decay(rng, kind, PERIODS[name], options.friction)
         rows = numpy.column_stack([times, values])
         numpy.savetxt(folder / f"r{number:03}.csv", rows, fmt="%.12g", delimiter=",", header="t (s),x (m)", comments="")
+    rig = "[rig]\neffects = []\n" if options.without_friction else ""
     (folder / "campaign.toml").write_text(
         '[campaign]\nmachine = "single"\n[records]\nrun_table = "runs.csv"\nexcitation = "free_decay"\n'
-        '[channels.displacement_x]\nchannel = "x"\n'
+        '[channels.displacement_x]\nchannel = "x"\n' + rig
     )
     return truth
 
@@ -118,12 +117,14 @@ def main():
     parser.add_argument("--records", type=int, default=200)
     parser.add_argument("--kinds", default=",".join(KINDS))
     parser.add_argument("--periods", default=",".join(PERIODS))
+    parser.add_argument("--friction", type=float, default=0.0, help="part of the first cycle's loss")
+    parser.add_argument("--without-friction", action="store_true", help="state that the rig has none")
     options = parser.parse_args()
     print("noise periods found f0 beta half_f0 half_beta")
     for kind in options.kinds.split(","):
         for name in options.periods.split(","):
-            folder = options.work / f"{kind}-{name}-{options.seed}"
-            truth = written(folder, options.seed, kind, name, options.records)
+            folder = options.work / f"{kind}-{name}-{options.friction}-{options.seed}"
+            truth = written(folder, options.seed, kind, name, options)
             out = folder / "out"
             command = [options.binary, "run", "campaign.toml", "--out", "out", "--format", "csv"]
             subprocess.run(command, cwd=folder, capture_output=True, check=False)

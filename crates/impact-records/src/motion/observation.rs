@@ -15,8 +15,9 @@ use crate::motion::late_channel::LateChannel;
 use crate::motion::response::{Response, responses};
 use crate::motion::undetermined::Undetermined;
 use crate::record::{Excitation, Flag, FlagCode, Record, Role, Setting};
-use crate::signal::decay::{self, Decay};
+use crate::signal::decay::{self, Decay, Quantity, Watched};
 use crate::signal::robust;
+use labfiles::units::Dimension;
 
 /// Greatest and least value of a motion channel, SI, about its mean.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -353,15 +354,30 @@ pub fn scale_drives(observations: &mut [Observation]) {
 /// Relative change of the measured drive amplitude from which it counts.
 const DRIVE_CHANGES: f64 = 5e-3;
 
+/// What of the motion a channel of a role shows.
+fn quantity(role: Role) -> Quantity {
+    match role.dimension() {
+        Some(Dimension::Velocity) => Quantity::Velocity,
+        Some(Dimension::Acceleration) => Quantity::Acceleration,
+        _ => Quantity::Displacement,
+    }
+}
+
 /// Free decays of the motion channels of mass x, else of mass y.
 fn free_decays(record: &Record) -> Vec<Decay> {
     let of_mass = |y: bool| {
-        let channels: Vec<&[f64]> = Role::ALL
+        let watched = |role: Role| {
+            Some(Watched {
+                values: record.values(role)?,
+                quantity: quantity(role),
+            })
+        };
+        let channels: Vec<Watched<'_>> = Role::ALL
             .iter()
             .copied()
             .filter(|role| role.is_motion() && role.is_of_y() == y)
-            .filter_map(|role| record.values(role))
-            .filter(|values| values.iter().all(|v| v.is_finite()))
+            .filter_map(watched)
+            .filter(|channel| channel.values.iter().all(|v| v.is_finite()))
             .collect();
         decay::fit_channels(&channels, record.sample_rate_hz)
     };

@@ -8,7 +8,9 @@ use crate::signal::robust;
 /// Fewest rows of a list of changes.
 const FEWEST_ROWS: usize = 6;
 
-/// How much longer one level must last than the other to be told by it which is which.
+/// How much longer one level must last than the other to be told by it which is which. Of two gates that a bouncing mass
+/// passes in turn, the way back takes 1/R times as long as the way there: up to twice from R = 0.5 on. Contacts are told
+/// down to flights of twice their length: `prop_contacts_are_told_and_gates_in_turn_are_not`.
 const LONGER: f64 = 2.0;
 
 /// How much longer each flight must be than each contact where no state tells them apart.
@@ -231,6 +233,30 @@ mod tests {
             [0.5, 1.0, 1.4]
         );
         assert_eq!(levels(&times, &[0.0, 1.0, 2.0, 0.0, 1.0, 0.0, 1.0]), None);
+    }
+
+    #[test]
+    fn prop_contacts_are_told_and_gates_in_turn_are_not() {
+        use rand::{Rng, SeedableRng};
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(20_261_127);
+        let states: Vec<f64> = (0..12u8).map(|k| f64::from(k % 2)).collect();
+        let mut found = |lasts: [f64; 2]| {
+            let mut at = 0.0;
+            let next = (0..12).map(|k| {
+                at += lasts[k % 2] * rng.random_range(0.95..1.05);
+                at
+            });
+            levels(&next.collect::<Vec<f64>>(), &states)
+        };
+        for restitution in [0.55, 0.7, 0.9] {
+            assert_eq!(found([1.0, 1.0 / restitution]), None, "{restitution}");
+        }
+        for flight in [2.5, 4.0, 20.0] {
+            // the first row begins the level 0, which lasts until the second
+            let of_contact = found([flight, 1.0]).map(|l| l.closed);
+            let of_flight = found([1.0, flight]).map(|l| l.closed);
+            assert_eq!([of_contact, of_flight], [Some(0.0), Some(1.0)], "{flight}");
+        }
     }
 
     /// Times of `count` bounces, each flight `r` times the one before.

@@ -151,11 +151,15 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
     record.flags.extend(flags);
 }
 
-/// Part of the way that a motion would have made while the picture stood still, from which its jump is the
-/// motion that went on unseen.
-const UNSEEN_PART: f64 = 0.7;
+/// Part of the way that a motion would have made while the picture stood still, at the lesser of the speeds before and
+/// after, from which its jump is the motion that went on unseen: that makes the whole way or more, less the step of
+/// rounding in the twenty or more of two samples. A body that rests and then moves on jumps by one sample's way, half of it
+/// or less. The value is between them.
+const UNSEEN_PART: f64 = 2.0 / 3.0;
 
-/// Steps of the converter a sample from which a motion does not rest by rounding, nor by noise of a few steps.
+/// Steps of the converter a sample from which a motion does not rest by rounding, for which half a step suffices, nor by
+/// noise of up to two steps: its difference of two samples would have to cancel these ten steps twice in a row, at 3.5 of
+/// its deviations each.
 const STEPS_A_SAMPLE: f64 = 10.0;
 
 /// Samples on either side of a frozen picture between which it is interpolated, and the most that are.

@@ -89,7 +89,7 @@ pub(super) fn has_own_step(segment: &Segment, n: usize) -> bool {
         .is_some_and(|(own, first)| (own / first - 1.0).abs() > STEPS_DIFFER)
 }
 
-/// Relative difference of steps that their rounding does not explain.
+/// Relative difference of steps that their rounding does not explain: half a unit of the third digit of 1.00.
 const STEPS_DIFFER: f64 = 5e-3;
 
 /// When the clocks of channels begin, s after that of the first: by their dates and times, and by `X0` where

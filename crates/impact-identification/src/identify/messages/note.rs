@@ -64,6 +64,13 @@ pub enum Note {
         /// How many.
         periods: f64,
     },
+    /// Dry friction and viscous damping are not told apart well enough.
+    FrictionNotTold {
+        /// Periods of the longest decay.
+        periods: f64,
+        /// Damping ratio that both together are worth.
+        equivalent: f64,
+    },
     /// Nothing damps the motion that stands out of the noise.
     Undamped {
         /// Damping ratio that is not exceeded, at 97.5 %.
@@ -118,6 +125,9 @@ message_table! { "note": Note;
         correlation = Value::Number(*correlation, 2);
     Self::ByMethodAlone { method } => method = Value::Message(method);
     Self::FewPeriods { periods } => periods = Value::Number(*periods, 1);
+    Self::FrictionNotTold { periods, equivalent } =>
+        periods = Value::Number(*periods, 1),
+        equivalent = Value::Number(*equivalent, digits(*equivalent) + 1);
     Self::Undamped { most } => most = Value::Number(*most, digits(*most));
     Self::NoStart { observations } => count = Value::Count(*observations);
 }

@@ -271,6 +271,13 @@ pub enum Remark {
         /// What explains it.
         law: DampingLaw,
     },
+    /// Dry friction damps the decays beside viscous damping.
+    DecaysRubbed {
+        /// Part of the damping ratio of viscous fits that friction is worth.
+        share: f64,
+        /// Half its 95 % interval.
+        half: f64,
+    },
     /// A steady tone beside the decays, fitted with them.
     DecaysHum {
         /// Number of decays with one.
@@ -426,6 +433,9 @@ message_table! { "remark": Remark;
         count = Value::Count(*count),
         points = Value::list(points),
         law = Value::Message(law);
+    Self::DecaysRubbed { share, half } =>
+        share = Value::Percent(*share, 1),
+        half = Value::Percent(*half, 1);
     Self::DecaysHum { count, frequency_hz, ratio } =>
         count = Value::Count(*count),
         frequency = Value::Number(*frequency_hz, 1),

@@ -5,3 +5,4 @@ pub mod propagation;
 pub mod quantile;
 pub mod scatter;
 pub mod shared_gains;
+pub mod weighted;

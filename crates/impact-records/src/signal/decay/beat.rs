@@ -1,25 +1,39 @@
 //! Two decays whose frequencies are so near that they beat.
 
-use super::least_squares::{Point, Series, equations};
+use super::descent::{self, Projected, equations};
+use super::least_squares::{Point, Series};
 use super::noise::structured;
 use super::shape::{Rates, Shape};
 use crate::signal::columns::dot;
 use crate::signal::robust;
 
-/// Share of the decay that one shape must leave, beside noise, before two are tried.
-const LEFT: f64 = 0.03;
-/// Squares that two decays leave over those that one leaves, at most.
-const EXPLAINED: f64 = 0.25;
-/// Distances of the frequencies that are tried first, in lines of the spectrum.
-const LINES: [f64; 3] = [0.7, 1.5, 3.0];
-/// Phase by which the two run apart over the record, at least, rad: half a beat.
-const APART: f64 = std::f64::consts::PI;
-/// Amplitude of either beyond which both only cancel, over the greatest excursion.
-const CANCELS: f64 = 2.0;
-/// Amplitude of the lesser over the greater one, at least.
-const TELLING: f64 = 0.05;
-/// Steps of the descent.
-const STEPS: usize = 30;
+/// When two decays are told from one. Half and twice each of these tell the same:
+/// `valid_beats_are_told_over_a_range_of_the_limits`.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    /// Share of the decay that one shape must leave, beside noise, before two are tried.
+    left: f64,
+    /// Squares that two decays leave over those that one leaves, at most.
+    explained: f64,
+    /// Phase by which the two run apart over the record, at least, rad.
+    apart: f64,
+    /// Amplitude of either beyond which both only cancel, over the greatest excursion.
+    cancels: f64,
+    /// Amplitude of the lesser over the greater one, at least.
+    telling: f64,
+    /// Distances of the frequencies that are tried first, in lines of the spectrum.
+    lines: [f64; 3],
+}
+
+const LIMITS: Limits = Limits {
+    left: 0.03,
+    explained: 0.25,
+    // half a beat
+    apart: std::f64::consts::PI,
+    cancels: 2.0,
+    telling: 0.05,
+    lines: [0.7, 1.5, 3.0],
+};
 
 /// Two decays beside each other.
 #[derive(Debug, Clone, Copy)]
@@ -31,46 +45,53 @@ pub(super) struct Beat {
 }
 
 /// Two decays by their rates: `ω_d` and σ of each.
-struct Pair {
+struct Pair<'a> {
+    series: &'a Series,
     rates: [f64; 4],
-    amplitudes: [f64; 2],
+    /// Factors of cosine and sine of each.
+    factors: [[f64; 2]; 2],
     rest: Vec<f64>,
     squares: f64,
 }
 
 /// The two decays that explain a series that one, of whatever shape, does not.
 pub(super) fn find(series: &Series, one: &Point) -> Option<Beat> {
+    find_within(series, one, &LIMITS)
+}
+
+fn find_within(series: &Series, one: &Point, limits: &Limits) -> Option<Beat> {
     let left = series.residuals(one);
-    if structured(&left) < LEFT * one.level(series.values.len()) {
+    if structured(&left) < limits.left * one.level(series.values.len()) {
         return None;
     }
     let plain = Series::white(series.values.clone(), series.degree);
     let line = std::f64::consts::TAU / series.values.len() as f64;
     let [omega, sigma, ..] = one.rates;
-    let starts = LINES.iter().flat_map(|lines| {
+    let starts = limits.lines.iter().flat_map(|lines| {
         let other = lines * line;
         [other, -other].map(|off| [omega - 0.2 * off, 0.5 * sigma, omega + off, 0.5 * sigma])
     });
-    let pairs = starts.filter_map(|rates| descend(&plain, rates));
+    let pairs = starts.filter_map(|rates| descent::descend(Pair::of(&plain, rates)?));
     let best = pairs.min_by(|a, b| a.squares.total_cmp(&b.squares))?;
-    told(&plain, &best, dot(&left, &left))
+    told(&best, dot(&left, &left), limits)
 }
 
 /// Whether two decays are told from one that leaves squares.
-fn told(series: &Series, pair: &Pair, of_one: f64) -> Option<Beat> {
+fn told(pair: &Pair<'_>, of_one: f64, limits: &Limits) -> Option<Beat> {
+    let series = pair.series;
     let count = series.values.len() as f64;
     let centre = robust::mean(&series.values);
     let sizes = series.values.iter().map(|v| (v - centre).abs());
     let greatest = sizes.fold(0.0, f64::max);
-    let [first, second] = pair.amplitudes;
+    let [first, second] = pair.amplitudes();
     let (strong, weak) = (first.max(second), first.min(second));
     let apart = (pair.rates[0] - pair.rates[2]).abs() * count;
     let decay = pair.rates[1].min(pair.rates[3]) * count > -1.0;
-    let is_told = pair.squares < EXPLAINED * of_one
-        && apart > APART
+    let is_told = pair.squares < limits.explained * of_one
+        && apart > limits.apart
         && decay
-        && strong < CANCELS * greatest
-        && weak > TELLING * strong;
+        && strong < limits.cancels * greatest
+        && weak > limits.telling * strong;
     let frequencies = if first >= second {
         [pair.rates[0], pair.rates[2]]
     } else {
@@ -82,70 +103,157 @@ fn told(series: &Series, pair: &Pair, of_one: f64) -> Option<Beat> {
     })
 }
 
-/// The best amplitudes of two decays of given rates.
-fn project(series: &Series, rates: [f64; 4]) -> Option<Pair> {
-    let [first, second]: [Rates; 2] = [
-        [rates[0], rates[1], 0.0, 0.0],
-        [rates[2], rates[3], 0.0, 0.0],
-    ];
-    let mut columns = series.linear_columns(Shape::Viscous, &first);
-    columns.extend(series.oscillation(Shape::Viscous, &second));
-    let (normal, right) = equations(&columns, &series.values);
-    let linear = normal.cholesky()?.solve(&right);
-    let mut rest = series.values.clone();
-    for (column, factor) in columns.iter().zip(linear.iter()) {
-        crate::signal::columns::subtract(&mut rest, *factor, column);
+impl<'a> Pair<'a> {
+    /// The best amplitudes of two decays of given rates.
+    fn of(series: &'a Series, rates: [f64; 4]) -> Option<Self> {
+        let columns = linear_columns(series, rates);
+        let (normal, right) = equations(&columns, &series.values);
+        let linear = normal.cholesky()?.solve(&right);
+        let mut rest = series.values.clone();
+        for (column, factor) in columns.iter().zip(linear.iter()) {
+            crate::signal::columns::subtract(&mut rest, *factor, column);
+        }
+        let first = linear.len() - 4;
+        let factors = |k: usize| [linear[first + 2 * k], linear[first + 2 * k + 1]];
+        let squares = dot(&rest, &rest);
+        squares.is_finite().then(|| Self {
+            series,
+            rates,
+            factors: [factors(0), factors(1)],
+            rest,
+            squares,
+        })
     }
-    let count = linear.len();
-    let amplitude = |from: usize| linear[from].hypot(linear[from + 1]);
-    let squares = dot(&rest, &rest);
-    squares.is_finite().then(|| Pair {
-        rates,
-        amplitudes: [amplitude(count - 4), amplitude(count - 2)],
-        rest,
-        squares,
-    })
+
+    /// Amplitudes of both.
+    fn amplitudes(&self) -> [f64; 2] {
+        self.factors.map(|[a, b]| a.hypot(b))
+    }
 }
 
-/// The two decays of the least squares from a start, by Levenberg and Marquardt with differences.
-fn descend(series: &Series, start: [f64; 4]) -> Option<Pair> {
-    let mut pair = project(series, start)?;
-    let step = 1e-4 / series.values.len() as f64;
-    let mut damping = 1e-3;
-    for _ in 0..STEPS {
-        let slopes: Option<Vec<Vec<f64>>> = (0..4)
-            .map(|k| {
-                let mut rates = pair.rates;
-                rates[k] += step;
-                let moved = project(series, rates)?.rest;
-                let slopes = moved.iter().zip(&pair.rest);
-                Some(slopes.map(|(m, r)| (r - m) / step).collect())
-            })
-            .collect();
-        let (mut normal, right) = equations(&slopes?, &pair.rest);
-        for k in 0..4 {
-            normal[(k, k)] *= 1.0 + damping;
+/// The rates of each of two decays.
+fn each([omega, sigma, other, of_other]: [f64; 4]) -> [Rates; 2] {
+    [[omega, sigma, 0.0, 0.0], [other, of_other, 0.0, 0.0]]
+}
+
+/// Background, then cosine and sine of each decay.
+fn linear_columns(series: &Series, rates: [f64; 4]) -> Vec<Vec<f64>> {
+    let [first, second] = each(rates);
+    let mut columns = series.linear_columns(Shape::Viscous, &first);
+    columns.extend(series.oscillation(Shape::Viscous, &second));
+    columns
+}
+
+impl Projected for Pair<'_> {
+    fn rest(&self) -> &[f64] {
+        &self.rest
+    }
+
+    fn squares(&self) -> f64 {
+        self.squares
+    }
+
+    fn columns(&self) -> Vec<Vec<f64>> {
+        let mut columns = linear_columns(self.series, self.rates);
+        for (rates, factors) in each(self.rates).iter().zip(self.factors) {
+            columns.extend(self.series.slopes(Shape::Viscous, rates, factors));
         }
-        let Some(factor) = normal.cholesky() else {
-            break;
-        };
-        let moves = factor.solve(&right);
-        let mut rates = pair.rates;
-        for (rate, step) in rates.iter_mut().zip(moves.iter()) {
+        columns
+    }
+
+    fn free(&self) -> usize {
+        self.rates.len()
+    }
+
+    fn moved(&self, step: &[f64]) -> Option<Self> {
+        let mut rates = self.rates;
+        for (rate, step) in rates.iter_mut().zip(step) {
             *rate += step;
         }
-        match project(series, rates).filter(|p| p.squares < pair.squares) {
-            Some(next) => {
-                let settled = pair.squares - next.squares < 1e-6 * pair.squares;
-                pair = next;
-                damping *= 0.1;
-                if settled {
-                    break;
-                }
-            }
-            None if damping > 1e6 => break,
-            None => damping *= 10.0,
+        Self::of(self.series, rates)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::super::friction::Quantity;
+    use super::super::prepared::Prepared;
+    use super::*;
+
+    const RATE_HZ: f64 = 60.0;
+
+    /// A decay of frequency 3 Hz and another one beside it, in noise.
+    fn two(rng: &mut ChaCha8Rng, ratio: f64) -> Vec<f64> {
+        let seconds = rng.random_range(8.0..12.0);
+        let apart = rng.random_range(0.9..3.0) / seconds;
+        let phase = rng.random_range(0.0..std::f64::consts::TAU);
+        let noise = rng.random_range(1e-3..5e-3);
+        let damping = rng.random_range(0.003..0.01);
+        let decay = |hz: f64, t: f64, phase: f64| {
+            let natural = std::f64::consts::TAU * hz;
+            (-damping * natural * t).exp() * (natural * t + phase).cos()
+        };
+        let count = crate::signal::whole::index(seconds * RATE_HZ);
+        (0..count)
+            .map(|i| {
+                let t = i as f64 / RATE_HZ;
+                let shock: f64 = StandardNormal.sample(rng);
+                decay(3.0, t, 0.0) + ratio * decay(3.0 + apart, t, phase) + noise * shock
+            })
+            .collect()
+    }
+
+    /// Some decays beside which there is another one of a part of their amplitude.
+    fn prepared(ratio: f64) -> Vec<Prepared> {
+        let mut rng = ChaCha8Rng::seed_from_u64(20_261_127);
+        let all = (0..8).map(|_| two(&mut rng, ratio));
+        all.filter_map(|samples| Prepared::of(&samples, Quantity::Displacement))
+            .collect()
+    }
+
+    #[test]
+    fn valid_beats_are_told_over_a_range_of_the_limits() {
+        let others = [0.5, 2.0].map(|by| {
+            [
+                Limits {
+                    left: by * LIMITS.left,
+                    ..LIMITS
+                },
+                Limits {
+                    explained: by * LIMITS.explained,
+                    ..LIMITS
+                },
+                Limits {
+                    apart: by * LIMITS.apart,
+                    ..LIMITS
+                },
+                Limits {
+                    cancels: by * LIMITS.cancels,
+                    ..LIMITS
+                },
+                Limits {
+                    telling: by * LIMITS.telling,
+                    ..LIMITS
+                },
+                Limits {
+                    lines: LIMITS.lines.map(|l| by * l),
+                    ..LIMITS
+                },
+            ]
+        });
+        let ratios = [0.0, 0.3, 0.8].map(prepared);
+        for limits in others.as_flattened().iter().chain([&LIMITS]) {
+            let told = ratios.each_ref().map(|all| {
+                let found = all
+                    .iter()
+                    .filter(|p| find_within(&p.series, &p.free, limits).is_some());
+                found.count()
+            });
+            assert_eq!(told, [0, 8, 8], "{limits:?}");
         }
     }
-    Some(pair)
 }

@@ -12,8 +12,10 @@ use crate::signal::whole;
 const PARTS: usize = 4;
 /// Fewest periods of a part.
 const PERIODS_OF_A_PART: f64 = 1.5;
-/// Share of its first amplitude down to which a decay is looked at.
-const RESOLVED: f64 = 0.02;
+/// Periods from which a decay has two parts whose damping ratios can be compared.
+pub const LEAST_TESTED: f64 = 2.0 * PERIODS_OF_A_PART;
+/// Share of its first amplitude down to which the parts of a decay are looked at: a record that ends above it was cut off.
+pub const RESOLVED: f64 = 0.02;
 /// The same in standard deviations of the noise.
 const ABOVE_NOISE: f64 = 2.0;
 /// Difference of χ² from which one law is told from another (twice the difference of logarithms of the
@@ -96,6 +98,8 @@ struct Shapes<'a> {
     series: &'a Series,
     fits: Vec<(Point, f64)>,
     variance: f64,
+    /// Squares that viscous damping and dry friction leave, swing by swing.
+    rubbed: f64,
 }
 
 impl<'a> Shapes<'a> {
@@ -118,10 +122,13 @@ impl<'a> Shapes<'a> {
             physical.then_some((point, z_score))
         });
         let fits: Vec<(Point, f64)> = scored.collect();
+        let rubbed = series.descend(Shape::Rubbed, viscous.rates);
+        let rubbed = rubbed.filter(|p| p.friction() > Some(0.0));
         (!fits.is_empty()).then_some(Self {
             series,
             fits,
             variance,
+            rubbed: rubbed.map_or(f64::INFINITY, |p| p.squares),
         })
     }
 
@@ -133,16 +140,31 @@ impl<'a> Shapes<'a> {
 
     /// The law that is told from all others.
     fn law(&self) -> DampingLaw {
-        let best = &self.best().0;
-        let others = self.fits.iter().filter(|f| f.0.shape != best.shape);
-        let told = others
-            .map(|f| (f.0.squares - best.squares) / self.variance)
-            .fold(f64::INFINITY, f64::min);
-        match best.shape {
-            Shape::Friction if told > TOLD => DampingLaw::Friction,
-            Shape::Drag if told > TOLD => DampingLaw::Drag,
-            _ => DampingLaw::Unknown,
+        let least = |shape: Shape| {
+            let of_shape = self.fits.iter().filter(|f| f.0.shape == shape);
+            let squares = of_shape.map(|f| f.0.squares / self.variance);
+            squares.fold(f64::INFINITY, f64::min)
+        };
+        let friction = least(Shape::Friction).min(self.rubbed / self.variance);
+        let (drag, bent) = (least(Shape::Drag), least(Shape::Bent));
+        if friction + TOLD < drag.min(bent) {
+            DampingLaw::Friction
+        } else if drag + TOLD < friction.min(bent) {
+            DampingLaw::Drag
+        } else {
+            DampingLaw::Unknown
         }
+    }
+
+    /// Rate of decay by a law without what changes it.
+    fn viscous(&self, law: DampingLaw) -> Option<f64> {
+        let shape = match law {
+            DampingLaw::Friction => Shape::Friction,
+            DampingLaw::Drag => Shape::Drag,
+            DampingLaw::Unknown => return None,
+        };
+        let of_law = self.fits.iter().find(|f| f.0.shape == shape);
+        of_law.map(|f| f.0.rates[1])
     }
 
     /// Standard error of a rate of a fit.
@@ -175,7 +197,7 @@ pub(super) fn course(prepared: &Prepared, viscous: &Point, rate_hz: f64) -> Cour
     let parts = parts(shapes.series, best, count, shapes.variance);
     let at = |share: f64| best.shape.rate(&best.rates, share * count as f64) / natural;
     let error = shapes.error(best, 1) / natural;
-    let limit = (law != DampingLaw::Unknown).then_some(best.rates[1] / natural);
+    let limit = shapes.viscous(law).map(|sigma| sigma / natural);
     let limits = limit.map(|l| [l - error, l + error]);
     let ends = if parts.is_empty() {
         vec![at(0.125), at(0.875)]
@@ -224,7 +246,7 @@ fn parts(series: &Series, best: &Point, count: usize, variance: f64) -> Vec<Part
         let own = Series {
             values: series.values[k * length..(k + 1) * length].to_vec(),
             degree: 0,
-            noise: series.noise.clone(),
+            ..series.clone()
         };
         let middle = (k as f64 + 0.5) * length as f64;
         let rate = best.shape.rate(&best.rates, middle);

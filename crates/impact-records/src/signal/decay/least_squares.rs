@@ -3,6 +3,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::descent::{self, Projected, equations};
+use super::friction::{self, Quantity};
 use super::noise::Noise;
 use super::shape::{Rates, Shape};
 use crate::signal::columns::dot;
@@ -14,6 +16,10 @@ pub(super) struct Series {
     /// Degree of the polynomial under the decay: 0 for an offset.
     pub(super) degree: usize,
     pub(super) noise: Noise,
+    /// What of the motion the values are.
+    pub(super) quantity: Quantity,
+    /// Samples that each value is the mean of.
+    pub(super) factor: usize,
 }
 
 /// A fit: the best linear part at given rates.
@@ -21,15 +27,17 @@ pub(super) struct Series {
 pub(super) struct Point {
     pub(super) shape: Shape,
     pub(super) rates: Rates,
-    /// Background, then the factors of cosine and sine.
+    /// Background, then friction where it has a column, then the factors of cosine and sine.
     linear: DVector<f64>,
     /// Whitened residuals and the sum of their squares.
     rest: Vec<f64>,
     pub(super) squares: f64,
 }
 
-/// Change of χ² that no longer matters: a thousandth of a standard error.
-const SETTLED: f64 = 1e-6;
+/// Most rounds in which the turning points and the fit follow from each other.
+const TURNS: usize = 20;
+/// Change of a turning point, of a radian, that moves the motion by less than a thousandth of a part of r.
+const TURNED: f64 = 1e-4;
 
 impl Series {
     /// Samples of which nothing is known but an offset and white noise.
@@ -43,6 +51,8 @@ impl Series {
             values,
             degree,
             noise: Noise::default(),
+            quantity: Quantity::default(),
+            factor: 1,
         }
     }
 
@@ -62,9 +72,12 @@ impl Series {
         (0..=self.degree).map(power).collect()
     }
 
-    /// Background, cosine and sine at given rates.
+    /// Background, friction where it has a column, cosine and sine at given rates.
     pub(super) fn linear_columns(&self, shape: Shape, rates: &Rates) -> Vec<Vec<f64>> {
         let mut columns = self.background();
+        if shape == Shape::Rubbed {
+            columns.push(friction::column(self, *rates));
+        }
         columns.extend(self.oscillation(shape, rates));
         columns
     }
@@ -109,12 +122,24 @@ impl Series {
     /// All columns of the linearised fit: the linear ones, then the slopes over the free rates.
     pub(super) fn columns(&self, point: &Point) -> Vec<Vec<f64>> {
         let mut columns = self.linear_columns(point.shape, &point.rates);
-        let [a, b] = point.amplitudes();
+        let first = columns.len();
+        columns.extend(self.slopes(point.shape, &point.rates, point.amplitudes()));
+        if let Some(rest) = point.friction() {
+            let of_response = friction::slopes(self, point.rates);
+            for (column, slopes) in columns[first..].iter_mut().zip(&of_response) {
+                crate::signal::columns::subtract(column, -rest, slopes);
+            }
+        }
+        columns
+    }
+
+    /// Slopes over the free rates of a cosine and a sine of given factors.
+    pub(super) fn slopes(&self, shape: Shape, rates: &Rates, [a, b]: [f64; 2]) -> Vec<Vec<f64>> {
         let slopes: Vec<[f64; 4]> = (0..self.values.len())
             .map(|i| {
                 let t = i as f64;
-                let envelope = point.shape.envelope(&point.rates, t);
-                let (sin, cos) = phase(&point.rates, t).sin_cos();
+                let envelope = shape.envelope(rates, t);
+                let (sin, cos) = phase(rates, t).sin_cos();
                 let along = a * cos + b * sin;
                 let across = envelope.value * (b * cos - a * sin);
                 [
@@ -126,8 +151,7 @@ impl Series {
             })
             .collect();
         let of = |k: usize| slopes.iter().map(|s| s[k]).collect();
-        columns.extend((0..point.shape.free()).map(of));
-        columns
+        (0..shape.free()).map(of).collect()
     }
 
     /// Residuals of a fit, not whitened.
@@ -149,22 +173,35 @@ impl Series {
             + parameters * count.ln()
     }
 
-    /// Inverse of the normal matrix of the free rates, all linear parts free.
+    /// Independent values of the noise about the decay's frequency that a fit leaves.
+    pub(super) fn freedom(&self, point: &Point) -> f64 {
+        let density = self.noise.density(point.rates[0]).max(1.0);
+        let independent = self.values.len() as f64 / density;
+        (independent - point.parameters() as f64).max(2.0)
+    }
+
+    /// Inverse of the normal matrix of the free rates, all linear parts free; that of friction before them where it
+    /// has a column.
     pub(super) fn inverse(&self, point: &Point) -> Option<DMatrix<f64>> {
         let columns = self.whitened(&self.columns(point));
         let (normal, _) = equations(&columns, &columns[0]);
         let inverse = normal.cholesky()?.inverse();
-        let (first, free) = (columns.len() - point.shape.free(), point.shape.free());
-        Some(inverse.view((first, first), (free, free)).into_owned())
+        let first = columns.len() - point.shape.free();
+        // friction is before the cosine, the sine and the rates
+        let of_friction = point.friction().map(|_| first - 3);
+        let wanted: Vec<usize> = of_friction
+            .into_iter()
+            .chain(first..columns.len())
+            .collect();
+        Some(inverse.select_rows(&wanted).select_columns(&wanted))
     }
 
     /// Covariance of the free rates: its mean over the noise that the samples allow.
     pub(super) fn covariance(&self, point: &Point) -> Option<DMatrix<f64>> {
         let of = |noise: &Noise| {
             let own = Self {
-                values: self.values.clone(),
-                degree: self.degree,
                 noise: noise.clone(),
+                ..self.clone()
             };
             let again = own.project(point.shape, point.rates)?;
             let freedom = self.values.len().checked_sub(point.parameters())?;
@@ -173,7 +210,8 @@ impl Series {
         if self.noise.others.is_empty() {
             return of(&self.noise);
         }
-        let zero = DMatrix::zeros(point.shape.free(), point.shape.free());
+        let size = point.shape.free() + usize::from(point.friction().is_some());
+        let zero = DMatrix::zeros(size, size);
         let others = self.noise.others.iter();
         let weighed = others.filter_map(|(weight, noise)| Some((*weight, of(noise)?)));
         let (weight, sum) = weighed.fold((0.0, zero), |(all, sum), (weight, one)| {
@@ -182,63 +220,76 @@ impl Series {
         (weight > 0.0).then(|| sum / weight)
     }
 
-    /// The rates with the least squares, by Levenberg and Marquardt.
+    /// The rates with the least squares. The turning points under friction follow from the fit before: an error of
+    /// theirs moves those of the next fit by a part of r/A of it.
     pub(super) fn descend(&self, shape: Shape, start: Rates) -> Option<Point> {
         let mut rates = [0.0; 4];
-        rates[..shape.free()].copy_from_slice(&start[..shape.free()]);
-        let mut point = self.project(shape, rates)?;
-        let mut damping = 1e-3;
-        for _ in 0..40 {
-            let columns = self.whitened(&self.columns(&point));
-            let (mut normal, right) = equations(&columns, &point.rest);
-            let first = columns.len() - shape.free();
-            for k in first..columns.len() {
-                normal[(k, k)] *= 1.0 + damping;
+        if shape != Shape::Rubbed {
+            rates[..shape.free()].copy_from_slice(&start[..shape.free()]);
+            return self.converge(shape, rates);
+        }
+        rates[..2].copy_from_slice(&start[..2]);
+        let mut point = self.project(Shape::Viscous, rates)?;
+        for _ in 0..TURNS {
+            let [omega, sigma, _, before] = point.rates;
+            let turn = friction::turning(&point, self.quantity);
+            let settled = point.shape == shape && (turn - before).abs() * omega < TURNED;
+            if settled {
+                break;
             }
-            let step = normal.cholesky()?.solve(&right);
-            let mut rates = point.rates;
-            for (k, rate) in rates.iter_mut().take(shape.free()).enumerate() {
-                *rate += step[first + k];
-            }
-            let next = self.project(shape, rates).filter(|n| {
-                n.squares <= point.squares
-                    && n.rates[0] > 0.0
-                    && n.rates[1].abs() < 2.0 * n.rates[0]
-            });
-            match next {
-                Some(next) => {
-                    let gained = point.squares - next.squares;
-                    point = next;
-                    damping *= 0.2;
-                    if gained <= SETTLED * point.squares / self.values.len() as f64 {
-                        break;
-                    }
-                }
-                None if damping > 1e6 => break,
-                None => damping = (damping * 10.0).max(1e-5),
-            }
+            point = self.converge(shape, [omega, sigma, 0.0, turn])?;
         }
         Some(point)
+    }
+
+    /// The rates with the least squares from a start.
+    fn converge(&self, shape: Shape, start: Rates) -> Option<Point> {
+        let point = self.project(shape, start)?;
+        let found = descent::descend(Fit {
+            series: self,
+            point,
+        })?;
+        Some(found.point)
+    }
+}
+
+/// A fit of a series.
+struct Fit<'a> {
+    series: &'a Series,
+    point: Point,
+}
+
+impl Projected for Fit<'_> {
+    fn rest(&self) -> &[f64] {
+        &self.point.rest
+    }
+
+    fn squares(&self) -> f64 {
+        self.point.squares
+    }
+
+    fn columns(&self) -> Vec<Vec<f64>> {
+        self.series.whitened(&self.series.columns(&self.point))
+    }
+
+    fn free(&self) -> usize {
+        self.point.shape.free()
+    }
+
+    fn moved(&self, step: &[f64]) -> Option<Self> {
+        let mut rates = self.point.rates;
+        for (rate, step) in rates.iter_mut().zip(step) {
+            *rate += step;
+        }
+        let oscillates = rates[0] > 0.0 && rates[1].abs() < 2.0 * rates[0];
+        let point = self.series.project(self.point.shape, rates);
+        let point = point.filter(|_| oscillates)?;
+        Some(Self { point, ..*self })
     }
 }
 
 fn phase(rates: &Rates, t: f64) -> f64 {
     (rates[0] + 0.5 * rates[2] * t) * t
-}
-
-/// Normal matrix and right side.
-pub(super) fn equations(columns: &[Vec<f64>], values: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
-    let count = columns.len();
-    let mut normal = DMatrix::zeros(count, count);
-    for i in 0..count {
-        for k in 0..=i {
-            let product = dot(&columns[i], &columns[k]);
-            normal[(i, k)] = product;
-            normal[(k, i)] = product;
-        }
-    }
-    let right = DVector::from_iterator(count, columns.iter().map(|c| dot(c, values)));
-    (normal, right)
 }
 
 impl Point {
@@ -248,6 +299,11 @@ impl Point {
         [self.linear[count - 2], self.linear[count - 1]]
     }
 
+    /// Friction over stiffness, where it has a column.
+    pub(super) fn friction(&self) -> Option<f64> {
+        (self.shape == Shape::Rubbed).then(|| self.linear[self.linear.len() - 3])
+    }
+
     /// Constant part of the background.
     pub(super) fn offset(&self) -> f64 {
         self.linear[0]
@@ -255,7 +311,7 @@ impl Point {
 
     /// Range of the background but for its constant part.
     pub(super) fn drift(&self) -> f64 {
-        let beyond = self.linear.len() - 3;
+        let beyond = self.linear.len() - 3 - usize::from(self.friction().is_some());
         2.0 * self
             .linear
             .iter()
@@ -270,6 +326,13 @@ impl Point {
         let factor = factor as f64;
         let [omega, sigma, change, strength] = self.rates.map(|r| r / factor);
         match self.shape {
+            // the first mean lies in the middle of its samples
+            Shape::Rubbed => [
+                omega,
+                sigma,
+                0.0,
+                factor * self.rates[3] + 0.5 * (factor - 1.0),
+            ],
             Shape::Bent => [omega, sigma, change / factor, strength / factor],
             _ => [omega, sigma, change / factor, strength],
         }

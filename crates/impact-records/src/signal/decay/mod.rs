@@ -8,16 +8,20 @@
 mod beat;
 mod blows;
 mod change;
+mod descent;
+mod friction;
 mod least_squares;
 mod modes;
 mod noise;
 mod prepared;
 mod shape;
 
+use nalgebra::DMatrix;
 use prepared::Prepared;
-use shape::Shape;
+use shape::{Rates, Shape};
 
-pub use change::{Course, DampingLaw, Drift, PartOfDecay};
+pub use change::{Course, DampingLaw, Drift, LEAST_TESTED, PartOfDecay, RESOLVED};
+pub use friction::{BesideFriction, Quantity};
 
 /// A fitted free decay.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -52,6 +56,9 @@ pub struct Decay {
     /// What lies under the decay and was fitted with it: a drift, a hum.
     #[serde(default)]
     pub beside: Beside,
+    /// f0 and β where the damping may be dry friction in part; `None` if the fit beside it failed.
+    #[serde(default)]
+    pub beside_friction: Option<BesideFriction>,
     /// How frequency and damping ratio change along the decay.
     #[serde(default)]
     pub course: Course,
@@ -104,7 +111,8 @@ impl Decay {
     }
 }
 
-/// Fewest periods that a fit needs: one and a half, as far as they are known beforehand.
+/// Fewest periods that a fit needs, until a mass sticks under dry friction too: one and a half, as far as they are known
+/// beforehand.
 const LEAST_PERIODS: f64 = 1.4;
 
 /// Fit the first free decay of the samples of one channel.
@@ -122,7 +130,28 @@ const LEAST_PERIODS: f64 = 1.4;
 /// assert!((found.damping_ratio - 0.02).abs() < 1e-6);
 /// ```
 pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Decay> {
-    fit_channels(&[samples], rate_hz).into_iter().next()
+    fit_channels(&[Watched::displacement(samples)], rate_hz)
+        .into_iter()
+        .next()
+}
+
+/// The samples of a channel and what of the motion they are.
+#[derive(Debug, Clone, Copy)]
+pub struct Watched<'a> {
+    /// Samples.
+    pub values: &'a [f64],
+    /// What they are.
+    pub quantity: Quantity,
+}
+
+impl<'a> Watched<'a> {
+    /// Samples of a displacement, or of what is proportional to it.
+    pub fn displacement(values: &'a [f64]) -> Self {
+        Self {
+            values,
+            quantity: Quantity::Displacement,
+        }
+    }
 }
 
 /// Fit the free decays that several channels of equal length show, one after each blow or release: those of
@@ -130,13 +159,13 @@ pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Decay> {
 ///
 /// Channels are often computed from each other, so that together they tell no more than the best one. Empty
 /// with fewer than one and a half periods to fit, or if nothing decays.
-pub fn fit_channels(channels: &[&[f64]], rate_hz: f64) -> Vec<Decay> {
+pub fn fit_channels(channels: &[Watched<'_>], rate_hz: f64) -> Vec<Decay> {
     let best = |decays: &[Decay]| {
         let errors = decays.iter().map(Decay::relative_error);
         errors.fold(f64::INFINITY, f64::min)
     };
-    let of_channel = |(index, samples): (usize, &&[f64])| {
-        let mut decays = of_channel(samples, rate_hz);
+    let of_channel = |(index, channel): (usize, &Watched<'_>)| {
+        let mut decays = of_channel(*channel, rate_hz);
         decays.iter_mut().for_each(|d| d.channel = index);
         decays
     };
@@ -147,13 +176,14 @@ pub fn fit_channels(channels: &[&[f64]], rate_hz: f64) -> Vec<Decay> {
 }
 
 /// The decays of one channel, one after each blow.
-fn of_channel(samples: &[f64], rate_hz: f64) -> Vec<Decay> {
+fn of_channel(channel: Watched<'_>, rate_hz: f64) -> Vec<Decay> {
     let of_part = |(first, last): (usize, usize)| {
-        let mut decay = of_part(&samples[first..last], rate_hz)?;
+        let values = &channel.values[first..last];
+        let mut decay = of_part(Watched { values, ..channel }, rate_hz)?;
         decay.first += first;
         Some(decay)
     };
-    blows::parts(samples)
+    blows::parts(channel.values)
         .into_iter()
         .filter_map(of_part)
         .collect()
@@ -166,40 +196,69 @@ const MOST_LEFT: f64 = 1.0;
 /// Growth, in standard errors of the rate, that no decay has.
 const GROWS: f64 = 3.5;
 
+/// f0, per sample, and β of a fit, with their standard errors.
+struct Natural {
+    frequency: f64,
+    frequency_error: f64,
+    damping_ratio: f64,
+    damping_ratio_error: f64,
+}
+
+impl Natural {
+    /// Of rates with their covariance.
+    fn of(rates: &Rates, covariance: &DMatrix<f64>) -> Self {
+        let [omega, sigma, ..] = *rates;
+        let natural = omega.hypot(sigma);
+        let error = |to: [f64; 2]| {
+            let variance = to[0] * to[0] * covariance[(0, 0)]
+                + 2.0 * to[0] * to[1] * covariance[(0, 1)]
+                + to[1] * to[1] * covariance[(1, 1)];
+            variance.max(0.0).sqrt()
+        };
+        let turn = std::f64::consts::TAU;
+        Self {
+            frequency: natural / turn,
+            frequency_error: error([omega / natural, sigma / natural]) / turn,
+            damping_ratio: sigma / natural,
+            damping_ratio_error: error(damping_slopes(rates)),
+        }
+    }
+}
+
+/// Slopes of β = σ/√(σ² + `ω_d²`) over `ω_d` and σ.
+fn damping_slopes(rates: &Rates) -> [f64; 2] {
+    let [omega, sigma, ..] = *rates;
+    let cubed = omega.hypot(sigma).powi(3);
+    [-sigma * omega / cubed, omega * omega / cubed]
+}
+
 /// The decay of a part of a record with one blow or release.
-fn of_part(samples: &[f64], rate_hz: f64) -> Option<Decay> {
-    let prepared = Prepared::of(samples)?;
+fn of_part(channel: Watched<'_>, rate_hz: f64) -> Option<Decay> {
+    let prepared = Prepared::of(channel.values, channel.quantity)?;
     let series = &prepared.series;
     let viscous = series.descend(Shape::Viscous, prepared.free.rates)?;
-    let freedom = prepared.freedom(&viscous)?;
     let rms = (viscous.squares / prepared.degrees(&viscous)?).sqrt();
     let covariance = series.covariance(&viscous)?;
     let error_of_sigma = covariance[(1, 1)].sqrt();
     if viscous.rates[1] < -GROWS * error_of_sigma || !prepared.stands_out(&viscous, rms) {
         return None;
     }
-    let factor = prepared.factor as f64;
-    let per_sample = rate_hz / factor;
-    let (omega, sigma) = (viscous.rates[0], viscous.rates[1]);
-    let natural = omega.hypot(sigma);
-    let error = |to: [f64; 2]| {
-        let variance = to[0] * to[0] * covariance[(0, 0)]
-            + 2.0 * to[0] * to[1] * covariance[(0, 1)]
-            + to[1] * to[1] * covariance[(1, 1)];
-        variance.max(0.0).sqrt()
-    };
-    let hz = per_sample / std::f64::consts::TAU;
-    let cubed = natural.powi(3);
+    let natural = Natural::of(&viscous.rates, &covariance);
+    let hz = rate_hz / prepared.factor as f64;
     let whole = prepared.at_every_sample(&viscous)?;
     if !(whole.residual_ratio < MOST_LEFT) {
         return None;
     }
+    let beside_friction = friction::beside(&prepared, &viscous, hz);
+    if beside_friction.is_some_and(|b| b.sticks && b.periods < LEAST_PERIODS) {
+        return None;
+    }
     Some(Decay {
-        natural_frequency_hz: natural * hz,
-        natural_frequency_error_hz: error([omega / natural, sigma / natural]) * hz,
-        damping_ratio: sigma / natural,
-        damping_ratio_error: error([-sigma * omega / cubed, omega * omega / cubed]),
-        freedom,
+        natural_frequency_hz: natural.frequency * hz,
+        natural_frequency_error_hz: natural.frequency_error * hz,
+        damping_ratio: natural.damping_ratio,
+        damping_ratio_error: natural.damping_ratio_error,
+        freedom: series.freedom(&viscous),
         amplitude: whole.amplitude,
         phase_rad: whole.phase_rad,
         offset: whole.offset,
@@ -207,9 +266,10 @@ fn of_part(samples: &[f64], rate_hz: f64) -> Option<Decay> {
         structured_ratio: whole.structured_ratio,
         fading: whole.fading,
         beside: prepared.beside(whole.amplitude, rate_hz),
+        beside_friction,
         course: change::course(&prepared, &viscous, rate_hz),
         channel: 0,
-        periods: whole.samples as f64 * natural / factor / std::f64::consts::TAU,
+        periods: whole.samples as f64 * natural.frequency / prepared.factor as f64,
         first: prepared.first,
         samples: whole.samples,
     })

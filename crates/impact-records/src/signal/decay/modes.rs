@@ -1,8 +1,9 @@
 //! What oscillates at other frequencies than a decay: hum, other modes.
 
+use super::friction::Quantity;
 use super::least_squares::Series;
 use super::prepared::{factor, free, means, peak, rough};
-use super::shape::Rates;
+use super::shape::{Rates, Shape};
 use crate::signal::columns;
 
 /// Most oscillations of other frequencies that are taken from a record.
@@ -32,14 +33,25 @@ struct Fitted {
     mode: Mode,
 }
 
+/// The decay that is fitted.
+#[derive(Debug, Clone, Copy)]
+struct Own {
+    /// `ω_d` and σ per sample.
+    rates: [f64; 2],
+    quantity: Quantity,
+}
+
 /// Take what oscillates at other frequencies than the decay of given rates from samples, beginning with a
 /// known mode.
 pub(super) fn remove(
-    samples: &mut [f64],
+    (samples, quantity): (&mut [f64], Quantity),
     [omega, sigma, ..]: Rates,
     known: Option<[f64; 2]>,
 ) -> Vec<Mode> {
-    let own = [omega, sigma];
+    let own = Own {
+        rates: [omega, sigma],
+        quantity,
+    };
     let mut modes: Vec<Fitted> = Vec::new();
     modes.extend(known.and_then(|rates| fitted(samples, rates)));
     for _ in 0..MOST {
@@ -75,7 +87,7 @@ fn less(samples: &[f64], modes: &[Fitted]) -> Vec<f64> {
 }
 
 /// Fit each mode to what the decay and the other modes leave.
-fn again(samples: &[f64], own: [f64; 2], modes: &mut [Fitted]) {
+fn again(samples: &[f64], own: Own, modes: &mut [Fitted]) {
     for k in 0..modes.len() {
         let Some(mut rest) = without_decay(&less(samples, modes), own) else {
             return;
@@ -89,21 +101,33 @@ fn again(samples: &[f64], own: [f64; 2], modes: &mut [Fitted]) {
     }
 }
 
-/// What the decay of about given rates leaves of samples.
-fn without_decay(samples: &[f64], own: [f64; 2]) -> Option<Vec<f64>> {
-    let factor = factor(own[0]);
-    let rates = [own[0], own[1], 0.0, 0.0].map(|r| r * factor as f64);
-    let decay = free(&Series::plain(means(samples, factor)), rates)?;
-    let whole = Series::plain(samples.to_vec());
+/// What the decay of about given rates leaves of samples. Dry friction is of the decay: the motion under it has odd
+/// harmonics, which are no other modes.
+fn without_decay(samples: &[f64], own: Own) -> Option<Vec<f64>> {
+    let [omega, sigma] = own.rates;
+    let factor = factor(omega);
+    let rates = [omega, sigma, 0.0, 0.0].map(|r| r * factor as f64);
+    let series = Series {
+        quantity: own.quantity,
+        factor,
+        ..Series::plain(means(samples, factor))
+    };
+    let free = free(&series, rates)?;
+    let rubbed = series.descend(Shape::Rubbed, free.rates);
+    let decay = rubbed.filter(|r| r.squares < free.squares).unwrap_or(free);
+    let whole = Series {
+        quantity: own.quantity,
+        ..Series::plain(samples.to_vec())
+    };
     let point = whole.project(decay.shape, decay.per_sample(factor))?;
     Some(whole.residuals(&point))
 }
 
 /// The strongest oscillation of samples, if it is another than the decay of given rates and stands out.
-fn strongest(rest: &[f64], own: [f64; 2]) -> Option<Fitted> {
+fn strongest(rest: &[f64], own: Own) -> Option<Fitted> {
     let rates = rough(rest, peak(rest)?)?.rates;
     let count = rest.len() as f64;
-    if (rates[0] - own[0]).abs() <= width(own, count).max(width(rates, count)) {
+    if (rates[0] - own.rates[0]).abs() <= width(own.rates, count).max(width(rates, count)) {
         return None;
     }
     let found = fitted(rest, rates)?;

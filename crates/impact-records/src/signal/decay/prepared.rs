@@ -1,5 +1,6 @@
 //! A decay made ready for its fit: where it begins and ends, what lies under it, the noise about it.
 
+use super::friction::Quantity;
 use super::least_squares::{Point, Series};
 use super::modes::{self, Mode, STEADY};
 use super::noise::{Noise, structured};
@@ -76,7 +77,7 @@ impl Prepared {
     /// The decay of a part of a record with one blow or release. Where its first motion and all of it have
     /// unlike frequencies, as after a hammer's blow that excites a higher mode too, the one that lasts, if it
     /// decays at all.
-    pub(super) fn of(samples: &[f64]) -> Option<Self> {
+    pub(super) fn of(samples: &[f64], quantity: Quantity) -> Option<Self> {
         let begun = blows::begin(samples)?;
         let tail = &samples[begun.1..];
         let first_motion = |part: &[f64]| rough(part, peak(part)?);
@@ -89,23 +90,24 @@ impl Prepared {
             let slower = slower && found.rates[1] < LIGHT * found.rates[0];
             (slower && decays && found.explains > EXPLAINS).then_some(found)
         });
+        let channel = (samples, quantity);
         let Some(lasts) = lasts else {
-            return Self::about(samples, begun, begins.rates, None);
+            return Self::about(channel, begun, begins.rates, None);
         };
         if begins.rates[0] < ANOTHER_MODE * lasts.rates[0] {
-            return Self::about(samples, begun, lasts.rates, None);
+            return Self::about(channel, begun, lasts.rates, None);
         }
         if begins.rates[1] > LIGHT * begins.rates[0] {
-            return Self::about(samples, begun, begins.rates, None);
+            return Self::about(channel, begun, begins.rates, None);
         }
         let start = begun.1 + lost / 3;
-        Self::about(samples, (start, start), lasts.rates, Some(begins.rates))
+        Self::about(channel, (start, start), lasts.rates, Some(begins.rates))
     }
 
     /// The decay of about given rates in a part of a record whose motion has begun, beside the one of a known
     /// mode.
     fn about(
-        samples: &[f64],
+        (samples, quantity): (&[f64], Quantity),
         begun: (usize, usize),
         rates: [f64; 2],
         known: Option<[f64; 2]>,
@@ -122,14 +124,18 @@ impl Prepared {
         let (first, found) = begin(&cleared, start, rates)?;
         let factor = found.factor;
         let mut own = samples[first..].to_vec();
-        let beside = modes::remove(&mut own, found.point.per_sample(factor), known);
+        let beside = modes::remove((&mut own, quantity), found.point.per_sample(factor), known);
         let point = if beside.is_empty() {
             found.point
         } else {
             first_fit(&own, rates)?.point
         };
         own.truncate(end(&own, factor, &point));
-        let mut series = Series::plain(means(&own, factor));
+        let mut series = Series {
+            quantity,
+            factor,
+            ..Series::plain(means(&own, factor))
+        };
         let free = settle(&mut series, &point)?;
         Some(Self {
             first,
@@ -145,13 +151,6 @@ impl Prepared {
     pub(super) fn degrees(&self, point: &Point) -> Option<f64> {
         let left = self.series.values.len().checked_sub(point.parameters())?;
         (left > 0).then_some(left as f64)
-    }
-
-    /// Independent values of the noise about the decay's frequency that a fit leaves.
-    pub(super) fn freedom(&self, point: &Point) -> Option<f64> {
-        let density = self.series.noise.density(point.rates[0]).max(1.0);
-        let independent = self.series.values.len() as f64 / density;
-        Some((independent - point.parameters() as f64).max(2.0))
     }
 
     /// Whether a decay stands out of the noise, and above what is before and after it.
@@ -414,13 +413,15 @@ fn settle(series: &mut Series, start: &Point) -> Option<Point> {
 /// A law of damping that the noise is better beside than the bent decay, if there is one.
 fn better(series: &mut Series, criterion: f64, bent: Point) -> Point {
     let mut best = (criterion, series.clone(), bent.clone());
-    for point in laws(series, &bent) {
+    let rubbed = series.descend(Shape::Rubbed, bent.rates);
+    for point in laws(series, &bent).into_iter().chain(rubbed) {
         let mut own = series.clone();
         let Some(point) = fitted(&mut own, point.shape, &point) else {
             continue;
         };
         let criterion = own.criterion(&point);
-        if point.rates[3] > 0.0 && criterion < best.0 {
+        let strength = point.friction().unwrap_or(point.rates[3]);
+        if strength > 0.0 && criterion < best.0 {
             best = (criterion, own, point);
         }
     }
@@ -442,7 +443,8 @@ pub(super) fn laws(series: &Series, bent: &Point) -> Vec<Point> {
     laws.filter_map(fitted).collect()
 }
 
-fn fitted(series: &mut Series, shape: Shape, start: &Point) -> Option<Point> {
+/// The fit of a shape in the noise that is beside it.
+pub(super) fn fitted(series: &mut Series, shape: Shape, start: &Point) -> Option<Point> {
     let mut point = series.descend(shape, start.rates)?;
     for _ in 0..ROUNDS {
         let residuals = series.residuals(&point);

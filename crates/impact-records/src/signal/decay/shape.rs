@@ -5,6 +5,9 @@
 pub(super) enum Shape {
     /// A' = −σA, at one frequency.
     Viscous,
+    /// The same with dry friction that shifts the equilibrium of each swing, as a column of its own; the last rate is
+    /// the time of a turning point.
+    Rubbed,
     /// A' = −(σ + g t)A: a rate of decay that changes, whatever changes it.
     Bent,
     /// A' = −σA − g: dry friction.
@@ -29,7 +32,7 @@ impl Shape {
     /// How many of the rates are free.
     pub(super) fn free(self) -> usize {
         match self {
-            Self::Viscous => 2,
+            Self::Viscous | Self::Rubbed => 2,
             _ => 4,
         }
     }
@@ -51,7 +54,7 @@ impl Shape {
             (t * decayed - lasted) / sigma
         };
         match self {
-            Self::Viscous => Envelope {
+            Self::Viscous | Self::Rubbed => Envelope {
                 value: decayed,
                 of_sigma: -t * decayed,
                 of_strength: 0.0,
@@ -90,7 +93,7 @@ impl Shape {
         let [_, sigma, _, strength] = *rates;
         let share = self.envelope(rates, t).value;
         match self {
-            Self::Viscous => sigma,
+            Self::Viscous | Self::Rubbed => sigma,
             Self::Bent => sigma + strength * t,
             Self::Friction => sigma + strength / share.max(f64::MIN_POSITIVE),
             Self::Drag => sigma + strength * share,

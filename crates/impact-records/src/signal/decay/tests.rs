@@ -52,6 +52,35 @@ fn with_friction(f0_hz: f64, beta: f64, rest_m: f64, rate_hz: f64, count: usize)
     out
 }
 
+/// A mass let go at the displacement one, swing by swing about the equilibrium that friction shifts, from an eighth of a
+/// period on: (rate, Hz, and periods).
+pub(super) fn released(
+    f0_hz: f64,
+    beta: f64,
+    rest_m: f64,
+    (rate_hz, periods): (f64, f64),
+) -> Vec<f64> {
+    let sigma = beta * TAU * f0_hz;
+    let omega = TAU * f0_hz * (1.0 - beta * beta).sqrt();
+    let half = std::f64::consts::PI / omega;
+    let (mut turn, mut place, mut about) = (0.0, 1.0f64, rest_m);
+    (0..whole::index(periods * rate_hz / f0_hz))
+        .map(|i| {
+            let t = i as f64 / rate_hz + 0.125 / f0_hz;
+            while t >= turn + half && place.abs() > rest_m {
+                place = about - (place - about) * (-sigma * half).exp();
+                turn += half;
+                about = -about;
+            }
+            if place.abs() <= rest_m {
+                return place;
+            }
+            let (sin, cos) = (omega * (t - turn)).sin_cos();
+            about + (place - about) * (-sigma * (t - turn)).exp() * (cos + sigma / omega * sin)
+        })
+        .collect()
+}
+
 #[test]
 fn valid_a_noise_free_decay_is_recovered_after_its_blow() {
     let (rate, f0, beta) = (1652.9, 14.3, 0.0183);
@@ -132,7 +161,7 @@ fn each_blow_of_a_record_has_a_decay_of_its_own() {
         last.map_or(0.0, |b| value(t - b))
     });
     white(&mut samples, 2e-3, 1);
-    let found = fit_channels(&[&samples], 2000.0);
+    let found = fit_channels(&[Watched::displacement(&samples)], 2000.0);
     assert_eq!(found.len(), 5, "{found:?}");
     for (decay, blow) in found.iter().zip(blows) {
         assert!((decay.first as f64 / 2000.0 - blow).abs() < 0.1);

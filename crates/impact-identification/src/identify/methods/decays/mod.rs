@@ -1,5 +1,9 @@
 //! Free decays: f0 and β of each, pooled, and records that are filed under the wrong name.
 
+#[cfg(test)]
+mod coverage;
+mod dry_friction;
+
 use std::collections::BTreeMap;
 
 use crate::identify::answer::MethodResult;
@@ -7,13 +11,15 @@ use crate::identify::estimate::{self, Estimate, Status};
 use crate::identify::messages::{DampingPoint, Item, LeftOut, Note, Reason, Remark};
 use crate::identify::method::Method;
 use crate::identify::methods::Identifier;
+use crate::identify::methods::decays::dry_friction::{CHANGES, Shared};
 use crate::identify::methods::found::Found;
 use crate::identify::methods::selection::Selection;
 use crate::identify::parameters::Coordinate;
+use crate::identify::parameters::effect::{Effect, Effects};
 use crate::identify::statistics::quantile::NORMAL_975;
-use crate::identify::statistics::scatter::Spread;
+use crate::identify::statistics::weighted::{self, Measured};
 use impact_records::motion::Observation;
-use impact_records::signal::decay::Decay;
+use impact_records::signal::decay::{DampingLaw, Decay, LEAST_TESTED, RESOLVED};
 use impact_records::signal::robust;
 
 /// Free decays.
@@ -29,7 +35,10 @@ impl Identifier for FreeDecays {
     }
 
     fn result(&self, selection: &Selection<'_>, _: &Found) -> Option<MethodResult> {
-        pooled(selection.evidence.observations)
+        pooled(
+            selection.evidence.observations,
+            selection.evidence.nominal.effects,
+        )
     }
 }
 
@@ -43,8 +52,6 @@ const STRUCTURE: f64 = 0.15;
 const FADING_STRUCTURE: f64 = 0.05;
 /// Ratio of the residual at the beginning to that at the end from which it fades.
 const FADES: f64 = 3.0;
-/// Normal deviate from which a change along a decay is no chance.
-const CHANGES: f64 = 3.3;
 /// The same from which the frequency is none.
 const DRIFTS: f64 = 5.0;
 /// Relative change of the frequency along a decay that matters.
@@ -55,42 +62,46 @@ const NO_SINGLE: f64 = 5.0;
 const DAMPING_MATTERS: f64 = 0.15;
 /// Amplitude beside a decay, over its own, that is told: of a tone, and of a drift.
 const TELLING: [f64; 2] = [0.02, 0.1];
-/// Widening of an interval by slow noise that is told: nine tenths of its variance are that noise.
+/// Widening of an interval by slow noise that is told, which changes no number: nine tenths of its variance are that
+/// noise.
 const WIDENING: f64 = 3.0;
-/// Periods from which parts of a decay show whether one frequency and one damping ratio hold along it.
-const TESTED_PERIODS: f64 = 3.0;
-/// Share of its first amplitude at the end of a record beyond which it was cut off.
-const CUT_OFF: f64 = 0.02;
 
-/// All free decays of a campaign, pooled; `None` without any.
-pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
+/// All free decays of a campaign, pooled; `None` without any. Dry friction is possible if the effects that the rig may
+/// have hold it, or if the decays show it.
+pub fn pooled(observations: &[Observation], effects: Effects) -> Option<MethodResult> {
     let used = observations.iter().filter(|o| !o.excluded());
     let records = used.clone().filter(|o| !o.decays.is_empty()).count();
     let decays: Vec<&Decay> = used.flat_map(|o| &o.decays).collect();
     if decays.is_empty() {
         return None;
     }
-    let frequency = |d: &&Decay| {
-        let f = d.natural_frequency_hz;
-        let error = d.natural_frequency_error_hz.hypot(drift_error_hz(d));
-        (f.ln(), error / f, d.freedom)
-    };
-    let frequencies: Vec<(f64, f64, f64)> = decays.iter().map(frequency).collect();
-    let damping = |d: &&Decay| (d.damping_ratio, d.damping_ratio_error, d.freedom);
-    let dampings: Vec<(f64, f64, f64)> = decays.iter().map(damping).collect();
+    let shared = Shared::of(&decays);
+    let possible = effects.iter().any(|e| e == Effect::Friction);
+    let shared = Some(shared).filter(|s| possible || s.is_told());
+    let frequencies: Vec<Measured> = decays
+        .iter()
+        .map(|d| match shared {
+            Some(_) => frequency_beside_friction(d),
+            None => frequency(d),
+        })
+        .collect();
     let mut result = MethodResult {
         observations: decays.iter().map(|d| d.samples).sum(),
         records,
         ..MethodResult::default()
     };
-    let (f, spread) = weighted_mean(&frequencies);
+    let (f, spread) = weighted::mean(&frequencies, &weighted::by_errors(&frequencies));
     let found = estimate::estimate_within(Coordinate::Frequency, f, spread, None);
     result.parameters.natural_frequency_hz = Some(found);
-    let (b, spread) = weighted_mean(&dampings);
-    result.parameters.damping_ratio = Some(damping_estimate(b, spread));
-    let apart = frequencies.iter().map(|p| (p.0 - f).abs());
+    let longest = decays.iter().map(|d| d.periods).fold(0.0, f64::max);
+    result.parameters.damping_ratio = Some(match shared {
+        Some(shared) => shared.estimate(longest),
+        None => damping_estimate(&decays),
+    });
+    result.remarks.extend(shared.and_then(|s| s.remark()));
+    let apart = frequencies.iter().map(|p| (p.value - f).abs());
     let apart = apart.fold(0.0, f64::max);
-    judge(&mut result, &decays, apart);
+    judge(&mut result, &decays, (apart, shared.is_some()));
     if let Some(periods) = too_short(&decays) {
         leave_weak(&mut result, Note::FewPeriods { periods });
     }
@@ -99,12 +110,37 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     Some(result)
 }
 
+/// ln f0 of a viscous decay.
+fn frequency(decay: &Decay) -> Measured {
+    let found = decay.natural_frequency_hz;
+    let error = decay.natural_frequency_error_hz;
+    logarithm(decay, found, error)
+}
+
+/// ln f0 of a decay under viscous damping and dry friction.
+fn frequency_beside_friction(decay: &Decay) -> Measured {
+    let Some(found) = decay.beside_friction else {
+        return frequency(decay);
+    };
+    let error = found.natural_frequency_error_hz;
+    logarithm(decay, found.natural_frequency_hz, error)
+}
+
+/// The logarithm of a frequency of a decay, which drifts.
+fn logarithm(decay: &Decay, frequency_hz: f64, error_hz: f64) -> Measured {
+    Measured {
+        value: frequency_hz.ln(),
+        error: error_hz.hypot(drift_error_hz(decay)) / frequency_hz,
+        freedom: decay.freedom,
+    }
+}
+
 /// Periods of the longest of decays that all were cut off too early for a test whether they are viscous; `None` if
 /// one was not.
 fn too_short(decays: &[&Decay]) -> Option<f64> {
     let cut_off = |d: &&Decay| {
         let turns = std::f64::consts::TAU * d.periods;
-        d.periods < TESTED_PERIODS && (-d.damping_ratio * turns).exp() > CUT_OFF
+        d.periods < LEAST_TESTED && (-d.damping_ratio * turns).exp() > RESOLVED
     };
     let longest = decays.iter().map(|d| d.periods).fold(0.0, f64::max);
     decays.iter().all(cut_off).then_some(longest)
@@ -125,8 +161,15 @@ fn leave_weak(result: &mut MethodResult, why: Note) {
     }
 }
 
-/// β with its interval, which begins at zero where an undamped motion is within it.
-fn damping_estimate(value: f64, spread: Spread) -> Estimate {
+/// β of viscous decays with its interval, which begins at zero where an undamped motion is within it.
+fn damping_estimate(decays: &[&Decay]) -> Estimate {
+    let measured = |d: &&Decay| Measured {
+        value: d.damping_ratio,
+        error: d.damping_ratio_error,
+        freedom: d.freedom,
+    };
+    let dampings: Vec<Measured> = decays.iter().map(measured).collect();
+    let (value, spread) = weighted::mean(&dampings, &weighted::by_errors(&dampings));
     let half = spread.half95();
     let most = value + half;
     let undamped = value <= half;
@@ -146,7 +189,7 @@ fn damping_estimate(value: f64, spread: Spread) -> Estimate {
 
 /// Judge whether the decays are of one linear oscillator: by what their residuals have beside noise,
 /// not by the size of the noise, and by what changes along them.
-fn judge(result: &mut MethodResult, decays: &[&Decay], spread: f64) {
+fn judge(result: &mut MethodResult, decays: &[&Decay], (spread, friction): (f64, bool)) {
     let median = |of: &dyn Fn(&Decay) -> f64| {
         robust::median(&decays.iter().map(|d| of(d)).collect::<Vec<_>>()).unwrap_or(0.0)
     };
@@ -158,7 +201,7 @@ fn judge(result: &mut MethodResult, decays: &[&Decay], spread: f64) {
     let structure = median(&|d| d.structured_ratio);
     let fades = median(&|d| d.fading) > FADES;
     let plain = structure < if fades { FADING_STRUCTURE } else { STRUCTURE };
-    let damping_changes = judge_damping(result, decays);
+    let damping_changes = judge_damping(result, decays, friction);
     let frequency_changes = judge_frequency(result, decays);
     // what changes along a decay is the structure that it leaves
     let told = plain || damping_changes || frequency_changes;
@@ -188,8 +231,8 @@ fn beat(decays: &[&Decay]) -> Option<Remark> {
     })
 }
 
-/// Whether one damping ratio does not hold along most of the decays.
-fn judge_damping(result: &mut MethodResult, decays: &[&Decay]) -> bool {
+/// Whether one damping ratio does not hold along most of the decays, beside dry friction where β is without it.
+fn judge_damping(result: &mut MethodResult, decays: &[&Decay], friction: bool) -> bool {
     let range = |d: &Decay| {
         let [low, high] = d.course.damping_range?;
         let sure = d.course.damping_z_score > CHANGES && d.course.parts.len() > 1;
@@ -205,8 +248,9 @@ fn judge_damping(result: &mut MethodResult, decays: &[&Decay]) -> bool {
     let matters = |(d, [low, high]): &(&Decay, [f64; 2])| {
         high - low > DAMPING_MATTERS * d.damping_ratio.abs()
     };
+    let explained = |d: &Decay| friction && d.course.law == DampingLaw::Friction;
     if let Some([low, high]) = &mut estimate.interval95 {
-        for (d, [least, most]) in &changing {
+        for (d, [least, most]) in changing.iter().filter(|c| !explained(c.0)) {
             let half = NORMAL_975 * d.damping_ratio_error;
             *low = low.min(least - half).max(0.0);
             *high = high.max(most + half);
@@ -222,7 +266,8 @@ fn judge_damping(result: &mut MethodResult, decays: &[&Decay]) -> bool {
         points: DampingPoint::of(&worst.course.parts),
         law: worst.course.law,
     });
-    let most = 2 * telling.len() > decays.len();
+    let left = telling.iter().filter(|c| !explained(c.0)).count();
+    let most = 2 * left > decays.len();
     if most {
         estimate.status = Status::Weak;
         estimate.note = Some(Note::DampingChanges);
@@ -300,34 +345,6 @@ fn drift_error_hz(decay: &Decay) -> f64 {
         Some(drift) => (drift.last_hz - drift.first_hz).abs() / 12f64.sqrt(),
         None => 0.0,
     }
-}
-
-/// Weighted mean of values with their errors and degrees of freedom; its error is the greater of the inner and
-/// the outer one.
-fn weighted_mean(values: &[(f64, f64, f64)]) -> (f64, Spread) {
-    let weight: f64 = values.iter().map(|v| v.1.powi(-2)).sum();
-    let mean = values.iter().map(|v| v.0 / (v.1 * v.1)).sum::<f64>() / weight;
-    let inner = Spread {
-        freedom: values.iter().map(|v| v.2).sum(),
-        ..Spread::known(weight.recip().sqrt())
-    };
-    if values.len() < 2 {
-        return (mean, inner);
-    }
-    let chi: f64 = values.iter().map(|v| ((v.0 - mean) / v.1).powi(2)).sum();
-    let freedom = (values.len() - 1) as f64;
-    let outer = Spread {
-        freedom,
-        ..Spread::known(inner.error * (chi / freedom).sqrt())
-    };
-    (
-        mean,
-        if outer.error > inner.error {
-            outer
-        } else {
-            inner
-        },
-    )
 }
 
 /// Records whose natural frequency is not that of their specimen but that of another.
