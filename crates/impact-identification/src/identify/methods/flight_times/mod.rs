@@ -74,7 +74,8 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     if fits.is_empty() {
         return None;
     }
-    let scatter = Scatter::of(&fits, stated_error_s(&records));
+    let stated_s = stated_error_s(&records);
+    let scatter = Scatter::of(&fits, stated_s);
     let all: Vec<ImpactGroup> = fits
         .iter()
         .zip(&scatter.rows)
@@ -131,7 +132,7 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         });
     }
     let several = ratios.len() > 1 && !rows.is_empty();
-    let rises = scatter::trend(&rows).is_some_and(|trend| {
+    let rises = scatter::trend(&rows, stated_s).is_some_and(|trend| {
         let chance = student_tail(trend.deviates, trend.freedom);
         chance < structure::FALSE_ALARMS / QUESTIONS && trend.change > MATTERS
     });

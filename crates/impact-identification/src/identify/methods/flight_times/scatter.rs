@@ -47,7 +47,8 @@ impl Scatter {
     /// Of rows with their fits; `stated_s`: the times' standard error as their source states it.
     pub(super) fn of(fits: &[(&Row, Fitted)], stated_s: Option<f64>) -> Self {
         let ratios = Ratios::of(fits.iter().map(|(row, _)| *row));
-        let mixed = ratios.mixed(false).filter(|m| m.freedom >= ENOUGH);
+        let mix = |with_slope| ratios.mixed(with_slope, stated_s);
+        let mixed = mix(false).filter(|m| m.freedom >= ENOUGH);
         let Some(mixed) = mixed else {
             return Self::by_times(fits, &ratios, stated_s.unwrap_or(USUAL_ERROR_S));
         };
@@ -69,11 +70,14 @@ impl Scatter {
                 ratio_errors: mixed.ratio_errors(&ratios, i),
             }
         });
-        let own = mixed.own();
+        // a change along the bounces is neither
+        let beside = mix(true);
+        let beside = beside.as_ref().unwrap_or(&mixed);
+        let own = beside.own();
         Self {
             rows: rows.collect(),
             freedom: mixed.freedom,
-            times_s: own.is_none().then(|| mixed.times_s(&ratios)),
+            times_s: own.is_none().then(|| beside.times_s(&ratios)),
             own,
         }
     }
@@ -110,9 +114,11 @@ pub(super) struct Trend {
 }
 
 /// How R changes along the bounces of rows, its logarithm a line over their number with one slope for all.
-pub(super) fn trend(fits: &[(&Row, Fitted)]) -> Option<Trend> {
+pub(super) fn trend(fits: &[(&Row, Fitted)], stated_s: Option<f64>) -> Option<Trend> {
     let ratios = Ratios::of(fits.iter().map(|(row, _)| *row));
-    let mixed = ratios.mixed(true).filter(|m| m.freedom >= ENOUGH)?;
+    let mixed = ratios
+        .mixed(true, stated_s)
+        .filter(|m| m.freedom >= ENOUGH)?;
     let (slope, error) = mixed.average(|share| share.slope);
     let longest = ratios.rows.iter().map(|r| r.values.len()).max()?;
     let typical = robust::median(&fits.iter().map(|(_, f)| f.restitution).collect::<Vec<_>>())?;
@@ -161,8 +167,9 @@ impl Ratios {
         mean.unwrap_or_else(|| values.mean())
     }
 
-    /// The estimates for each ratio of the variances; `None` without one that can be computed.
-    fn mixed(&self, with_slope: bool) -> Option<Mixed> {
+    /// The estimates for each ratio of the variances; `None` without one that can be computed. Errors of the times far
+    /// beyond those that their source states are less likely: by Cauchy's distribution about these.
+    fn mixed(&self, with_slope: bool, stated_s: Option<f64>) -> Option<Mixed> {
         let [least, median, greatest] = self.variances;
         let [low, high] = [least / BEYOND / median, greatest * BEYOND / median].map(f64::log10);
         let count = self.rows.iter().map(|r| r.values.len()).sum::<usize>();
@@ -173,6 +180,10 @@ impl Ratios {
             Share::of(self, own, (freedom as f64, with_slope))
         });
         let mut shares: Vec<Share> = shares.collect();
+        for share in &mut shares {
+            let beyond = stated_s.map_or(0.0, |s| share.scale / (median * s * s));
+            share.weight -= beyond.ln_1p();
+        }
         let best = shares
             .iter()
             .map(|s| s.weight)
