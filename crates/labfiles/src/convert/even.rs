@@ -52,7 +52,7 @@ pub(super) fn of(item: &Item<'_>, samples: &[Samples]) -> Result<Vec<Option<Even
 /// Found of a channel whose start cannot be written.
 const NO_START: &str = "its start is not known beside that of other channels";
 /// Found of a channel whose step cannot be written.
-const UNEVEN: &str = "the times of its own are not even";
+const UNEVEN: &str = "its times are not even, beside channels with others";
 
 /// A record's channel that a universal file cannot hold.
 pub(super) fn refused(item: &Item<'_>, channel: usize, found: &str) -> ReadError {
@@ -107,6 +107,7 @@ impl Record<'_> {
         match self.set.channels[channel].clock {
             Clock::Axis(axis) => self.even_hz(axis, own_hz).map(Some).ok_or(UNEVEN),
             Clock::Rate => Ok(own_hz.or(self.shared_hz)),
+            Clock::Shared if self.set.time_axis.is_some() => own_hz.map(Some).ok_or(UNEVEN),
             Clock::Shared => Ok(own_hz),
         }
     }

@@ -458,7 +458,7 @@ fn channels_whose_times_a_universal_file_cannot_hold_are_refused_by_name() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("out.uff");
     for (record, fault) in [
-        (uneven, "channel 'slow': the times of its own are not even"),
+        (uneven, "channel 'slow': its times are not even"),
         (
             unknown,
             "channel 'contact': its start is not known beside that of other channels",
