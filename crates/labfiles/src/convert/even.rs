@@ -30,17 +30,19 @@ pub(super) fn of(item: &Item<'_>, samples: &[Samples]) -> Result<Vec<Option<Even
     let timed = |channel: &usize| rates[*channel].is_some();
     let starts: Vec<Option<f64>> = channels.clone().map(|c| record.start_s(c)).collect();
     let known = channels.clone().filter(timed).filter_map(|c| starts[c]);
-    let origin_s = known.reduce(f64::min);
-    let unknown = channels
-        .clone()
-        .filter(timed)
-        .find(|c| starts[*c].is_none());
-    if let (Some(channel), Some(_)) = (unknown, origin_s) {
+    let known: Vec<f64> = known.collect();
+    let origin_s = known.iter().copied().reduce(f64::min);
+    let unlike = known.iter().any(|s| Some(*s) != origin_s);
+    let mut unknown = channels.clone().filter(timed);
+    let unknown = unknown.find(|c| unlike && starts[*c].is_none());
+    if let Some(channel) = unknown {
         return Err(refused(item, channel, NO_START).into());
     }
     let even = |channel: usize| {
         Some(Even {
-            start_s: starts[channel].unwrap_or(0.0) - origin_s.unwrap_or(0.0),
+            start_s: starts[channel]
+                .zip(origin_s)
+                .map_or(0.0, |(own, first)| own - first),
             step_s: rates[channel]?.recip(),
         })
     };
@@ -50,7 +52,7 @@ pub(super) fn of(item: &Item<'_>, samples: &[Samples]) -> Result<Vec<Option<Even
 /// Found of a channel whose start cannot be written.
 const NO_START: &str = "its start is not known beside that of other channels";
 /// Found of a channel whose step cannot be written.
-const UNEVEN: &str = "the times of its own are not even";
+const UNEVEN: &str = "its times are not even, beside channels with others";
 
 /// A record's channel that a universal file cannot hold.
 pub(super) fn refused(item: &Item<'_>, channel: usize, found: &str) -> ReadError {
@@ -105,23 +107,27 @@ impl Record<'_> {
         match self.set.channels[channel].clock {
             Clock::Axis(axis) => self.even_hz(axis, own_hz).map(Some).ok_or(UNEVEN),
             Clock::Rate => Ok(own_hz.or(self.shared_hz)),
+            Clock::Shared if self.set.time_axis.is_some() => own_hz.map(Some).ok_or(UNEVEN),
             Clock::Shared => Ok(own_hz),
         }
     }
 
-    /// The rate of a time axis whose values are even.
+    /// The rate of a time axis whose values are even: the stated one, if they follow it, else their own.
     fn even_hz(&self, axis: usize, stated_hz: Option<f64>) -> Option<f64> {
         let (values, unit_s) = self.times(axis)?;
-        let head = &values[..values.len().min(rate::HEAD_SAMPLES)];
-        let measured =
-            || rate::from_axis(head, values.last().copied(), values.len() as u64, unit_s);
-        let rate_hz = stated_hz.or_else(measured)?;
         let first = values.first()?;
-        let off = |(k, value): (usize, &f64)| ((value - first) * unit_s * rate_hz - k as f64).abs();
-        // shorter columns end in empty cells
-        let mut filled = values.iter().enumerate().filter(|(_, v)| v.is_finite());
-        let even = filled.all(|at| off(at) < OFF);
-        even.then_some(rate_hz)
+        let even = |rate_hz: &f64| {
+            let off =
+                |(k, value): (usize, &f64)| ((value - first) * unit_s * rate_hz - k as f64).abs();
+            // shorter columns end in empty cells
+            let mut filled = values.iter().enumerate().filter(|(_, v)| v.is_finite());
+            first.is_finite() && filled.all(|at| off(at) < OFF)
+        };
+        let own = || {
+            let head = &values[..values.len().min(rate::HEAD_SAMPLES)];
+            rate::from_axis(head, values.last().copied(), values.len() as u64, unit_s)
+        };
+        stated_hz.filter(even).or_else(|| own().filter(even))
     }
 
     /// When a channel's first sample was taken, s; `None` where the file does not state it. A time axis has the start

@@ -450,13 +450,15 @@ fn channels_whose_times_a_universal_file_cannot_hold_are_refused_by_name() {
     let numbers = || Samples::Real(vec![1.0; 20]);
     let mut unknown = made(&[
         ("x", Some("mm"), numbers()),
+        ("y", Some("mm"), numbers()),
         ("contact", Some("V"), numbers()),
     ]);
     unknown.datasets[0].channels[0].start_s = Some(0.0);
+    unknown.datasets[0].channels[1].start_s = Some(0.01);
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("out.uff");
     for (record, fault) in [
-        (uneven, "channel 'slow': the times of its own are not even"),
+        (uneven, "channel 'slow': its times are not even"),
         (
             unknown,
             "channel 'contact': its start is not known beside that of other channels",

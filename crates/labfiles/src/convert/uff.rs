@@ -286,14 +286,19 @@ impl Record<'_> {
 
     /// The attributes that keep the starts and rates of channels, as they are written.
     fn clocks(&self) -> Vec<(String, String)> {
-        let written = |(info, times): (&ChannelInfo, &Option<Even>)| ChannelInfo {
-            start_s: times.map(|t| t.start_s),
-            sample_rate_hz: info.sample_rate_hz.or(times.map(|t| t.step_s.recip())),
-            clock: match info.clock {
-                Clock::Shared => Clock::Shared,
-                Clock::Axis(_) | Clock::Rate => Clock::Rate,
-            },
-            ..info.clone()
+        let written = |(info, times): (&ChannelInfo, &Option<Even>)| {
+            let own_hz = times.map(|t| t.step_s.recip());
+            let (clock, sample_rate_hz) = match info.clock {
+                Clock::Shared => (Clock::Shared, info.sample_rate_hz),
+                Clock::Rate => (Clock::Rate, info.sample_rate_hz.or(own_hz)),
+                Clock::Axis(_) => (Clock::Rate, own_hz),
+            };
+            ChannelInfo {
+                start_s: times.map(|t| t.start_s),
+                sample_rate_hz,
+                clock,
+                ..info.clone()
+            }
         };
         let channels = self.item.channels().iter().zip(&self.times);
         let channels: Vec<ChannelInfo> = channels.map(written).collect();
