@@ -184,8 +184,14 @@ impl<'a> Signal<'a> {
     fn bent(&self, stretch: &Stretch) -> Option<Stretch> {
         let (first, last) = stretch.samples;
         let fit = LocalFit::new(self.values, first, last, self.degree + 1)?;
+        let freedom = (last - first)
+            .checked_sub(self.degree + 2)
+            .filter(|f| *f > 0)?;
+        let scatter = (fit.residual_squares / freedom as f64).sqrt();
+        let correlated = correlation(self.values, &fit, first, last);
         Some(Stretch {
             fit,
+            deviation: scatter.max(0.5 * self.noise) * correlated,
             ..stretch.clone()
         })
     }
@@ -227,10 +233,13 @@ struct Kink {
 }
 
 impl Kink {
-    /// The variance of the difference of two nested fits is that of their variances.
+    /// The variance of the difference of two nested fits is that of their variances, both by the scatter about the part,
+    /// which what is no flight has not enlarged.
     fn of(whole: &Stretch, part: &Stretch, time: f64) -> Self {
         let apart = (whole.speed(time) - part.speed(time)).abs();
-        let variance = part.noise_error(time).powi(2) - whole.noise_error(time).powi(2);
+        let same_scatter = part.deviation / whole.deviation;
+        let variance =
+            part.noise_error(time).powi(2) - (same_scatter * whole.noise_error(time)).powi(2);
         let expected = variance.max(0.0) + (SPEED_SCATTER * whole.speed(time)).powi(2);
         Self {
             deviates: apart / expected.sqrt().max(f64::MIN_POSITIVE),

@@ -367,7 +367,7 @@ fn two_balls_that_bounce_side_by_side_are_no_two_masses() {
                 (place, speed) = (0.0, -restitution * speed);
             }
         }
-        assert!(fallen > 3.0);
+        assert!(fallen > 2.0);
         out
     };
     let (x, y) = (height(0.9), height(0.6));
