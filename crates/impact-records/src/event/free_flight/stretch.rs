@@ -20,7 +20,7 @@ const BENT: f64 = 16.0;
 /// Standard errors by which the speed beside a fall may differ between a stretch and the parts of it next to the fall.
 const KINKED: f64 = 3.0;
 /// Those parts, as shares of the stretch.
-const NEAREST: [f64; 2] = [0.5, 0.25];
+const NEAREST: [f64; 4] = [0.5, 0.25, 0.125, 0.0625];
 /// Standard errors of a velocity from which a sample moves.
 const MOVES: f64 = 4.0;
 /// Samples by which a stretch is shortened: one in this many.
