@@ -59,7 +59,7 @@ pub enum Note {
     Drifts,
     /// The damping ratio changes over the decay.
     DampingChanges,
-    /// The record ends after too few periods for a test of the decay.
+    /// The record holds too few periods of motion for a test of the decay.
     FewPeriods {
         /// How many.
         periods: f64,

@@ -24,9 +24,18 @@ const BEYOND: f64 = 0.1;
 const ADDED: f64 = 0.6;
 /// Acceleration after an impact over that before it, at most: friction turns around.
 const TURNED: f64 = 2.0;
-/// How many times as long as the falls beside it a flight lasts that is none of a ringing, whose velocity rises for
-/// as long as it falls.
-const LONG: usize = 2;
+/// What rings after a contact. `prop_separation_speeds_hold_the_truth_over_a_range_of_what_is_taken_for_ringing` has the
+/// same share of intervals hold the truth from half to twice of each.
+#[derive(Debug, Clone, Copy)]
+struct Ringing {
+    /// How many times as long as the falls beside it a flight lasts that is none of a ringing, whose velocity rises for
+    /// as long as it falls.
+    long: usize,
+    /// How many times as long as a contact its bumpers ring before a flight.
+    rings: usize,
+}
+
+const RINGING: Ringing = Ringing { long: 2, rings: 3 };
 /// Fewest samples of a mean of the separation speed.
 const LEAST_MEAN: usize = 3;
 /// Greatest ratio of separation to approach speed that an impact can have.
@@ -91,6 +100,7 @@ struct Search<'a> {
     falls: Vec<Fall>,
     relative: &'a [f64],
     greatest_m_s: f64,
+    ringing: Ringing,
 }
 
 /// What a flight shows of the force on the bodies.
@@ -143,6 +153,10 @@ fn separate_bodies(alone: usize, impacts: usize) -> Flag {
 
 impl<'a> Search<'a> {
     fn new(kinematics: &'a Kinematics, rig: RigKind) -> Self {
+        Self::beside(kinematics, rig, RINGING)
+    }
+
+    fn beside(kinematics: &'a Kinematics, rig: RigKind, ringing: Ringing) -> Self {
         let bodies = match rig {
             RigKind::Single => vec![&kinematics.x],
             RigKind::Double => vec![&kinematics.x, &kinematics.y],
@@ -156,6 +170,7 @@ impl<'a> Search<'a> {
             falls: velocity.map_or_else(Vec::new, |v| fall::find(v, greatest_m_s)),
             relative,
             greatest_m_s,
+            ringing,
         };
         search.falls = search.after_flights();
         search
@@ -171,7 +186,8 @@ impl<'a> Search<'a> {
         let last = count.checked_sub(1);
         let last = last.and_then(|i| self.stretches(i, Side::After));
         let duration = |i: usize| self.falls.get(i).map_or(0, |f| f.last - f.first);
-        let beside = |i: usize| LONG * duration(i).max(i.checked_sub(1).map_or(0, duration));
+        let beside =
+            |i: usize| self.ringing.long * duration(i).max(i.checked_sub(1).map_or(0, duration));
         let long = before.iter().enumerate();
         let long = long.filter_map(|(i, force)| force.filter(|f| f.samples > beside(i)));
         let long = long.chain(last.map(|own| Force::of(&own)));
@@ -249,7 +265,11 @@ impl<'a> Search<'a> {
         let bounds = self.bounds(index);
         self.bodies
             .iter()
-            .map(|body| stretch::find(body, side, self.falls[index], bounds, scale))
+            .map(|body| {
+                let fall = self.falls[index];
+                let ringing = self.ringing.rings * (fall.last - fall.first);
+                stretch::find(body, (side, ringing), fall, bounds, scale)
+            })
             .collect()
     }
 

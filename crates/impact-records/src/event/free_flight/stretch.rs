@@ -9,8 +9,6 @@ use crate::signal::whole;
 const MOST: usize = 1500;
 /// Samples beside a fall that may still belong to the contact, beside its own.
 const BESIDE: usize = 4;
-/// How many times as long as a contact its bumpers ring before a flight.
-const RINGS: usize = 3;
 /// Relative scatter of a speed beside the noise: wheels, rails and rolling friction are uneven.
 const UNEVEN: f64 = 4e-3;
 /// Scatter about a flight, in standard deviations of the noise, above which it is none.
@@ -262,12 +260,12 @@ fn correlation(values: &[f64], fit: &LocalFit, first: usize, last: usize) -> f64
 /// The longest stretch beside a fall that free flight explains: a line of the velocity or a parabola
 /// of the displacement.
 ///
-/// `bounds`: samples between the neighbouring falls; `greatest_m_s`: the scale of the speeds. Samples
+/// `rings`: samples after the fall in which its bumpers may ring; `bounds`: samples between the neighbouring falls; `greatest_m_s`: the scale of the speeds. Samples
 /// beside the fall that still belong to the contact are left out; of the possible stretches the one
 /// with the least error at the fall's middle is taken.
 pub(super) fn find(
     body: &Body,
-    side: Side,
+    (side, rings): (Side, usize),
     fall: Fall,
     bounds: (usize, usize),
     (rate_hz, greatest_m_s): (f64, f64),
@@ -279,7 +277,7 @@ pub(super) fn find(
     // what rings after the contact goes on for several times as long
     let ringing = match side {
         Side::Before => beside,
-        Side::After => beside.max(RINGS * (fall.last - fall.first)),
+        Side::After => beside.max(rings),
     };
     let later = std::iter::successors(Some(0), |s| Some(s + s / 4 + 1));
     let later = later.take_while(|s| *s <= ringing);

@@ -135,15 +135,23 @@ fn logarithm(decay: &Decay, frequency_hz: f64, error_hz: f64) -> Measured {
     }
 }
 
-/// Periods of the longest of decays that all were cut off too early for a test whether they are viscous; `None` if
-/// one was not.
+/// Periods of the motion in a decay, which may stick before the decay is over.
+fn moving(decay: &Decay) -> f64 {
+    let rubbed = decay.beside_friction.filter(|b| b.sticks);
+    rubbed.map_or(decay.periods, |b| b.periods)
+}
+
+/// Periods of the longest of decays that all were cut off, or stuck, too early for a test whether they are viscous; `None`
+/// if one was not.
 fn too_short(decays: &[&Decay]) -> Option<f64> {
+    let sticks = |d: &&Decay| d.beside_friction.is_some_and(|b| b.sticks);
     let cut_off = |d: &&Decay| {
         let turns = std::f64::consts::TAU * d.periods;
         d.periods < LEAST_TESTED && (-d.damping_ratio * turns).exp() > RESOLVED
     };
-    let longest = decays.iter().map(|d| d.periods).fold(0.0, f64::max);
-    decays.iter().all(cut_off).then_some(longest)
+    let longest = decays.iter().map(|d| moving(d)).fold(0.0, f64::max);
+    let short = |d: &&Decay| cut_off(d) || (sticks(d) && moving(d) < LEAST_TESTED);
+    decays.iter().all(short).then_some(longest)
 }
 
 /// Make f0 and β weak for a reason, if they are no weaker.
