@@ -296,7 +296,7 @@ fn every_dependency_is_used() {
 
 /// The layers of the identification in order: a unit of `identify` (a file or a folder) imports only from
 /// those before it.
-const LAYERS: [&str; 22] = [
+const LAYERS: [&str; 21] = [
     "method",
     "parameters",
     "solver",
@@ -305,7 +305,6 @@ const LAYERS: [&str; 22] = [
     "messages",
     "method_fit",
     "estimate",
-    "answer",
     "methods",
     "plan",
     "replay",

@@ -3,8 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::answer::MethodResult;
 use crate::identify::evidence::Evidence;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::methods::boundaries::block::{BoundaryBlock, predicted_hz};
 use crate::identify::methods::boundaries::posterior::{self, Posterior};
 use crate::identify::methods::boundaries::result;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::identify::evidence::Evidence;
 use crate::identify::method::Method;
 use crate::identify::methods::fit::FitResult;
-use crate::identify::methods::found::Found;
+use crate::identify::methods::fits::Fits;
 use crate::identify::methods::impacts::{self, block::ImpactBlock};
 use crate::identify::methods::selection::Selection;
 use crate::identify::parameters::{Coordinate, Parameters};
@@ -13,11 +13,11 @@ use crate::identify::statistics::scatter::Spread;
 use impact_records::motion::Observation;
 
 /// First values: those of the resonance curve, with R of the speeds at impacts.
-pub(super) fn first_values(selection: &Selection<'_>, resonance: Option<FitResult>) -> Found {
+pub(super) fn first_values(selection: &Selection<'_>, resonance: Option<FitResult>) -> Fits {
     let (blocks, nominal) = (&selection.blocks, &selection.evidence.nominal);
     let begin = start(selection.evidence, resonance.as_ref());
     let impacts = impacts::fit::from(blocks, nominal, begin);
-    let mut found = Found::new(with_restitution(begin, &impacts, &blocks.impact));
+    let mut found = Fits::new(with_restitution(begin, &impacts, &blocks.impact));
     found.set(Method::Resonance, resonance);
     found.set(Method::Impacts, impacts);
     found

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::answer::{Agreement, JointFit, MethodResult, Verdict};
 use crate::identify::messages::{Finding, LeftOut};
 use crate::identify::method::Method;
+use crate::identify::methods::answer::{Agreement, JointFit, MethodResult, Verdict};
 use crate::identify::residuals::MethodResiduals;
 use crate::identify::uncertainty::Uncertainty;
 

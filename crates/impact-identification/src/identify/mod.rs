@@ -5,7 +5,6 @@
 //! [`uncertainty`] and [`diagnostics`] (does the model fit, do the methods agree, was there a mistake). What it states is typed
 //! ([`messages`]); sentences are made when it is printed.
 
-mod answer;
 pub mod boundary_plan;
 pub mod diagnostics;
 pub mod estimate;
@@ -31,11 +30,11 @@ pub mod statistics;
 pub mod uncertainty;
 mod widening;
 
-pub use answer::{Agreement, Allowed, JointFit, MethodResult, Verdict, VerdictKind};
 pub use estimate::{Estimate, ParameterSet, Status};
 pub use identification::{Identification, Provenance, SpecimenResult};
 pub use messages::{Finding, Item, LeftOut, Note, PairAgreement, Reason, Remark, Sentence};
 pub use method::{Estimator, Method};
+pub use methods::answer::{Agreement, Allowed, JointFit, MethodResult, Verdict, VerdictKind};
 pub use parameters::GAIN_ROLES;
 pub use parameters::effect::Effect;
 pub use specimens::identify_campaign;

@@ -7,11 +7,11 @@ use argmin::core::{CostFunction, Executor};
 use argmin::solver::brent::BrentOpt;
 use serde::Deserialize;
 
-use crate::identify::answer::{MethodResult, Verdict, VerdictKind};
 use crate::identify::estimate::{estimate, not_identifiable};
 use crate::identify::identification::Identification;
 use crate::identify::messages::{Finding, Note, PublishedSetting, Remark, Sentence};
 use crate::identify::method::Method;
+use crate::identify::methods::answer::{MethodResult, Verdict, VerdictKind};
 use crate::identify::parameters::Coordinate;
 use crate::identify::statistics::quantile::NORMAL_975;
 use impact_oscillator::model::orbit::Branch;

@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::answer::MethodResult;
 use crate::identify::evidence::Evidence;
 use crate::identify::method::Method;
-use crate::identify::methods::REGISTRY;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::methods::fit::{self, FitResult};
-use crate::identify::methods::found::Found;
+use crate::identify::methods::fits::Fits;
+use crate::identify::methods::registry::REGISTRY;
 use crate::identify::methods::selection::Selection;
 use crate::identify::parameters::Coordinate;
 
 /// What each method found.
-pub fn alone(selection: &Selection<'_>, found: &Found) -> BTreeMap<Method, MethodResult> {
+pub fn alone(selection: &Selection<'_>, found: &Fits) -> BTreeMap<Method, MethodResult> {
     let each = REGISTRY.iter();
     each.filter_map(|of| Some((of.method(), of.result(selection, found)?)))
         .collect()

@@ -1,10 +1,9 @@
 //! The whole identification in steps: first values, each method alone and all together, gaps that are off, records
 //! with too much influence, what is suspect, what the results leave open beside their fits, the verdict. One state,
-//! [`Found`], passes between them.
+//! [`Fits`], passes between them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::identify::answer::{Allowed, JointFit, MethodResult};
 use crate::identify::diagnostics::beyond;
 use crate::identify::diagnostics::change::{self, Change};
 use crate::identify::diagnostics::clock;
@@ -28,14 +27,16 @@ use crate::identify::messages::cause::Cause;
 use crate::identify::messages::{Finding, Item, LeftOut, Reason};
 use crate::identify::method::Method;
 use crate::identify::method_fit::MethodFit;
+use crate::identify::methods::answer::{Allowed, JointFit, MethodResult};
 use crate::identify::methods::blocks::Blocks;
 use crate::identify::methods::boundaries::Boundaries;
 use crate::identify::methods::boundaries::posterior::Posterior;
-use crate::identify::methods::found::Found;
+use crate::identify::methods::fits::Fits;
+use crate::identify::methods::identifier::Identifier;
 use crate::identify::methods::impacts::{self, Impacts};
 use crate::identify::methods::joint::{self, Weights};
+use crate::identify::methods::registry::REGISTRY;
 use crate::identify::methods::selection::Selection;
-use crate::identify::methods::{Identifier, REGISTRY};
 use crate::identify::parameters::effect::{Effect, EffectKind};
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::residuals::{self, MethodResiduals};
@@ -123,7 +124,7 @@ fn contacts_last(found: &MethodFit) -> bool {
 struct IdentificationRun<'a> {
     evidence: &'a Evidence<'a>,
     selection: Selection<'a>,
-    found: Found,
+    found: Fits,
 }
 
 impl IdentificationRun<'_> {

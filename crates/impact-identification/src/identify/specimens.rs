@@ -2,13 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::identify::answer::{MethodResult, Verdict, VerdictKind};
 use crate::identify::estimate;
 use crate::identify::estimate::Status;
 use crate::identify::evidence::Evidence;
 use crate::identify::identification::{Identification, SpecimenResult};
 use crate::identify::messages::{Finding, Item, LeftOut, Note, Sentence};
 use crate::identify::method::Method;
+use crate::identify::methods::answer::{MethodResult, Verdict, VerdictKind};
 use crate::identify::methods::decays;
 use crate::identify::parameters::Coordinate;
 use crate::identify::run::identify;

@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::answer::{Agreement, MethodResult};
 use crate::identify::diagnostics::agreement::{
     agreement, between_methods, carried_on, which_restitution,
 };
@@ -13,7 +12,8 @@ use crate::identify::estimate::{self, ParameterSet};
 use crate::identify::evidence::Evidence;
 use crate::identify::messages::Remark;
 use crate::identify::method::Method;
-use crate::identify::methods::found::Found;
+use crate::identify::methods::answer::{Agreement, MethodResult};
+use crate::identify::methods::fits::Fits;
 use crate::identify::methods::impacts::Impacts;
 use crate::identify::methods::selection::Selection;
 use crate::identify::parameters::Coordinate;
@@ -32,7 +32,7 @@ pub(super) struct Widened {
 
 impl Widened {
     /// The results as the fits have them.
-    pub(super) fn new(selection: &Selection<'_>, found: &Found) -> Self {
+    pub(super) fn new(selection: &Selection<'_>, found: &Fits) -> Self {
         let methods = results::alone(selection, found);
         Self {
             joint: results::joint(selection.evidence, found.joint.as_ref(), &methods),
@@ -69,7 +69,7 @@ impl Widened {
 
     /// Compare the methods, with estimates that are final but for what they share, and widen the joint ones by what
     /// they disagree on. Multiple shooting takes the rig for ideal: where it is not, it is no witness.
-    pub(super) fn by_agreement(&mut self, found: &Found, is_ideal: bool) -> Agreement {
+    pub(super) fn by_agreement(&mut self, found: &Fits, is_ideal: bool) -> Agreement {
         let compared = if is_ideal {
             agreement(&self.methods)
         } else {
@@ -113,7 +113,7 @@ impl Widened {
     fn widen_apart(
         &mut self,
         apart: Vec<(Coordinate, f64)>,
-        found: &Found,
+        found: &Fits,
     ) -> Vec<(Coordinate, f64)> {
         let fit = found.together().map(|f| &f.fit);
         let carried = fit.map_or_else(Vec::new, |fit| carried_on(fit, &apart));

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::identify::answer::{Agreement, MethodResult};
 use crate::identify::estimate::{Estimate, Status};
 use crate::identify::messages::{PairAgreement, Remark};
 use crate::identify::method::Method;
+use crate::identify::methods::answer::{Agreement, MethodResult};
 use crate::identify::parameters::Coordinate;
 use crate::identify::solver::Fit;
 use crate::identify::statistics::distribution::normal_tail;

@@ -7,11 +7,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::answer::MethodResult;
 use crate::identify::estimate::{Estimate, Status};
 use crate::identify::messages::cause::Cause;
 use crate::identify::messages::{Finding, Note};
 use crate::identify::method::Method;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::parameters::Coordinate;
 
 impl Cause {

@@ -9,12 +9,12 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::identify::answer::MethodResult;
 use crate::identify::estimate::{Estimate, Status, estimate_within};
 use crate::identify::evidence::Evidence;
 use crate::identify::first_values::part_alone;
 use crate::identify::messages::{Finding, Note, StatedValue};
 use crate::identify::method::Method;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::methods::blocks::Blocks;
 use crate::identify::methods::selection::Selection;
 use crate::identify::parameters::effect::Effect;

@@ -7,11 +7,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::answer::MethodResult;
 use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
 use crate::identify::diagnostics::stated_frequencies;
 use crate::identify::estimate;
 use crate::identify::messages::{Finding, Note};
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::parameters::Coordinate;
 use crate::identify::statistics::quantile::{NORMAL_975, student_975};
 use impact_records::motion::Observation;

@@ -1,9 +1,9 @@
 //! What a mistake that the data give away leaves open in the estimates.
 
-use crate::identify::answer::MethodResult;
 use crate::identify::estimate;
 use crate::identify::messages::{Finding, Note};
 use crate::identify::method_fit::MethodFit;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::parameters::Coordinate;
 
 /// How far a parameter may be off beside its own uncertainty.

@@ -1,9 +1,9 @@
 //! Parameters that a campaign asks for and no method tells: each gets the reason instead of a value.
 
-use crate::identify::answer::MethodResult;
 use crate::identify::estimate::not_identifiable;
 use crate::identify::evidence::Evidence;
 use crate::identify::messages::Note;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::parameters::Coordinate;
 use impact_records::event::{FlightKind, RigKind};
 use impact_records::motion::Observation;

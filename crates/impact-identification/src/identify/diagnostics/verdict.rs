@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::answer::{Agreement, MethodResult, Verdict, VerdictKind};
 use crate::identify::estimate::{Estimate, Status};
 use crate::identify::messages::cause::Cause;
 use crate::identify::messages::{Finding, Note, Remark, Sentence, StatedValue};
 use crate::identify::method::Method;
+use crate::identify::methods::answer::{Agreement, MethodResult, Verdict, VerdictKind};
 use crate::identify::parameters::Coordinate;
 
 /// R from the impacts alone that is not one number makes the joint R no better.

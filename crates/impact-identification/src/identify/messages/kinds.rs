@@ -62,9 +62,9 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::identify::answer::Agreement;
     use crate::identify::messages::direction::Direction;
     use crate::identify::messages::{DampingPoint, GroupPoint, PublishedSetting, StatedValue};
+    use crate::identify::methods::answer::Agreement;
     use crate::identify::parameters::Coordinate;
     use crate::identify::plan::Obstacle;
     use impact_records::message::{faults, plain};

@@ -1,10 +1,10 @@
 //! A fit of blocks of residuals, and what is made of it.
 
-use crate::identify::answer::MethodResult;
 use crate::identify::estimate;
 use crate::identify::evidence::Nominal;
 use crate::identify::messages::{Note, Remark};
 use crate::identify::method_fit::MethodFit;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::methods::blocks::Blocks;
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::{Block, FitError, Precision, Prior, Problem};

@@ -11,11 +11,11 @@ pub mod surroundings;
 
 use std::collections::BTreeSet;
 
-use crate::identify::answer::MethodResult;
 use crate::identify::method::Method;
-use crate::identify::methods::Identifier;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::methods::boundaries::surroundings::Surroundings;
-use crate::identify::methods::found::Found;
+use crate::identify::methods::fits::Fits;
+use crate::identify::methods::identifier::Identifier;
 use crate::identify::methods::selection::Selection;
 
 /// The brackets.
@@ -27,7 +27,7 @@ impl Identifier for Boundaries {
     }
 
     /// By their posterior of R beside a resonance curve, else by least squares.
-    fn fit(&self, selection: &mut Selection<'_>, found: &mut Found) {
+    fn fit(&self, selection: &mut Selection<'_>, found: &mut Fits) {
         let start = found.start();
         selection.choose_brackets(&start);
         let (blocks, nominal) = (&selection.blocks, &selection.evidence.nominal);
@@ -50,7 +50,7 @@ impl Identifier for Boundaries {
         selection.observed(|o| names.contains(&o.record))
     }
 
-    fn result(&self, selection: &Selection<'_>, found: &Found) -> Option<MethodResult> {
+    fn result(&self, selection: &Selection<'_>, found: &Fits) -> Option<MethodResult> {
         let blocks = &selection.blocks;
         match found.posterior.as_ref().zip(found.curve()) {
             Some((posterior, curve)) => {

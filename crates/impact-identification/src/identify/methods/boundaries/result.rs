@@ -1,8 +1,8 @@
 //! What the brackets give.
 
-use crate::identify::answer::MethodResult;
 use crate::identify::estimate::{self, Estimate};
 use crate::identify::messages::Remark;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::methods::blocks::Blocks;
 use crate::identify::methods::boundaries::midpoints;
 use crate::identify::methods::boundaries::posterior::Posterior;

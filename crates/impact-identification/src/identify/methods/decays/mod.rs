@@ -6,13 +6,13 @@ mod dry_friction;
 
 use std::collections::BTreeMap;
 
-use crate::identify::answer::MethodResult;
 use crate::identify::estimate::{self, Estimate, Status};
 use crate::identify::messages::{DampingPoint, Item, LeftOut, Note, Reason, Remark};
 use crate::identify::method::Method;
-use crate::identify::methods::Identifier;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::methods::decays::dry_friction::{CHANGES, Shared};
-use crate::identify::methods::found::Found;
+use crate::identify::methods::fits::Fits;
+use crate::identify::methods::identifier::Identifier;
 use crate::identify::methods::selection::Selection;
 use crate::identify::parameters::Coordinate;
 use crate::identify::parameters::effect::{Effect, Effects};
@@ -34,7 +34,7 @@ impl Identifier for FreeDecays {
         selection.observed(|o| !o.excluded() && !o.decays.is_empty())
     }
 
-    fn result(&self, selection: &Selection<'_>, _: &Found) -> Option<MethodResult> {
+    fn result(&self, selection: &Selection<'_>, _: &Fits) -> Option<MethodResult> {
         pooled(
             selection.evidence.observations,
             selection.evidence.nominal.effects,

@@ -7,14 +7,14 @@
 mod rows;
 mod scatter;
 
-use crate::identify::answer::MethodResult;
 use crate::identify::estimate;
 use crate::identify::messages::Remark;
 use crate::identify::method::Method;
-use crate::identify::methods::Identifier;
+use crate::identify::methods::answer::MethodResult;
+use crate::identify::methods::fits::Fits;
 use crate::identify::methods::flight_times::rows::{Fitted, Row, Rows, fitted, rows};
 use crate::identify::methods::flight_times::scatter::{RowEstimate, Scatter};
-use crate::identify::methods::found::Found;
+use crate::identify::methods::identifier::Identifier;
 use crate::identify::methods::impacts::structure::{
     self, GroupedRatio, Grouping, ImpactGroup, ImpactGroups,
 };
@@ -37,7 +37,7 @@ impl Identifier for FlightTimes {
         selection.observed(|o| !o.excluded() && is_timed(o))
     }
 
-    fn result(&self, selection: &Selection<'_>, _: &Found) -> Option<MethodResult> {
+    fn result(&self, selection: &Selection<'_>, _: &Fits) -> Option<MethodResult> {
         pooled(selection.evidence.observations)
     }
 }

@@ -5,10 +5,10 @@ mod fit;
 mod result;
 mod select;
 
-use crate::identify::answer::MethodResult;
 use crate::identify::method::Method;
-use crate::identify::methods::Identifier;
-use crate::identify::methods::found::Found;
+use crate::identify::methods::answer::MethodResult;
+use crate::identify::methods::fits::Fits;
+use crate::identify::methods::identifier::Identifier;
 use crate::identify::methods::selection::Selection;
 
 /// Multiple shooting.
@@ -19,12 +19,12 @@ impl Identifier for Flights {
         Method::Flights
     }
 
-    fn fit(&self, selection: &mut Selection<'_>, found: &mut Found) {
+    fn fit(&self, selection: &mut Selection<'_>, found: &mut Fits) {
         let fitted = selection.fit_flights(found.start());
         found.set(self.method(), fitted);
     }
 
-    fn weight(&self, _: &Selection<'_>, found: &Found) -> Option<f64> {
+    fn weight(&self, _: &Selection<'_>, found: &Fits) -> Option<f64> {
         let fitted = found.of(self.method())?;
         found.joins_flights().then(|| 1.0 / fitted.factor)
     }
@@ -33,7 +33,7 @@ impl Identifier for Flights {
         selection.blocks.owners(self.method())
     }
 
-    fn result(&self, selection: &Selection<'_>, found: &Found) -> Option<MethodResult> {
+    fn result(&self, selection: &Selection<'_>, found: &Fits) -> Option<MethodResult> {
         let fitted = found.attempt(self.method())?;
         Some(result::result(&selection.blocks, fitted))
     }

@@ -1,7 +1,7 @@
 //! What multiple shooting gives.
 
-use crate::identify::answer::MethodResult;
 use crate::identify::messages::Remark;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::methods::blocks::Blocks;
 use crate::identify::methods::fit::{self, FitResult};
 use crate::identify::parameters::Coordinate;

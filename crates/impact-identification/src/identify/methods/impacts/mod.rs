@@ -11,11 +11,11 @@ pub mod within_record;
 
 pub use result::impact;
 
-use crate::identify::answer::MethodResult;
 use crate::identify::messages::Finding;
 use crate::identify::method::Method;
-use crate::identify::methods::Identifier;
-use crate::identify::methods::found::Found;
+use crate::identify::methods::answer::MethodResult;
+use crate::identify::methods::fits::Fits;
+use crate::identify::methods::identifier::Identifier;
 use crate::identify::methods::selection::Selection;
 
 /// The speeds at impacts.
@@ -39,7 +39,7 @@ impl Identifier for Impacts {
     }
 
     /// Beside the first fit, which gives the waveforms their start, with the channels' delays that these tell.
-    fn fit(&self, selection: &mut Selection<'_>, found: &mut Found) {
+    fn fit(&self, selection: &mut Selection<'_>, found: &mut Fits) {
         let start = found.start();
         let told = found.waveforms().or(found.curve()).is_some();
         if told && selection.blocks.delay_impacts(&start) {
@@ -49,7 +49,7 @@ impl Identifier for Impacts {
     }
 
     /// None with speeds that impacts seem to gain, which tell no R.
-    fn weight(&self, selection: &Selection<'_>, found: &Found) -> Option<f64> {
+    fn weight(&self, selection: &Selection<'_>, found: &Fits) -> Option<f64> {
         let block = &selection.blocks.impact;
         let law = contact_law::contact_law(block);
         let gained = law.is_some_and(|law| law.gained().is_some());
@@ -63,7 +63,7 @@ impl Identifier for Impacts {
         selection.blocks.owners(self.method())
     }
 
-    fn result(&self, selection: &Selection<'_>, found: &Found) -> Option<MethodResult> {
+    fn result(&self, selection: &Selection<'_>, found: &Fits) -> Option<MethodResult> {
         let fitted = found.attempt(self.method())?;
         let Selection {
             blocks, evidence, ..

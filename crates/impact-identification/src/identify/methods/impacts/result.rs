@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use crate::identify::answer::MethodResult;
 use crate::identify::estimate::{Estimate, not_identifiable};
 use crate::identify::evidence::Evidence;
 use crate::identify::messages::{Item, Note, Remark, SpeedPoint};
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::methods::blocks::Blocks;
 use crate::identify::methods::fit::{self, FitResult};
 use crate::identify::methods::impacts::bias::impact_bias;

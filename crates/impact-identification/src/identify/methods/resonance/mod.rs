@@ -5,11 +5,11 @@ pub mod fit;
 mod result;
 mod select;
 
-use crate::identify::answer::MethodResult;
 use crate::identify::method::Method;
-use crate::identify::methods::Identifier;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::methods::fit::FitResult;
-use crate::identify::methods::found::Found;
+use crate::identify::methods::fits::Fits;
+use crate::identify::methods::identifier::Identifier;
 use crate::identify::methods::selection::Selection;
 
 /// The resonance curve.
@@ -21,7 +21,7 @@ impl Identifier for Resonance {
     }
 
     /// Beside the first fit, which gives the waveforms their start, from where they are.
-    fn fit(&self, selection: &mut Selection<'_>, found: &mut Found) {
+    fn fit(&self, selection: &mut Selection<'_>, found: &mut Fits) {
         if let Some(waveforms) = found.waveforms().map(|f| f.fit.parameters) {
             let before = found.take(self.method());
             let fitted = selection.fit_resonance_again(before, &waveforms);
@@ -29,7 +29,7 @@ impl Identifier for Resonance {
         }
     }
 
-    fn fit_again(&self, selection: &Selection<'_>, found: &Found) -> Option<FitResult> {
+    fn fit_again(&self, selection: &Selection<'_>, found: &Fits) -> Option<FitResult> {
         fit::from(&selection.blocks, &selection.evidence.nominal, found.begin)
     }
 
@@ -37,7 +37,7 @@ impl Identifier for Resonance {
         selection.blocks.owners(self.method())
     }
 
-    fn result(&self, selection: &Selection<'_>, found: &Found) -> Option<MethodResult> {
+    fn result(&self, selection: &Selection<'_>, found: &Fits) -> Option<MethodResult> {
         let fitted = found.attempt(self.method())?;
         Some(result::result(&selection.blocks, fitted))
     }

@@ -1,7 +1,7 @@
 //! What the resonance curve gives, and whether it is that of one degree of freedom.
 
-use crate::identify::answer::MethodResult;
 use crate::identify::messages::Remark;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::methods::blocks::Blocks;
 use crate::identify::methods::fit::{self, FitResult};
 use crate::identify::methods::resonance::block::{ResonanceBlock, predicted};

@@ -10,11 +10,11 @@ mod result;
 pub(super) mod select;
 mod starts;
 
-use crate::identify::answer::MethodResult;
 use crate::identify::method::Method;
-use crate::identify::methods::Identifier;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::methods::fit::FitResult;
-use crate::identify::methods::found::Found;
+use crate::identify::methods::fits::Fits;
+use crate::identify::methods::identifier::Identifier;
 use crate::identify::methods::selection::Selection;
 use crate::identify::solver::Precision;
 
@@ -26,11 +26,11 @@ impl Identifier for Trajectories {
         Method::Trajectories
     }
 
-    fn fit(&self, selection: &mut Selection<'_>, found: &mut Found) {
+    fn fit(&self, selection: &mut Selection<'_>, found: &mut Fits) {
         found.set(self.method(), selection.fit_trajectories(found.begin));
     }
 
-    fn fit_again(&self, selection: &Selection<'_>, found: &Found) -> Option<FitResult> {
+    fn fit_again(&self, selection: &Selection<'_>, found: &Fits) -> Option<FitResult> {
         let (blocks, nominal) = (&selection.blocks, &selection.evidence.nominal);
         fit::from(blocks, nominal, found.begin, Precision::Result)
     }
@@ -39,7 +39,7 @@ impl Identifier for Trajectories {
         selection.blocks.owners(self.method())
     }
 
-    fn result(&self, selection: &Selection<'_>, found: &Found) -> Option<MethodResult> {
+    fn result(&self, selection: &Selection<'_>, found: &Fits) -> Option<MethodResult> {
         let fitted = found.attempt(self.method())?;
         let Selection {
             blocks, evidence, ..

@@ -1,8 +1,8 @@
 //! What waveforms give, and whether they are those of the closed-form orbits.
 
-use crate::identify::answer::MethodResult;
 use crate::identify::evidence::Evidence;
 use crate::identify::messages::Remark;
+use crate::identify::methods::answer::MethodResult;
 use crate::identify::methods::blocks::Blocks;
 use crate::identify::methods::fit::{self, FitResult};
 use crate::identify::methods::trajectories::block::TrajectoryBlock;

@@ -11,7 +11,7 @@ use crate::identify::parameters::Parameters;
 
 /// The fits of the methods, each alone, and of all together.
 #[derive(Debug)]
-pub struct Found {
+pub struct Fits {
     /// Where the first fit of the waveforms starts.
     pub begin: Parameters,
     alone: BTreeMap<Method, FitResult>,
@@ -23,7 +23,7 @@ pub struct Found {
     pub weights: Weights,
 }
 
-impl Found {
+impl Fits {
     /// Nothing but a start.
     pub fn new(begin: Parameters) -> Self {
         Self {
