@@ -15,7 +15,7 @@ use crate::motion::late_channel::LateChannel;
 use crate::motion::response::{Response, responses};
 use crate::motion::undetermined::Undetermined;
 use crate::record::{Excitation, Flag, FlagCode, Record, Role, Setting};
-use crate::signal::decay::{self, Decay, Quantity, Watched};
+use crate::signal::decay::{self, Decay, MotionSignal, Watched};
 use crate::signal::robust;
 use labfiles::units::Dimension;
 
@@ -355,11 +355,11 @@ pub fn scale_drives(observations: &mut [Observation]) {
 const DRIVE_CHANGES: f64 = 5e-3;
 
 /// What of the motion a channel of a role shows.
-fn quantity(role: Role) -> Quantity {
+fn quantity(role: Role) -> MotionSignal {
     match role.dimension() {
-        Some(Dimension::Velocity) => Quantity::Velocity,
-        Some(Dimension::Acceleration) => Quantity::Acceleration,
-        _ => Quantity::Displacement,
+        Some(Dimension::Velocity) => MotionSignal::Velocity,
+        Some(Dimension::Acceleration) => MotionSignal::Acceleration,
+        _ => MotionSignal::Displacement,
     }
 }
 

@@ -5,8 +5,6 @@ use serde::{Deserialize, Serialize};
 use super::{DampingPoint, Item, Note};
 use crate::identify::messages::cause::Cause;
 use crate::identify::method::Method;
-use crate::identify::methods::impacts::structure::ImpactGroup;
-use crate::identify::statistics::quantile::NORMAL_975;
 use impact_records::message::{Message, Value};
 use impact_records::signal::decay::DampingLaw;
 use impact_records::{message_table, messages};
@@ -29,17 +27,6 @@ pub struct GroupPoint {
     pub restitution: f64,
     /// Half its 95 % interval.
     pub half_width: f64,
-}
-
-impl GroupPoint {
-    /// Of a group of impacts.
-    pub fn of(group: &ImpactGroup) -> Self {
-        Self {
-            group: group.group.clone(),
-            restitution: group.restitution.min(1.0),
-            half_width: NORMAL_975 * group.standard_error,
-        }
-    }
 }
 
 impl Message for GroupPoint {

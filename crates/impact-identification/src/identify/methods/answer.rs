@@ -60,7 +60,7 @@ impl MethodResult {
             Grouping::Bounce => &groups.by_bounce,
             Grouping::Record => &groups.by_record,
         };
-        let points: Vec<GroupPoint> = by.iter().map(GroupPoint::of).collect();
+        let points: Vec<GroupPoint> = by.iter().map(GroupPoint::from).collect();
         let values: Vec<f64> = by.iter().map(|g| g.restitution).collect();
         self.fits = Some(false);
         // A law over the speed, if there is one, has been named already; it is the same structure.

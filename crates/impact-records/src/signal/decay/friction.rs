@@ -21,7 +21,7 @@ use crate::signal::{robust, whole};
 
 /// What of a motion a channel shows.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Quantity {
+pub enum MotionSignal {
     /// Displacement, or what is proportional to it.
     #[default]
     Displacement,
@@ -62,13 +62,13 @@ fn rate(rates: &Rates) -> Complex<f64> {
 }
 
 /// Complex amplitude at the first sample of the displacement whose derivative a fit describes.
-fn displacement(point: &Point, quantity: Quantity) -> Complex<f64> {
+fn displacement(point: &Point, quantity: MotionSignal) -> Complex<f64> {
     let [a, b] = point.amplitudes();
     Complex::new(a, -b) * rate(&point.rates).powi(-(quantity as i32))
 }
 
 /// Time of a turning point near the first sample, after which the velocity is negative.
-pub(super) fn turning(point: &Point, quantity: Quantity) -> f64 {
+pub(super) fn turning(point: &Point, quantity: MotionSignal) -> f64 {
     let velocity = displacement(point, quantity) * rate(&point.rates);
     let phase = std::f64::consts::FRAC_PI_2 - velocity.arg();
     let turn = std::f64::consts::TAU;
@@ -78,7 +78,7 @@ pub(super) fn turning(point: &Point, quantity: Quantity) -> f64 {
 /// The response q to friction of the displacement one, at rest at its turning points.
 pub(super) struct Response {
     rates: Rates,
-    quantity: Quantity,
+    quantity: MotionSignal,
     /// Displacement at turning points; the one at the time that the rates name has the number `named`.
     turns: Vec<f64>,
     named: usize,
@@ -86,7 +86,7 @@ pub(super) struct Response {
 
 impl Response {
     /// From a sample before the first one to a last time, in samples.
-    pub(super) fn of(rates: Rates, quantity: Quantity, last: f64) -> Self {
+    pub(super) fn of(rates: Rates, quantity: MotionSignal, last: f64) -> Self {
         let [omega, sigma, _, begin] = rates;
         let half = std::f64::consts::PI / omega;
         let left = (-sigma * half).exp();
@@ -140,9 +140,9 @@ impl Response {
         let (sin, cos) = (omega * own).sin_cos();
         let squared = omega * omega + sigma * sigma;
         match self.quantity {
-            Quantity::Displacement => about + swung * (cos + sigma / omega * sin),
-            Quantity::Velocity => -swung * squared / omega * sin,
-            Quantity::Acceleration => -swung * squared * (cos - sigma / omega * sin),
+            MotionSignal::Displacement => about + swung * (cos + sigma / omega * sin),
+            MotionSignal::Velocity => -swung * squared / omega * sin,
+            MotionSignal::Acceleration => -swung * squared * (cos - sigma / omega * sin),
         }
     }
 
@@ -192,9 +192,9 @@ pub(super) fn slopes(series: &Series, rates: Rates) -> [Vec<f64>; 2] {
 
 /// The first turning point, in samples, from which no more than a swing is left: the displacement falls by 2 r from
 /// one to the next and sticks within r.
-fn last_turn(point: &Point, quantity: Quantity, count: usize) -> Option<usize> {
+fn last_turn(point: &Point, quantity: MotionSignal, count: usize) -> Option<usize> {
     let rest = point.friction().filter(|r| *r > 0.0)?;
-    let response = Response::of(point.rates, Quantity::Displacement, count as f64);
+    let response = Response::of(point.rates, MotionSignal::Displacement, count as f64);
     let own = displacement(point, quantity);
     let rate = rate(&point.rates);
     let sticks = |k: &usize| {
@@ -333,8 +333,8 @@ mod tests {
         let velocity = differentiated(&fine, 18_000.0);
         let acceleration = differentiated(&velocity, 18_000.0);
         for (quantity, values) in [
-            (Quantity::Velocity, velocity),
-            (Quantity::Acceleration, acceleration),
+            (MotionSignal::Velocity, velocity),
+            (MotionSignal::Acceleration, acceleration),
         ] {
             let values: Vec<f64> = values.into_iter().step_by(100).collect();
             let channel = Watched {

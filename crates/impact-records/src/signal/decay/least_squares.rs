@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::descent::{self, Projected, equations};
-use super::friction::{self, Quantity};
+use super::friction::{self, MotionSignal};
 use super::noise::Noise;
 use super::shape::{Rates, Shape};
 use crate::signal::columns::dot;
@@ -17,7 +17,7 @@ pub(super) struct Series {
     pub(super) degree: usize,
     pub(super) noise: Noise,
     /// What of the motion the values are.
-    pub(super) quantity: Quantity,
+    pub(super) quantity: MotionSignal,
     /// Samples that each value is the mean of.
     pub(super) factor: usize,
 }
@@ -51,7 +51,7 @@ impl Series {
             values,
             degree,
             noise: Noise::default(),
-            quantity: Quantity::default(),
+            quantity: MotionSignal::default(),
             factor: 1,
         }
     }

@@ -21,7 +21,7 @@ use prepared::Prepared;
 use shape::{Rates, Shape};
 
 pub use change::{Course, DampingLaw, Drift, LEAST_TESTED, PartOfDecay, RESOLVED};
-pub use friction::{BesideFriction, Quantity};
+pub use friction::{BesideFriction, MotionSignal};
 
 /// A fitted free decay.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -141,7 +141,7 @@ pub struct Watched<'a> {
     /// Samples.
     pub values: &'a [f64],
     /// What they are.
-    pub quantity: Quantity,
+    pub quantity: MotionSignal,
 }
 
 impl<'a> Watched<'a> {
@@ -149,7 +149,7 @@ impl<'a> Watched<'a> {
     pub fn displacement(values: &'a [f64]) -> Self {
         Self {
             values,
-            quantity: Quantity::Displacement,
+            quantity: MotionSignal::Displacement,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What oscillates at other frequencies than a decay: hum, other modes.
 
-use super::friction::Quantity;
+use super::friction::MotionSignal;
 use super::least_squares::Series;
 use super::prepared::{factor, free, means, peak, rough};
 use super::shape::{Rates, Shape};
@@ -38,13 +38,13 @@ struct Fitted {
 struct Own {
     /// `ω_d` and σ per sample.
     rates: [f64; 2],
-    quantity: Quantity,
+    quantity: MotionSignal,
 }
 
 /// Take what oscillates at other frequencies than the decay of given rates from samples, beginning with a
 /// known mode.
 pub(super) fn remove(
-    (samples, quantity): (&mut [f64], Quantity),
+    (samples, quantity): (&mut [f64], MotionSignal),
     [omega, sigma, ..]: Rates,
     known: Option<[f64; 2]>,
 ) -> Vec<Mode> {

@@ -1,6 +1,6 @@
 //! A decay made ready for its fit: where it begins and ends, what lies under it, the noise about it.
 
-use super::friction::Quantity;
+use super::friction::MotionSignal;
 use super::least_squares::{Point, Series};
 use super::modes::{self, Mode, STEADY};
 use super::noise::{Noise, structured};
@@ -77,7 +77,7 @@ impl Prepared {
     /// The decay of a part of a record with one blow or release. Where its first motion and all of it have
     /// unlike frequencies, as after a hammer's blow that excites a higher mode too, the one that lasts, if it
     /// decays at all.
-    pub(super) fn of(samples: &[f64], quantity: Quantity) -> Option<Self> {
+    pub(super) fn of(samples: &[f64], quantity: MotionSignal) -> Option<Self> {
         let begun = blows::begin(samples)?;
         let tail = &samples[begun.1..];
         let first_motion = |part: &[f64]| rough(part, peak(part)?);
@@ -107,7 +107,7 @@ impl Prepared {
     /// The decay of about given rates in a part of a record whose motion has begun, beside the one of a known
     /// mode.
     fn about(
-        (samples, quantity): (&[f64], Quantity),
+        (samples, quantity): (&[f64], MotionSignal),
         begun: (usize, usize),
         rates: [f64; 2],
         known: Option<[f64; 2]>,

@@ -3,7 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::identify::messages::GroupPoint;
 use crate::identify::methods::impacts::block::{ImpactBlock, SpeedPair};
+use crate::identify::statistics::quantile::NORMAL_975;
 use impact_records::motion::Observation;
 
 /// Share of campaigns of one R in which chance may look like a structure: that of three standard deviations.
@@ -38,6 +40,16 @@ pub struct ImpactGroups {
     pub by_bounce: Vec<ImpactGroup>,
     /// Of each record.
     pub by_record: Vec<ImpactGroup>,
+}
+
+impl From<&ImpactGroup> for GroupPoint {
+    fn from(group: &ImpactGroup) -> Self {
+        Self {
+            group: group.group.clone(),
+            restitution: group.restitution.min(1.0),
+            half_width: NORMAL_975 * group.standard_error,
+        }
+    }
 }
 
 /// A grouping that explains the scatter of R.
