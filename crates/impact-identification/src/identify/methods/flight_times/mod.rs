@@ -76,17 +76,7 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     }
     let stated_s = stated_error_s(&records);
     let scatter = Scatter::of(&fits, stated_s);
-    let all: Vec<ImpactGroup> = fits
-        .iter()
-        .zip(&scatter.rows)
-        .map(|((row, _), own)| ImpactGroup {
-            group: observations[row.record].record.clone(),
-            impacts: row.times_s.len(),
-            speed_m_s: None,
-            restitution: own.restitution,
-            standard_error: own.error,
-        })
-        .collect();
+    let all = by_row(&fits, &scatter, observations);
     let odd = odd_record(&all);
     let used = |i: &usize| Some(*i) != odd;
     let indices: Vec<usize> = (0..fits.len()).filter(used).collect();
@@ -132,11 +122,7 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         });
     }
     let several = ratios.len() > 1 && !rows.is_empty();
-    let rises = scatter::trend(&rows, stated_s).is_some_and(|trend| {
-        let chance = student_tail(trend.deviates, trend.freedom);
-        chance < structure::FALSE_ALARMS / QUESTIONS && trend.change > MATTERS
-    });
-    let grouping = if rises {
+    let grouping = if changes(&rows, stated_s) {
         Some(Grouping::Bounce)
     } else {
         between_records(&groups).or_else(|| structure::structure(&ratios))
@@ -145,6 +131,31 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         result.judge_structure(grouping);
     }
     Some(result)
+}
+
+/// R of each row.
+fn by_row(
+    fits: &[(&Row, Fitted)],
+    scatter: &Scatter,
+    observations: &[Observation],
+) -> Vec<ImpactGroup> {
+    let each = fits.iter().zip(&scatter.rows);
+    each.map(|((row, _), own)| ImpactGroup {
+        group: observations[row.record].record.clone(),
+        impacts: row.times_s.len(),
+        speed_m_s: None,
+        restitution: own.restitution,
+        standard_error: own.error,
+    })
+    .collect()
+}
+
+/// Whether R changes along the bounces.
+fn changes(rows: &[(&Row, Fitted)], stated_s: Option<f64>) -> bool {
+    scatter::trend(rows, stated_s).is_some_and(|trend| {
+        let chance = student_tail(trend.deviates, trend.freedom);
+        chance < structure::FALSE_ALARMS / QUESTIONS && trend.change > MATTERS
+    })
 }
 
 /// What the flights that are left out, and the impacts that seem to be missing, are to be known by.

@@ -191,7 +191,7 @@ impl Ratios {
         for share in &mut shares {
             share.weight = (share.weight - best).exp();
         }
-        (best.is_finite() && freedom > 0).then(|| Mixed {
+        (best.is_finite() && freedom > 0).then_some(Mixed {
             shares,
             freedom: freedom as f64,
         })
