@@ -191,7 +191,7 @@ fn the_coverage_of_the_intervals_is_printed() {
                 };
                 let mut coverage = Coverage::default();
                 for number in 0..records {
-                    let of_case = 1e4 * periods + 1e3 * friction + noise as i32 as f64;
+                    let of_case = 1e4 * periods + 1e3 * friction + f64::from(noise as i32);
                     let own = 1_000_000_000 * seed + 1000 * whole::index(of_case) as u64 + number;
                     if let Some(both) = shown(case, effects, own) {
                         coverage.add(both);
