@@ -1,7 +1,6 @@
 //! Distributions and their quantiles, and what the scatter between groups of observations adds to an error.
 
 pub mod distribution;
-pub mod propagation;
 pub mod quantile;
 pub mod scatter;
 pub mod shared_gains;

@@ -5,6 +5,7 @@ pub mod fit;
 pub mod jump;
 pub mod midpoints;
 pub mod posterior;
+pub mod propagation;
 pub mod result;
 mod select;
 pub mod surroundings;

@@ -21,10 +21,10 @@ use rayon::prelude::*;
 
 use crate::identify::methods::boundaries::block::{BoundaryBlock, predicted_hz};
 use crate::identify::methods::boundaries::jump::{Jump, Tilt, density, mills_ratio, normal};
+use crate::identify::methods::boundaries::propagation::{Factors, Propagation};
 use crate::identify::methods::boundaries::surroundings::{SimulatedBoundary, Surroundings};
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::Prior;
-use crate::identify::statistics::propagation::{Factors, Propagation};
 use impact_records::motion::{BoundaryKind, Bracket};
 
 /// What brackets say of R.
