@@ -101,10 +101,16 @@ impl Shared {
     /// β with its interval, from decays of which the longest has a number of periods.
     pub(super) fn estimate(&self, periods: f64) -> Estimate {
         let [low, high] = self.interval();
+        let (viscous, spread) = self.viscous;
+        // friction that is worth more than all damping is none: what is left is the viscous fit's limit
+        let high = if high > 0.0 {
+            high
+        } else {
+            viscous + spread.half95()
+        };
         let value = self.value();
         let error = 0.5 * (high - low) / self.quantile();
         let most = estimate::limits(Coordinate::Damping).0;
-        let (viscous, spread) = self.viscous;
         let undamped = viscous <= spread.half95();
         let is_weak = undamped || low <= 0.0 || error > most * value;
         let note = if undamped {
