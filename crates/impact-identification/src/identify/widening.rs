@@ -62,9 +62,17 @@ impl Widened {
             }
         }
         let open = by.map(|by| (parameter, by));
-        let source = UncertaintySource::RestitutionOverSpeed;
-        self.further
-            .push(Further::new(source, Vec::from_iter(open)));
+        self.leave_open(UncertaintySource::RestitutionOverSpeed, open);
+    }
+
+    /// Note what a source leaves open in the joint estimates.
+    fn leave_open(
+        &mut self,
+        source: UncertaintySource,
+        open: impl IntoIterator<Item = (Coordinate, f64)>,
+    ) {
+        let open = open.into_iter().collect();
+        self.further.push(Further::new(source, open));
     }
 
     /// Compare the methods, with estimates that are final but for what they share, and widen the joint ones by what
@@ -83,8 +91,7 @@ impl Widened {
         }
         let apart = between_methods(&self.methods, &compared, &self.joint);
         let open = self.widen_apart(apart, found);
-        let source = UncertaintySource::BetweenMethods;
-        self.further.push(Further::new(source, open));
+        self.leave_open(UncertaintySource::BetweenMethods, open);
         compared
     }
 
@@ -133,17 +140,14 @@ impl Widened {
             clock::widen(result, uncertainty);
         }
         let open = (uncertainty > 0.0).then_some((Coordinate::Frequency, uncertainty));
-        let source = UncertaintySource::Clock;
-        self.further
-            .push(Further::new(source, Vec::from_iter(open)));
+        self.leave_open(UncertaintySource::Clock, open);
     }
 
     /// Widen what instruments that may be off reach, once no greater cause has withdrawn it; then say what is missing.
     pub(super) fn by_doubts(&mut self, doubts: &[Doubt], evidence: &Evidence<'_>) {
         doubt::widen(&mut self.joint, doubts);
-        let open = doubts.iter().map(|d| (d.parameter, d.by)).collect();
-        let source = UncertaintySource::InstrumentOff;
-        self.further.push(Further::new(source, open));
+        let open = doubts.iter().map(|d| (d.parameter, d.by));
+        self.leave_open(UncertaintySource::InstrumentOff, open);
         missing::say_missing(&mut self.joint, evidence);
     }
 }

@@ -4,8 +4,7 @@
 use std::ops::Range;
 
 use super::{Channel, Flag, FlagCode, Record, Role};
-use crate::signal::whole;
-use crate::signal::{columns, robust};
+use crate::signal::{columns, interpolation, robust, whole};
 
 /// Part of a channel's samples at the rail above which the record is left out.
 const CLIPPED_PART: f64 = 0.005;
@@ -202,15 +201,10 @@ fn interpolate(
     if length > AROUND || nodes.len() < 2 * AROUND {
         return false;
     }
-    let at = |place: usize| -> f64 {
-        let term = |i: &usize| {
-            let others = nodes.iter().filter(|k| *k != i);
-            let factor = others.map(|k| (place as f64 - *k as f64) / (*i as f64 - *k as f64));
-            values[*i] * factor.product::<f64>()
-        };
-        nodes.iter().map(term).sum()
-    };
-    let between: Vec<f64> = (first + 1..=first + length).map(at).collect();
+    let places = first + 1..=first + length;
+    let between: Vec<f64> = places
+        .map(|i| interpolation::through(values, &nodes, i))
+        .collect();
     values[first + 1..=first + length].copy_from_slice(&between);
     true
 }
@@ -364,24 +358,17 @@ fn spikes_at_rails(
         None => v != 0.0 && (v == span.low || v == span.high),
     };
     let reach = whole::index((SPIKE_RISES_S * rate_hz).round()).max(2);
-    let mut spikes = Vec::new();
     // A wave stays within three times its root mean square; short spikes are beyond it.
     let least = 3.0 * robust::rms(values);
     let at_rail = |v: f64| v.abs() > least && at_rail(v);
-    let mut start = 0;
-    while start < values.len() {
-        let run = values[start..].iter().take_while(|v| at_rail(**v));
-        let after = start + run.count();
+    let spikes = runs(values, at_rail).filter(|run| {
         let below = |i: Option<usize>| {
             let beside = i.and_then(|i| values.get(i));
-            beside.is_none_or(|v| v.abs() < 0.5 * values[start].abs())
+            beside.is_none_or(|v| v.abs() < 0.5 * values[run.start].abs())
         };
-        if after > start && below(start.checked_sub(reach)) && below(Some(after + reach - 1)) {
-            spikes.push(start..after);
-        }
-        start = after.max(start + 1);
-    }
-    spikes
+        below(run.start.checked_sub(reach)) && below(Some(run.end + reach - 1))
+    });
+    spikes.collect()
 }
 
 /// Impacts at which an acceleration is clipped: at the end of the stated range; else at one and the same greatest
@@ -427,20 +414,14 @@ const SAME_SPEED: f64 = 0.05;
 /// not.
 fn is_cut(channel: &Channel, rail: f64) -> bool {
     let values = &channel.values;
-    let mut ratios = Vec::new();
-    let mut start = 2;
-    while start + 1 < values.len() {
-        let length = values[start..].iter().take_while(|v| **v == rail).count();
-        let end = start + length;
-        if length >= 3 && values[start - 1] != rail && end + 1 < values.len() {
-            let (before, after) = (
-                values[start - 1] - values[start - 2],
-                values[end] - values[end + 1],
-            );
-            ratios.push(after / before);
-        }
-        start = end + 1;
-    }
+    let inner = runs(values, |v| v == rail)
+        .filter(|run| run.len() >= 3 && run.start >= 2 && run.end + 1 < values.len());
+    let ratio = |run: Range<usize>| {
+        let before = values[run.start - 1] - values[run.start - 2];
+        let after = values[run.end] - values[run.end + 1];
+        after / before
+    };
+    let ratios: Vec<f64> = inner.map(ratio).collect();
     let enough = ratios.len() >= CRESTS;
     enough && robust::median(&ratios).is_some_and(|ratio| (ratio - 1.0).abs() < SAME_SPEED)
 }
@@ -449,25 +430,26 @@ fn at_rail(values: &[f64], rail: f64, step: f64) -> usize {
     if rail == 0.0 {
         return 0;
     }
-    let mut count = 0;
-    let mut start = 0;
-    while start < values.len() {
-        if values[start] != rail {
-            start += 1;
-            continue;
-        }
-        let length = values[start..].iter().take_while(|v| **v == rail).count();
-        let end = start + length;
-        let steep = |i: Option<usize>| {
-            i.and_then(|i| values.get(i))
-                .is_some_and(|v| (v - rail).abs() > 3.0 * step)
-        };
-        if length >= 3 && steep(start.checked_sub(1)) && steep(Some(end)) {
-            count += length;
-        }
-        start = end;
-    }
-    count
+    let steep = |i: Option<usize>| {
+        let beside = i.and_then(|i| values.get(i));
+        beside.is_some_and(|v| (v - rail).abs() > 3.0 * step)
+    };
+    runs(values, |v| v == rail)
+        .filter(|run| run.len() >= 3)
+        .filter(|run| steep(run.start.checked_sub(1)) && steep(Some(run.end)))
+        .map(|run| run.len())
+        .sum()
+}
+
+/// The longest stretches of values that pass a test.
+fn runs(values: &[f64], test: impl Fn(f64) -> bool) -> impl Iterator<Item = Range<usize>> {
+    let mut from = 0;
+    std::iter::from_fn(move || {
+        let start = from + values[from..].iter().position(|v| test(*v))?;
+        let length = values[start..].iter().take_while(|v| test(**v)).count();
+        from = start + length;
+        Some(start..from)
+    })
 }
 
 /// A stretch in which every channel holds its value: samples were lost and the converter

@@ -27,6 +27,23 @@ pub fn interpolate(samples: &[f64], position: f64) -> Option<f64> {
     Some(weighted(cubic(u), around))
 }
 
+/// Value at the place of a sample by the polynomial through the samples at other places (Lagrange).
+///
+/// ```
+/// use impact_records::signal::interpolation::through;
+///
+/// let cubes = [0.0, 1.0, f64::NAN, 27.0, 64.0];
+/// assert!((through(&cubes, &[0, 1, 3, 4], 2) - 8.0).abs() < 1e-12);
+/// ```
+pub fn through(samples: &[f64], places: &[usize], at: usize) -> f64 {
+    let term = |i: &usize| {
+        let others = places.iter().filter(|k| *k != i);
+        let factor = others.map(|k| (at as f64 - *k as f64) / (*i as f64 - *k as f64));
+        samples[*i] * factor.product::<f64>()
+    };
+    places.iter().map(term).sum()
+}
+
 /// Weights of the samples at −1, 0, 1, 2 in the value at a place between 0 and 1 (Lagrange's cubic).
 fn cubic(u: f64) -> [f64; 4] {
     let outer = u * (1.0 - u) / 6.0;

@@ -180,45 +180,60 @@ impl<'a> Signal<'a> {
 
     /// A stretch with one more power of time.
     fn bent(&self, stretch: &Stretch) -> Option<Stretch> {
-        let (first, last) = stretch.samples;
-        let fit = LocalFit::new(self.values, first, last, self.degree + 1)?;
-        let freedom = (last - first)
-            .checked_sub(self.degree + 2)
-            .filter(|f| *f > 0)?;
-        let scatter = (fit.residual_squares / freedom as f64).sqrt();
-        let correlated = correlation(self.values, &fit, first, last);
-        Some(Stretch {
+        Some(self.fitted(stretch.samples, self.degree + 1)?.stretch(self))
+    }
+
+    /// A polynomial through samples; `None` of too few.
+    fn fitted(&self, samples: (usize, usize), degree: usize) -> Option<Fitted> {
+        let (first, last) = samples;
+        let fit = LocalFit::new(self.values, first, last, degree)?;
+        let freedom = (last - first).checked_sub(degree + 1)?;
+        (freedom > 0).then(|| Fitted {
+            scatter: (fit.residual_squares / freedom as f64).sqrt(),
+            freedom: freedom as f64,
             fit,
-            deviation: scatter.max(0.5 * self.noise) * correlated,
-            ..stretch.clone()
+            samples,
         })
     }
 
     /// A fit of samples that free flight explains; `None` where it does not.
-    fn flight(&self, (first, last): (usize, usize)) -> Option<Stretch> {
-        let fit = LocalFit::new(self.values, first, last, self.degree)?;
-        let count = last - first;
-        let freedom = count.checked_sub(self.degree + 1).filter(|f| *f > 0)? as f64;
-        let scatter = (fit.residual_squares / freedom).sqrt();
-        if scatter > IN_NOISE * self.noise {
+    fn flight(&self, samples: (usize, usize)) -> Option<Stretch> {
+        let fitted = self.fitted(samples, self.degree)?;
+        if fitted.scatter > IN_NOISE * self.noise {
             return None;
         }
-        if freedom >= 2.0 {
-            let bent = LocalFit::new(self.values, first, last, self.degree + 1)?;
-            let left = (bent.residual_squares / (freedom - 1.0)).max(0.25 * self.noise.powi(2));
-            if (fit.residual_squares - bent.residual_squares) / left > BENT {
+        if fitted.freedom >= 2.0 {
+            let bent = self.fitted(samples, self.degree + 1)?;
+            let left = bent.scatter.powi(2).max(0.25 * self.noise.powi(2));
+            if (fitted.fit.residual_squares - bent.fit.residual_squares) / left > BENT {
                 return None;
             }
         }
-        let correlated = correlation(self.values, &fit, first, last);
-        Some(Stretch {
-            fit,
-            of_displacement: self.of_displacement,
-            rate_hz: self.rate_hz,
-            deviation: scatter.max(0.5 * self.noise) * correlated,
+        Some(fitted.stretch(self))
+    }
+}
+
+/// A polynomial through samples.
+struct Fitted {
+    fit: LocalFit,
+    /// Standard deviation about it.
+    scatter: f64,
+    freedom: f64,
+    samples: (usize, usize),
+}
+
+impl Fitted {
+    fn stretch(self, of: &Signal<'_>) -> Stretch {
+        let (first, last) = self.samples;
+        let correlated = correlation(of.values, &self.fit, first, last);
+        Stretch {
+            fit: self.fit,
+            of_displacement: of.of_displacement,
+            rate_hz: of.rate_hz,
+            deviation: self.scatter.max(0.5 * of.noise) * correlated,
             unlike: 0.0,
-            samples: (first, last),
-        })
+            samples: self.samples,
+        }
     }
 }
 

@@ -78,7 +78,8 @@ impl Shared {
         }
     }
 
-    /// The profile's 95 % interval.
+    /// The profile's 95 % interval, up to the viscous fit's where the profile leaves no damping: friction that is worth
+    /// more than all of it is none.
     fn interval(&self) -> [f64; 2] {
         let (viscous, friction) = (self.viscous.0, self.friction.0);
         let [of_viscous, of_friction] = [self.viscous.1.error, self.friction.1.error];
@@ -95,19 +96,17 @@ impl Shared {
         let rubs = |apart: &f64| apart * of_friction.powi(2) + friction * of_viscous.powi(2) >= 0.0;
         let below = Some(free(1.0)).filter(rubs).unwrap_or(none);
         let above = Some(free(-1.0)).filter(rubs).unwrap_or(-none);
-        [viscous - below, viscous - above]
+        let high = Some(viscous - above).filter(|high| *high > 0.0);
+        [
+            viscous - below,
+            high.unwrap_or(viscous + self.viscous.1.half95()),
+        ]
     }
 
     /// β with its interval, from decays of which the longest has a number of periods.
     pub(super) fn estimate(&self, periods: f64) -> Estimate {
         let [low, high] = self.interval();
         let (viscous, spread) = self.viscous;
-        // friction that is worth more than all damping is none: what is left is the viscous fit's limit
-        let high = if high > 0.0 {
-            high
-        } else {
-            viscous + spread.half95()
-        };
         let value = self.value();
         let error = 0.5 * (high - low) / self.quantile();
         let most = estimate::limits(Coordinate::Damping).0;

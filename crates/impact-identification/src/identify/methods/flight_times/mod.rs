@@ -22,6 +22,7 @@ use crate::identify::methods::selection::Selection;
 use crate::identify::parameters::Coordinate;
 use crate::identify::statistics::distribution::student_tail;
 use crate::identify::statistics::scatter::Spread;
+use crate::identify::statistics::weighted::{self, Measured};
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
 
@@ -249,19 +250,14 @@ const STRANGE: f64 = 0.02;
 
 /// Weighted mean of the records with the greater of inner and outer standard error.
 fn weighted(groups: &[ImpactGroup]) -> (f64, f64) {
-    let weight = |g: &ImpactGroup| g.standard_error.max(1e-9).powi(-2);
-    let all: f64 = groups.iter().map(weight).sum();
-    let mean = groups
-        .iter()
-        .map(|g| weight(g) * g.restitution)
-        .sum::<f64>()
-        / all;
-    let chi2: f64 = groups
-        .iter()
-        .map(|g| weight(g) * (g.restitution - mean).powi(2))
-        .sum();
-    let freedom = groups.len().saturating_sub(1).max(1) as f64;
-    (mean, (chi2 / freedom).max(1.0).sqrt() / all.sqrt())
+    let measured = groups.iter().map(|g| Measured {
+        value: g.restitution,
+        error: g.standard_error.max(1e-9),
+        freedom: f64::INFINITY,
+    });
+    let measured: Vec<Measured> = measured.collect();
+    let (mean, spread) = weighted::mean(&measured, &weighted::by_errors(&measured));
+    (mean, spread.error)
 }
 
 /// Standard error of the times that their source states, s.

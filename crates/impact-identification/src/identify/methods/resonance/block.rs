@@ -560,6 +560,17 @@ impl Model<'_> {
 }
 
 impl ResonanceBlock {
+    /// Predicted complex response of a channel at a point, SI, gain included.
+    pub fn response(
+        &self,
+        parameters: &Parameters,
+        point: &ResonancePoint,
+        role: Role,
+    ) -> Complex<f64> {
+        let (frequency_hz, drive) = (point.frequency_hz, point.drive_amplitude);
+        predicted(parameters, self.rig, role, frequency_hz, drive)
+    }
+
     fn model<'a>(&self, point: &'a ResonancePoint, parameters: &'a Parameters) -> Model<'a> {
         let at = point.circumstances();
         let (own, _) = parameters.own(&at);

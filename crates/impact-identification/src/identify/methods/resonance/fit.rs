@@ -3,7 +3,7 @@
 use crate::identify::evidence::Nominal;
 use crate::identify::methods::blocks::Blocks;
 use crate::identify::methods::fit::{FitResult, alone};
-use crate::identify::methods::resonance::block::{ResonanceBlock, predicted};
+use crate::identify::methods::resonance::block::ResonanceBlock;
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::{FitError, Precision, mean_squares};
 
@@ -88,13 +88,7 @@ pub fn deflection_guess(block: &ResonanceBlock, unit: &Parameters) -> f64 {
     let (mut product, mut square) = (0.0, 0.0);
     for point in &block.points {
         for r in &point.responses {
-            let model = predicted(
-                unit,
-                block.rig,
-                r.role,
-                point.frequency_hz,
-                point.drive_amplitude,
-            );
+            let model = block.response(unit, point, r.role);
             let weight = r.error.hypot(1e-2 * r.amplitude()).powi(-2);
             product += weight * model.norm() * r.amplitude();
             square += weight * model.norm_sqr();

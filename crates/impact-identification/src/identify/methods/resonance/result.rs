@@ -4,7 +4,7 @@ use crate::identify::messages::Remark;
 use crate::identify::methods::answer::MethodResult;
 use crate::identify::methods::blocks::Blocks;
 use crate::identify::methods::fit::{self, FitResult};
-use crate::identify::methods::resonance::block::{ResonanceBlock, predicted};
+use crate::identify::methods::resonance::block::ResonanceBlock;
 use crate::identify::methods::resonance::fit::TELLS;
 use crate::identify::parameters::Parameters;
 use impact_records::signal::robust;
@@ -28,13 +28,7 @@ fn judge(result: &mut MethodResult, block: &ResonanceBlock, fitted: &Parameters)
     let mut deviations = Vec::new();
     for point in &block.points {
         for r in &point.responses {
-            let model = predicted(
-                fitted,
-                block.rig,
-                r.role,
-                point.frequency_hz,
-                point.drive_amplitude,
-            );
+            let model = block.response(fitted, point, r.role);
             let apart = match point.phase_error_rad {
                 Some(_) => (r.real - model.re).hypot(r.imaginary - model.im),
                 None => (r.amplitude() - model.norm()).abs(),
