@@ -17,6 +17,8 @@ const IN_NOISE: f64 = 2.0;
 const BENT: f64 = 16.0;
 /// Standard errors by which the speed beside a fall may differ between a stretch and the parts of it next to the fall.
 const KINKED: f64 = 3.0;
+/// Those up to which chance makes them differ; what is beyond leaves the speed open.
+const CHANCE: f64 = 2.0;
 /// Those parts, as shares of the stretch.
 const NEAREST: [f64; 4] = [0.5, 0.25, 0.125, 0.0625];
 /// Standard errors of a velocity from which a sample moves.
@@ -97,9 +99,13 @@ impl Stretch {
 
     /// Standard error of the velocity at a time, m/s.
     pub(super) fn error(&self, time: f64) -> f64 {
+        self.own_error(time).hypot(self.unlike)
+    }
+
+    /// The same without what other stretches leave open.
+    fn own_error(&self, time: f64) -> f64 {
         self.noise_error(time)
             .hypot(SPEED_SCATTER * self.speed(time).abs())
-            .hypot(self.unlike)
     }
 
     /// The fitted displacement, if it is the one that is fitted.
@@ -254,9 +260,14 @@ impl Kink {
         let variance =
             part.noise_error(time).powi(2) - (same_scatter * whole.noise_error(time)).powi(2);
         let expected = variance.max(0.0) + (SPEED_SCATTER * whole.speed(time)).powi(2);
+        let deviates = apart / expected.sqrt().max(f64::MIN_POSITIVE);
         Self {
-            deviates: apart / expected.sqrt().max(f64::MIN_POSITIVE),
-            beyond_m_s: (apart.powi(2) - expected).max(0.0).sqrt(),
+            deviates,
+            beyond_m_s: if deviates > CHANCE {
+                (apart.powi(2) - expected).sqrt()
+            } else {
+                0.0
+            },
         }
     }
 }
@@ -324,7 +335,7 @@ fn unlike(stretches: &[Stretch], best: &Stretch, time: f64) -> f64 {
     let overlaps =
         |one: &&Stretch| one.samples.0 < best.samples.1 && best.samples.0 < one.samples.1;
     for one in stretches.iter().filter(overlaps) {
-        let variance = one.error(time).powi(2);
+        let variance = one.own_error(time).powi(2);
         let apart = (one.speed(time) - best.speed(time)).powi(2);
         weights += variance.recip();
         squares += apart / variance - 1.0;

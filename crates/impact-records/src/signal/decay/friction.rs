@@ -16,7 +16,7 @@ use super::least_squares::{Point, Series};
 use super::noise::Noise;
 use super::prepared::{Prepared, fitted};
 use super::shape::{Rates, Shape};
-use super::{Natural, damping_slopes};
+use super::{GROWS, Natural, damping_slopes};
 use crate::signal::{robust, whole};
 
 /// What of a motion a channel shows.
@@ -267,12 +267,16 @@ fn settled(prepared: &Prepared, viscous: &Point) -> Option<(Series, Point)> {
     Some((series, point))
 }
 
-/// The decay beside friction; `None` if friction is not told from the rest at all.
+/// The decay beside friction; `None` if friction is not told from the rest at all, or would be worth so much more than
+/// all damping that the rest grows: what looks like friction is something else then.
 pub(super) fn beside(prepared: &Prepared, viscous: &Point, hz: f64) -> Option<BesideFriction> {
     let (series, point) = settled(prepared, viscous)?;
     let covariance = series.covariance(&point)?;
     let of_rates = covariance.view((1, 1), (2, 2)).into_owned();
     let natural = Natural::of(&point.rates, &of_rates);
+    if natural.damping_ratio < -GROWS * natural.damping_ratio_error {
+        return None;
+    }
     let [omega, sigma, ..] = viscous.rates;
     let slopes = damping_slopes(&point.rates);
     let with_rest = slopes[0] * covariance[(0, 1)] + slopes[1] * covariance[(0, 2)];
