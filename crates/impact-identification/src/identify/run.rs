@@ -31,9 +31,11 @@ use crate::identify::methods::answer::{Allowed, JointFit, MethodResult};
 use crate::identify::methods::blocks::Blocks;
 use crate::identify::methods::boundaries::Boundaries;
 use crate::identify::methods::boundaries::posterior::Posterior;
+use crate::identify::methods::fit::FitResult;
 use crate::identify::methods::fits::Fits;
 use crate::identify::methods::identifier::Identifier;
 use crate::identify::methods::impacts::{self, Impacts};
+use crate::identify::methods::influence::Places;
 use crate::identify::methods::joint::{self, Weights};
 use crate::identify::methods::registry::REGISTRY;
 use crate::identify::methods::selection::Selection;
@@ -65,16 +67,21 @@ fn identify_as_stated(evidence: &Evidence<'_>) -> Identification {
     if let Some(contradicted) = curve.and_then(|f| stated_clearances::contradicted(evidence, f)) {
         return without_clearances(evidence, contradicted);
     }
-    let mut run = IdentificationRun {
-        evidence,
-        found: first_values(&selection, resonance),
-        selection,
+    let run = IdentificationRun::of(evidence, (selection, resonance), evidence.nominal);
+    let Some(masses) = run.other_masses() else {
+        return run.identification();
     };
-    run.fit();
-    let odd_gaps = run.without_odd_gaps();
-    run.with_contacts_over_speed();
-    run.without_influential();
-    run.identification(odd_gaps)
+    let nominal = Nominal {
+        mass_asymmetry: Some(masses),
+        ..evidence.nominal
+    };
+    let other = Evidence {
+        nominal,
+        ..*evidence
+    };
+    let mut selection = Selection::new(&other);
+    let resonance = selection.fit_resonance();
+    IdentificationRun::of(&other, (selection, resonance), evidence.nominal).identification()
 }
 
 /// Identify as if no clearance were stated, as all of them are `contradicted`.
@@ -123,11 +130,52 @@ fn contacts_last(found: &MethodFit) -> bool {
 
 struct IdentificationRun<'a> {
     evidence: &'a Evidence<'a>,
+    /// What the laboratory states, which the evidence may put aside.
+    stated: Nominal,
     selection: Selection<'a>,
     found: Fits,
+    /// What was found of gaps that are not as stated.
+    odd_gaps: Vec<Suspicion>,
 }
 
-impl IdentificationRun<'_> {
+impl<'a> IdentificationRun<'a> {
+    /// All fits, without what contradicts the others.
+    fn of(
+        evidence: &'a Evidence<'a>,
+        (selection, resonance): (Selection<'a>, Option<FitResult>),
+        stated: Nominal,
+    ) -> Self {
+        let mut run = Self {
+            evidence,
+            stated,
+            found: first_values(&selection, resonance),
+            selection,
+            odd_gaps: Vec::new(),
+        };
+        run.fit();
+        run.without_odd_gaps();
+        run.with_contacts_over_speed();
+        run.without_straining();
+        run.without_influential();
+        run
+    }
+
+    /// The difference of the masses, with its standard uncertainty, where it is so far off what is stated or assumed
+    /// that this is refuted: a prior that is wrong draws all others along.
+    fn other_masses(&self) -> Option<[f64; 2]> {
+        let joint = self.found.together()?;
+        let priors = self.problem(self.found.start())?.priors;
+        let unlike = suspicion::sides(&joint.fit, &priors);
+        unlike.iter().find_map(|finding| match finding {
+            Finding::SidesUnlike {
+                coordinate: Coordinate::MassAsymmetry,
+                difference,
+                ..
+            } => Some([*difference, difference.abs()]),
+            _ => None,
+        })
+    }
+
     /// Fit each method beside what those before it found, and all together.
     fn fit(&mut self) {
         for method in REGISTRY {
@@ -148,20 +196,18 @@ impl IdentificationRun<'_> {
         self.found.joint = problem.map(|problem| joint::fit(&problem, start));
     }
 
-    /// Leave out, one by one, gaps that are not as stated; gives what was found of them.
-    fn without_odd_gaps(&mut self) -> Vec<Suspicion> {
-        let mut odd_gaps: Vec<Suspicion> = Vec::new();
-        while odd_gaps.len() < MOST_ODD_GAPS {
+    /// Leave out, one by one, gaps that are not as stated.
+    fn without_odd_gaps(&mut self) {
+        while self.odd_gaps.len() < MOST_ODD_GAPS {
             let Some(odd) = self.odd_gap() else {
                 break;
             };
-            odd_gaps.push(Finding::from(odd).into());
+            self.odd_gaps.push(Finding::from(odd).into());
             if !self.selection.leave_out_gap(odd.stated_m) {
                 break;
             }
             self.fit();
         }
-        odd_gaps
     }
 
     /// Let contacts grow shorter with the speed, where they last a time that the data tell: the speed goes with the
@@ -171,6 +217,41 @@ impl IdentificationRun<'_> {
             self.selection.blocks.trajectory.contact_speed = true;
             self.fit();
         }
+    }
+
+    /// Leave out the few records without which the rig is what is stated of it. Gains, masses and gaps bend to such
+    /// records, so that these fit: they are judged where a fit ends that is drawn to what is stated, and left out
+    /// where the fit of all others then ends near it by itself.
+    fn without_straining(&mut self) {
+        let Some((near, straining)) = self.straining() else {
+            return;
+        };
+        let before = (self.selection.clone(), self.found.clone());
+        let gone: BTreeSet<Method> = straining.iter().map(|(method, _)| *method).collect();
+        self.selection.leave_out(straining);
+        self.fit_again(near, &gone);
+        if self.strained().is_none_or(|strained| strained) {
+            (self.selection, self.found) = before;
+        }
+    }
+
+    /// Whether the joint fit needs what is stated of the rig to be far off; `None` without a fit.
+    fn strained(&self) -> Option<bool> {
+        let at = self.found.together()?.fit.parameters;
+        Some(self.problem(self.found.start())?.strained(&at))
+    }
+
+    /// The records that contradict all others where a fit ends that is drawn to what is stated, and where that is;
+    /// `None` where no fit is strained, or more contradict than may be left out.
+    fn straining(&self) -> Option<(Parameters, Places)> {
+        let at = self.found.together()?.fit.parameters;
+        let problem = self.problem(self.found.start())?;
+        let drawn = problem.drawn(&at).filter(|_| problem.strained(&at))?;
+        let near = drawn.fit(at).ok()?.parameters;
+        let present = joint::present(&self.selection.blocks, &self.found.weights);
+        let most = MOST_INFLUENTIAL.max(self.selection.judged() / 30);
+        let (found, too_many) = self.selection.influential(&drawn, &present, (&near, most));
+        (!found.is_empty() && !too_many).then_some((near, found))
     }
 
     /// Leave out the records that draw the joint fit away from what all others state.
@@ -234,8 +315,8 @@ impl IdentificationRun<'_> {
     }
 
     /// What to make of the fits.
-    fn identification(&self, odd_gaps: Vec<Suspicion>) -> Identification {
-        let (mut suspicions, doubts) = doubt::parted(self.suspicions(odd_gaps));
+    fn identification(&self) -> Identification {
+        let (mut suspicions, doubts) = doubt::parted(self.suspicions());
         let beyond = self.found.together().map_or_else(Vec::new, beyond::beyond);
         let mut results = Widened::new(&self.selection, &self.found);
         results.by_impacts(&self.selection);
@@ -395,12 +476,12 @@ impl IdentificationRun<'_> {
     }
 
     /// Mistakes of the laboratory that the data give away, gaps that were found odd among them.
-    fn suspicions(&self, odd_gaps: Vec<Suspicion>) -> Vec<Suspicion> {
+    fn suspicions(&self) -> Vec<Suspicion> {
         let observations = self.evidence.observations;
         let clock = self.evidence.nominal.clock_uncertainty;
         let mut found = Vec::from_iter(clock::suspicion(observations, clock));
         found.extend(stated_frequencies::no_drive(observations).map(Suspicion::from));
-        found.extend(odd_gaps);
+        found.extend(self.odd_gaps.iter().cloned());
         found.extend(late_channel::late_channels(
             observations,
             self.found.together(),
@@ -442,8 +523,8 @@ impl IdentificationRun<'_> {
         let fit = |blocks: &Blocks| joint::rough(blocks, begin, &curve, &open);
         let mut found = undeclared_high_pass::undeclared(&self.selection.blocks, &fit);
         found.extend(suspicion::corners(&joint.fit, joint.factor, nominal));
-        let problem = self.problem(self.found.start());
-        found.extend(problem.map_or_else(Vec::new, |p| suspicion::sides(&joint.fit, &p.priors)));
+        let stated = self.selection.blocks.asymmetries(&self.stated);
+        found.extend(suspicion::sides(&joint.fit, &Vec::from_iter(stated)));
         let mut found: Vec<Suspicion> = found.into_iter().map(Suspicion::from).collect();
         found.extend(wrong_gains::wrong_gain(joint, nominal.gain_uncertainty));
         found

@@ -29,9 +29,7 @@ pub struct ChannelLag {
     pub step_s: f64,
 }
 
-/// Longest lag that is looked for, s.
-const LONGEST_S: f64 = 8e-3;
-/// Share of the shortest usual time between impacts beyond which a jump may belong to the next one.
+/// Share of the usual time between impacts beyond which a jump may belong to the next one.
 const NEAREST: f64 = 0.3;
 /// Samples within which lags of one delay agree: both instants are known to half a sample.
 const AGREE: f64 = 1.5;
@@ -97,8 +95,7 @@ pub(super) fn channel_lags(
 /// The lag of instants behind others that most of these agree on, and their number; all in s.
 fn common_lag(own: &[f64], reference: &[f64], step_s: f64) -> Option<(f64, usize)> {
     let apart: Vec<f64> = reference.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let usual = robust::median(&apart).unwrap_or(f64::INFINITY);
-    let reach = LONGEST_S.min(NEAREST * usual);
+    let reach = NEAREST * robust::median(&apart)?;
     let nearest = |at: &f64| {
         let next = own.partition_point(|t| t < at);
         let beside = [next.checked_sub(1), Some(next)];
@@ -129,6 +126,10 @@ mod tests {
         let (lag, impacts) = common_lag(&own, &reference, step_s).expect("a lag");
         assert!((lag - 1.5e-3).abs() < 1e-9);
         assert_eq!(impacts, 9);
+        // a lag of a quarter of the time between impacts
+        let late: Vec<f64> = reference.iter().map(|t| t + 12.5e-3).collect();
+        let (lag, _) = common_lag(&late, &reference, step_s).expect("a lag");
+        assert!((lag - 12.5e-3).abs() < 1e-9);
         // no agreement, no lag
         let scattered = |i: u32| 0.05 * f64::from(i) + 0.5e-3 * f64::from(i * i % 13);
         let scattered: Vec<f64> = (0..10).map(scattered).collect();

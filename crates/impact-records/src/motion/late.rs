@@ -21,6 +21,8 @@ const DIFFERENTIATED: f64 = 1.0;
 const RISE: f64 = 0.65;
 /// Poles that a low-pass is taken to have whose jumps tell its corner.
 const ORDER: u32 = 2;
+/// Share of a jump that one step of it has at least.
+const LEAST_STEP: f64 = 0.05;
 
 /// What the records tell of one channel.
 struct Told {
@@ -67,6 +69,26 @@ pub fn late_channels(observations: &[Observation]) -> Vec<LateChannel> {
         })
     });
     late.collect()
+}
+
+/// The corner of a low-pass of one pole, Hz, behind which jumps take as long as behind one of more poles whose corner
+/// they show, where they were looked at in steps of `step_s`.
+///
+/// Behind one pole of the time constant τ a jump's step from t on is e^(−t/τ)(1 − e^(−s/τ)) of it, so that the jump takes
+/// τ ln((1 − e^(−s/τ))/0.05).
+pub fn one_pole_hz(shown_hz: f64, step_s: f64) -> f64 {
+    let rise = RISE / shown_hz / step_s;
+    let takes = |constant: f64| -constant * (LEAST_STEP / -(-constant.recip()).exp_m1()).ln();
+    let (mut low, mut high) = (0.1, 1e3);
+    for _ in 0..60 {
+        let middle = f64::midpoint(low, high);
+        if takes(middle) < rise {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    (std::f64::consts::TAU * low * step_s).recip()
 }
 
 /// What records tell of a channel, if they are enough and agree.
@@ -145,6 +167,19 @@ mod tests {
             panic!("one channel is late");
         };
         assert_eq!(y.role, Role::VelocityY);
+    }
+
+    #[test]
+    fn valid_a_jump_behind_one_pole_of_200_hz_tells_that() {
+        let (step_s, time_s) = (0.5e-3, 1.0 / (std::f64::consts::TAU * 200.0));
+        let shown = |k: i32| 1.0 - (-f64::from(k) * step_s / time_s).exp();
+        let rise = (0..100)
+            .take_while(|k| shown(k + 1) - shown(*k) > LEAST_STEP)
+            .count();
+        // whole steps tell the corner as well as they tell the time
+        let corner = |rise: f64| one_pole_hz(RISE / (rise * step_s), step_s);
+        let rise = rise as f64;
+        assert!(corner(rise) > 200.0 && 200.0 > corner(rise + 1.0), "{rise}");
     }
 
     #[test]

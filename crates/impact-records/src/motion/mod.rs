@@ -19,7 +19,7 @@ pub use bracket::{BoundaryKind, Bracket, brackets};
 pub use classify::{Classification, ClassifySettings, MotionEvidence, classify};
 pub use fold::{Folded, FoldedChannel, FoldedPoint};
 pub use kind::Motion;
-pub use late::late_channels;
+pub use late::{late_channels, one_pole_hz};
 pub use late_channel::LateChannel;
 pub use observation::{Amplitude, Observation, observe, scale_drives};
 pub use response::Response;

@@ -15,15 +15,16 @@ use crate::identify::methods::answer::MethodResult;
 use crate::identify::parameters::Coordinate;
 use crate::identify::statistics::quantile::{NORMAL_975, student_975};
 use impact_records::motion::Observation;
-use impact_records::record::FlagCode;
+use impact_records::record::{FlagCode, Role};
 use impact_records::signal::robust;
+use labfiles::units::Dimension;
 
 /// Standard deviations from which a common ratio is named.
 const SURE: f64 = 3.0;
 /// Different stated frequencies from which their scatter shows how exactly they are stated.
 const FEWEST: usize = 3;
 
-/// Stated frequencies that are off by one ratio, with what that leaves open in f0; `clock`: the relative
+/// Stated frequencies that are off by one ratio, with what that leaves open in f0 and `x_st`; `clock`: the relative
 /// standard uncertainty of the clock.
 pub fn suspicion(observations: &[Observation], clock: f64) -> Option<Suspicion> {
     let contradicted = stated_frequencies::contradicted(observations);
@@ -34,15 +35,31 @@ pub fn suspicion(observations: &[Observation], clock: f64) -> Option<Suspicion> 
         }
         _ => None,
     };
-    let doubt = ratio.map(|ratio| Doubt {
-        parameter: Coordinate::Frequency,
-        by: ratio.ln().abs(),
-        note: Note::InstrumentOff,
-    });
+    let left_open = |ratio: f64| left_open(observations, ratio.ln().abs());
     Some(Suspicion {
         finding,
-        doubts: doubt.into_iter().collect(),
+        doubts: ratio.map_or_else(Vec::new, left_open),
     })
+}
+
+/// What a relative error of all times leaves open: f0, and `x_st` once for each time that displacements are
+/// integrated from what is measured.
+fn left_open(observations: &[Observation], by: f64) -> Vec<Doubt> {
+    let order = |role: Role| match role.dimension() {
+        Some(Dimension::Velocity) => 1.0,
+        Some(Dimension::Acceleration) => 2.0,
+        _ => 0.0,
+    };
+    let measured = observations.iter().flat_map(|o| &o.amplitudes);
+    let integrations = measured.map(|a| order(a.role)).fold(0.0, f64::max);
+    let doubt = |parameter, by| Doubt {
+        parameter,
+        by,
+        note: Note::InstrumentOff,
+    };
+    let deflection = doubt(Coordinate::Deflection, integrations * by);
+    let open = [doubt(Coordinate::Frequency, by), deflection];
+    open.into_iter().filter(|d| d.by > 0.0).collect()
 }
 
 /// The mean ratio of measured to stated frequencies, where it is off one by more than the clock's
@@ -97,7 +114,7 @@ pub fn widen(result: &mut MethodResult, clock: f64) {
 mod tests {
     use super::*;
     use impact_records::event::DriveTone;
-    use impact_records::motion::Motion;
+    use impact_records::motion::{Amplitude, Motion};
 
     /// Records at stated frequencies, and the ratio at which each is measured.
     fn observed(ratios: impl Fn(usize) -> f64) -> Vec<Observation> {
@@ -139,6 +156,28 @@ mod tests {
              frequencies: until then $f_0$ is known no better than that"
                 .replace("$f_0$", "f0")
         );
+    }
+
+    #[test]
+    fn valid_a_clock_off_scales_the_deflection_once_for_each_integration() {
+        for (role, times) in [
+            (Role::DisplacementX, 0.0),
+            (Role::VelocityX, 1.0),
+            (Role::AccelerationX, 2.0),
+        ] {
+            let mut all = observed(|_| 1.01);
+            all[0].amplitudes = vec![Amplitude {
+                role,
+                half_range: 1.0,
+                rms: 0.5,
+            }];
+            let doubts = suspicion(&all, 5e-5).expect("a suspicion").doubts;
+            let deflection = doubts
+                .iter()
+                .find(|d| d.parameter == Coordinate::Deflection);
+            let by = deflection.map_or(0.0, |d| d.by);
+            assert!((by - times * 1.01f64.ln()).abs() < 1e-9, "{role:?}: {by}");
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@ use crate::identify::messages::{Finding, Note};
 use crate::identify::method_fit::MethodFit;
 use crate::identify::methods::blocks::Blocks;
 use crate::identify::parameters::{Coordinate, GAIN_ROLES};
-use impact_records::motion::Observation;
+use impact_records::motion::{Observation, one_pole_hz};
 use impact_records::record::LowPass;
 
 /// Standard deviations of what is stated from which a delay is named.
@@ -25,9 +25,14 @@ pub fn late_channels(
     let of = |(i, channel): (usize, &_)| {
         let moved = moved.iter().find(|l| l.role == *channel);
         if let Some((late, filter)) = moved.and_then(|l| Some((l, l.low_pass?))) {
+            let lags = observations.iter().flat_map(|o| &o.lags);
+            let step_s = lags
+                .map(|lag| lag.step_s)
+                .fold(blocks.half_sample_s(), f64::max);
             let finding = Finding::UndeclaredLowPass {
                 channel: *channel,
                 corner_hz: filter.corner_hz,
+                one_pole_hz: one_pole_hz(filter.corner_hz, step_s),
                 order: (late.order_share < 1.0).then_some(filter.order),
             };
             return Some(Suspicion {

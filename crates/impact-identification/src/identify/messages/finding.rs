@@ -80,6 +80,8 @@ pub enum Finding {
         channel: Role,
         /// Its corner, as jumps show it, or as it fits where its order is known, Hz.
         corner_hz: f64,
+        /// Its corner if it has one pole and its jumps take as long, Hz.
+        one_pole_hz: f64,
         /// Its order; `None` where the waveforms do not tell it. Of 2 or more poles the waveforms are alike.
         order: Option<u32>,
     },
@@ -311,9 +313,10 @@ message_table! { "finding": Finding, key = template_key;
     Self::UndeclaredHighPass { channel, corner_hz, .. } =>
         channel = Value::Name(channel.name()),
         corner = Value::Shortest(two_digits(*corner_hz));
-    Self::UndeclaredLowPass { channel, corner_hz, .. } =>
+    Self::UndeclaredLowPass { channel, corner_hz, one_pole_hz, .. } =>
         channel = Value::Name(channel.name()),
-        corner = Value::Shortest(two_digits(*corner_hz));
+        corner = Value::Shortest(two_digits(*corner_hz)),
+        one_pole = Value::Shortest(two_digits(*one_pole_hz));
     Self::SidesUnlike { coordinate, difference, deviations } =>
         coordinate = Value::Message(coordinate),
         share = Value::Percent(*difference, 1),

@@ -30,6 +30,7 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
     let filters = [1, 2].map(|order| Finding::UndeclaredLowPass {
         channel: Role::default(),
         corner_hz: 1.0,
+        one_pole_hz: 0.5,
         order: Some(order),
     });
     let findings = Finding::iter().filter(|f| !matches!(f, Finding::BeyondModel { .. }));

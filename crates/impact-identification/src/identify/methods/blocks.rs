@@ -328,7 +328,7 @@ impl Blocks {
     }
 
     /// How two masses may differ, whether both are measured or the motion of one shows the other.
-    fn asymmetries(&self, nominal: &Nominal) -> impl Iterator<Item = Prior> {
+    pub fn asymmetries(&self, nominal: &Nominal) -> impl Iterator<Item = Prior> {
         let [centre, deviation] = nominal.mass_asymmetry.unwrap_or([0.0, MASS_ASYMMETRY]);
         let all = [
             Prior::new(Coordinate::DriveAsymmetry, 0.0, ASYMMETRY),

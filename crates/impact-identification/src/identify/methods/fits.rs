@@ -10,7 +10,7 @@ use crate::identify::methods::joint::Weights;
 use crate::identify::parameters::Parameters;
 
 /// The fits of the methods, each alone, and of all together.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Fits {
     /// Where the first fit of the waveforms starts.
     pub begin: Parameters,

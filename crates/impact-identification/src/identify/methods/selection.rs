@@ -11,6 +11,7 @@ use impact_records::motion::{Bracket, Observation};
 pub(super) const ROUNDS: usize = 2;
 
 /// What is fitted, and what was left out of it.
+#[derive(Clone)]
 pub struct Selection<'a> {
     /// What the identification starts from.
     pub evidence: &'a Evidence<'a>,

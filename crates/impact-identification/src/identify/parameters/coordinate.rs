@@ -128,6 +128,22 @@ impl Coordinate {
             .chain((0..MOST_GAPS).map(Self::Gap))
     }
 
+    /// Whether it is about what the laboratory states of its rig and instruments, if only as usual.
+    pub fn is_stated(self) -> bool {
+        match self {
+            Self::DriveAsymmetry
+            | Self::StiffnessAsymmetry
+            | Self::DampingAsymmetry
+            | Self::MassAsymmetry
+            | Self::Gain(_)
+            | Self::Corner(_)
+            | Self::ScrewZero
+            | Self::Gap(_) => true,
+            Self::Restitution | Self::Frequency | Self::Damping | Self::Deflection => false,
+            Self::Delay(_) | Self::Effect(_) => false,
+        }
+    }
+
     /// Whether the coordinate is a logarithm of the value.
     pub fn is_logarithm(self) -> bool {
         matches!(

@@ -93,6 +93,12 @@ const NARROW: f64 = 0.1;
 /// Least orthogonal share of a column of slopes: differences do not resolve less.
 const LEAST_SHARE: f64 = 1e-8;
 
+/// Whether a nuisance is more than some standard deviations from where it is expected.
+fn is_far(prior: &Prior, at: &Parameters, deviations: f64) -> bool {
+    let nuisance = !Coordinate::PHYSICAL.contains(&prior.coordinate);
+    nuisance && prior_residual(prior, at).abs() > deviations
+}
+
 impl Problem<'_> {
     /// Fit from a start.
     ///
@@ -136,9 +142,8 @@ impl Problem<'_> {
 
     /// The same with narrow priors of the nuisances that are far from where they are expected; `None` where
     /// none is far, or the fit only starts another.
-    fn drawn(&self, at: &Parameters) -> Option<Self> {
-        let nuisance = |p: &Prior| !Coordinate::PHYSICAL.contains(&p.coordinate);
-        let far = |p: &Prior, limit: f64| nuisance(p) && prior_residual(p, at).abs() > limit;
+    pub fn drawn(&self, at: &Parameters) -> Option<Self> {
+        let far = |p: &Prior, limit: f64| is_far(p, at, limit);
         if self.precision == Precision::Start || !self.priors.iter().any(|p| far(p, FAR)) {
             return None;
         }
@@ -156,6 +161,12 @@ impl Problem<'_> {
             progress: self.progress.clone(),
             ..Self::default()
         })
+    }
+
+    /// Whether what is stated of the rig and its instruments is far off at given parameters.
+    pub fn strained(&self, at: &Parameters) -> bool {
+        let far = |p: &Prior| p.coordinate.is_stated() && is_far(p, at, FAR);
+        self.priors.iter().any(far)
     }
 
     /// Sum of squared weighted residuals at given parameters; `None` if an item has no model.
