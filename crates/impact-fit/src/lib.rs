@@ -57,8 +57,6 @@
 
 pub mod estimate;
 pub mod evidence;
-#[cfg(any(test, feature = "fixture"))]
-pub mod fixture;
 pub mod messages;
 pub mod method;
 pub mod method_fit;
@@ -73,6 +71,9 @@ pub use method::{Estimator, Method};
 pub use methods::answer::{Agreement, Allowed, JointFit, MethodResult, Verdict, VerdictKind};
 pub use parameters::GAIN_ROLES;
 pub use parameters::effect::Effect;
+
+#[cfg(any(test, feature = "fixture"))]
+pub mod fixture;
 
 /// The examples of the README, checked as the others are.
 #[cfg(doctest)]
