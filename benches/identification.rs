@@ -8,8 +8,8 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use impact_identification::identify::evidence::options::{IntervalMethod, UncertaintyOptions};
-use impact_identification::identify::evidence::{Evidence, Nominal};
+use impact_fit::evidence::options::{IntervalMethod, UncertaintyOptions};
+use impact_fit::evidence::{Evidence, Nominal};
 use impact_identification::identify::run::identify;
 use impact_oscillator::model::params::ModelError;
 use impact_records::event::DetectSettings;

@@ -1,7 +1,8 @@
 //! What `-v` and `-vv` print of records and fits.
 
 use super::Verbosity;
-use impact_identification::identify::{Estimator, Identification};
+use impact_fit::Estimator;
+use impact_identification::identify::Identification;
 use impact_records::motion::Observation;
 
 /// Print how each fit ended, with `-v`.

@@ -1,6 +1,6 @@
 //! Estimates in a line of the terminal.
 
-use impact_identification::identify::{Estimate, Status};
+use impact_fit::{Estimate, Status};
 use impact_records::signal::digits::decimals_for;
 
 /// A value with half of its 95 % interval.

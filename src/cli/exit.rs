@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use impact_identification::identify::VerdictKind;
+use impact_fit::VerdictKind;
 
 /// How the program ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

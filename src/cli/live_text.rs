@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::estimate_text::with_error;
 use impact_campaign::pipeline::watch::{Live, NewsKind, Outline, Watcher};
+use impact_fit::parameters::Coordinate;
 use impact_identification::identify::Identification;
-use impact_identification::identify::parameters::Coordinate;
 use impact_identification::identify::plan::Proposal;
 use impact_records::message::counted;
 use impact_records::motion::{Bracket, Motion, Observation};

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::Verbosity;
-use impact_identification::identify::solver::FitProgress;
+use impact_fit::solver::FitProgress;
 
 /// The progress of the stages of a command; shared by threads.
 #[derive(Debug)]

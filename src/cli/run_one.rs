@@ -9,7 +9,8 @@ use super::progress::{LATER, Progress};
 use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::{Failure, Verbosity, interrupt};
 use impact_campaign::pipeline::{self, Completed, Destination, PipelineError, checkpoint};
-use impact_identification::identify::{Finding, Identification, VerdictKind};
+use impact_fit::{Finding, VerdictKind};
+use impact_identification::identify::Identification;
 
 /// From how many records on checkpoints are written; `IMPACTID_KEEP_FROM` sets another number, for
 /// trials with small campaigns.

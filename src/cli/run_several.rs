@@ -8,7 +8,7 @@ use super::run_one::RunOptions;
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_campaign::pipeline::summary::{Fault, Found, RunOutcome, RunSummary, SummaryRow};
 use impact_campaign::pipeline::{campaign_folders, layout, summary};
-use impact_identification::identify::VerdictKind;
+use impact_fit::VerdictKind;
 
 /// The campaigns as typed; a pattern that the shell has left as it is stands for the files that match
 /// it, and one that is named twice is there once.

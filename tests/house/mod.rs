@@ -31,11 +31,12 @@ const MODULES: [(&str, &[&str]); 5] = [
 ];
 
 /// The packages in order: a package uses only those before it.
-const PACKAGES: [&str; 9] = [
+const PACKAGES: [&str; 10] = [
     "labfiles",
     "impact-oscillator",
     "impact-records",
     "simulated-rig",
+    "impact-fit",
     "impact-identification",
     "impact-report",
     "impact-campaign",
@@ -99,14 +100,14 @@ fn the_report_computes_nothing() {
         "impact_oscillator",
         "impact_records::event",
         "simulated_rig",
-        "identify::evidence",
-        "identify::solver",
+        "impact_fit::evidence",
+        "impact_fit::solver",
         "identify::replay",
     ];
     // the names of the parameters and of the effects
     let named = [
-        "identify::parameters::Coordinate",
-        "identify::parameters::effect::Effect",
+        "impact_fit::parameters::Coordinate",
+        "impact_fit::parameters::effect::Effect",
     ];
     for file in all_sources()
         .iter()
@@ -124,6 +125,7 @@ fn the_report_computes_nothing() {
 #[test]
 fn the_kit_knows_no_campaign() {
     let foreign = [
+        "impact_fit",
         "impact_identification",
         "crate::content",
         "crate::figures",
@@ -245,7 +247,7 @@ fn sockets_are_opened_on_loopback_alone_and_only_by_the_explorer() {
 fn a_foreign_crate_is_used_in_its_module_alone() {
     let homes = [
         ("rustfft", "impact-records", "signal"),
-        ("argmin", "impact-identification", "identify"),
+        ("argmin", "impact-fit", "solver"),
         ("plotters", "impact-report", "kit"),
         ("axum", "impact-workbench", "explore"),
         ("hyper", "impact-workbench", "explore"),
@@ -294,60 +296,68 @@ fn every_dependency_is_used() {
     }
 }
 
-/// The layers of the identification in order: a unit of `identify` (a file or a folder) imports only from
-/// those before it.
-const LAYERS: [&str; 21] = [
-    "method",
-    "parameters",
-    "solver",
-    "statistics",
-    "evidence",
-    "messages",
-    "method_fit",
-    "estimate",
-    "methods",
-    "plan",
-    "replay",
-    "residuals",
-    "uncertainty",
-    "identification",
-    "first_values",
-    "published",
-    "diagnostics",
-    "results",
-    "widening",
-    "run",
-    "boundary_plan",
+/// The layers of the fits and of what is concluded from them, in order: a unit (a file or a folder of `impact-fit`,
+/// or of `identify` in `impact-identification`) imports only from those before it.
+const LAYERS: [(&str, &str, &[&str]); 2] = [
+    (
+        "impact-fit",
+        "",
+        &[
+            "method",
+            "parameters",
+            "solver",
+            "statistics",
+            "evidence",
+            "messages",
+            "method_fit",
+            "estimate",
+            "methods",
+        ],
+    ),
+    (
+        "impact-identification",
+        "identify::",
+        &[
+            "plan",
+            "replay",
+            "residuals",
+            "uncertainty",
+            "identification",
+            "first_values",
+            "published",
+            "diagnostics",
+            "results",
+            "widening",
+            "run",
+            "boundary_plan",
+        ],
+    ),
 ];
 
 #[test]
 fn a_layer_of_the_identification_imports_only_from_those_before_it() {
     let sources = all_sources();
-    let files: Vec<_> = sources
-        .iter()
-        .filter(|f| f.package == "impact-identification")
-        .collect();
-    let unit = |module: &str| {
-        module
-            .strip_prefix("identify::")?
-            .split("::")
-            .next()
-            .map(str::to_owned)
-    };
-    let layer = |unit: &str| LAYERS.iter().position(|l| *l == unit);
-    // what uses all layers, and what only tests see
-    let beyond = ["specimens", "fixture", "tests"];
-    for (module, imported) in sources::Imports::new(&files).of {
-        let Some(own) = unit(&module).filter(|u| !beyond.contains(&u.as_str())) else {
-            continue;
+    for (package, folder, layers) in LAYERS {
+        let files: Vec<_> = sources.iter().filter(|f| f.package == package).collect();
+        let unit = |module: &str| {
+            let unit = module.strip_prefix(folder)?.split("::").next()?;
+            (!unit.is_empty()).then(|| unit.to_owned())
         };
-        let number = layer(&own);
-        assert!(number.is_some(), "{own} is in no layer");
-        for other in imported.iter().filter_map(|m| unit(m)) {
-            assert!(
-                layer(&other) <= number && layer(&other).is_some(),
-                "{module} imports {other}"
-            );
+        let layer = |unit: &str| layers.iter().position(|l| *l == unit);
+        // what uses all layers, and what only tests see
+        let beyond = ["specimens", "fixture", "tests"];
+        for (module, imported) in sources::Imports::new(&files).of {
+            let Some(own) = unit(&module).filter(|u| !beyond.contains(&u.as_str())) else {
+                continue;
+            };
+            let number = layer(&own);
+            assert!(number.is_some(), "{own} is in no layer");
+            for other in imported.iter().filter_map(|m| unit(m)) {
+                assert!(
+                    layer(&other) <= number && layer(&other).is_some(),
+                    "{module} imports {other}"
+                );
+            }
         }
     }
 }

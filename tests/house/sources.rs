@@ -10,7 +10,7 @@ pub(crate) struct SourceFile {
     pub(crate) package: String,
     /// Path below the package's `src`, with `/`.
     pub(crate) name: String,
-    /// Path of its module in the package: `identify::solver` of `identify/fit/mod.rs`; empty for the root.
+    /// Path of its module in the package: `methods::impacts` of `methods/impacts/mod.rs`; empty for the root.
     pub(crate) module: String,
     pub(crate) text: String,
 }

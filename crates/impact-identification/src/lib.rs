@@ -9,9 +9,9 @@
 //!
 //! ```
 //! use impact_records::event::{DetectSettings, RigKind};
-//! use impact_identification::identify::evidence::{Evidence, Nominal};
+//! use impact_fit::evidence::{Evidence, Nominal};
 //! use impact_identification::identify::run::identify;
-//! use impact_identification::identify::{Method, Status};
+//! use impact_fit::{Method, Status};
 //! use impact_records::motion::{ClassifySettings, observe};
 //! use impact_records::record::Sweep;
 //! use simulated_rig::run::calibrated;

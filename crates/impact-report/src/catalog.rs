@@ -4,8 +4,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::phrase::Phrase;
+use impact_fit::messages;
 use impact_identification::compare;
-use impact_identification::identify;
 use impact_records::language::{Language, names};
 use impact_records::message::Message;
 
@@ -76,7 +76,7 @@ impl Catalog {
 
     /// Every English phrase of a report, in order.
     pub fn phrases() -> BTreeSet<&'static str> {
-        let labels = identify::messages::labels().into_iter();
+        let labels = messages::labels().into_iter();
         let labels = labels.map(|label| label.template(Language::default()));
         let phrases = Phrase::ALL.iter().map(|p| p.english());
         phrases.chain(labels).collect()
@@ -154,7 +154,7 @@ impl Catalog {
 
 /// The English template of every message, by its key.
 fn messages() -> BTreeMap<String, &'static str> {
-    let identified = identify::messages::kinds();
+    let identified = messages::kinds();
     let each = identified.into_iter().chain(compare::kinds());
     each.map(|m| (m.key(), m.template(Language::default())))
         .collect()
@@ -248,7 +248,7 @@ mod tests {
     fn a_message_is_translated_by_its_kind() {
         let text = "[words]\n[findings]\nwrong_clearance = \"{fitting_mm} statt {stated_mm}\"\n";
         let catalog = Catalog::read(text).expect("a catalog");
-        let message = impact_identification::identify::Finding::WrongClearance {
+        let message = impact_fit::Finding::WrongClearance {
             stated_m: 1e-3,
             fitting_m: 1.1e-3,
             z_score: 9.0,

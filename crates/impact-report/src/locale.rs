@@ -161,7 +161,7 @@ fn superscript(exponent: i32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impact_identification::identify::{Item, Remark};
+    use impact_fit::{Item, Remark};
 
     #[test]
     fn numbers_are_printed_as_books_do() {

@@ -2,8 +2,8 @@
 
 use super::locale::Locale;
 use crate::phrase::Phrase;
-use impact_identification::identify::parameters::Coordinate;
-use impact_identification::identify::{Estimate, Method};
+use impact_fit::parameters::Coordinate;
+use impact_fit::{Estimate, Method};
 pub(super) use impact_records::signal::digits::decimals_for;
 
 /// How a parameter is named and printed.
@@ -128,7 +128,7 @@ pub(super) fn short(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impact_identification::identify::Status;
+    use impact_fit::Status;
 
     fn estimate(value: f64, half: f64) -> Estimate {
         Estimate {

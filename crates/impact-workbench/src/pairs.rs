@@ -11,9 +11,10 @@ use serde::Serialize;
 
 use crate::coverage::{Tally, identified};
 use impact_campaign::pipeline::{PipelineError, Progress};
+use impact_fit::GAIN_ROLES;
+use impact_fit::parameters::Coordinate;
 use impact_identification::compare::{self, Campaign, Common, Comparison, ComparisonOutcome};
-use impact_identification::identify::parameters::Coordinate;
-use impact_identification::identify::{GAIN_ROLES, Identification};
+use impact_identification::identify::Identification;
 use impact_records::event::{FlightKind, RigKind};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
 use impact_records::signal::robust;

@@ -9,9 +9,10 @@ use crate::campaign::resolved::ResolvedCampaign;
 use crate::pipeline::identify::{FILE, IdentificationFile, versions};
 use crate::pipeline::report::ReportFile;
 use crate::pipeline::{PipelineError, layout};
+use impact_fit::parameters::Coordinate;
+use impact_fit::{JointFit, ParameterSet, VerdictKind};
 use impact_identification::compare::{Campaign, Comparison, Difference};
-use impact_identification::identify::parameters::Coordinate;
-use impact_identification::identify::{Identification, JointFit, ParameterSet, VerdictKind};
+use impact_identification::identify::Identification;
 use impact_report::kit::csv::Csv;
 use impact_report::{CampaignsContent, Format, Report, ReportOptions};
 

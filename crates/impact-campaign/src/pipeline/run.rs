@@ -7,8 +7,8 @@ use super::identify::IdentificationFile;
 use super::observed::Observed;
 use super::{checkpoint, identify, memory, published, report, store, tables};
 use crate::campaign::resolved::ResolvedCampaign;
+use impact_fit::solver::FitProgress;
 use impact_identification::identify::Identification;
-use impact_identification::identify::solver::FitProgress;
 use impact_records::motion::Observation;
 use impact_report::Format;
 

@@ -417,7 +417,8 @@ fn staged_observations(out: &Path) -> Result<Vec<Observation>, PipelineError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impact_identification::identify::{Identification, Method, Provenance};
+    use impact_fit::Method;
+    use impact_identification::identify::{Identification, Provenance};
 
     #[test]
     fn results_of_a_run_are_refused_with_the_remedy() {

@@ -8,8 +8,8 @@ use serde::Serialize;
 use super::identify;
 use super::json::write_json;
 use super::{Completed, PipelineError};
-use impact_identification::identify::parameters::Coordinate;
-use impact_identification::identify::{Estimate, ParameterSet, VerdictKind};
+use impact_fit::parameters::Coordinate;
+use impact_fit::{Estimate, ParameterSet, VerdictKind};
 use impact_report::kit::csv::Csv;
 use labfiles::output::write_bytes;
 
@@ -174,7 +174,7 @@ fn write_estimate(estimate: Option<&Estimate>, csv: &mut Csv) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impact_identification::identify::Status;
+    use impact_fit::Status;
 
     fn row(folder: &str, exit_code: u8, outcome: RunOutcome) -> SummaryRow {
         SummaryRow {

@@ -1,9 +1,9 @@
 //! A campaign as it enters a comparison.
 
 use crate::compare::Common;
-use crate::identify::parameters::coordinate::Coordinate;
-use crate::identify::statistics::quantile::NORMAL_975;
-use crate::identify::{Allowed, Estimate, JointFit, ParameterSet, VerdictKind};
+use impact_fit::parameters::coordinate::Coordinate;
+use impact_fit::statistics::quantile::NORMAL_975;
+use impact_fit::{Allowed, Estimate, JointFit, ParameterSet, VerdictKind};
 use impact_records::event::{FlightKind, RigKind};
 use impact_records::record::calibrate::ChannelSetup;
 

@@ -11,8 +11,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::compare::Campaign;
 use crate::compare::share::{Nuisance, Sharing};
-use crate::identify::JointFit;
-use crate::identify::parameters::coordinate::Coordinate;
+use impact_fit::JointFit;
+use impact_fit::parameters::coordinate::Coordinate;
 
 /// Share of a stated clearance that the fitted one must reach for its logarithm to stand for its error.
 const LEAST_SHARE: f64 = 0.5;

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::parameters::coordinate::Coordinate;
-use crate::identify::parameters::effect::EffectKind;
+use impact_fit::parameters::coordinate::Coordinate;
+use impact_fit::parameters::effect::EffectKind;
 
 /// A kind of error or asymmetry that stays the same from campaign to campaign on a rig.
 #[derive(

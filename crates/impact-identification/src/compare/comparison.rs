@@ -7,11 +7,11 @@ use crate::compare::campaign::Known;
 use crate::compare::share::{SeparateNuisance, SharedNuisance, sharing};
 use crate::compare::stack::Stack;
 use crate::compare::{Campaign, ComparisonOutcome, ComparisonRemark, decision};
-use crate::identify::parameters::coordinate::Coordinate;
-use crate::identify::solver::normal::inverse;
-use crate::identify::statistics::distribution::{fisher_tail, student_tail};
-use crate::identify::statistics::quantile::student_975;
-use crate::identify::{ParameterSet, VerdictKind};
+use impact_fit::parameters::coordinate::Coordinate;
+use impact_fit::solver::normal::inverse;
+use impact_fit::statistics::distribution::{fisher_tail, student_tail};
+use impact_fit::statistics::quantile::student_975;
+use impact_fit::{ParameterSet, VerdictKind};
 use impact_records::event::{FlightKind, RigKind};
 
 /// What is shown of a campaign.

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use strum::IntoEnumIterator;
 
-use crate::identify::VerdictKind;
-use crate::identify::parameters::coordinate::Coordinate;
+use impact_fit::VerdictKind;
+use impact_fit::parameters::coordinate::Coordinate;
 use impact_records::message::{Message, Value, boxed};
 use impact_records::{message_table, messages};
 

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::compare::{Campaign, Common, NotShared, WhyShared};
-use crate::identify::parameters::coordinate::Coordinate;
-use crate::identify::{GAIN_ROLES, JointFit};
+use impact_fit::parameters::coordinate::Coordinate;
+use impact_fit::{GAIN_ROLES, JointFit};
 use impact_records::record::Role;
 
 /// A nuisance of several campaigns, and why it is one unknown of them or why not.

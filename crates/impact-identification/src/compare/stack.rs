@@ -7,9 +7,9 @@ use nalgebra::{DMatrix, DVector};
 use crate::compare::chart::Chart;
 use crate::compare::share::{Nuisance, Sharing};
 use crate::compare::{Campaign, chart};
-use crate::identify::JointFit;
-use crate::identify::parameters::coordinate::Coordinate;
-use crate::identify::solver::normal::inverse;
+use impact_fit::JointFit;
+use impact_fit::parameters::coordinate::Coordinate;
+use impact_fit::solver::normal::inverse;
 
 /// The most probable values of all unknowns of all campaigns and their covariance.
 #[derive(Debug)]

@@ -4,11 +4,11 @@ use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 
 use super::*;
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::normal::inverse;
-use crate::identify::solver::{Fit, FitReport, Prior};
-use crate::identify::statistics::distribution::student_tail;
-use crate::identify::{Allowed, Estimate, GAIN_ROLES, JointFit, ParameterSet, Status, VerdictKind};
+use impact_fit::parameters::{Coordinate, Parameters};
+use impact_fit::solver::normal::inverse;
+use impact_fit::solver::{Fit, FitReport, Prior};
+use impact_fit::statistics::distribution::student_tail;
+use impact_fit::{Allowed, Estimate, GAIN_ROLES, JointFit, ParameterSet, Status, VerdictKind};
 use impact_records::event::{FlightKind, RigKind};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
 use labfiles::units::Scale;

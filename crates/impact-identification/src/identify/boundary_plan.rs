@@ -3,15 +3,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::evidence::Evidence;
-use crate::identify::methods::answer::MethodResult;
-use crate::identify::methods::boundaries::block::{BoundaryBlock, predicted_hz};
-use crate::identify::methods::boundaries::posterior::{self, Posterior};
-use crate::identify::methods::boundaries::result;
-use crate::identify::methods::boundaries::surroundings::Surroundings;
-use crate::identify::methods::impacts;
-use crate::identify::methods::selection::Selection;
-use crate::identify::parameters::Parameters;
+use impact_fit::evidence::Evidence;
+use impact_fit::methods::answer::MethodResult;
+use impact_fit::methods::boundaries::block::{BoundaryBlock, predicted_hz};
+use impact_fit::methods::boundaries::posterior::{self, Posterior};
+use impact_fit::methods::boundaries::result;
+use impact_fit::methods::boundaries::surroundings::Surroundings;
+use impact_fit::methods::impacts;
+use impact_fit::methods::selection::Selection;
+use impact_fit::parameters::Parameters;
 use impact_records::motion::{BoundaryKind, Bracket};
 
 /// A sweep in small steps through a bracket.
@@ -174,7 +174,7 @@ fn sweeps(block: &BoundaryBlock, parts: u32) -> Vec<FineSweep> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::methods::boundaries::block::tests::bracket;
+    use impact_fit::fixture::bracket;
     use impact_records::event::RigKind;
 
     #[test]

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::evidence::Evidence;
-use crate::identify::method::Method;
-use crate::identify::methods::fit::FitResult;
-use crate::identify::methods::fits::Fits;
-use crate::identify::methods::impacts::{self, block::ImpactBlock};
-use crate::identify::methods::selection::Selection;
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::statistics::scatter::Spread;
+use impact_fit::evidence::Evidence;
+use impact_fit::method::Method;
+use impact_fit::methods::fit::FitResult;
+use impact_fit::methods::fits::Fits;
+use impact_fit::methods::impacts::{self, block::ImpactBlock};
+use impact_fit::methods::selection::Selection;
+use impact_fit::parameters::{Coordinate, Parameters};
+use impact_fit::statistics::scatter::Spread;
 use impact_records::motion::Observation;
 
 /// First values: those of the resonance curve, with R of the speeds at impacts.

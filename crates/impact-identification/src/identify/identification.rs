@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::messages::{Finding, LeftOut};
-use crate::identify::method::Method;
-use crate::identify::methods::answer::{Agreement, JointFit, MethodResult, Verdict};
 use crate::identify::residuals::MethodResiduals;
 use crate::identify::uncertainty::Uncertainty;
+use impact_fit::messages::{Finding, LeftOut};
+use impact_fit::method::Method;
+use impact_fit::methods::answer::{Agreement, JointFit, MethodResult, Verdict};
 
 /// Result for one specimen of a campaign that holds several.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -33,8 +33,10 @@ pub struct SpecimenResult {
 /// What it states is typed; JSON adds the English sentence to each variant:
 ///
 /// ```
-/// use impact_identification::identify::published::{PublishedSpeed, Where, identify};
-/// use impact_identification::identify::{Finding, Identification, Method};
+/// use impact_fit::methods::published::{PublishedSpeed, Where};
+/// use impact_fit::{Finding, Method};
+/// use impact_identification::identify::Identification;
+/// use impact_identification::identify::published::identify;
 ///
 /// let speed = |restitution, frequency_ratio, speed| PublishedSpeed {
 ///     restitution,

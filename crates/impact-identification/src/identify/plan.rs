@@ -5,14 +5,14 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::identify::JointFit;
-use crate::identify::evidence::Evidence;
-use crate::identify::methods::trajectories::block::{TrajectoryBlock, distinct_phases};
-use crate::identify::methods::trajectories::record::TrajectoryRecord;
-use crate::identify::methods::weighing::LEAST_ALLOWANCE;
-use crate::identify::parameters::{Coordinate, GAIN_ROLES, Parameters};
-use crate::identify::solver::normal::inverse;
-use crate::identify::solver::{Fit, Problem};
+use impact_fit::JointFit;
+use impact_fit::evidence::Evidence;
+use impact_fit::methods::trajectories::block::{TrajectoryBlock, distinct_phases};
+use impact_fit::methods::trajectories::record::TrajectoryRecord;
+use impact_fit::methods::weighing::LEAST_ALLOWANCE;
+use impact_fit::parameters::{Coordinate, GAIN_ROLES, Parameters};
+use impact_fit::solver::normal::inverse;
+use impact_fit::solver::{Fit, Problem};
 use impact_oscillator::model::orbit::{Orbit, stable_orbit};
 use impact_oscillator::{Machine, Setting, rho_grazing};
 use impact_records::motion::Observation;
@@ -265,11 +265,7 @@ fn information(
 ) -> Option<DMatrix<f64>> {
     let mut block = TrajectoryBlock::of_records(evidence.rig, vec![record], LEAST_ALLOWANCE);
     block.find_changes(&fit.parameters);
-    let problem = Problem {
-        blocks: vec![(&block, 1.0)],
-        free: fit.free.clone(),
-        ..Problem::default()
-    };
+    let problem = Problem::of(vec![(&block, 1.0)], fit.free.clone());
     let part = problem.item_parts(&fit.parameters).pop()?.pop()?;
     Some(part.matrix)
 }
@@ -367,5 +363,19 @@ impl UsualRecord {
             phase_error_rad: self.phase_error_rad,
             ..TrajectoryRecord::default()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use strum::IntoEnumIterator;
+
+    use super::*;
+    use impact_records::message::{boxed, faults};
+
+    #[test]
+    fn every_obstacle_has_its_texts() {
+        let all: Vec<_> = boxed(Obstacle::iter()).collect();
+        assert_eq!(faults(&all), Vec::<String>::new());
     }
 }

@@ -5,8 +5,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::identify::methods::trajectories::block::channel_value;
-use crate::identify::parameters::Parameters;
+use impact_fit::methods::trajectories::block::channel_value;
+use impact_fit::parameters::Parameters;
 use impact_oscillator::atlas::MapSettings;
 use impact_oscillator::atlas::map::{End, Start, march_from};
 use impact_oscillator::model::flight::{Drive, State, forced_amplitude};

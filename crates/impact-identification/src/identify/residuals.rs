@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::identify::method::Method;
-use crate::identify::methods::blocks::Blocks;
-use crate::identify::parameters::Parameters;
+use impact_fit::method::Method;
+use impact_fit::methods::blocks::Blocks;
+use impact_fit::parameters::Parameters;
 use impact_records::signal::robust;
 use impact_records::signal::thinning::thinned;
 

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::evidence::Evidence;
-use crate::identify::method::Method;
-use crate::identify::methods::answer::MethodResult;
-use crate::identify::methods::fit::{self, FitResult};
-use crate::identify::methods::fits::Fits;
-use crate::identify::methods::registry::REGISTRY;
-use crate::identify::methods::selection::Selection;
-use crate::identify::parameters::Coordinate;
+use impact_fit::evidence::Evidence;
+use impact_fit::method::Method;
+use impact_fit::methods::answer::MethodResult;
+use impact_fit::methods::fit::{self, FitResult};
+use impact_fit::methods::fits::Fits;
+use impact_fit::methods::registry::REGISTRY;
+use impact_fit::methods::selection::Selection;
+use impact_fit::parameters::Coordinate;
 
 /// What each method found.
 pub fn alone(selection: &Selection<'_>, found: &Fits) -> BTreeMap<Method, MethodResult> {

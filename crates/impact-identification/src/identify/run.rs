@@ -5,6 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::identify::diagnostics::beyond;
+use crate::identify::diagnostics::cause;
 use crate::identify::diagnostics::change::{self, Change};
 use crate::identify::diagnostics::clock;
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
@@ -19,33 +20,33 @@ use crate::identify::diagnostics::undeclared_high_pass;
 use crate::identify::diagnostics::undeclared_low_pass;
 use crate::identify::diagnostics::verdict::{self, Basis};
 use crate::identify::diagnostics::wrong_gains;
-use crate::identify::estimate::ParameterSet;
-use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::first_values::first_values;
 use crate::identify::identification::Identification;
-use crate::identify::messages::cause::Cause;
-use crate::identify::messages::{Finding, Item, LeftOut, Reason};
-use crate::identify::method::Method;
-use crate::identify::method_fit::MethodFit;
-use crate::identify::methods::answer::{Allowed, JointFit, MethodResult};
-use crate::identify::methods::blocks::Blocks;
-use crate::identify::methods::boundaries::Boundaries;
-use crate::identify::methods::boundaries::posterior::Posterior;
-use crate::identify::methods::fit::FitResult;
-use crate::identify::methods::fits::Fits;
-use crate::identify::methods::identifier::Identifier;
-use crate::identify::methods::impacts::{self, Impacts};
-use crate::identify::methods::influence::Places;
-use crate::identify::methods::joint::{self, Weights};
-use crate::identify::methods::registry::REGISTRY;
-use crate::identify::methods::selection::Selection;
-use crate::identify::parameters::effect::{Effect, EffectKind};
-use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::residuals::{self, MethodResiduals};
-use crate::identify::solver::{Precision, Prior, Problem};
 use crate::identify::uncertainty::budget::{self, Further};
 use crate::identify::uncertainty::{self, Uncertainty};
 use crate::identify::widening::Widened;
+use impact_fit::estimate::ParameterSet;
+use impact_fit::evidence::{Evidence, Nominal};
+use impact_fit::messages::cause::Cause;
+use impact_fit::messages::{Finding, Item, LeftOut, Reason};
+use impact_fit::method::Method;
+use impact_fit::method_fit::MethodFit;
+use impact_fit::methods::answer::{Allowed, JointFit, MethodResult};
+use impact_fit::methods::blocks::Blocks;
+use impact_fit::methods::boundaries::Boundaries;
+use impact_fit::methods::boundaries::posterior::Posterior;
+use impact_fit::methods::fit::FitResult;
+use impact_fit::methods::fits::Fits;
+use impact_fit::methods::identifier::Identifier;
+use impact_fit::methods::impacts::{self, Impacts};
+use impact_fit::methods::influence::Places;
+use impact_fit::methods::joint::{self, Weights};
+use impact_fit::methods::registry::REGISTRY;
+use impact_fit::methods::selection::Selection;
+use impact_fit::parameters::effect::{Effect, EffectKind};
+use impact_fit::parameters::{Coordinate, Parameters};
+use impact_fit::solver::{Precision, Prior, Problem};
 
 /// Identify from observations and brackets, as records of one specimen.
 ///
@@ -419,13 +420,14 @@ impl<'a> IdentificationRun<'a> {
         suspicions.extend(settling::not_settled(observations, &joint.parameters));
         let change = self.change();
         suspicions.extend(change.as_ref().map(|c| c.finding(observations.len())));
-        let cause = Cause::leading(suspicions, methods);
-        let mut replaced = cause.map_or_else(Vec::new, |c| c.withdraw(joint, methods));
-        if let Some(change) = change.filter(|_| cause == Some(Cause::Change)) {
+        let leading = cause::leading(suspicions, methods);
+        let withdraw = |cause| cause::withdraw(cause, joint, methods);
+        let mut replaced = leading.map_or_else(Vec::new, withdraw);
+        if let Some(change) = change.filter(|_| leading == Some(Cause::Change)) {
             replaced.extend(change.tell(joint));
         }
-        suspicions.retain(|finding| !cause.is_some_and(|c| c.explains(finding)));
-        (cause, replaced)
+        suspicions.retain(|finding| !leading.is_some_and(|c| cause::explains(c, finding)));
+        (leading, replaced)
     }
 
     /// Where the campaign's rig became another one, if it did.
@@ -501,10 +503,8 @@ impl<'a> IdentificationRun<'a> {
         let nominal = &self.evidence.nominal;
         let start = joint.fit.parameters;
         let cost = |blocks: &Blocks, weights: &Weights| {
-            let problem = Problem {
-                precision: Precision::Start,
-                ..joint::problem(blocks, start, weights, nominal, self.of_brackets())?
-            };
+            let problem = joint::problem(blocks, start, weights, nominal, self.of_brackets())?;
+            let problem = problem.with_precision(Precision::Start);
             let found = joint::fit(&problem, start).ok()?;
             Some((found.fit.cost, found.fit.residuals))
         };

@@ -2,16 +2,16 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::identify::estimate;
-use crate::identify::estimate::Status;
-use crate::identify::evidence::Evidence;
 use crate::identify::identification::{Identification, SpecimenResult};
-use crate::identify::messages::{Finding, Item, LeftOut, Note, Sentence};
-use crate::identify::method::Method;
-use crate::identify::methods::answer::{MethodResult, Verdict, VerdictKind};
-use crate::identify::methods::decays;
-use crate::identify::parameters::Coordinate;
 use crate::identify::run::identify;
+use impact_fit::estimate;
+use impact_fit::estimate::Status;
+use impact_fit::evidence::Evidence;
+use impact_fit::messages::{Finding, Item, LeftOut, Note, Sentence};
+use impact_fit::method::Method;
+use impact_fit::methods::answer::{MethodResult, Verdict, VerdictKind};
+use impact_fit::methods::decays;
+use impact_fit::parameters::Coordinate;
 use impact_records::motion::{Bracket, Observation};
 
 /// Identify a campaign: as a whole if it holds one specimen, else each specimen by itself.

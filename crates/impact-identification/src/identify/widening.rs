@@ -8,17 +8,17 @@ use crate::identify::diagnostics::agreement::{
 };
 use crate::identify::diagnostics::doubt::{self, Doubt};
 use crate::identify::diagnostics::{clock, missing, verdict};
-use crate::identify::estimate::{self, ParameterSet};
-use crate::identify::evidence::Evidence;
-use crate::identify::messages::Remark;
-use crate::identify::method::Method;
-use crate::identify::methods::answer::{Agreement, MethodResult};
-use crate::identify::methods::fits::Fits;
-use crate::identify::methods::impacts::Impacts;
-use crate::identify::methods::selection::Selection;
-use crate::identify::parameters::Coordinate;
 use crate::identify::results;
 use crate::identify::uncertainty::budget::{Further, UncertaintySource};
+use impact_fit::estimate::{self, ParameterSet};
+use impact_fit::evidence::Evidence;
+use impact_fit::messages::Remark;
+use impact_fit::method::Method;
+use impact_fit::methods::answer::{Agreement, MethodResult};
+use impact_fit::methods::fits::Fits;
+use impact_fit::methods::impacts::Impacts;
+use impact_fit::methods::selection::Selection;
+use impact_fit::parameters::Coordinate;
 
 /// The results of each method and of all, and what was added to the joint ones.
 pub(super) struct Widened {

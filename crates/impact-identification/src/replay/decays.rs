@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::input::Input;
 use super::traces::Signal;
-use crate::identify::Reason;
+use impact_fit::Reason;
 use impact_records::motion::Observation;
 use impact_records::record::{Channel, Record};
 use impact_records::signal::decay::Decay;

@@ -1,13 +1,14 @@
 //! What each method used: resonance curves, speeds at impacts, residuals, correlation.
 
 use super::input::Input;
-use crate::identify::methods::blocks::impacts_of_bulk;
-use crate::identify::methods::impacts::block::SpeedPair;
-use crate::identify::methods::impacts::contact_law::Law;
-use crate::identify::methods::resonance::block::predicted;
-use crate::identify::parameters::Coordinate;
+use crate::identify::SpecimenResult;
 use crate::identify::residuals::MethodResiduals;
-use crate::identify::{Method, MethodResult, SpecimenResult};
+use impact_fit::methods::blocks::impacts_of_bulk;
+use impact_fit::methods::impacts::block::SpeedPair;
+use impact_fit::methods::impacts::contact_law::Law;
+use impact_fit::methods::resonance::block::predicted;
+use impact_fit::parameters::Coordinate;
+use impact_fit::{Method, MethodResult};
 use impact_oscillator::atlas::map::even;
 use impact_records::motion::Observation;
 use impact_records::motion::Response;

@@ -12,8 +12,8 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::{Compared, Input, replay};
-use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::{Identification, identify_campaign};
+use impact_fit::evidence::{Evidence, Nominal};
 use impact_records::event::DetectSettings;
 use impact_records::event::RigKind;
 use impact_records::motion::{ClassifySettings, brackets, observe, scale_drives};

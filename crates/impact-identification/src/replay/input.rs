@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::parameters::Parameters;
-use crate::identify::{Identification, Item, Reason};
+use crate::identify::Identification;
+use impact_fit::parameters::Parameters;
+use impact_fit::{Item, Reason};
 use impact_records::event::RigKind;
 use impact_records::motion::{Bracket, Observation};
 use impact_records::record::Record;

@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 
 use super::input::Input;
-use crate::identify::parameters::Coordinate;
 use crate::identify::replay::LIVELY_SPEED;
 use crate::identify::uncertainty::band::Spread;
+use impact_fit::parameters::Coordinate;
 use impact_oscillator::SettledMotion;
 use impact_oscillator::atlas::coexisting::beside;
 use impact_oscillator::atlas::map::even;

@@ -1,8 +1,8 @@
 //! Records and brackets with their place in the (η, ρ) plane, and counts over all of them.
 
 use super::input::Input;
-use crate::identify::methods::boundaries::block::predicted_hz;
-use crate::identify::{Method, Reason};
+use impact_fit::methods::boundaries::block::predicted_hz;
+use impact_fit::{Method, Reason};
 use impact_records::motion::{BoundaryKind, Bracket, Motion, Observation};
 use impact_records::record::{FlagCode, Sweep};
 use impact_records::signal::robust;

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use super::input::{Input, place};
 use super::traces::{Cut, Trace, largest_residual, traces};
-use crate::identify::parameters::Parameters;
 use crate::identify::replay::{Replay, Stretch};
+use impact_fit::parameters::Parameters;
 use impact_records::event::{DetectSettings, DetectionSource, DriveTone, Impact, detect};
 use impact_records::motion::{Motion, Observation};
 use impact_records::record::{Record, Role};

@@ -5,7 +5,7 @@ use std::fmt;
 use super::decays::{FreeDecay, free_decay};
 use super::input::Input;
 use super::replays::{ReplayedRecord, comparison};
-use crate::identify::parameters::Parameters;
+use impact_fit::parameters::Parameters;
 
 /// A record beside its simulation.
 #[derive(Debug, Clone, PartialEq)]

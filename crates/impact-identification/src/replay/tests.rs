@@ -2,7 +2,7 @@
 
 use super::fixture::{decay, decays, nothing_touches, one_of_two, whole};
 use super::left_out::{UnusableReason, unusable};
-use crate::identify::{Finding, Method, Note, Status};
+use impact_fit::{Finding, Method, Note, Status};
 use impact_records::event::{DetectSettings, DriveTone, RigKind};
 use impact_records::motion::{BoundaryKind, ClassifySettings, Motion, Undetermined, observe};
 use impact_records::record::{Flag, FlagCode};

@@ -6,7 +6,7 @@ use crate::kit::numbered;
 use crate::locale::Locale;
 use crate::parameters::parameter;
 use crate::phrase::Phrase;
-use impact_identification::identify::{Method, MethodResult};
+use impact_fit::{Method, MethodResult};
 use impact_identification::replay::ReplayedRecord;
 use impact_records::message::sentence;
 use impact_records::motion::Motion;

@@ -11,8 +11,8 @@ use crate::content::ReportContent;
 use crate::locale::Locale;
 use crate::parameters::{self, PARAMETERS, ParameterLook};
 use crate::phrase::Phrase;
-use impact_identification::identify::parameters::effect::EffectKind;
-use impact_identification::identify::{Estimate, Finding, VerdictKind};
+use impact_fit::parameters::effect::EffectKind;
+use impact_fit::{Estimate, Finding, VerdictKind};
 
 /// Builds the first page.
 pub(super) fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
@@ -158,7 +158,7 @@ fn answer(look: &ParameterLook, estimate: Option<&Estimate>, locale: Locale<'_>)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impact_identification::identify::Status;
+    use impact_fit::Status;
 
     #[test]
     fn what_is_not_identifiable_has_no_number() {
@@ -167,7 +167,7 @@ mod tests {
             standard_error: None,
             interval95: None,
             status: Status::NotIdentifiable,
-            note: Some(impact_identification::identify::Note::NotSeparable),
+            note: Some(impact_fit::Note::NotSeparable),
         };
         let answer = super::answer(&PARAMETERS[0], Some(&none), Locale::default());
         assert_eq!((answer.value, answer.interval), (None, None));

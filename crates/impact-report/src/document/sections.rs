@@ -11,8 +11,8 @@ use crate::figures::plane::Plane;
 use crate::locale::Locale;
 use crate::parameters::{method_inline, parameter, short};
 use crate::phrase::Phrase;
-use impact_identification::identify::parameters::Coordinate;
-use impact_identification::identify::{Finding, Method, MethodResult};
+use impact_fit::parameters::Coordinate;
+use impact_fit::{Finding, Method, MethodResult};
 
 /// All sections in their order.
 pub(super) fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {

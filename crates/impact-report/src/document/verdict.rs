@@ -1,7 +1,7 @@
 //! A verdict as a headline.
 
 use crate::phrase::Phrase;
-use impact_identification::identify::VerdictKind;
+use impact_fit::VerdictKind;
 
 /// A verdict as a headline, a phrase; of a rig where records of one were measured.
 pub(super) fn headline(kind: VerdictKind, of_a_rig: bool) -> Phrase {

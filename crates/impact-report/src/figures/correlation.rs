@@ -16,8 +16,8 @@ use crate::kit::richtext;
 use crate::locale::Locale;
 use crate::parameters::parameter;
 use crate::phrase::{Phrase, Text};
-use impact_identification::identify::GAIN_ROLES;
-use impact_identification::identify::parameters::Coordinate;
+use impact_fit::GAIN_ROLES;
+use impact_fit::parameters::Coordinate;
 use impact_identification::replay::Correlation;
 
 /// Room above the cells for the columns' symbols, points.

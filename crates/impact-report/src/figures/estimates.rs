@@ -13,7 +13,7 @@ use crate::kit::path::Rect;
 use crate::locale::Locale;
 use crate::parameters::{PARAMETERS, ParameterLook, interval95};
 use crate::phrase::Phrase;
-use impact_identification::identify::{Estimate, Status};
+use impact_fit::{Estimate, Status};
 use impact_records::signal::robust::range;
 
 /// Height of a method's line, points.

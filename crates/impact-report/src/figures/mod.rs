@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use crate::content::ReportContent;
 use crate::kit::figure::{Figure, numbered};
 use crate::locale::Locale;
-use impact_identification::identify::Method;
+use impact_fit::Method;
 
 /// A figure waiting to be drawn.
 type Job<'a> = Box<dyn Fn() -> Option<Figure> + Send + Sync + 'a>;

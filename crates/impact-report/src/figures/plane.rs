@@ -3,7 +3,7 @@
 use crate::content::ReportContent;
 use crate::kit::axis::Axis;
 use crate::phrase::Phrase;
-use impact_identification::identify::Estimate;
+use impact_fit::Estimate;
 use impact_identification::identify::plan::Proposal;
 use impact_identification::replay::{BracketRow, RecordRow};
 use impact_records::motion::Motion;

@@ -12,8 +12,8 @@ use crate::kit::path::Rect;
 use crate::locale::Locale;
 use crate::parameters::{PARAMETERS, ParameterLook, interval95, short};
 use crate::phrase::Phrase;
+use impact_fit::ParameterSet;
 use impact_identification::compare::{Comparison, Difference};
-use impact_identification::identify::ParameterSet;
 
 /// Height of a panel, points.
 const HEIGHT: f64 = 96.0;

@@ -4,12 +4,13 @@
 use std::sync::OnceLock;
 
 use crate::{CampaignFacts, CampaignsContent, NominalValue, Phrase, ReportContent, Subject};
+use impact_fit::VerdictKind;
+use impact_fit::parameters::Coordinate;
 use impact_identification::compare::{
     Comparison, ComparisonRemark, ComparisonSummary, Difference, EqualityTest, NotShared,
     SeparateNuisance, SharedNuisance, WhyShared,
 };
-use impact_identification::identify::parameters::Coordinate;
-use impact_identification::identify::{Provenance, VerdictKind};
+use impact_identification::identify::Provenance;
 use impact_identification::replay::fixture::{self, Identified};
 use impact_identification::replay::{ImpactScatter, RecordRow};
 use impact_records::motion::{Motion, Undetermined};

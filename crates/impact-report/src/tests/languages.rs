@@ -7,12 +7,13 @@ use crate::{
     DataTable, NominalValue, Phrase, Report, ReportContent, ReportOptions, Subject, catalog,
     document,
 };
-use impact_identification::identify::parameters::Coordinate;
-use impact_identification::identify::parameters::effect::Effect;
+use impact_fit::parameters::Coordinate;
+use impact_fit::parameters::effect::Effect;
+use impact_fit::{Finding, Method, Reason};
+use impact_identification::identify::Identification;
 use impact_identification::identify::uncertainty::budget::{
     Budget, Combined, Contribution, Evaluation, Row, UncertaintySource,
 };
-use impact_identification::identify::{Finding, Identification, Method, Reason};
 use impact_identification::replay::{BracketRow, Correlation, Unusable, UnusableReason};
 use impact_records::language::Language;
 use impact_records::motion::{Motion, Undetermined};
@@ -34,7 +35,7 @@ fn marks_for_phrases() -> catalog::Catalog {
         text.push_str(&format!("{key} = \"⟦{i}⟧{values}\"\n"));
     }
     text.push_str("\n[findings]\n");
-    let all = impact_identification::identify::messages::kinds().into_iter();
+    let all = impact_fit::messages::kinds().into_iter();
     let all = all.chain(impact_identification::compare::kinds());
     for (i, message) in all.enumerate() {
         let names: String = message

@@ -1,7 +1,7 @@
 //! Mistakes of a laboratory, made in simulated records on purpose.
 
 use super::seen::Seen;
-use impact_identification::identify::Finding;
+use impact_fit::Finding;
 use impact_records::record::{FlagCode, Record, Role};
 use simulated_rig::{Effect, Laboratory};
 

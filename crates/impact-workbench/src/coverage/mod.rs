@@ -10,13 +10,14 @@ use serde::Serialize;
 use seen::Seen;
 
 use impact_campaign::pipeline::{PipelineError, Progress};
-use impact_identification::identify::evidence::options::{IntervalMethod, UncertaintyOptions};
-use impact_identification::identify::evidence::{Evidence, Nominal};
-use impact_identification::identify::parameters::Parameters;
+use impact_fit::evidence::options::{IntervalMethod, UncertaintyOptions};
+use impact_fit::evidence::{Evidence, Nominal};
+use impact_fit::parameters::Parameters;
+use impact_fit::{Estimator, Method};
 use impact_identification::identify::run::identify;
 use impact_identification::identify::uncertainty::bound::bounds;
 use impact_identification::identify::uncertainty::coverage::{Score, Trial, scores, table};
-use impact_identification::identify::{Estimator, Identification, Method, boundary_plan};
+use impact_identification::identify::{Identification, boundary_plan};
 use impact_records::event::{DetectSettings, RigKind};
 use impact_records::motion::{
     Bracket, ClassifySettings, Observation, brackets, observe, scale_drives,
@@ -264,7 +265,7 @@ pub fn study(plan: &CoveragePlan, progress: Progress<'_>) -> Result<Coverage, Pi
 mod tests {
     use super::mistake::widen_one_gap;
     use super::*;
-    use impact_identification::identify::Finding;
+    use impact_fit::Finding;
 
     /// The clearance as stated and as it fits of a gap that alone is named, m.
     fn named_gap(seen: &Seen) -> (f64, f64) {
@@ -310,10 +311,7 @@ mod tests {
         let found = identified(&draw).expect("a campaign");
         let trajectories = &found.methods[&Method::Trajectories].parameters;
         let estimate = trajectories.restitution.as_ref().expect("R");
-        assert_ne!(
-            estimate.note,
-            Some(impact_identification::identify::Note::NotSeparable)
-        );
+        assert_ne!(estimate.note, Some(impact_fit::Note::NotSeparable));
         let value = estimate
             .value
             .unwrap_or_else(|| panic!("{:?}", estimate.note));

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::seen::Seen;
-use impact_identification::identify::{Effect, Finding, VerdictKind};
+use impact_fit::{Effect, Finding, VerdictKind};
 use impact_records::motion::{Motion, Observation};
 
 /// So many of so many.

@@ -15,9 +15,10 @@ use impact_campaign::pipeline::watch::Live;
 use impact_campaign::pipeline::{
     Observed, PipelineError, Progress, identify, inputs, layout, store,
 };
-use impact_identification::identify::methods::blocks::Blocks;
-use impact_identification::identify::parameters::Parameters;
-use impact_identification::identify::{Estimate, Identification};
+use impact_fit::Estimate;
+use impact_fit::methods::blocks::Blocks;
+use impact_fit::parameters::Parameters;
+use impact_identification::identify::Identification;
 use impact_identification::replay::{self, Input, PlacedRecord};
 use impact_records::event::RigKind;
 use impact_records::motion::Observation;

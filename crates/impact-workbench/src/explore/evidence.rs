@@ -9,11 +9,11 @@ use super::campaign::OpenCampaign;
 use super::jobs::Job;
 use super::{ExploreError, State};
 use impact_campaign::pipeline::identify::evidence;
-use impact_identification::identify::methods::boundaries::block::predicted_hz;
-use impact_identification::identify::parameters::Parameters;
+use impact_fit::methods::boundaries::block::predicted_hz;
+use impact_fit::parameters::Parameters;
+use impact_fit::solver::Block;
+use impact_fit::{Method, Remark};
 use impact_identification::identify::plan::propose;
-use impact_identification::identify::solver::Block;
-use impact_identification::identify::{Method, Remark};
 use impact_identification::replay::{BesideRecord, Signal, beside};
 use impact_records::motion::{BoundaryKind, Motion, Observation};
 use impact_report::style::MotionStyle;
@@ -111,9 +111,8 @@ fn evidence_of(campaign: &OpenCampaign, index: usize) -> Value {
         .map(|f| json!({"message": f.message, "remedy": f.remedy, "excludes": f.excludes}));
     let used = campaign.identification.methods_using(index);
     let left_out = campaign.identification.left_out.iter();
-    let left_out = left_out.filter(
-        |l| matches!(&l.item, impact_identification::identify::Item::Record { index: i, .. } if *i == index),
-    );
+    let left_out = left_out
+        .filter(|l| matches!(&l.item, impact_fit::Item::Record { index: i, .. } if *i == index));
     json!({
         "measures": o.classification.evidence,
         "undetermined": reason,

@@ -6,7 +6,7 @@ use crate::campaign::context::ResolveContext;
 use crate::campaign::diagnostic::Code;
 use crate::campaign::keys::keys;
 use crate::campaign::values::{Placed, WrittenQuantity, value};
-use impact_identification::identify::evidence::options::IntervalMethod;
+use impact_fit::evidence::options::IntervalMethod;
 use labfiles::units::Dimension;
 
 keys! {

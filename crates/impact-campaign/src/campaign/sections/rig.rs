@@ -9,8 +9,8 @@ use crate::campaign::context::ResolveContext;
 use crate::campaign::diagnostic::Code;
 use crate::campaign::keys::keys;
 use crate::campaign::values::{Placed, WrittenQuantity, value};
+use impact_fit::parameters::effect::EffectKind;
 use impact_identification::compare::Common;
-use impact_identification::identify::parameters::effect::EffectKind;
 use labfiles::units::Dimension;
 
 keys! {

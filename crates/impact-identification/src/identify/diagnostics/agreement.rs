@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::identify::estimate::{Estimate, Status};
-use crate::identify::messages::{PairAgreement, Remark};
-use crate::identify::method::Method;
-use crate::identify::methods::answer::{Agreement, MethodResult};
-use crate::identify::parameters::Coordinate;
-use crate::identify::solver::Fit;
-use crate::identify::statistics::distribution::normal_tail;
-use crate::identify::statistics::quantile::NORMAL_975;
+use impact_fit::estimate::{Estimate, Status};
+use impact_fit::messages::{PairAgreement, Remark};
+use impact_fit::method::Method;
+use impact_fit::methods::answer::{Agreement, MethodResult};
+use impact_fit::parameters::Coordinate;
+use impact_fit::solver::Fit;
+use impact_fit::statistics::distribution::normal_tail;
+use impact_fit::statistics::quantile::NORMAL_975;
 
 /// Level of the whole test; divided by the number of pairs.
 pub const LEVEL: f64 = 0.01;
@@ -149,10 +149,10 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::identify::estimate::{estimate, not_identifiable};
-    use crate::identify::messages::Note;
-    use crate::identify::parameters::Parameters;
-    use crate::identify::solver::FitReport;
+    use impact_fit::estimate::{estimate, not_identifiable};
+    use impact_fit::messages::Note;
+    use impact_fit::parameters::Parameters;
+    use impact_fit::solver::FitReport;
 
     /// A method with R and its standard error.
     fn with_restitution(value: f64, error: f64) -> MethodResult {

@@ -1,9 +1,9 @@
 //! What a rig has beyond the model: the effects whose estimates are significant.
 
-use crate::identify::messages::Finding;
-use crate::identify::method_fit::MethodFit;
-use crate::identify::parameters::Coordinate;
-use crate::identify::parameters::effect::{Effect, EffectKind};
+use impact_fit::messages::Finding;
+use impact_fit::method_fit::MethodFit;
+use impact_fit::parameters::Coordinate;
+use impact_fit::parameters::effect::{Effect, EffectKind};
 
 /// Standard errors from which an effect is named: by chance one in two thousand reaches them.
 const NAMED: f64 = 3.5;

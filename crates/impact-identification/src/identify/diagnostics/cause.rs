@@ -7,83 +7,78 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::estimate::{Estimate, Status};
-use crate::identify::messages::cause::Cause;
-use crate::identify::messages::{Finding, Note};
-use crate::identify::method::Method;
-use crate::identify::methods::answer::MethodResult;
-use crate::identify::parameters::Coordinate;
+use impact_fit::estimate::{Estimate, Status};
+use impact_fit::messages::cause::Cause;
+use impact_fit::messages::{Finding, Note};
+use impact_fit::method::Method;
+use impact_fit::methods::answer::MethodResult;
+use impact_fit::parameters::Coordinate;
 
-impl Cause {
-    /// Whether a finding is a trace of this cause, so that it is not named beside it.
-    pub fn explains(self, finding: &Finding) -> bool {
-        let later = finding.cause().is_some_and(|other| other > self);
-        if self == Self::Unsettled {
-            // what is still dying away looks like friction, drag and a force against frequency
-            return finding.cause() == Some(Self::Effect);
-        }
-        let reached = match finding {
-            Finding::Misfit { method, .. } => self.reaches(*method),
-            Finding::Disagreement { pair } => pair.methods.iter().any(|m| self.reaches(*m)),
-            // all others are read from the fit of all methods together
-            _ => true,
+/// Whether a finding is a trace of a cause, so that it is not named beside it.
+pub fn explains(cause: Cause, finding: &Finding) -> bool {
+    let later = finding.cause().is_some_and(|other| other > cause);
+    if cause == Cause::Unsettled {
+        // what is still dying away looks like friction, drag and a force against frequency
+        return finding.cause() == Some(Cause::Effect);
+    }
+    let reached = match finding {
+        Finding::Misfit { method, .. } => cause.reaches(*method),
+        Finding::Disagreement { pair } => pair.methods.iter().any(|m| cause.reaches(*m)),
+        // all others are read from the fit of all methods together
+        _ => true,
+    };
+    cause.bends() && later && reached
+}
+
+/// The cause that explains the others, by the findings on the laboratory and the remarks of methods that do
+/// not fit; the first of several.
+pub fn leading(suspicions: &[Finding], methods: &BTreeMap<Method, MethodResult>) -> Option<Cause> {
+    let misfits = methods.values().filter(|m| m.fits == Some(false));
+    let remarks = misfits.flat_map(|m| &m.remarks);
+    let named = suspicions.iter().filter_map(Finding::cause);
+    let all = named.chain(remarks.filter_map(|remark| remark.cause()));
+    all.filter(|cause| *cause <= Cause::Unsettled).min()
+}
+
+/// Withdraw from a joint result what a cause reaches: a parameter is that of the method, out of those
+/// that the cause does not reach, that determines it best; without one it is weak. Gives the parameters that
+/// another method's value replaces.
+pub fn withdraw(
+    cause: Cause,
+    joint: &mut MethodResult,
+    methods: &BTreeMap<Method, MethodResult>,
+) -> Vec<Coordinate> {
+    let mut replaced = Vec::new();
+    for parameter in Coordinate::PHYSICAL {
+        let Some(Some(estimate)) = joint.parameters.slot(parameter) else {
+            continue;
         };
-        self.bends() && later && reached
-    }
-
-    /// The cause that explains the others, by the findings on the laboratory and the remarks of methods that do
-    /// not fit; the first of several.
-    pub fn leading(
-        suspicions: &[Finding],
-        methods: &BTreeMap<Method, MethodResult>,
-    ) -> Option<Self> {
-        let misfits = methods.values().filter(|m| m.fits == Some(false));
-        let remarks = misfits.flat_map(|m| &m.remarks);
-        let named = suspicions.iter().filter_map(Finding::cause);
-        let all = named.chain(remarks.filter_map(|remark| remark.cause()));
-        all.filter(|cause| *cause <= Self::Unsettled).min()
-    }
-
-    /// Withdraw from a joint result what this cause reaches: a parameter is that of the method, out of those
-    /// that the cause does not reach, that determines it best; without one it is weak. Gives the parameters that
-    /// another method's value replaces.
-    pub fn withdraw(
-        self,
-        joint: &mut MethodResult,
-        methods: &BTreeMap<Method, MethodResult>,
-    ) -> Vec<Coordinate> {
-        let mut replaced = Vec::new();
-        for parameter in Coordinate::PHYSICAL {
-            let Some(Some(estimate)) = joint.parameters.slot(parameter) else {
-                continue;
-            };
-            let telling = |reached: bool| {
-                let of = methods.iter();
-                of.filter(move |(method, _)| self.reaches(**method) == reached)
-                    .filter_map(move |(method, found)| {
-                        let own = found.parameters.get(parameter)?;
-                        Some((*method, own, half_width(own)?))
-                    })
-            };
-            if telling(true).next().is_none() {
-                continue;
-            }
-            let best = telling(false).min_by(|a, b| a.2.total_cmp(&b.2));
-            if let Some((method, own, _)) = best {
-                *estimate = Estimate {
-                    note: own.note.clone().or(Some(Note::ByMethodAlone { method })),
-                    ..own.clone()
-                };
-                replaced.push(parameter);
-            } else if estimate.value.is_some() {
-                estimate.status = Status::Weak;
-                let note = estimate.note.take();
-                let kept = note.filter(|n| *n == Note::NotOneNumber && self == Self::Contact);
-                estimate.note = kept.or(Some(Note::Bent));
-            }
+        let telling = |reached: bool| {
+            let of = methods.iter();
+            of.filter(move |(method, _)| cause.reaches(**method) == reached)
+                .filter_map(move |(method, found)| {
+                    let own = found.parameters.get(parameter)?;
+                    Some((*method, own, half_width(own)?))
+                })
+        };
+        if telling(true).next().is_none() {
+            continue;
         }
-        replaced
+        let best = telling(false).min_by(|a, b| a.2.total_cmp(&b.2));
+        if let Some((method, own, _)) = best {
+            *estimate = Estimate {
+                note: own.note.clone().or(Some(Note::ByMethodAlone { method })),
+                ..own.clone()
+            };
+            replaced.push(parameter);
+        } else if estimate.value.is_some() {
+            estimate.status = Status::Weak;
+            let note = estimate.note.take();
+            let kept = note.filter(|n| *n == Note::NotOneNumber && cause == Cause::Contact);
+            estimate.note = kept.or(Some(Note::Bent));
+        }
     }
+    replaced
 }
 
 /// Half an estimate's interval, SI; `None` where it has none.
@@ -94,9 +89,9 @@ fn half_width(estimate: &Estimate) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::estimate::estimate;
-    use crate::identify::messages::{PairAgreement, Remark};
-    use crate::identify::parameters::effect::Effect;
+    use impact_fit::estimate::estimate;
+    use impact_fit::messages::{PairAgreement, Remark};
+    use impact_fit::parameters::effect::Effect;
     use impact_records::record::Role;
 
     fn changes() -> Remark {
@@ -128,7 +123,7 @@ mod tests {
 
     #[test]
     fn a_law_of_the_contact_explains_what_waveforms_show_and_not_what_the_resonance_curve_does() {
-        let cause = Cause::leading(&[], &methods());
+        let cause = leading(&[], &methods());
         assert_eq!(cause, Some(Cause::Contact));
         let gain = Finding::WrongGain {
             channel: Role::VelocityX,
@@ -154,7 +149,7 @@ mod tests {
         };
         let apart = between([Method::Resonance, Method::Trajectories]);
         for trace in [gain, drag, waveforms, apart] {
-            assert!(Cause::Contact.explains(&trace), "{trace}");
+            assert!(explains(Cause::Contact, &trace), "{trace}");
         }
         let curve = misfit(
             Method::Resonance,
@@ -168,7 +163,7 @@ mod tests {
             of: 9,
         };
         for other in [curve, own, decays, clock] {
-            assert!(!Cause::Contact.explains(&other), "{other}");
+            assert!(!explains(Cause::Contact, &other), "{other}");
         }
     }
 
@@ -179,15 +174,12 @@ mod tests {
             corner_hz: 1.0,
             z_score: 20.0,
         };
-        assert_eq!(
-            Cause::leading(&[high_pass], &methods()),
-            Some(Cause::Channel)
-        );
+        assert_eq!(leading(&[high_pass], &methods()), Some(Cause::Channel));
         let law = Finding::Misfit {
             method: Method::Impacts,
             remark: changes(),
         };
-        assert!(Cause::Channel.explains(&law));
+        assert!(explains(Cause::Channel, &law));
     }
 
     #[test]
@@ -198,8 +190,8 @@ mod tests {
             wait_s: 1.0,
         };
         let none = BTreeMap::new();
-        assert_eq!(Cause::leading(&[early(57)], &none), Some(Cause::Unsettled));
-        assert_eq!(Cause::leading(&[early(6)], &none), None);
+        assert_eq!(leading(&[early(57)], &none), Some(Cause::Unsettled));
+        assert_eq!(leading(&[early(6)], &none), None);
         let drag = Finding::BeyondModel {
             effect: Effect::Drag,
             strength: 0.04,
@@ -209,7 +201,7 @@ mod tests {
         let apart = Finding::Disagreement {
             pair: PairAgreement::default(),
         };
-        assert!(Cause::Unsettled.explains(&drag) && !Cause::Unsettled.explains(&apart));
+        assert!(explains(Cause::Unsettled, &drag) && !explains(Cause::Unsettled, &apart));
         assert!(!Cause::Unsettled.bends());
     }
 
@@ -219,12 +211,12 @@ mod tests {
         let mut joint = MethodResult::default();
         joint.parameters.damping_ratio = at(0.055, 2e-3);
         let mut methods = methods();
-        let replaced = Cause::Unsettled.withdraw(&mut joint.clone(), &methods);
+        let replaced = withdraw(Cause::Unsettled, &mut joint.clone(), &methods);
         assert_eq!(replaced, []);
         let mut flights = MethodResult::default();
         flights.parameters.damping_ratio = at(0.05, 1e-2);
         methods.insert(Method::Flights, flights);
-        let replaced = Cause::Unsettled.withdraw(&mut joint, &methods);
+        let replaced = withdraw(Cause::Unsettled, &mut joint, &methods);
         assert_eq!(replaced, [Coordinate::Damping]);
         let beta = joint.parameters.damping_ratio.expect("β");
         assert!((beta.value.expect("a value") - 0.05).abs() < 1e-12);
@@ -237,11 +229,11 @@ mod tests {
             fitting_m: 1.1e-3,
             z_score: 9.0,
         };
-        assert_eq!(Cause::leading(&[gap], &BTreeMap::new()), None);
+        assert_eq!(leading(&[gap], &BTreeMap::new()), None);
         let apart = Finding::Disagreement {
             pair: PairAgreement::default(),
         };
-        assert!(!Cause::Statement.explains(&apart));
+        assert!(!explains(Cause::Statement, &apart));
     }
 
     #[test]
@@ -249,7 +241,7 @@ mod tests {
         let mut joint = MethodResult::default();
         joint.parameters.restitution = Some(estimate(Coordinate::Restitution, 0.8, 1e-3));
         joint.parameters.damping_ratio = Some(estimate(Coordinate::Damping, 0.062f64.ln(), 2e-3));
-        let replaced = Cause::Contact.withdraw(&mut joint, &methods());
+        let replaced = withdraw(Cause::Contact, &mut joint, &methods());
         assert_eq!(replaced, [Coordinate::Damping]);
         let [r, beta] = [joint.parameters.restitution, joint.parameters.damping_ratio];
         let (r, beta) = (r.expect("R"), beta.expect("β"));

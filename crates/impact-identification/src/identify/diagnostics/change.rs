@@ -9,21 +9,21 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::identify::estimate::{Estimate, Status, estimate_within};
-use crate::identify::evidence::Evidence;
 use crate::identify::first_values::part_alone;
-use crate::identify::messages::{Finding, Note, StatedValue};
-use crate::identify::method::Method;
-use crate::identify::methods::answer::MethodResult;
-use crate::identify::methods::blocks::Blocks;
-use crate::identify::methods::selection::Selection;
-use crate::identify::parameters::effect::Effect;
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::Problem;
-use crate::identify::solver::normal::{Normal, inverse};
-use crate::identify::solver::placed_rows::PlacedRows;
-use crate::identify::statistics::distribution::student_tail;
-use crate::identify::statistics::scatter::Spread;
+use impact_fit::estimate::{Estimate, Status, estimate_within};
+use impact_fit::evidence::Evidence;
+use impact_fit::messages::{Finding, Note, StatedValue};
+use impact_fit::method::Method;
+use impact_fit::methods::answer::MethodResult;
+use impact_fit::methods::blocks::Blocks;
+use impact_fit::methods::selection::Selection;
+use impact_fit::parameters::effect::Effect;
+use impact_fit::parameters::{Coordinate, Parameters};
+use impact_fit::solver::Problem;
+use impact_fit::solver::normal::{Normal, inverse};
+use impact_fit::solver::placed_rows::PlacedRows;
+use impact_fit::statistics::distribution::student_tail;
+use impact_fit::statistics::scatter::Spread;
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
 
@@ -369,9 +369,9 @@ fn between(parameter: Coordinate, both: &[(f64, Spread); 2]) -> Estimate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::VerdictKind;
-    use crate::identify::fixture::{evidence, observed, recorded};
     use crate::identify::run::identify;
+    use impact_fit::VerdictKind;
+    use impact_fit::fixture::{evidence, observed, recorded};
     use impact_records::record::Record;
 
     /// A measurement of the first of two numbers, or of their sum, with a unit error.

@@ -9,11 +9,11 @@ use std::collections::BTreeMap;
 
 use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
 use crate::identify::diagnostics::stated_frequencies;
-use crate::identify::estimate;
-use crate::identify::messages::{Finding, Note};
-use crate::identify::methods::answer::MethodResult;
-use crate::identify::parameters::Coordinate;
-use crate::identify::statistics::quantile::{NORMAL_975, student_975};
+use impact_fit::estimate;
+use impact_fit::messages::{Finding, Note};
+use impact_fit::methods::answer::MethodResult;
+use impact_fit::parameters::Coordinate;
+use impact_fit::statistics::quantile::{NORMAL_975, student_975};
 use impact_records::motion::Observation;
 use impact_records::record::{FlagCode, Role};
 use impact_records::signal::robust;

@@ -4,10 +4,10 @@
 //! The first order about a fit, which finds smaller errors of a gap, may then accuse another gap.
 
 use crate::identify::diagnostics::suspicion::{OddGap, recover};
-use crate::identify::methods::blocks::Blocks;
-use crate::identify::methods::trajectories::record::TrajectoryRecord;
-use crate::identify::parameters::Parameters;
-use crate::identify::solver::mean_squares;
+use impact_fit::methods::blocks::Blocks;
+use impact_fit::methods::trajectories::record::TrajectoryRecord;
+use impact_fit::parameters::Parameters;
+use impact_fit::solver::mean_squares;
 use impact_records::signal::robust;
 
 /// Mean square of the residuals from which the records contradict each other.

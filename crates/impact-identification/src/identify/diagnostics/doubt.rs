@@ -1,10 +1,10 @@
 //! What a mistake that the data give away leaves open in the estimates.
 
-use crate::identify::estimate;
-use crate::identify::messages::{Finding, Note};
-use crate::identify::method_fit::MethodFit;
-use crate::identify::methods::answer::MethodResult;
-use crate::identify::parameters::Coordinate;
+use impact_fit::estimate;
+use impact_fit::messages::{Finding, Note};
+use impact_fit::method_fit::MethodFit;
+use impact_fit::methods::answer::MethodResult;
+use impact_fit::parameters::Coordinate;
 
 /// How far a parameter may be off beside its own uncertainty.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,11 +1,11 @@
 //! Channels whose delay is far off the stated one: found by the impacts before the fit, or by the fit.
 
 use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
-use crate::identify::evidence::Nominal;
-use crate::identify::messages::{Finding, Note};
-use crate::identify::method_fit::MethodFit;
-use crate::identify::methods::blocks::Blocks;
-use crate::identify::parameters::{Coordinate, GAIN_ROLES};
+use impact_fit::evidence::Nominal;
+use impact_fit::messages::{Finding, Note};
+use impact_fit::method_fit::MethodFit;
+use impact_fit::methods::blocks::Blocks;
+use impact_fit::parameters::{Coordinate, GAIN_ROLES};
 use impact_records::motion::{Observation, one_pole_hz};
 use impact_records::record::LowPass;
 

@@ -1,10 +1,10 @@
 //! Parameters that a campaign asks for and no method tells: each gets the reason instead of a value.
 
-use crate::identify::estimate::not_identifiable;
-use crate::identify::evidence::Evidence;
-use crate::identify::messages::Note;
-use crate::identify::methods::answer::MethodResult;
-use crate::identify::parameters::Coordinate;
+use impact_fit::estimate::not_identifiable;
+use impact_fit::evidence::Evidence;
+use impact_fit::messages::Note;
+use impact_fit::methods::answer::MethodResult;
+use impact_fit::parameters::Coordinate;
 use impact_records::event::{FlightKind, RigKind};
 use impact_records::motion::Observation;
 use impact_records::record::Excitation;
@@ -65,9 +65,9 @@ fn why(parameter: Coordinate, observations: &[&Observation]) -> Note {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::Status;
-    use crate::identify::estimate::estimate;
-    use crate::identify::evidence::Nominal;
+    use impact_fit::Status;
+    use impact_fit::estimate::estimate;
+    use impact_fit::evidence::Nominal;
     use impact_records::event::Impact;
     use impact_records::motion::Motion;
 

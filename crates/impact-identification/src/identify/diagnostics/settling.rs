@@ -1,7 +1,7 @@
 //! Whether a campaign's records begin before their motions have settled, and how long to wait.
 
-use crate::identify::estimate::ParameterSet;
-use crate::identify::messages::Finding;
+use impact_fit::estimate::ParameterSet;
+use impact_fit::messages::Finding;
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
 
@@ -27,7 +27,7 @@ pub fn not_settled(observations: &[Observation], parameters: &ParameterSet) -> O
     if records < FEWEST || (records as f64) < LEAST_SHARE * seen.len() as f64 {
         return None;
     }
-    let value = |estimate: &Option<crate::identify::Estimate>| estimate.as_ref()?.value;
+    let value = |estimate: &Option<impact_fit::Estimate>| estimate.as_ref()?.value;
     let rate = value(&parameters.natural_frequency_hz).zip(value(&parameters.damping_ratio));
     let durations: Vec<f64> = seen.iter().map(|o| o.duration_s).collect();
     let wait_s = match rate {
@@ -44,8 +44,8 @@ pub fn not_settled(observations: &[Observation], parameters: &ParameterSet) -> O
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::estimate::estimate;
-    use crate::identify::parameters::Coordinate;
+    use impact_fit::estimate::estimate;
+    use impact_fit::parameters::Coordinate;
     use impact_records::motion::Motion;
 
     fn observed(settling: Option<f64>) -> Observation {

@@ -7,9 +7,9 @@
 
 use impact_oscillator::model::flight::{Drive, State, free_flight};
 
-use crate::identify::evidence::Evidence;
-use crate::identify::messages::Finding;
-use crate::identify::parameters::Parameters;
+use impact_fit::evidence::Evidence;
+use impact_fit::messages::Finding;
+use impact_fit::parameters::Parameters;
 use impact_records::event::{Impact, RigKind};
 use impact_records::motion::Observation;
 use impact_records::signal::robust;

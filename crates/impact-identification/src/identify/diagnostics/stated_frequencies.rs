@@ -1,7 +1,7 @@
 //! Whether the drive's frequencies contradict those that the campaign states, in most of its records, or no
 //! drive was measured.
 
-use crate::identify::messages::Finding;
+use impact_fit::messages::Finding;
 use impact_records::motion::Observation;
 use impact_records::record::FlagCode;
 use impact_records::signal::robust;
@@ -48,9 +48,9 @@ pub fn contradicted(observations: &[Observation]) -> Option<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::fixture::{evidence, observed as observed_all, recorded};
-    use crate::identify::parameters::Coordinate;
     use crate::identify::run::identify;
+    use impact_fit::fixture::{evidence, observed as observed_all, recorded};
+    use impact_fit::parameters::Coordinate;
     use impact_records::event::DriveTone;
     use impact_records::motion::Motion;
     use impact_records::record::{Flag, Role};

@@ -6,14 +6,14 @@
 
 use nalgebra::DVector;
 
-use crate::identify::evidence::Nominal;
-use crate::identify::messages::Finding;
-use crate::identify::method_fit::MethodFit;
-use crate::identify::methods::blocks::Blocks;
-use crate::identify::methods::trajectories::block::TrajectoryBlock;
-use crate::identify::methods::trajectories::record::TrajectoryRecord;
-use crate::identify::parameters::{Coordinate, GAIN_ROLES, Parameters};
-use crate::identify::solver::{Block, Fit, Prior, mean_squares};
+use impact_fit::evidence::Nominal;
+use impact_fit::messages::Finding;
+use impact_fit::method_fit::MethodFit;
+use impact_fit::methods::blocks::Blocks;
+use impact_fit::methods::trajectories::block::TrajectoryBlock;
+use impact_fit::methods::trajectories::record::TrajectoryRecord;
+use impact_fit::parameters::{Coordinate, GAIN_ROLES, Parameters};
+use impact_fit::solver::{Block, Fit, Prior, mean_squares};
 use impact_records::signal::columns::dot;
 
 /// Standard errors from which a deviation is named.
@@ -273,8 +273,8 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::identify::solver::FitReport;
-    use crate::identify::statistics::scatter::{Excess, Scatter};
+    use impact_fit::solver::FitReport;
+    use impact_fit::statistics::scatter::{Excess, Scatter};
 
     /// A fit whose first gap is 6 µm off with a variance of 1 µm², 8/9 of it known by the data; `ratio`: the
     /// scatter between groups over what noise explains.

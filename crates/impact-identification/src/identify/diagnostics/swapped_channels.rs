@@ -4,11 +4,11 @@
 use std::sync::Arc;
 
 use crate::identify::diagnostics::suspicion::SURE;
-use crate::identify::messages::Finding;
-use crate::identify::methods::blocks::Blocks;
-use crate::identify::methods::joint::{self, Weights};
-use crate::identify::methods::weighing::LEAST_ALLOWANCE;
-use crate::identify::parameters::gain_index;
+use impact_fit::messages::Finding;
+use impact_fit::methods::blocks::Blocks;
+use impact_fit::methods::joint::{self, Weights};
+use impact_fit::methods::weighing::LEAST_ALLOWANCE;
+use impact_fit::parameters::gain_index;
 use impact_records::record::Role;
 
 /// Relative difference of two sums of squares that errors of the model may make.

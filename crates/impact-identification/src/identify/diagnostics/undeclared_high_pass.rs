@@ -2,11 +2,11 @@
 //! one of them had, then another one beside it, as long as that explains far more.
 
 use crate::identify::diagnostics::suspicion::SURE;
-use crate::identify::messages::Finding;
-use crate::identify::methods::blocks::Blocks;
-use crate::identify::methods::weighing::LEAST_ALLOWANCE;
-use crate::identify::parameters::gain_index;
-use crate::identify::solver::Fit;
+use impact_fit::messages::Finding;
+use impact_fit::methods::blocks::Blocks;
+use impact_fit::methods::weighing::LEAST_ALLOWANCE;
+use impact_fit::parameters::gain_index;
+use impact_fit::solver::Fit;
 use impact_records::record::Role;
 
 /// Standard uncertainty of the corners' logarithms in these fits.

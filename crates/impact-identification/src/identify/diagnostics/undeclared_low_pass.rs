@@ -5,13 +5,13 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::first_values::start;
-use crate::identify::methods::blocks::Blocks;
-use crate::identify::methods::joint;
-use crate::identify::methods::selection::Selection;
-use crate::identify::parameters::effect::EffectKind;
-use crate::identify::parameters::gain_index;
+use impact_fit::evidence::{Evidence, Nominal};
+use impact_fit::methods::blocks::Blocks;
+use impact_fit::methods::joint;
+use impact_fit::methods::selection::Selection;
+use impact_fit::parameters::effect::EffectKind;
+use impact_fit::parameters::gain_index;
 use impact_records::motion::{LateChannel, Observation};
 use impact_records::record::LowPass;
 

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::estimate::{Estimate, Status};
-use crate::identify::messages::cause::Cause;
-use crate::identify::messages::{Finding, Note, Remark, Sentence, StatedValue};
-use crate::identify::method::Method;
-use crate::identify::methods::answer::{Agreement, MethodResult, Verdict, VerdictKind};
-use crate::identify::parameters::Coordinate;
+use crate::identify::diagnostics::cause::explains;
+use impact_fit::estimate::{Estimate, Status};
+use impact_fit::messages::cause::Cause;
+use impact_fit::messages::{Finding, Note, Remark, Sentence, StatedValue};
+use impact_fit::method::Method;
+use impact_fit::methods::answer::{Agreement, MethodResult, Verdict, VerdictKind};
+use impact_fit::parameters::Coordinate;
 
 /// R from the impacts alone that is not one number makes the joint R no better.
 pub fn carry_over(joint: &mut MethodResult, methods: &BTreeMap<Method, MethodResult>) {
@@ -128,7 +129,7 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
     let disagreement = basis.agreement.disagreement().cloned();
     findings.extend(disagreement.map(|pair| Finding::Disagreement { pair }));
     if let Some(cause) = basis.cause {
-        findings.retain(|finding| !cause.explains(finding));
+        findings.retain(|finding| !explains(cause, finding));
     }
     findings
 }
@@ -176,10 +177,10 @@ fn stated_value((parameter, estimate): &(Coordinate, &Estimate)) -> Option<State
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::estimate::{estimate, estimate_within};
-    use crate::identify::messages::PairAgreement;
-    use crate::identify::statistics::quantile::NORMAL_975;
-    use crate::identify::statistics::scatter::Spread;
+    use impact_fit::estimate::{estimate, estimate_within};
+    use impact_fit::messages::PairAgreement;
+    use impact_fit::statistics::quantile::NORMAL_975;
+    use impact_fit::statistics::scatter::Spread;
 
     /// A joint result with standard errors of R and ln f0.
     fn joint(restitution: f64, frequency: f64) -> MethodResult {

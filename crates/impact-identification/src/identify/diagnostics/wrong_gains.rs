@@ -9,9 +9,9 @@
 use nalgebra::DMatrix;
 
 use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
-use crate::identify::messages::{Finding, Note};
-use crate::identify::method_fit::MethodFit;
-use crate::identify::parameters::{Coordinate, GAIN_ROLES};
+use impact_fit::messages::{Finding, Note};
+use impact_fit::method_fit::MethodFit;
+use impact_fit::parameters::{Coordinate, GAIN_ROLES};
 use impact_records::record::Role;
 
 /// Standard deviations from which a gain is named: chance makes one of two differ so in 0.3 %. What masses
@@ -113,9 +113,9 @@ fn candidates(found: &MethodFit, covariance: &DMatrix<f64>, stated: f64) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::parameters::Parameters;
-    use crate::identify::solver::{Fit, FitReport};
-    use crate::identify::statistics::scatter::Scatter;
+    use impact_fit::parameters::Parameters;
+    use impact_fit::solver::{Fit, FitReport};
+    use impact_fit::statistics::scatter::Scatter;
 
     const STATED: f64 = 5e-3;
 

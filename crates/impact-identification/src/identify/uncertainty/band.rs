@@ -1,9 +1,9 @@
 //! How far a curve in the (η, ρ) plane may be off: what the fit leaves open in R and β, on which alone
 //! the boundaries of the symmetric machine depend there.
 
-use crate::identify::parameters::Coordinate;
-use crate::identify::solver::Fit;
-use crate::identify::statistics::quantile::NORMAL_975;
+use impact_fit::parameters::Coordinate;
+use impact_fit::solver::Fit;
+use impact_fit::statistics::quantile::NORMAL_975;
 use impact_oscillator::model::params::Machine;
 use impact_records::event::RigKind;
 
@@ -59,8 +59,8 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::identify::parameters::Parameters;
-    use crate::identify::solver::FitReport;
+    use impact_fit::parameters::Parameters;
+    use impact_fit::solver::FitReport;
 
     #[test]
     fn valid_the_band_of_r_and_beta_themselves_is_their_interval() {

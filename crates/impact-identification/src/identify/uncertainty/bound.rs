@@ -9,13 +9,13 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
-use crate::identify::evidence::{Evidence, Nominal};
-use crate::identify::method::{Estimator, Method};
-use crate::identify::methods::blocks::Blocks;
-use crate::identify::methods::boundaries::posterior::{self, Posterior};
-use crate::identify::methods::boundaries::surroundings::Surroundings;
-use crate::identify::methods::joint;
-use crate::identify::parameters::{Coordinate, Parameters};
+use impact_fit::evidence::{Evidence, Nominal};
+use impact_fit::method::{Estimator, Method};
+use impact_fit::methods::blocks::Blocks;
+use impact_fit::methods::boundaries::posterior::{self, Posterior};
+use impact_fit::methods::boundaries::surroundings::Surroundings;
+use impact_fit::methods::joint;
+use impact_fit::parameters::{Coordinate, Parameters};
 
 /// Least standard errors of the coordinates.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,12 +8,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::method::Method;
-use crate::identify::method_fit::MethodFit;
-use crate::identify::methods::blocks::Blocks;
-use crate::identify::parameters::Coordinate;
-use crate::identify::solver::Problem;
-use crate::identify::statistics::quantile::NORMAL_975;
+use impact_fit::method::Method;
+use impact_fit::method_fit::MethodFit;
+use impact_fit::methods::blocks::Blocks;
+use impact_fit::parameters::Coordinate;
+use impact_fit::solver::Problem;
+use impact_fit::statistics::quantile::NORMAL_975;
 
 /// Where an uncertainty comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

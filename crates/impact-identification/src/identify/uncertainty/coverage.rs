@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::statistics::quantile::NORMAL_975;
 use crate::identify::uncertainty::bound::Bound;
-use crate::identify::{Estimator, Method, MethodResult, ParameterSet, Status};
+use impact_fit::parameters::{Coordinate, Parameters};
+use impact_fit::statistics::quantile::NORMAL_975;
+use impact_fit::{Estimator, Method, MethodResult, ParameterSet, Status};
 
 /// How one parameter came out of one method over all campaigns. Errors of R are absolute, those
 /// of the others relative.
@@ -96,7 +96,7 @@ pub fn scores(trials: &[Trial]) -> BTreeMap<Estimator, BTreeMap<&'static str, Sc
 
 /// Score of one parameter; `None` where no campaign's method estimates it.
 fn score(trials: &[Trial], estimator: Estimator, coordinate: Coordinate) -> Option<Score> {
-    let weak = crate::identify::estimate::limits(coordinate).0 / NORMAL_975;
+    let weak = impact_fit::estimate::limits(coordinate).0 / NORMAL_975;
     let mut score = Score::default();
     let (mut errors, mut ratios, mut bounds, mut covered) = (vec![], vec![], vec![], 0);
     let mut half_widths = vec![];

@@ -19,15 +19,15 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::identify::evidence::options::{IntervalMethod, UncertaintyOptions};
-use crate::identify::method::Method;
-use crate::identify::method_fit::MethodFit;
-use crate::identify::parameters::Coordinate;
-use crate::identify::solver::normal::{Normal, inverse};
-use crate::identify::solver::{Fit, Problem};
-use crate::identify::statistics::scatter::Scatter;
 use crate::identify::uncertainty::budget::Budget;
 use crate::identify::uncertainty::profile::profile;
+use impact_fit::evidence::options::{IntervalMethod, UncertaintyOptions};
+use impact_fit::method::Method;
+use impact_fit::method_fit::MethodFit;
+use impact_fit::parameters::Coordinate;
+use impact_fit::solver::normal::{Normal, inverse};
+use impact_fit::solver::{Fit, Problem};
+use impact_fit::statistics::scatter::Scatter;
 use impact_records::signal::whole;
 
 /// What a bootstrap over records gives for one parameter.

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::least_squares::LeastSquares;
-use crate::identify::solver::{Fit, Precision, Problem};
+use impact_fit::parameters::{Coordinate, Parameters};
+use impact_fit::solver::least_squares::LeastSquares;
+use impact_fit::solver::{Fit, Precision, Problem};
 
 /// Likelihood of one parameter with all others fitted again at each of its values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -116,14 +116,9 @@ impl<'a> Path<'a> {
         Some(Self {
             fit,
             place: fit.free.iter().position(|c| *c == coordinate)?,
-            others: Problem {
-                blocks: problem.blocks.clone(),
-                priors: problem.priors.clone(),
-                free: free.filter(|c| *c != coordinate).collect(),
-                progress: problem.progress.clone(),
-                precision: Precision::Start,
-                ..Problem::default()
-            },
+            others: problem
+                .over(free.filter(|c| *c != coordinate).collect())
+                .with_precision(Precision::Start),
             bend: None,
         })
     }
@@ -183,8 +178,8 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
-    use crate::identify::solver::Block;
-    use crate::identify::solver::block::difference;
+    use impact_fit::solver::Block;
+    use impact_fit::solver::block::difference;
 
     /// One measurement of R and one of ln β less a square of R's deviation; counts what is asked for.
     #[derive(Default)]
@@ -226,11 +221,8 @@ mod tests {
     #[test]
     fn valid_others_follow_a_bent_path_with_slopes_at_one_of_its_points() {
         let block = Curved::default();
-        let problem = Problem {
-            blocks: vec![(&block, 1.0)],
-            free: vec![Coordinate::Restitution, Coordinate::Damping],
-            ..Problem::default()
-        };
+        let free = vec![Coordinate::Restitution, Coordinate::Damping];
+        let problem = Problem::of(vec![(&block, 1.0)], free);
         let start = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
         let fit = problem.fit(start).expect("a fit");
         let mut path = Path::new(&problem, &fit, Coordinate::Restitution).expect("free");

@@ -8,7 +8,7 @@ use crate::kit::richtext::plain;
 use crate::locale::Locale;
 use crate::parameters::{PARAMETERS, ParameterLook, decimals_for};
 use crate::phrase::Phrase;
-use impact_identification::identify::parameters::Coordinate;
+use impact_fit::parameters::Coordinate;
 use impact_identification::identify::uncertainty::budget::{
     Budget, Combined, Contribution, Row, UncertaintySource,
 };

@@ -9,8 +9,8 @@ use crate::figures::correlation::name;
 use crate::locale::Locale;
 use crate::parameters;
 use crate::phrase::Phrase;
+use impact_fit::parameters::Coordinate;
 use impact_identification::compare::{AcrossCampaigns, Comparison, Difference};
-use impact_identification::identify::parameters::Coordinate;
 use impact_records::message::Message;
 
 /// The campaigns with their joint estimates.

@@ -10,8 +10,8 @@ use crate::document::verdict::headline;
 use crate::locale::Locale;
 use crate::parameters::{self, PARAMETERS, ParameterLook};
 use crate::phrase::{Phrase, Text};
+use impact_fit::{Method, MethodResult, ParameterSet};
 use impact_identification::identify::diagnostics::agreement::LEVEL;
-use impact_identification::identify::{Method, MethodResult, ParameterSet};
 
 /// Size of the type of the methods' tables, points.
 const SIZE: f64 = 7.5;

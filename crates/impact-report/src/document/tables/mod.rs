@@ -20,7 +20,7 @@ use crate::content::ReportContent;
 use crate::document::model::{Align, Rich, Table};
 use crate::locale::Locale;
 use crate::phrase::Phrase;
-use impact_identification::identify::Item;
+use impact_fit::Item;
 use impact_identification::replay::{Unusable, UnusableReason};
 
 /// Further tables of the content.

@@ -1,0 +1,177 @@
+//! One message of each kind, its values at their defaults, so that all kinds can be listed.
+
+use strum::IntoEnumIterator;
+
+use super::{Finding, Item, Note, PairAgreement, Reason, Remark, Sentence};
+use crate::method::Method;
+use crate::parameters::effect::{Effect, EffectKind};
+use impact_records::message::{Message, boxed};
+use impact_records::motion::Undetermined;
+use impact_records::record::{FlagCode, Role};
+use impact_records::signal::decay::DampingLaw;
+
+/// One message of each kind of an identification.
+pub fn kinds() -> Vec<Box<dyn Message>> {
+    let beyond = [1.0, -1.0].into_iter().flat_map(|strength| {
+        Effect::ALL.iter().map(move |effect| Finding::BeyondModel {
+            effect: *effect,
+            strength,
+            standard_error: 0.0,
+            z_score: 0.0,
+        })
+    });
+    // an early channel has a text of its own
+    let late = Finding::LateChannel {
+        channel: Role::default(),
+        later_ms: 1.0,
+        z_score: 0.0,
+    };
+    // as has a low-pass whose order is known
+    let filters = [1, 2].map(|order| Finding::UndeclaredLowPass {
+        channel: Role::default(),
+        corner_hz: 1.0,
+        one_pole_hz: 0.5,
+        order: Some(order),
+    });
+    let findings = Finding::iter().filter(|f| !matches!(f, Finding::BeyondModel { .. }));
+    boxed(Method::iter())
+        .chain(boxed(Note::iter()))
+        .chain(boxed(Remark::iter()))
+        .chain(boxed(Reason::iter()))
+        .chain(boxed(findings))
+        .chain(boxed([late].into_iter()))
+        .chain(boxed(filters.into_iter()))
+        .chain(boxed(beyond))
+        .chain(boxed(Undetermined::iter()))
+        .chain(boxed(FlagCode::ALL.into_iter()))
+        .chain(boxed(Sentence::iter()))
+        .chain(boxed([PairAgreement::default()].into_iter()))
+        .chain(boxed(Item::iter()))
+        .chain(boxed(DampingLaw::iter()))
+        .collect()
+}
+
+/// One message of each name that a figure or a table prints: effects and kinds of effects.
+pub fn labels() -> Vec<Box<dyn Message>> {
+    boxed(Effect::ALL.iter().copied())
+        .chain(boxed(EffectKind::ALL.iter().copied()))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::messages::direction::Direction;
+    use crate::messages::{DampingPoint, GroupPoint, PublishedSetting, StatedValue};
+    use crate::methods::answer::Agreement;
+    use crate::parameters::Coordinate;
+    use impact_records::message::{faults, plain};
+
+    /// The messages of an identification that are part of others or of no result.
+    fn parts() -> Vec<Box<dyn Message>> {
+        let point = GroupPoint {
+            group: "r1".into(),
+            restitution: 0.8,
+            half_width: 0.1,
+        };
+        let damping = DampingPoint {
+            amplitude_ratio: 1.0,
+            damping_ratio: 0.01,
+            half_width: 0.001,
+        };
+        let setting = PublishedSetting {
+            restitution: 0.5,
+            frequency_ratio: 0.6,
+        };
+        let stated = StatedValue {
+            parameter: Coordinate::Deflection,
+            value: 1e-3,
+            half_width: 1e-5,
+        };
+        let agreements = [None, Some(true)].map(|agree| Agreement {
+            agree,
+            pairs: Vec::new(),
+        });
+        boxed([point].into_iter())
+            .chain(boxed([damping].into_iter()))
+            .chain(boxed([setting].into_iter()))
+            .chain(boxed([stated].into_iter()))
+            .chain(boxed(agreements.into_iter()))
+            .chain(boxed(Direction::iter()))
+            .collect()
+    }
+
+    #[test]
+    fn every_kind_has_its_own_name_and_its_texts() {
+        let mut keys = BTreeSet::new();
+        for message in kinds() {
+            let kind = message.key();
+            assert!(!kind.is_empty() && keys.insert(kind.clone()), "{kind}");
+            assert!(!plain(message.as_ref()).contains(['{', '}', '$']), "{kind}");
+        }
+        let all: Vec<_> = kinds().into_iter().chain(labels()).chain(parts()).collect();
+        assert_eq!(faults(&all), Vec::<String>::new());
+    }
+
+    #[test]
+    fn json_has_kind_numbers_and_text_and_reads_back() {
+        for finding in Finding::iter() {
+            let json = serde_json::to_value(&finding).expect("JSON");
+            assert_eq!(json["kind"], Message::kind(&finding));
+            assert_eq!(json["text"], finding.to_string());
+            let back: Finding = serde_json::from_value(json).expect("a finding");
+            assert_eq!(back, finding);
+        }
+    }
+
+    #[test]
+    fn values_are_printed_at_their_places() {
+        let clearance = Finding::WrongClearance {
+            stated_m: 1e-3,
+            fitting_m: 1.1e-3,
+            z_score: 9.0,
+        };
+        assert_eq!(
+            clearance.to_string(),
+            "the gap stated with a clearance of 1.0000 mm moves like one of 1.1000 mm: measure it \
+             again and correct the run table; its records stay out of the fit"
+        );
+        let json = serde_json::to_value(&clearance).expect("JSON");
+        assert_eq!(json["stated_m"], 1e-3);
+        let gain = Finding::WrongGain {
+            channel: Role::VelocityX,
+            deviation: -0.05,
+            z_score: -9.0,
+        };
+        let text = gain.to_string();
+        assert!(text.starts_with("velocity_x reads 5.0 % too low: "));
+        let deflection = StatedValue {
+            parameter: Coordinate::Deflection,
+            value: 1e-3,
+            half_width: 1e-5,
+        };
+        let weak = Sentence::Weak {
+            values: vec![deflection],
+            parameters: vec![Coordinate::Restitution, Coordinate::Damping],
+        };
+        assert_eq!(
+            weak.to_string(),
+            "The rig has x_st = 1.000 ± 0.010 mm (95 %); R, β only weakly."
+        );
+        let impact = Item::Impact {
+            index: 0,
+            record: "r1".into(),
+            time_s: 0.25,
+        };
+        let outlying = Remark::OutlyingImpacts {
+            count: 4,
+            first: vec![impact],
+        };
+        assert_eq!(
+            outlying.to_string(),
+            "impacts with speeds far from those of the others, left out: 4 (r1 at 0.250 s, …)"
+        );
+    }
+}

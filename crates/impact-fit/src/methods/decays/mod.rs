@@ -1,0 +1,409 @@
+//! Free decays: f0 and β of each, pooled, and records that are filed under the wrong name.
+
+#[cfg(test)]
+mod coverage;
+mod dry_friction;
+
+use std::collections::BTreeMap;
+
+use crate::estimate::{self, Estimate, Status};
+use crate::messages::{DampingPoint, Item, LeftOut, Note, Reason, Remark};
+use crate::method::Method;
+use crate::methods::answer::MethodResult;
+use crate::methods::decays::dry_friction::{CHANGES, Shared};
+use crate::methods::fits::Fits;
+use crate::methods::identifier::Identifier;
+use crate::methods::selection::Selection;
+use crate::parameters::Coordinate;
+use crate::parameters::effect::{Effect, Effects};
+use crate::statistics::quantile::NORMAL_975;
+use crate::statistics::weighted::{self, Measured};
+use impact_records::motion::Observation;
+use impact_records::signal::decay::{DampingLaw, Decay, LEAST_TESTED, RESOLVED};
+use impact_records::signal::robust;
+
+/// Free decays.
+pub struct FreeDecays;
+
+impl Identifier for FreeDecays {
+    fn method(&self) -> Method {
+        Method::FreeDecay
+    }
+
+    fn records(&self, selection: &Selection<'_>) -> Vec<usize> {
+        selection.observed(|o| !o.excluded() && !o.decays.is_empty())
+    }
+
+    fn result(&self, selection: &Selection<'_>, _: &Fits) -> Option<MethodResult> {
+        pooled(
+            selection.evidence.observations,
+            selection.evidence.nominal.effects,
+        )
+    }
+}
+
+/// Relative spread of f0 from which decays are not of one oscillator.
+const ONE_OSCILLATOR: f64 = 0.02;
+/// Relative difference of f0 from its own group's from which a record is looked at.
+const STRANGE: f64 = 0.05;
+/// Share of the signal that is neither the fitted decay nor noise from which a decay does not fit.
+const STRUCTURE: f64 = 0.15;
+/// The same of what fades with the decay, so that it is of the motion.
+const FADING_STRUCTURE: f64 = 0.05;
+/// Ratio of the residual at the beginning to that at the end from which it fades.
+const FADES: f64 = 3.0;
+/// The same from which the frequency is none.
+const DRIFTS: f64 = 5.0;
+/// Relative change of the frequency along a decay that matters.
+const FREQUENCY_MATTERS: f64 = 1e-3;
+/// Drift from which a decay has no single frequency, in half widths of its 95 % interval.
+const NO_SINGLE: f64 = 5.0;
+/// Relative range of the damping ratio along a decay that matters.
+const DAMPING_MATTERS: f64 = 0.15;
+/// Amplitude beside a decay, over its own, that is told: of a tone, and of a drift.
+const TELLING: [f64; 2] = [0.02, 0.1];
+/// Widening of an interval by slow noise that is told, which changes no number: nine tenths of its variance are that
+/// noise.
+const WIDENING: f64 = 3.0;
+
+/// All free decays of a campaign, pooled; `None` without any. Dry friction is possible if the effects that the rig may
+/// have hold it, or if the decays show it.
+pub fn pooled(observations: &[Observation], effects: Effects) -> Option<MethodResult> {
+    let used = observations.iter().filter(|o| !o.excluded());
+    let records = used.clone().filter(|o| !o.decays.is_empty()).count();
+    let decays: Vec<&Decay> = used.flat_map(|o| &o.decays).collect();
+    if decays.is_empty() {
+        return None;
+    }
+    let shared = Shared::of(&decays);
+    let possible = effects.iter().any(|e| e == Effect::Friction);
+    let shared = Some(shared).filter(|s| possible || s.is_told());
+    let frequencies: Vec<Measured> = decays
+        .iter()
+        .map(|d| match shared {
+            Some(_) => frequency_beside_friction(d),
+            None => frequency(d),
+        })
+        .collect();
+    let mut result = MethodResult {
+        observations: decays.iter().map(|d| d.samples).sum(),
+        records,
+        ..MethodResult::default()
+    };
+    let (f, spread) = weighted::mean(&frequencies, &weighted::by_errors(&frequencies));
+    let found = estimate::estimate_within(Coordinate::Frequency, f, spread, None);
+    result.parameters.natural_frequency_hz = Some(found);
+    let longest = decays.iter().map(|d| d.periods).fold(0.0, f64::max);
+    result.parameters.damping_ratio = Some(match shared {
+        Some(shared) => shared.estimate(longest),
+        None => damping_estimate(&decays),
+    });
+    result.remarks.extend(shared.and_then(|s| s.remark()));
+    let apart = frequencies.iter().map(|p| (p.value - f).abs());
+    let apart = apart.fold(0.0, f64::max);
+    judge(&mut result, &decays, (apart, shared.is_some()));
+    if let Some(periods) = too_short(&decays) {
+        leave_weak(&mut result, Note::FewPeriods { periods });
+    }
+    let fits = result.fits == Some(true);
+    result.remarks.extend(beside(&decays, fits));
+    Some(result)
+}
+
+/// ln f0 of a viscous decay.
+fn frequency(decay: &Decay) -> Measured {
+    let found = decay.natural_frequency_hz;
+    let error = decay.natural_frequency_error_hz;
+    logarithm(decay, found, error)
+}
+
+/// ln f0 of a decay under viscous damping and dry friction.
+fn frequency_beside_friction(decay: &Decay) -> Measured {
+    let Some(found) = decay.beside_friction else {
+        return frequency(decay);
+    };
+    let error = found.natural_frequency_error_hz;
+    logarithm(decay, found.natural_frequency_hz, error)
+}
+
+/// The logarithm of a frequency of a decay, which drifts.
+fn logarithm(decay: &Decay, frequency_hz: f64, error_hz: f64) -> Measured {
+    Measured {
+        value: frequency_hz.ln(),
+        error: error_hz.hypot(drift_error_hz(decay)) / frequency_hz,
+        freedom: decay.freedom,
+    }
+}
+
+/// Periods of the motion in a decay, which may stick before the decay is over.
+fn moving(decay: &Decay) -> f64 {
+    let rubbed = decay.beside_friction.filter(|b| b.sticks);
+    rubbed.map_or(decay.periods, |b| b.periods)
+}
+
+/// Periods of the longest of decays that all were cut off, or stuck, too early for a test whether they are viscous; `None`
+/// if one was not.
+fn too_short(decays: &[&Decay]) -> Option<f64> {
+    let sticks = |d: &&Decay| d.beside_friction.is_some_and(|b| b.sticks);
+    let cut_off = |d: &&Decay| {
+        let turns = std::f64::consts::TAU * d.periods;
+        d.periods < LEAST_TESTED && (-d.damping_ratio * turns).exp() > RESOLVED
+    };
+    let longest = decays.iter().map(|d| moving(d)).fold(0.0, f64::max);
+    let short = |d: &&Decay| cut_off(d) || (sticks(d) && moving(d) < LEAST_TESTED);
+    decays.iter().all(short).then_some(longest)
+}
+
+/// Make f0 and β weak for a reason, if they are no weaker.
+fn leave_weak(result: &mut MethodResult, why: Note) {
+    let parameters = &mut result.parameters;
+    let both = [
+        &mut parameters.natural_frequency_hz,
+        &mut parameters.damping_ratio,
+    ];
+    for estimate in both.into_iter().flatten() {
+        if estimate.status == Status::Identified {
+            estimate.status = Status::Weak;
+            estimate.note = Some(why.clone());
+        }
+    }
+}
+
+/// β of viscous decays with its interval, which begins at zero where an undamped motion is within it.
+fn damping_estimate(decays: &[&Decay]) -> Estimate {
+    let measured = |d: &&Decay| Measured {
+        value: d.damping_ratio,
+        error: d.damping_ratio_error,
+        freedom: d.freedom,
+    };
+    let dampings: Vec<Measured> = decays.iter().map(measured).collect();
+    let (value, spread) = weighted::mean(&dampings, &weighted::by_errors(&dampings));
+    let half = spread.half95();
+    let most = value + half;
+    let undamped = value <= half;
+    let status = if undamped || spread.error > estimate::limits(Coordinate::Damping).0 * value {
+        Status::Weak
+    } else {
+        Status::Identified
+    };
+    Estimate {
+        value: Some(value.max(0.0)),
+        standard_error: Some(spread.error),
+        interval95: Some([(value - half).max(0.0), most.max(0.0)]),
+        status,
+        note: undamped.then_some(Note::Undamped { most }),
+    }
+}
+
+/// Judge whether the decays are of one linear oscillator: by what their residuals have beside noise,
+/// not by the size of the noise, and by what changes along them.
+fn judge(result: &mut MethodResult, decays: &[&Decay], (spread, friction): (f64, bool)) {
+    let median = |of: &dyn Fn(&Decay) -> f64| {
+        robust::median(&decays.iter().map(|d| of(d)).collect::<Vec<_>>()).unwrap_or(0.0)
+    };
+    if spread > ONE_OSCILLATOR {
+        result.fits = Some(false);
+        result.remarks.push(Remark::DecaysDiffer { spread });
+    }
+    let share = median(&|d| d.residual_ratio);
+    let structure = median(&|d| d.structured_ratio);
+    let fades = median(&|d| d.fading) > FADES;
+    let plain = structure < if fades { FADING_STRUCTURE } else { STRUCTURE };
+    let damping_changes = judge_damping(result, decays, friction);
+    let frequency_changes = judge_frequency(result, decays);
+    // what changes along a decay is the structure that it leaves
+    let told = plain || damping_changes || frequency_changes;
+    let fits = result.fits != Some(false) && plain && !damping_changes && !frequency_changes;
+    result.fits = Some(fits);
+    let of_residuals = if told {
+        Remark::DecaysUnexplained { share, structure }
+    } else {
+        Remark::DecaysHaveStructure { share, structure }
+    };
+    result.remarks.insert(0, of_residuals);
+    if !fits {
+        result.remarks.extend(beat(decays));
+    }
+}
+
+/// The two frequencies of decays that beat.
+fn beat(decays: &[&Decay]) -> Option<Remark> {
+    let beating: Vec<[f64; 3]> = decays.iter().filter_map(|d| d.beside.beat).collect();
+    let strongest = beating.iter().max_by(|a, b| a[2].total_cmp(&b[2]))?;
+    let [first_hz, second_hz, ratio] = *strongest;
+    Some(Remark::DecaysBeat {
+        count: beating.len(),
+        first_hz,
+        second_hz,
+        ratio,
+    })
+}
+
+/// Whether one damping ratio does not hold along most of the decays, beside dry friction where β is without it.
+fn judge_damping(result: &mut MethodResult, decays: &[&Decay], friction: bool) -> bool {
+    let range = |d: &Decay| {
+        let [low, high] = d.course.damping_range?;
+        let sure = d.course.damping_z_score > CHANGES && d.course.parts.len() > 1;
+        sure.then_some([low, high])
+    };
+    let changing: Vec<(&Decay, [f64; 2])> = decays
+        .iter()
+        .filter_map(|d| Some((*d, range(d)?)))
+        .collect();
+    let Some(estimate) = &mut result.parameters.damping_ratio else {
+        return false;
+    };
+    let matters = |(d, [low, high]): &(&Decay, [f64; 2])| {
+        high - low > DAMPING_MATTERS * d.damping_ratio.abs()
+    };
+    let explained = |d: &Decay| friction && d.course.law == DampingLaw::Friction;
+    if let Some([low, high]) = &mut estimate.interval95 {
+        for (d, [least, most]) in changing.iter().filter(|c| !explained(c.0)) {
+            let half = NORMAL_975 * d.damping_ratio_error;
+            *low = low.min(least - half).max(0.0);
+            *high = high.max(most + half);
+        }
+    }
+    let telling: Vec<(&Decay, [f64; 2])> = changing.into_iter().filter(matters).collect();
+    let width = |(d, [low, high]): &&(&Decay, [f64; 2])| (high - low) / d.damping_ratio.abs();
+    let Some((worst, _)) = telling.iter().max_by(|a, b| width(a).total_cmp(&width(b))) else {
+        return false;
+    };
+    result.remarks.push(Remark::DecaysDamping {
+        count: telling.len(),
+        points: DampingPoint::of(&worst.course.parts),
+        law: worst.course.law,
+    });
+    let left = telling.iter().filter(|c| !explained(c.0)).count();
+    let most = 2 * left > decays.len();
+    if most {
+        estimate.status = Status::Weak;
+        estimate.note = Some(Note::DampingChanges);
+    }
+    most
+}
+
+/// Whether one frequency does not hold along most of the decays.
+fn judge_frequency(result: &mut MethodResult, decays: &[&Decay]) -> bool {
+    let sure = |d: &&&Decay| d.course.drift.is_some_and(|d| d.z_score().abs() > DRIFTS);
+    let drifting: Vec<&Decay> = decays.iter().filter(sure).copied().collect();
+    let half = |d: &Decay| NORMAL_975 * d.natural_frequency_error_hz;
+    let change = |d: &Decay| d.course.drift.map_or(0.0, |d| d.last_hz - d.first_hz);
+    let matters = |d: &&Decay| {
+        let change = change(d).abs();
+        change > NO_SINGLE * half(d) && change > FREQUENCY_MATTERS * d.natural_frequency_hz
+    };
+    let drifting: Vec<&Decay> = drifting.into_iter().filter(matters).collect();
+    let worst = drifting
+        .iter()
+        .max_by(|a, b| change(a).abs().total_cmp(&change(b).abs()));
+    let Some((worst, drift)) = worst.and_then(|d| Some((d, d.course.drift?))) else {
+        return false;
+    };
+    result.remarks.push(Remark::DecaysDrift {
+        count: drifting.len(),
+        first_hz: drift.first_hz,
+        last_hz: drift.last_hz,
+        intervals: change(worst).abs() / half(worst).max(f64::MIN_POSITIVE),
+    });
+    let most = 2 * drifting.len() > decays.len();
+    if most && let Some(estimate) = &mut result.parameters.natural_frequency_hz {
+        estimate.status = Status::Weak;
+        estimate.note = Some(Note::Drifts);
+    }
+    most
+}
+
+/// What lies beside the decays, as far as it tells of the laboratory; noise of decays that fit.
+fn beside(decays: &[&Decay], fits: bool) -> Vec<Remark> {
+    let strongest = |of: &dyn Fn(&Decay) -> Option<[f64; 2]>, least: f64| {
+        let all = decays.iter().filter_map(|d| of(d));
+        let telling: Vec<[f64; 2]> = all.filter(|m| m[1] > least).collect();
+        let most = telling.iter().copied().max_by(|a, b| a[1].total_cmp(&b[1]));
+        most.map(|[frequency_hz, ratio]| (telling.len(), frequency_hz, ratio))
+    };
+    let hum = strongest(&|d| d.beside.hum, TELLING[0]);
+    let mode = strongest(&|d| d.beside.mode, TELLING[0]);
+    let drift = strongest(&|d| Some([0.0, d.beside.drift_ratio]), TELLING[1]);
+    let noise = strongest(&|d| Some([0.0, d.beside.slow_noise]), WIDENING).filter(|_| fits);
+    let hum = hum.map(|(count, frequency_hz, ratio)| Remark::DecaysHum {
+        count,
+        frequency_hz,
+        ratio,
+    });
+    let mode = mode.map(|(count, frequency_hz, ratio)| Remark::DecaysMode {
+        count,
+        frequency_hz,
+        ratio,
+    });
+    let drift = drift.map(|(count, _, ratio)| Remark::DecaysBackground { count, ratio });
+    let noise = noise.map(|(count, _, times)| Remark::DecaysSlowNoise { count, times });
+    [hum, mode, drift, noise].into_iter().flatten().collect()
+}
+
+/// Whether the frequency of a decay drifts significantly.
+fn drifts(decay: &Decay) -> bool {
+    let drift = decay.course.drift;
+    drift.is_some_and(|d| d.z_score().abs() > CHANGES)
+}
+
+/// What a significant drift leaves open of the frequency, Hz: it is anywhere between its ends.
+fn drift_error_hz(decay: &Decay) -> f64 {
+    match decay.course.drift.filter(|_| drifts(decay)) {
+        Some(drift) => (drift.last_hz - drift.first_hz).abs() / 12f64.sqrt(),
+        None => 0.0,
+    }
+}
+
+/// Records whose natural frequency is not that of their specimen but that of another.
+pub fn misfiled(observations: &[Observation]) -> Vec<LeftOut> {
+    let mut groups: BTreeMap<&str, Vec<(usize, f64)>> = BTreeMap::new();
+    for (index, o) in observations.iter().enumerate() {
+        if let (Some(specimen), Some(decay)) = (&o.setting.specimen, o.best_decay()) {
+            let group = groups.entry(specimen).or_default();
+            group.push((index, decay.natural_frequency_hz));
+        }
+    }
+    let centres: BTreeMap<&str, f64> = groups
+        .iter()
+        .filter_map(|(name, members)| {
+            let f: Vec<f64> = members.iter().map(|m| m.1).collect();
+            Some((*name, robust::median(&f)?))
+        })
+        .collect();
+    let mut out = Vec::new();
+    for (name, members) in &groups {
+        for (index, f) in members {
+            let own = centres[name];
+            if members.len() < 3 || (f / own - 1.0).abs() < STRANGE {
+                continue;
+            }
+            let other = centres
+                .iter()
+                .filter(|(other, _)| *other != name)
+                .min_by(|a, b| (a.1 / f - 1.0).abs().total_cmp(&(b.1 / f - 1.0).abs()))
+                .filter(|(_, centre)| (*centre / f - 1.0).abs() < 0.5 * STRANGE);
+            out.push(LeftOut {
+                item: Item::Record {
+                    index: *index,
+                    record: observations[*index].record.clone(),
+                },
+                reason: match other {
+                    Some((like, like_hz)) => Reason::MisfiledLike {
+                        specimen: (*name).to_owned(),
+                        specimen_hz: own,
+                        frequency_hz: *f,
+                        like: (*like).to_owned(),
+                        like_hz: *like_hz,
+                    },
+                    None => Reason::Misfiled {
+                        specimen: (*name).to_owned(),
+                        specimen_hz: own,
+                        frequency_hz: *f,
+                    },
+                },
+            });
+        }
+    }
+    out
+}

@@ -1,0 +1,355 @@
+//! How far R of rows of flights may be off: by errors of the times, and as R itself scatters from impact to impact.
+//!
+//! The logarithm of each flight over the one before is ln R + ρ + e. ρ is independent from impact to impact; e follows
+//! from the errors of three times, so that e of neighbours are correlated. In these correlations it shows which is
+//! which, in a short row hardly. So R is an average over the ratio of their variances, each with its restricted
+//! likelihood (Harville 1974) with the variances' scale integrated out: what rows do not tell is in its error.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use crate::methods::flight_times::rows::{Fitted, Row};
+use impact_records::signal::{columns, robust};
+
+/// Standard error of a time that neither its source nor the scatter states, s.
+const USUAL_ERROR_S: f64 = 2e-3;
+/// Degrees of freedom from which the scatter is looked at.
+const ENOUGH: f64 = 2.0;
+/// Ratios of the variances in a factor of ten.
+const PER_DECADE: f64 = 4.0;
+/// How far beyond the variances of the times' errors those of R are tried, to where the other no longer counts.
+const BEYOND: f64 = 10.0;
+/// Probability from which it is R that scatters.
+const SURE: f64 = 0.95;
+
+/// What rows tell of R.
+pub(super) struct Scatter {
+    /// Each row's.
+    pub(super) rows: Vec<RowEstimate>,
+    /// Degrees of freedom of their errors; infinite where these are as stated.
+    pub(super) freedom: f64,
+    /// Scatter of the times, s; not known where it is R that scatters.
+    pub(super) times_s: Option<f64>,
+    /// Relative standard deviation of R from impact to impact, where it is R that scatters.
+    pub(super) own: Option<f64>,
+}
+
+/// What a row tells of R.
+pub(super) struct RowEstimate {
+    /// R.
+    pub(super) restitution: f64,
+    /// Its standard error.
+    pub(super) error: f64,
+    /// Relative standard error of each ratio.
+    pub(super) ratio_errors: Vec<f64>,
+}
+
+impl Scatter {
+    /// Of rows with their fits; `stated_s`: the times' standard error as their source states it.
+    pub(super) fn of(fits: &[(&Row, Fitted)], stated_s: Option<f64>) -> Self {
+        let ratios = Ratios::of(fits.iter().map(|(row, _)| *row));
+        let mix = |with_slope| ratios.mixed(with_slope, stated_s);
+        let mixed = mix(false).filter(|m| m.freedom >= ENOUGH);
+        let Some(mixed) = mixed else {
+            return Self::by_times(fits, &ratios, stated_s.unwrap_or(USUAL_ERROR_S));
+        };
+        let least_s = stated_s.unwrap_or(0.0);
+        let known = fits.iter().enumerate().all(|(i, (_, fit))| {
+            let (_, error) = mixed.logarithm(i);
+            fit.restitution * error <= fit.error_per_s * least_s
+        });
+        if known {
+            return Self::by_times(fits, &ratios, least_s);
+        }
+        let rows = fits.iter().enumerate().map(|(i, (_, fit))| {
+            let (mean, error) = mixed.logarithm(i);
+            // the fit of the times takes curvature into account that logarithms do not
+            let restitution = fit.restitution * (mean - ratios.by_times(i)).exp();
+            RowEstimate {
+                restitution,
+                error: (restitution * error).max(fit.error_per_s * least_s),
+                ratio_errors: mixed.ratio_errors(&ratios, i),
+            }
+        });
+        // a change along the bounces is neither
+        let beside = mix(true);
+        let beside = beside.as_ref().unwrap_or(&mixed);
+        let own = beside.own();
+        Self {
+            rows: rows.collect(),
+            freedom: mixed.freedom,
+            times_s: own.is_none().then(|| beside.times_s(&ratios)),
+            own,
+        }
+    }
+
+    /// With known errors of the times and one R.
+    fn by_times(fits: &[(&Row, Fitted)], ratios: &Ratios, error_s: f64) -> Self {
+        let rows = fits.iter().enumerate().map(|(i, (_, fit))| RowEstimate {
+            restitution: fit.restitution,
+            error: fit.error_per_s * error_s,
+            ratio_errors: ratios.rows[i]
+                .by_times
+                .diagonal()
+                .iter()
+                .map(|v| error_s * v.sqrt())
+                .collect(),
+        });
+        Self {
+            rows: rows.collect(),
+            freedom: f64::INFINITY,
+            times_s: Some(error_s),
+            own: None,
+        }
+    }
+}
+
+/// A change of R along the bounces.
+pub(super) struct Trend {
+    /// In standard errors.
+    pub(super) deviates: f64,
+    /// Degrees of freedom of that error.
+    pub(super) freedom: f64,
+    /// R's change over the longest row.
+    pub(super) change: f64,
+}
+
+/// How R changes along the bounces of rows, its logarithm a line over their number with one slope for all.
+pub(super) fn trend(fits: &[(&Row, Fitted)], stated_s: Option<f64>) -> Option<Trend> {
+    let ratios = Ratios::of(fits.iter().map(|(row, _)| *row));
+    let mixed = ratios
+        .mixed(true, stated_s)
+        .filter(|m| m.freedom >= ENOUGH)?;
+    let (slope, error) = mixed.average(|share| share.slope);
+    let longest = ratios.rows.iter().map(|r| r.values.len()).max()?;
+    let typical = robust::median(&fits.iter().map(|(_, f)| f.restitution).collect::<Vec<_>>())?;
+    Some(Trend {
+        deviates: slope / error,
+        freedom: mixed.freedom,
+        change: (typical * slope * longest.saturating_sub(1) as f64).abs(),
+    })
+}
+
+/// The logarithms of a row's ratios, with their covariance for independent errors of 1 s of each time.
+struct RatioRow {
+    values: DVector<f64>,
+    by_times: DMatrix<f64>,
+}
+
+/// Those of all rows.
+struct Ratios {
+    rows: Vec<RatioRow>,
+    /// Least, median and greatest variance of a logarithm for errors of 1 s.
+    variances: [f64; 3],
+}
+
+impl Ratios {
+    fn of<'a>(rows: impl Iterator<Item = &'a Row>) -> Self {
+        let rows: Vec<RatioRow> = rows.map(|row| RatioRow::of(&row.times_s)).collect();
+        let diagonals = rows
+            .iter()
+            .flat_map(|r| r.by_times.diagonal().data.as_vec().clone());
+        let all: Vec<f64> = diagonals.collect();
+        let (least, greatest) = columns::extremes(&all);
+        let median = robust::median(&all).unwrap_or(1.0);
+        Self {
+            rows,
+            variances: [least, median, greatest],
+        }
+    }
+
+    /// The mean of a row's logarithms as errors of the times weigh them.
+    fn by_times(&self, row: usize) -> f64 {
+        let RatioRow { values, by_times } = &self.rows[row];
+        let mean = by_times.clone().cholesky().map(|c| {
+            let weights = c.solve(&DVector::from_element(values.len(), 1.0));
+            weights.dot(values) / weights.sum()
+        });
+        mean.unwrap_or_else(|| values.mean())
+    }
+
+    /// The estimates for each ratio of the variances; `None` without one that can be computed. Errors of the times far
+    /// beyond those that their source states are less likely: by Cauchy's distribution about these.
+    fn mixed(&self, with_slope: bool, stated_s: Option<f64>) -> Option<Mixed> {
+        let [least, median, greatest] = self.variances;
+        let [low, high] = [least / BEYOND / median, greatest * BEYOND / median].map(f64::log10);
+        let count = self.rows.iter().map(|r| r.values.len()).sum::<usize>();
+        let freedom = count.checked_sub(self.rows.len() + usize::from(with_slope))?;
+        let steps = whole_steps(low, high);
+        let shares = (0..=steps).filter_map(|k| {
+            let own = 10f64.powf(low + k as f64 / PER_DECADE);
+            Share::of(self, own, (freedom as f64, with_slope))
+        });
+        let mut shares: Vec<Share> = shares.collect();
+        for share in &mut shares {
+            let beyond = stated_s.map_or(0.0, |s| share.scale / (median * s * s));
+            share.weight -= beyond.ln_1p();
+        }
+        let best = shares
+            .iter()
+            .map(|s| s.weight)
+            .fold(f64::NEG_INFINITY, f64::max);
+        for share in &mut shares {
+            share.weight = (share.weight - best).exp();
+        }
+        (best.is_finite() && freedom > 0).then_some(Mixed {
+            shares,
+            freedom: freedom as f64,
+        })
+    }
+}
+
+fn whole_steps(low: f64, high: f64) -> usize {
+    impact_records::signal::whole::index(((high - low) * PER_DECADE).ceil())
+}
+
+impl RatioRow {
+    fn of(times_s: &[f64]) -> Self {
+        let flights: Vec<f64> = times_s.windows(2).map(|w| w[1] - w[0]).collect();
+        let count = flights.len().saturating_sub(1);
+        let values = DVector::from_fn(count, |k, _| (flights[k + 1] / flights[k]).ln());
+        // slopes over the three times of each
+        let slopes = |k: usize| {
+            let (before, after) = (flights[k].recip(), flights[k + 1].recip());
+            [before, -(before + after), after]
+        };
+        let by_times = DMatrix::from_fn(count, count, |i, k| {
+            let (a, b) = (slopes(i), slopes(k));
+            // time number i + n of the row is number i + n − k of ratio k
+            let shared = |n: usize| (n + i).checked_sub(k).and_then(|m| b.get(m)).copied();
+            (0..3).map(|n| a[n] * shared(n).unwrap_or(0.0)).sum::<f64>()
+        });
+        Self { values, by_times }
+    }
+}
+
+/// The estimates for one ratio of the variances.
+struct Share {
+    /// Logarithm of the restricted likelihood; once compared, the likelihood over the greatest.
+    weight: f64,
+    /// Variance of R's logarithm over that of the median logarithm by errors of the times.
+    own: f64,
+    /// The variances' scale.
+    scale: f64,
+    /// Mean of each row and its variance.
+    means: Vec<[f64; 2]>,
+    /// Slope of all rows over the bounces and its variance; zeros without one.
+    slope: [f64; 2],
+}
+
+impl Share {
+    fn of(ratios: &Ratios, own: f64, (freedom, with_slope): (f64, bool)) -> Option<Self> {
+        let each = ratios.rows.iter();
+        let parts: Vec<Part> = each
+            .map(|row| Part::of(row, ratios.variances[1], own))
+            .collect::<Option<_>>()?;
+        let information: f64 = parts.iter().map(|p| p.slopes).sum();
+        let slope = if with_slope && information > 0.0 {
+            parts.iter().map(|p| p.products).sum::<f64>() / information
+        } else {
+            0.0
+        };
+        let squares: f64 = parts.iter().map(|p| p.squares).sum();
+        let squares = (squares - slope * slope * information).max(f64::MIN_POSITIVE);
+        let mut weight: f64 = parts.iter().map(|p| p.weight).sum();
+        if with_slope {
+            weight -= 0.5 * information.ln();
+        }
+        let scale = squares / freedom;
+        Some(Self {
+            weight: weight - 0.5 * freedom * squares.ln(),
+            own,
+            scale,
+            means: parts
+                .iter()
+                .map(|p| [p.mean, scale / p.information])
+                .collect(),
+            slope: [slope, scale / information],
+        })
+    }
+}
+
+/// What a row adds to the normal equations, its own mean eliminated.
+struct Part {
+    mean: f64,
+    information: f64,
+    squares: f64,
+    /// Bounces' squares and their products with the values.
+    slopes: f64,
+    products: f64,
+    /// −½ ln of the determinants.
+    weight: f64,
+}
+
+impl Part {
+    fn of(row: &RatioRow, median: f64, own: f64) -> Option<Self> {
+        let count = row.values.len();
+        let covariance = &row.by_times / median + DMatrix::identity(count, count) * own;
+        let factor: Cholesky<f64, Dyn> = covariance.cholesky()?;
+        let weights = factor.solve(&DVector::from_element(count, 1.0));
+        let information = weights.sum();
+        let mean = weights.dot(&row.values) / information;
+        let bounces = DVector::from_fn(count, |k, _| k as f64);
+        let bounces = bounces.add_scalar(-weights.dot(&bounces) / information);
+        let values = row.values.add_scalar(-mean);
+        let (of_bounces, of_values) = (factor.solve(&bounces), factor.solve(&values));
+        let halves: f64 = factor.l().diagonal().iter().map(|d| d.ln()).sum();
+        Some(Self {
+            mean,
+            information,
+            squares: values.dot(&of_values),
+            slopes: bounces.dot(&of_bounces),
+            products: bounces.dot(&of_values),
+            weight: -halves - 0.5 * information.ln(),
+        })
+    }
+}
+
+/// The estimates for all ratios of the variances.
+struct Mixed {
+    shares: Vec<Share>,
+    freedom: f64,
+}
+
+impl Mixed {
+    /// Mean of what each has with its variance, and its standard error.
+    fn average(&self, of: impl Fn(&Share) -> [f64; 2]) -> (f64, f64) {
+        let all: f64 = self.shares.iter().map(|s| s.weight).sum();
+        let mean = |value: &dyn Fn(&Share) -> f64| {
+            let weighted = self.shares.iter().map(|s| s.weight * value(s));
+            weighted.sum::<f64>() / all
+        };
+        let centre = mean(&|s| of(s)[0]);
+        let variance = mean(&|s| of(s)[1] + (of(s)[0] - centre).powi(2));
+        (centre, variance.sqrt())
+    }
+
+    /// The logarithm of a row's R and its standard error.
+    fn logarithm(&self, row: usize) -> (f64, f64) {
+        self.average(|share| share.means[row])
+    }
+
+    /// Relative standard error of each ratio of a row.
+    fn ratio_errors(&self, ratios: &Ratios, row: usize) -> Vec<f64> {
+        let variances = ratios.rows[row].by_times.diagonal();
+        let of = |variance: &f64| {
+            let unit = variance / ratios.variances[1];
+            self.average(|s| [0.0, s.scale * (unit + s.own)]).1
+        };
+        variances.iter().map(of).collect()
+    }
+
+    /// Standard error of the times, s.
+    fn times_s(&self, ratios: &Ratios) -> f64 {
+        self.average(|s| [0.0, s.scale / ratios.variances[1]]).1
+    }
+
+    /// Relative standard deviation of R, where more of the typical logarithm's variance is R's with a probability
+    /// near one.
+    fn own(&self) -> Option<f64> {
+        let all: f64 = self.shares.iter().map(|s| s.weight).sum();
+        let more = self.shares.iter().filter(|s| s.own > 1.0);
+        let probability = more.map(|s| s.weight).sum::<f64>() / all;
+        let deviation = self.average(|s| [0.0, s.scale * s.own]).1;
+        (probability > SURE).then_some(deviation)
+    }
+}

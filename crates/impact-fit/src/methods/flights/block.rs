@@ -1,0 +1,530 @@
+//! Records without a closed-form orbit (transient, chaotic, several impacts a period): multiple
+//! shooting from impact to impact.
+//!
+//! The nodes are the states at the impacts, as measured there: each mass's speed before and after,
+//! and the gap closed. Between them the flight is exact and linear, and so is Newton's law; the
+//! nodes are therefore eliminated by a Kalman filter along the record, and its innovations over
+//! their deviations are the residuals. An impact's time is known as well as it was measured: what
+//! it may be off moves the gap at it by the closing speed, and the flight after it by the jump of
+//! the velocities.
+
+use nalgebra::{Matrix4, Vector4};
+
+use crate::methods::impacts::block::corners_in;
+use crate::parameters::own::Circumstances;
+use crate::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
+use crate::solver::Block;
+use crate::solver::group::Group;
+use impact_oscillator::model::flight::{Drive, State, free_flight};
+use impact_oscillator::model::params::Machine;
+use impact_oscillator::model::variation::free_flow;
+use impact_records::event::{CornerShift, Impact, RigKind, extrapolation_error};
+use impact_records::motion::{Motion, Observation};
+use impact_records::record::Role;
+
+/// One impact as it was measured, SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Node {
+    /// Time since the record's first sample, s.
+    pub time_s: f64,
+    /// Its standard error, s.
+    pub time_error_s: f64,
+    /// Phase of the drive, rad.
+    pub drive_phase_rad: f64,
+    /// Speeds of x and y before, m/s; where only their sum is known, that and zero.
+    pub before_m_s: [f64; 2],
+    /// Speeds of x and y after, m/s, likewise.
+    pub after_m_s: [f64; 2],
+    /// Standard error of each speed, m/s.
+    pub error_m_s: f64,
+    /// What the channels' corners would change of the speeds of x and of y.
+    pub corner_shifts: [Option<CornerShift>; 2],
+}
+
+impl Node {
+    /// Speeds of x and y before and after, m/s, with the corners that the channels have; `together`: their sum.
+    fn speeds_m_s(&self, parameters: &Parameters, together: bool) -> [[f64; 2]; 2] {
+        let shifts = self
+            .corner_shifts
+            .map(|shift| shift.map_or(0.0, |s| parameters.corner_shift_m_s(&s)));
+        let shifts = if together {
+            [shifts[0] + shifts[1], 0.0]
+        } else {
+            shifts
+        };
+        [self.before_m_s, self.after_m_s].map(|speeds| [0, 1].map(|m| speeds[m] + shifts[m]))
+    }
+}
+
+/// The impacts of one record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlightRecord {
+    /// Index among the observations.
+    pub observation: usize,
+    /// Drive frequency, Hz.
+    pub frequency_hz: f64,
+    /// Half the gap, m.
+    pub clearance_m: f64,
+    /// Place of the clearance among those that carry an error of their own.
+    pub gap: Option<usize>,
+    /// The groups of records that it belongs to.
+    pub group: Group,
+    /// Drive amplitude relative to the nominal one.
+    pub drive_amplitude: f64,
+    /// The channels that the speeds of x and y come from.
+    pub speeds_from: [Option<Role>; 2],
+    /// Its impacts, in their order, none missing between them.
+    pub nodes: Vec<Node>,
+}
+
+/// All records that are shot from impact to impact.
+#[derive(Debug, Clone)]
+pub struct FlightBlock {
+    /// One or two masses.
+    pub rig: RigKind,
+    /// The records.
+    pub records: Vec<FlightRecord>,
+    /// On which corners the speeds depend, by their index.
+    corners: [bool; CHANNELS],
+}
+
+/// Fewest impacts of a record: fewer tell nothing but where they began.
+const FEWEST_IMPACTS: usize = 4;
+/// Relative error of a speed beside the noise: what its extrapolation to the impact leaves open.
+const SPEED_SCATTER: f64 = 1e-3;
+/// Deviation of the state before the first impact, in units of `x_st` and `x_st` Ω: nothing is known.
+const UNKNOWN: f64 = 30.0;
+
+impl FlightBlock {
+    /// Collect the records with impacts that have no closed-form orbit.
+    pub fn new(rig: RigKind, observations: &[Observation]) -> Self {
+        let records = observations
+            .iter()
+            .enumerate()
+            .filter(|(_, o)| !o.low_pass)
+            .filter(|(_, o)| !o.excluded() && has_no_closed_form(&o.classification.motion))
+            .filter_map(|(i, o)| flight_record(rig, i, o))
+            .collect();
+        Self::of_records(rig, records)
+    }
+
+    /// Of given records.
+    fn of_records(rig: RigKind, records: Vec<FlightRecord>) -> Self {
+        let nodes = records.iter().flat_map(|r| &r.nodes);
+        let corners = corners_in(nodes.flat_map(|n| &n.corner_shifts));
+        Self {
+            rig,
+            records,
+            corners,
+        }
+    }
+
+    /// Whether the speeds depend on a corner, by its index.
+    pub fn has_corner(&self, index: usize) -> bool {
+        self.corners[index]
+    }
+
+    /// Whether speeds come from a channel, by its index.
+    pub fn has_gain(&self, index: usize) -> bool {
+        let mut roles = self.records.iter().flat_map(|r| &r.speeds_from).flatten();
+        roles.any(|role| gain_index(*role) == Some(index))
+    }
+}
+
+impl FlightRecord {
+    /// What is measured of (X, X', Y, Y') at an impact, in m/s: each mass's speed, or their sum where accelerations
+    /// tell no more; gains included.
+    fn measured(&self, parameters: &Parameters, speed_m_s: f64) -> Vec<Vector4<f64>> {
+        let of = |m: usize| {
+            let gain = parameters.gain(self.speeds_from[m]?);
+            let mut row = Vector4::zeros();
+            row[2 * m + 1] = gain * speed_m_s;
+            Some(row)
+        };
+        let rows: Vec<Vector4<f64>> = (0..2).filter_map(of).collect();
+        if self.sum_alone() {
+            vec![rows.iter().sum()]
+        } else {
+            rows
+        }
+    }
+
+    /// Whether only the sum of two masses' speeds is known: the flights of each have constants of their own.
+    fn sum_alone(&self) -> bool {
+        self.speeds_from.iter().all(Option::is_some) && self.has_acceleration()
+    }
+
+    /// Whether a speed was integrated from an acceleration, which shows the time of an impact to a sample.
+    fn has_acceleration(&self) -> bool {
+        let accelerations = [Role::AccelerationX, Role::AccelerationY];
+        let mut roles = self.speeds_from.iter().flatten();
+        roles.any(|role| accelerations.contains(role))
+    }
+}
+
+fn has_no_closed_form(motion: &Motion) -> bool {
+    match motion {
+        Motion::Periodic {
+            impacts_p,
+            dead_zone,
+            ..
+        } => *impacts_p > 1 && !dead_zone,
+        Motion::Chaotic | Motion::Undetermined { .. } => true,
+        _ => false,
+    }
+}
+
+fn flight_record(rig: RigKind, index: usize, o: &Observation) -> Option<FlightRecord> {
+    let drive = o.drive?;
+    let sound = o.impacts.iter().all(|i| i.dead_zone_s == 0.0);
+    if !sound
+        || o.speeds_lack_spikes()
+        || o.unsupported_pulses > 0
+        || o.impacts.len() < FEWEST_IMPACTS
+    {
+        return None;
+    }
+    let mut record = FlightRecord {
+        observation: index,
+        frequency_hz: drive.frequency_hz,
+        clearance_m: o.setting.clearance_m?,
+        gap: None,
+        group: Group::default(),
+        drive_amplitude: o.setting.drive_amplitude,
+        speeds_from: [
+            o.speed_from(false),
+            o.speed_from(true).filter(|_| rig == RigKind::Double),
+        ],
+        nodes: Vec::new(),
+    };
+    // The first and the last impact may be known by their times alone.
+    let known = |i: &Impact| i.approach_speed_before_m_s.is_some();
+    let first = o.impacts.iter().position(known)?;
+    let last = o.impacts.iter().rposition(known)?;
+    let impacts = o.impacts[first..=last].iter();
+    let together = rig == RigKind::Single || record.sum_alone();
+    let per_period = o.sample_rate_hz / drive.frequency_hz;
+    let missed = extrapolation_error(per_period).hypot(SPEED_SCATTER);
+    let integrated = record.has_acceleration();
+    record.nodes = impacts
+        .map(|i| node(together, i, (missed, integrated)))
+        .collect::<Option<_>>()?;
+    (record.nodes.len() >= FEWEST_IMPACTS).then_some(record)
+}
+
+/// `together`: the approach speed is all that is known, or that there is; `missed`: relative error of a speed beside
+/// its noise; `integrated`: whether the error of the impact's time counts in it.
+fn node(together: bool, impact: &Impact, (missed, integrated): (f64, bool)) -> Option<Node> {
+    let (before_m_s, after_m_s, masses) = if together {
+        (
+            [impact.approach_speed_before_m_s?, 0.0],
+            [impact.approach_speed_after_m_s?, 0.0],
+            1.0,
+        )
+    } else {
+        let (x, y) = (impact.x?, impact.y?);
+        (
+            [x.before_m_s, y.before_m_s],
+            [x.after_m_s, y.after_m_s],
+            2.0f64,
+        )
+    };
+    let closing = impact.approach_speed_before_m_s?;
+    let noise = impact.speed_error_m_s? / masses.sqrt();
+    let by_time = impact.speeds_by_time_m_s.filter(|_| integrated);
+    let late = by_time.map_or(0.0, |[before, after]| before.abs().max(after.abs()));
+    (closing > 6.0 * noise).then_some(Node {
+        time_s: impact.time_s,
+        time_error_s: impact.time_error_s,
+        drive_phase_rad: impact.drive_phase_rad?,
+        before_m_s,
+        after_m_s,
+        error_m_s: noise.hypot(missed * closing).hypot(late),
+        corner_shifts: impact.corner_shifts,
+    })
+}
+
+/// Mean and covariance of (X, X', Y, Y'), dimensionless.
+#[derive(Debug, Clone, Copy)]
+struct Belief {
+    mean: Vector4<f64>,
+    covariance: Matrix4<f64>,
+}
+
+impl Belief {
+    fn unknown() -> Self {
+        Self {
+            mean: Vector4::zeros(),
+            covariance: Matrix4::identity() * (UNKNOWN * UNKNOWN),
+        }
+    }
+
+    /// Take a measurement of h·state with a variance in; gives its innovation over its deviation.
+    fn learn(&mut self, h: Vector4<f64>, value: f64, variance: f64) -> f64 {
+        let along = self.covariance * h;
+        let spread = h.dot(&along) + variance;
+        let innovation = value - h.dot(&self.mean);
+        let gain = along / spread;
+        self.mean += gain * innovation;
+        // Joseph's form, (1 − g hᵀ) P (1 − g hᵀ)ᵀ + v g gᵀ, which rounding cannot make indefinite.
+        let once = self.covariance - gain * along.transpose();
+        self.covariance = once + (gain * variance - once * h) * gain.transpose();
+        innovation / spread.sqrt()
+    }
+
+    /// Newton's law at an impact whose time is off by a deviation.
+    fn bounce(&mut self, machine: &Machine, time_error: f64) {
+        let before = self.mean;
+        let r = machine.restitution().at((before[1] + before[3]).max(0.0));
+        let (mx, my) = machine.mobility();
+        let mut jump = Matrix4::identity();
+        for (row, mobility) in [(1, mx), (3, my)] {
+            jump[(row, 1)] -= mobility * (1.0 + r);
+            jump[(row, 3)] -= mobility * (1.0 + r);
+        }
+        self.mean = jump * before;
+        let change = self.mean - before;
+        let moved = Vector4::new(change[1], 0.0, change[3], 0.0) * time_error;
+        self.covariance = jump * self.covariance * jump.transpose() + moved * moved.transpose();
+    }
+
+    /// Fly on for a time.
+    fn fly(&mut self, machine: &Machine, drive: Drive, time: f64) {
+        let start = State {
+            x: self.mean[0],
+            vx: self.mean[1],
+            y: self.mean[2],
+            vy: self.mean[3],
+            ..State::default()
+        };
+        let end = free_flight(machine, drive, &start).at(time);
+        self.mean = Vector4::new(end.x, end.vx, end.y, end.vy);
+        let flow = free_flow(machine, time);
+        self.covariance = flow * self.covariance * flow.transpose();
+    }
+}
+
+/// Deviations from which an innovation counts less than its square.
+const USUAL: f64 = 1.5;
+
+/// A residual whose square is the pseudo-Huber loss: as it is where small, its root where large.
+fn bounded(residual: f64) -> f64 {
+    let square = USUAL * USUAL;
+    let loss = 2.0 * square * ((residual * residual / square).ln_1p() * 0.5).exp_m1();
+    loss.sqrt().copysign(residual)
+}
+
+impl Block for FlightBlock {
+    fn items(&self) -> usize {
+        self.records.len()
+    }
+
+    fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
+        let record = &self.records[item];
+        let machine = parameters.machine(self.rig);
+        let (_, clearance_m) = parameters.own(&Circumstances {
+            frequency_hz: record.frequency_hz,
+            clearance_m: record.clearance_m,
+            gap: record.gap,
+            ..Circumstances::default()
+        });
+        let setting = parameters.setting(record.frequency_hz, clearance_m, record.drive_amplitude);
+        let gap = machine.gap(setting.clearance);
+        let rate = parameters.natural_rate();
+        let speed = parameters.static_deflection_m * record.drive_amplitude * rate;
+        let measured = record.measured(parameters, speed);
+        let masses = if machine.y.is_some() { 2 } else { 1 };
+        let mut belief = Belief::unknown();
+        if masses == 1 {
+            belief.covariance[(2, 2)] = 0.0;
+            belief.covariance[(3, 3)] = 0.0;
+        }
+        let mut out = Vec::with_capacity(record.nodes.len() * (1 + 2 * measured.len()));
+        for (k, node) in record.nodes.iter().enumerate() {
+            let [before, after] = node.speeds_m_s(parameters, record.sum_alone());
+            let closing = (before[0] + before[1]) / speed;
+            let time_error = node.time_error_s * rate;
+            let apart = Vector4::new(1.0, 0.0, 1.0, 0.0);
+            out.push(belief.learn(apart, gap, (closing * time_error).powi(2)));
+            let measure = |belief: &mut Belief, speeds: [f64; 2], out: &mut Vec<f64>| {
+                for (row, speed_m_s) in measured.iter().zip(speeds) {
+                    out.push(belief.learn(*row, speed_m_s, node.error_m_s.powi(2)));
+                }
+            };
+            measure(&mut belief, before, &mut out);
+            belief.bounce(&machine, time_error);
+            measure(&mut belief, after, &mut out);
+            if let Some(next) = record.nodes.get(k + 1) {
+                let drive = Drive {
+                    eta: setting.frequency_ratio,
+                    phase: node.drive_phase_rad,
+                };
+                belief.fly(&machine, drive, (next.time_s - node.time_s) * rate);
+            }
+        }
+        out.iter_mut().for_each(|r| *r = bounded(*r));
+        out.iter().all(|r| r.is_finite()).then_some(out)
+    }
+
+    fn touches(&self, coordinate: Coordinate) -> bool {
+        match coordinate {
+            Coordinate::Corner(index) => self.has_corner(index),
+            Coordinate::Gap(_) => self
+                .records
+                .iter()
+                .any(|r| r.gap.map(Coordinate::Gap) == Some(coordinate)),
+            Coordinate::Gain(index) => self.has_gain(index),
+            Coordinate::Delay(_) | Coordinate::Effect(_) => false,
+            _ => true,
+        }
+    }
+
+    fn group(&self, item: usize) -> Option<Group> {
+        Some(self.records[item].group)
+    }
+
+    fn item_touches(&self, item: usize, coordinate: Coordinate) -> bool {
+        match coordinate {
+            Coordinate::Gap(i) => self.records[item].gap == Some(i),
+            _ => self.touches(coordinate),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::fit::wide_priors;
+    use crate::solver::Problem;
+    use impact_oscillator::model::params::Initial;
+    use impact_oscillator::model::simulate::simulate;
+
+    fn truth() -> Parameters {
+        Parameters {
+            drive_asymmetry: 0.03,
+            ..Parameters::symmetric(0.75, 12.0, 0.05, 1e-3)
+        }
+    }
+
+    /// Impacts of irregular motions, exact but for the stated errors.
+    fn block(rig: RigKind) -> FlightBlock {
+        let p = truth();
+        let speed = p.static_deflection_m * p.natural_rate();
+        let records = [(24.0, 0.2e-3), (20.0, 0.1e-3), (29.0, 0.15e-3)]
+            .map(|(frequency_hz, clearance_m)| {
+                let setting = p.setting(frequency_hz, clearance_m, 1.0);
+                let machine = p.machine(rig);
+                let motion = simulate(&machine, setting, Initial::rest(), 90.0).expect("a motion");
+                let nodes = motion.impacts.iter().skip(3).take(14);
+                let nodes = nodes.map(|i| Node {
+                    time_s: i.tau / p.natural_rate(),
+                    time_error_s: 1e-7,
+                    drive_phase_rad: i.phase,
+                    before_m_s: [i.vx_before * speed, i.vy_before * speed],
+                    after_m_s: [i.vx_after * speed, i.vy_after * speed],
+                    error_m_s: 1e-4,
+                    corner_shifts: [None, None],
+                });
+                FlightRecord {
+                    observation: 0,
+                    frequency_hz,
+                    clearance_m,
+                    gap: None,
+                    group: Group::default(),
+                    drive_amplitude: 1.0,
+                    speeds_from: [
+                        Some(Role::VelocityX),
+                        Some(Role::VelocityY).filter(|_| rig == RigKind::Double),
+                    ],
+                    nodes: nodes.collect(),
+                }
+            })
+            .to_vec();
+        FlightBlock::of_records(rig, records)
+    }
+
+    #[test]
+    fn valid_exact_impacts_follow_from_each_other() {
+        for rig in [RigKind::Double, RigKind::Single] {
+            let block = block(rig);
+            for item in 0..block.items() {
+                assert!(block.records[item].nodes.len() >= 10);
+                let residuals = block.residuals(item, &truth()).expect("residuals");
+                // The first node's own measurements meet a state of which nothing is known.
+                let first = if rig == RigKind::Double { 3 } else { 2 };
+                let later = residuals[first..].iter();
+                let worst = later.fold(0.0f64, |m, r| m.max(r.abs()));
+                assert!(worst < 0.01, "{worst}");
+            }
+        }
+    }
+
+    #[test]
+    fn prop_speeds_follow_the_gain_of_the_channel_that_they_come_from() {
+        use Role::{AccelerationX, AccelerationY, DisplacementX, DisplacementY};
+        for (roles, gains) in [
+            ([DisplacementX, DisplacementY], [1.02, 0.97]),
+            ([AccelerationX, AccelerationY], [1.03, 1.03]),
+        ] {
+            let mut block = block(RigKind::Double);
+            let mut parameters = truth();
+            for record in &mut block.records {
+                record.speeds_from = roles.map(Some);
+                let together = record.sum_alone();
+                for node in &mut record.nodes {
+                    for speeds in [&mut node.before_m_s, &mut node.after_m_s] {
+                        *speeds = [speeds[0] * gains[0], speeds[1] * gains[1]];
+                        if together {
+                            *speeds = [speeds[0] + speeds[1], 0.0];
+                        }
+                    }
+                }
+            }
+            for (role, gain) in roles.iter().zip(gains) {
+                let index = gain_index(*role).expect("a gain");
+                assert!(block.touches(Coordinate::Gain(index)));
+                parameters.gains[index] = gain;
+            }
+            assert!(!block.touches(Coordinate::Gain(0)));
+            for item in 0..block.items() {
+                let residuals = block.residuals(item, &parameters).expect("residuals");
+                let worst = residuals[3..].iter().fold(0.0f64, |m, r| m.max(r.abs()));
+                assert!(worst < 1e-3, "{roles:?}: {worst}");
+            }
+        }
+    }
+
+    #[test]
+    fn valid_irregular_motions_alone_tell_all_four_parameters() {
+        let block = block(RigKind::Double);
+        let start = Parameters {
+            restitution: 0.77,
+            natural_frequency_hz: 12.03,
+            damping_ratio: 0.052,
+            static_deflection_m: 1.01e-3,
+            ..truth()
+        };
+        let mut free = Coordinate::PHYSICAL.to_vec();
+        free.push(Coordinate::DriveAsymmetry);
+        let problem = Problem {
+            blocks: vec![(&block, 1.0)],
+            priors: wide_priors(&start, &free),
+            free,
+            ..Problem::default()
+        };
+        let found = problem.fit(start).expect("a fit").parameters;
+        for coordinate in Coordinate::PHYSICAL {
+            let apart = found.coordinate(coordinate) - truth().coordinate(coordinate);
+            assert!(apart.abs() < 1e-5, "{coordinate:?}: {apart}");
+        }
+    }
+
+    #[test]
+    fn prop_a_bounded_residual_keeps_its_sign_and_never_grows() {
+        for r in [-50.0, -3.0, -1e-9, 0.0, 1e-6, 0.7, 8.0] {
+            let b = bounded(r);
+            assert!(b.abs() <= r.abs() * (1.0 + 1e-12) && b * r >= 0.0);
+            assert!(r.abs() > 0.1 || (b - r).abs() <= 1e-3 * r.abs());
+        }
+    }
+}

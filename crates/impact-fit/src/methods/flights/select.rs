@@ -1,0 +1,41 @@
+//! Which records multiple shooting rests on.
+
+use crate::messages::Reason;
+use crate::methods::fit::FitResult;
+use crate::methods::flights::fit;
+use crate::methods::selection::{ROUNDS, Selection};
+use crate::methods::weighing::Bulk;
+use crate::parameters::Parameters;
+use crate::solver::mean_squares;
+
+impl Selection<'_> {
+    /// Fit the records that are shot from impact to impact; those that fit far worse than the bulk,
+    /// as where an impact was missed, are left out and named.
+    pub(super) fn fit_flights(&mut self, start: Parameters) -> Option<FitResult> {
+        let mut parameters = start;
+        let mut found = None;
+        for _ in 0..=ROUNDS {
+            let scores = mean_squares(&self.blocks.flight, &parameters);
+            let known: Vec<f64> = scores.iter().flatten().copied().collect();
+            let limit = Bulk::of(&known).limit;
+            let follows = |score: &Option<f64>| score.is_some_and(|s| s <= limit);
+            if found.is_some() && scores.iter().all(follows) {
+                break;
+            }
+            let mut scores = scores.iter();
+            let records = &mut self.blocks.flight.records;
+            let gone = records.extract_if(.., |_| !scores.next().is_some_and(follows));
+            for record in gone.collect::<Vec<_>>() {
+                self.note(record.observation, Reason::ImpactsDoNotFollow);
+            }
+            match fit::from(&self.blocks, &self.evidence.nominal, parameters)? {
+                Ok(fit) => {
+                    parameters = fit.fit.parameters;
+                    found = Some(Ok(fit));
+                }
+                failed => return Some(failed),
+            }
+        }
+        found
+    }
+}

@@ -1,0 +1,552 @@
+//! R from the speeds after over before each impact.
+
+use crate::evidence::pickup::Pickups;
+use crate::parameters::effect::Effect;
+use crate::parameters::own::log_speed;
+use crate::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
+use crate::solver::Block;
+use impact_records::event::{CornerShift, Impact, Lag, RigKind, extrapolation_error};
+use impact_records::motion::Observation;
+use impact_records::record::Role;
+
+/// One impact's speeds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpeedPair {
+    /// Index of the record among the observations.
+    pub observation: usize,
+    /// Time since the record's first sample, s.
+    pub time_s: f64,
+    /// Closing speed before, m/s.
+    pub before_m_s: f64,
+    /// Parting speed after, m/s (positive).
+    pub after_m_s: f64,
+    /// Standard error of either by noise, m/s.
+    pub error_m_s: f64,
+    /// What a standard error of the impact's time changes of the approach speed before and after, m/s.
+    pub by_time_m_s: [f64; 2],
+    /// What the channels' corners would change of the speeds, toward each other.
+    pub corner_shifts: [Option<CornerShift>; 2],
+    /// What delays of the channels would change of them.
+    pub lags: [Option<Lag>; 2],
+    /// What the velocities pick up of the drive there per unit of strength of [`PICKUPS`], m/s.
+    pub picked_up_m_s: [f64; 2],
+    /// Where between two samples the impact falls, counted from the first one of its record, in sampling
+    /// intervals; `None` where the motion does not tell.
+    pub sample_place: Option<f64>,
+    /// Factor on the standard error, as errors are shared within the record.
+    pub in_record: f64,
+}
+
+impl SpeedPair {
+    /// The first impact of a first record: two speeds with their error, which nothing else changes.
+    #[cfg(test)]
+    pub(crate) fn of_speeds(before_m_s: f64, after_m_s: f64, error_m_s: f64) -> Self {
+        Self {
+            observation: 0,
+            time_s: 0.0,
+            before_m_s,
+            after_m_s,
+            error_m_s,
+            by_time_m_s: [0.0; 2],
+            corner_shifts: [None, None],
+            lags: [None, None],
+            picked_up_m_s: [0.0; 2],
+            sample_place: None,
+            in_record: 1.0,
+        }
+    }
+
+    /// Read the speeds with the delays of the channels that waveforms tell.
+    fn delay(&mut self, parameters: &Parameters) {
+        let lags = self.lags.iter().flatten();
+        let kink_s: f64 = lags
+            .map(|lag| lag.share * parameters.delay_s(lag.displacement))
+            .sum();
+        for lag in self.lags.iter_mut().flatten() {
+            let delay_s = parameters.delay_s(lag.velocity) - kink_s;
+            let later_s = delay_s - std::mem::replace(&mut lag.assumed_s, delay_s);
+            self.before_m_s += later_s * lag.accelerations_m_s2[0];
+            self.after_m_s -= later_s * lag.accelerations_m_s2[1];
+        }
+    }
+
+    /// What a standard error of the impact's time changes of R·before − after, m/s: the approach speed
+    /// after is minus the speed after.
+    fn late(&self, restitution: f64) -> f64 {
+        self.by_time_m_s[1] + restitution * self.by_time_m_s[0]
+    }
+
+    /// Change of the closing speed, m/s, by corners other than the stated ones.
+    fn shift(&self, parameters: &Parameters) -> f64 {
+        let shifts = self.corner_shifts.iter().flatten();
+        let by_corners: f64 = shifts.map(|s| parameters.corner_shift_m_s(s)).sum();
+        let picked_up = PICKUPS.iter().zip(self.picked_up_m_s);
+        let picked_up = picked_up.map(|(effect, unit)| parameters.effect(*effect) * unit);
+        by_corners - picked_up.sum::<f64>()
+    }
+}
+
+/// Share of a period by which the impacts of a periodic motion come off it.
+const ON_PERIOD: f64 = 0.1;
+
+/// Where between two samples an impact falls, counted from the first one of its record, in sampling intervals, if
+/// whole periods of the drive lie between them.
+fn sample_place(o: &Observation, time_s: f64) -> Option<f64> {
+    let frequency_hz = o.drive?.frequency_hz;
+    let periods = (time_s - o.impacts.first()?.time_s) * frequency_hz;
+    let whole = periods.round();
+    let on_period = (periods - whole).abs() < ON_PERIOD;
+    on_period.then(|| (whole * o.sample_rate_hz / frequency_hz).rem_euclid(1.0))
+}
+
+/// What the channels of x and of y pick up.
+pub const PICKUPS: [Effect; 2] = [Effect::PickupX, Effect::PickupY];
+
+/// What the velocities of an observation pick up of the drive at a time, per unit of strength of [`PICKUPS`], m/s.
+fn picked_up_m_s(pickups: &Pickups, o: &Observation, time_s: f64) -> [f64; 2] {
+    let Some(drive) = o.drive else {
+        return [0.0; 2];
+    };
+    let drive_now = o.setting.drive_amplitude * drive.phase_at(time_s).cos();
+    let of = |(effect, of_y)| match o.speed_from(of_y) {
+        Some(role @ (Role::VelocityX | Role::VelocityY)) => pickups.unit(effect, role) * drive_now,
+        _ => 0.0,
+    };
+    [(PICKUPS[0], false), (PICKUPS[1], true)].map(of)
+}
+
+/// Greatest error of extrapolated speeds beside the noise with which they tell R, relative.
+const EXTRAPOLATED: f64 = 1e-3;
+
+/// Whether a drive period has samples enough for polynomials to follow the flights beside an impact, and the speeds do
+/// not rest on clipped spikes.
+fn tells_speeds(o: &Observation) -> bool {
+    let per_period = o.drive.map(|drive| o.sample_rate_hz / drive.frequency_hz);
+    let follows = |per_period| extrapolation_error(per_period) < EXTRAPOLATED;
+    per_period.is_none_or(follows) && !o.speeds_lack_spikes()
+}
+
+/// Why speeds at impacts give a fit its first R and no more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FirstValueOnly {
+    /// Two masses hit each other and only one of them is measured: twice its speed stands for the approach speed,
+    /// whose ratio is R as far as the masses are alike alone.
+    OneOfTwo,
+    /// Displacements were differentiated beside the kinks that impacts make in them.
+    Differentiated,
+}
+
+/// Whether the speeds of driven motions come from displacements.
+fn differentiated(observations: &[Observation]) -> bool {
+    let mut driven = observations
+        .iter()
+        .filter(|o| !o.excluded() && o.drive.is_some());
+    driven.any(|o| {
+        let from = [false, true].map(|of_y| o.speed_from(of_y));
+        let mut from = from.iter().flatten();
+        from.any(|role| matches!(role, Role::DisplacementX | Role::DisplacementY))
+    })
+}
+
+/// On which corners speeds depend, by their index.
+pub fn corners_in<'a>(shifts: impl Iterator<Item = &'a Option<CornerShift>>) -> [bool; CHANNELS] {
+    let mut corners = [false; CHANNELS];
+    for index in shifts.flatten().filter_map(|s| gain_index(s.role)) {
+        corners[index] = true;
+    }
+    corners
+}
+
+/// All impacts with measured speeds.
+#[derive(Debug, Clone)]
+pub struct ImpactBlock {
+    /// The pairs.
+    pub pairs: Vec<SpeedPair>,
+    /// Relative error of each ratio beside the noise: what the extrapolation leaves open.
+    pub relative_error: f64,
+    /// The median approach speed, m/s, at which R is the campaign's; 0 without impacts.
+    pub typical_approach_m_s: f64,
+    /// On which corners the speeds depend, by their index.
+    corners: [bool; CHANNELS],
+    /// Whether the impacts are between free flights, of records without a drive.
+    pub free: bool,
+    /// Why the speeds give a fit its first R and no more.
+    pub first_value_only: Option<FirstValueOnly>,
+    /// What springs and drive, not the contact, add to the separation speed in the median of the contacts that
+    /// last, over the approach speed, as a spring and a damper have it.
+    pub push: f64,
+}
+
+/// Root mean square of what other laws of contact make of that push less what a spring and a damper make of it, over
+/// the latter: five laws for R of 0.5 to 0.9 (`fit::contact_laws`).
+pub(crate) const PUSH_OF_LAWS: f64 = 2.0;
+
+/// Share of the error of an impact between free flights that all have in common.
+const COMMON: f64 = 0.4;
+
+/// Impacts between free flights from which outliers are looked for: fewer are all reported.
+const ENOUGH_FOR_OUTLIERS: usize = 8;
+
+impl ImpactBlock {
+    /// Collect impacts without dead zone, faster than six standard errors (twelve where a contact
+    /// lasts several samples, as slow ones are then swayed by where its middle is put).
+    pub fn new(rig: RigKind, observations: &[Observation], relative_error: f64) -> Self {
+        let pickups = Pickups::of(observations);
+        let mut pairs: Vec<SpeedPair> = observations
+            .iter()
+            .enumerate()
+            .filter(|(_, o)| !o.excluded() && !o.low_pass && tells_speeds(o))
+            .flat_map(|(i, o)| o.impacts.iter().map(move |impact| (i, impact)))
+            .filter(|(_, impact)| impact.dead_zone_s == 0.0)
+            .filter(|(i, impact)| {
+                let unresolved = impact.contact_duration_s.is_none();
+                let least = if unresolved && observations[*i].jump_samples > 2 {
+                    12.0
+                } else {
+                    6.0
+                };
+                let speed = impact.approach_speed_before_m_s.unwrap_or(0.0);
+                speed > least * impact.speed_error_m_s.unwrap_or(f64::INFINITY)
+            })
+            .filter_map(|(i, impact)| {
+                Some(SpeedPair {
+                    observation: i,
+                    time_s: impact.time_s,
+                    before_m_s: impact.approach_speed_before_m_s?,
+                    after_m_s: -impact.approach_speed_after_m_s?
+                        - impact.external_push_m_s.unwrap_or(0.0),
+                    error_m_s: impact.speed_error_m_s?,
+                    by_time_m_s: impact.speeds_by_time_m_s.unwrap_or_default(),
+                    corner_shifts: impact.corner_shifts,
+                    lags: impact.lags,
+                    picked_up_m_s: picked_up_m_s(&pickups, &observations[i], impact.time_s),
+                    sample_place: sample_place(&observations[i], impact.time_s),
+                    in_record: 1.0,
+                })
+            })
+            .filter(|p| p.after_m_s > -4.0 * p.error_m_s)
+            .collect();
+        // of very many, collecting leaves room for as many more
+        pairs.shrink_to_fit();
+        let free = pairs
+            .iter()
+            .all(|p: &SpeedPair| observations[p.observation].drive.is_none());
+        let impacts = observations.iter().filter(|o| !o.excluded());
+        let sees_both = |i: &Impact| i.x.is_some() && i.y.is_some();
+        let mut with_speeds = impacts
+            .flat_map(|o| &o.impacts)
+            .filter(|i| i.x.is_some() || i.y.is_some());
+        Self {
+            free,
+            first_value_only: if rig == RigKind::Double && with_speeds.any(|i| !sees_both(i)) {
+                Some(FirstValueOnly::OneOfTwo)
+            } else {
+                differentiated(observations).then_some(FirstValueOnly::Differentiated)
+            },
+            push: push(observations),
+            ..Self::of_pairs(pairs, relative_error)
+        }
+    }
+
+    /// The typical ratio of the speed after to that before.
+    pub fn typical_ratio(&self) -> Option<f64> {
+        let ratios: Vec<f64> = self
+            .pairs
+            .iter()
+            .map(|p| p.after_m_s / p.before_m_s)
+            .collect();
+        impact_records::signal::robust::median(&ratios)
+    }
+
+    /// What the unknown law of contact leaves open in R.
+    pub fn open_by_law(&self) -> f64 {
+        PUSH_OF_LAWS * self.push
+    }
+
+    /// What all impacts between free flights have in common of their errors: how their contacts are timed.
+    pub fn common_error(&self) -> f64 {
+        if !self.free {
+            return 0.0;
+        }
+        let error = |p: &SpeedPair| self.error(p, p.after_m_s / p.before_m_s) / p.before_m_s;
+        let errors: Vec<f64> = self.pairs.iter().map(error).collect();
+        COMMON * impact_records::signal::robust::median(&errors).unwrap_or(0.0)
+    }
+
+    /// Fewest impacts that a fit needs: one between free flights has a ratio of its own.
+    pub fn fewest(&self) -> usize {
+        if self.free { 1 } else { 3 }
+    }
+
+    /// Of given pairs.
+    pub fn of_pairs(pairs: Vec<SpeedPair>, relative_error: f64) -> Self {
+        let corners = corners_in(pairs.iter().flat_map(|p| &p.corner_shifts));
+        let speeds: Vec<f64> = pairs.iter().map(|p| p.before_m_s).collect();
+        Self {
+            typical_approach_m_s: impact_records::signal::robust::median(&speeds).unwrap_or(0.0),
+            pairs,
+            relative_error,
+            corners,
+            free: false,
+            first_value_only: None,
+            push: 0.0,
+        }
+    }
+
+    /// Whether the speeds depend on a corner, by its index.
+    fn picks_up(&self, effect: Effect) -> bool {
+        let place = PICKUPS.iter().position(|p| *p == effect);
+        let picked_up = |i| self.pairs.iter().any(|p| p.picked_up_m_s[i] != 0.0);
+        place.is_some_and(picked_up)
+    }
+
+    /// Whether some speeds depend on a channel's corner.
+    pub fn has_corner(&self, index: usize) -> bool {
+        self.corners[index]
+    }
+
+    /// Leave out pairs that do not lie within `limit` robust deviations of the bulk, and give them.
+    pub fn extract_outliers(&mut self, limit: f64) -> Vec<SpeedPair> {
+        let Some(centre) = self.typical_ratio() else {
+            return Vec::new();
+        };
+        if self.free && self.pairs.len() < ENOUGH_FOR_OUTLIERS {
+            return Vec::new();
+        }
+        let scores: Vec<f64> = self
+            .pairs
+            .iter()
+            .map(|p| (p.after_m_s - centre * p.before_m_s) / self.error(p, centre))
+            .collect();
+        let spread = impact_records::signal::robust::robust_deviation(&scores)
+            .unwrap_or(1.0)
+            .max(0.5);
+        let mut is_odd = scores.iter().map(|s| !(s.abs() <= limit * spread));
+        let odd = self.pairs.extract_if(.., |_| is_odd.next() == Some(true));
+        odd.collect()
+    }
+
+    /// Take pairs in, and read all with the delays of the channels that waveforms tell.
+    pub fn delay(&mut self, others: Vec<SpeedPair>, parameters: &Parameters) {
+        self.pairs.extend(others);
+        for pair in &mut self.pairs {
+            pair.delay(parameters);
+            pair.in_record = 1.0;
+        }
+        self.pairs.sort_by(|a, b| {
+            let by_time = a.time_s.total_cmp(&b.time_s);
+            a.observation.cmp(&b.observation).then(by_time)
+        });
+    }
+
+    /// Whether delays of the channels change any speed.
+    pub fn has_lags(&self) -> bool {
+        let mut lags = self.pairs.iter().flat_map(|p| p.lags);
+        lags.any(|lag| lag.is_some())
+    }
+
+    /// The speeds as they are with the corners that a fit found.
+    #[must_use]
+    pub fn corrected(&self, parameters: &Parameters) -> Self {
+        let mut block = self.clone();
+        for pair in &mut block.pairs {
+            let shift = pair.shift(parameters);
+            pair.before_m_s += shift;
+            pair.after_m_s -= shift;
+            pair.corner_shifts = [None, None];
+            pair.picked_up_m_s = [0.0; 2];
+        }
+        block
+    }
+
+    /// Standard error of after − R·before.
+    pub fn error(&self, pair: &SpeedPair, restitution: f64) -> f64 {
+        pair.in_record * self.own_error(pair, restitution)
+    }
+
+    /// The same of an impact alone, whatever it shares with others of its record.
+    fn own_error(&self, pair: &SpeedPair, restitution: f64) -> f64 {
+        let noise = pair.error_m_s * 1f64.hypot(restitution);
+        noise
+            .hypot(pair.late(restitution))
+            .hypot(self.relative_error * pair.before_m_s)
+    }
+
+    /// The true approach speed by both speeds (`contact_law`), times its logarithm over the typical one, m/s.
+    fn speed_log(&self, pair: &SpeedPair, restitution: f64) -> f64 {
+        let deviation = pair.after_m_s - restitution * pair.before_m_s;
+        let speed = pair.before_m_s + self.shared(pair, restitution) * deviation;
+        speed * log_speed(speed, self.typical_approach_m_s)
+    }
+
+    /// Mean error of the speed before per error of after − R·before, with the sign of −1: half the slope
+    /// of the variance of that over R, over the variance.
+    pub fn shared(&self, pair: &SpeedPair, restitution: f64) -> f64 {
+        let noise = restitution * pair.error_m_s.powi(2);
+        let time = pair.by_time_m_s[0] * pair.late(restitution);
+        (noise + time) / self.own_error(pair, restitution).powi(2)
+    }
+}
+
+/// Median of |push| over the approach speed, of the contacts that last.
+fn push(observations: &[Observation]) -> f64 {
+    let impacts = observations.iter().flat_map(|o| &o.impacts);
+    let pushed = impacts.filter_map(|i| {
+        let before = i.approach_speed_before_m_s.filter(|v| *v > 0.0)?;
+        Some((i.external_push_m_s? / before).abs())
+    });
+    impact_records::signal::robust::median(&pushed.collect::<Vec<f64>>()).unwrap_or(0.0)
+}
+
+impl Block for ImpactBlock {
+    fn items(&self) -> usize {
+        self.pairs.len()
+    }
+
+    fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
+        let pair = &self.pairs[item];
+        let r = parameters.restitution;
+        let shift = pair.shift(parameters);
+        let (before, after) = (pair.before_m_s + shift, pair.after_m_s - shift);
+        let over_speed = parameters.effect(Effect::RestitutionSpeed) * self.speed_log(pair, r);
+        Some(vec![
+            (after - r * before - over_speed) / self.error(pair, r),
+        ])
+    }
+
+    fn slopes(
+        &self,
+        item: usize,
+        parameters: &Parameters,
+        coordinates: &[Coordinate],
+    ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+        let pair = &self.pairs[item];
+        let r = parameters.restitution;
+        let residuals = self.residuals(item, parameters)?;
+        let error = self.error(pair, r);
+        let slope = |coordinate: &Coordinate| match coordinate {
+            Coordinate::Restitution => {
+                let before = pair.before_m_s + pair.shift(parameters);
+                -before / error - residuals[0] * self.shared(pair, r)
+            }
+            Coordinate::Corner(index) => {
+                let shifts = pair.corner_shifts.iter().flatten();
+                let own = shifts.filter(|s| gain_index(s.role) == Some(*index));
+                -(1.0 + r) * own.map(|s| s.speed_m_s).sum::<f64>() / error
+            }
+            Coordinate::Effect(Effect::RestitutionSpeed) => -self.speed_log(pair, r) / error,
+            Coordinate::Effect(effect) => {
+                let place = PICKUPS.iter().position(|p| p == effect);
+                (1.0 + r) * place.map_or(0.0, |i| pair.picked_up_m_s[i]) / error
+            }
+            _ => 0.0,
+        };
+        let columns = coordinates.iter().map(|c| vec![slope(c)]).collect();
+        Some((residuals, columns))
+    }
+
+    fn touches(&self, coordinate: Coordinate) -> bool {
+        match coordinate {
+            Coordinate::Corner(index) => self.has_corner(index),
+            Coordinate::Effect(Effect::RestitutionSpeed) => !self.free,
+            Coordinate::Effect(effect) => self.picks_up(effect),
+            _ => coordinate == Coordinate::Restitution,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::block::difference;
+    use impact_records::record::Role;
+
+    fn lag(velocity: Role, displacement: Role, accelerations_m_s2: [f64; 2]) -> Option<Lag> {
+        Some(Lag {
+            velocity,
+            displacement,
+            share: 0.5,
+            assumed_s: 1e-4,
+            accelerations_m_s2,
+        })
+    }
+
+    #[test]
+    fn valid_slopes_are_those_of_finite_differences() {
+        let shift = |role, speed_m_s| Some(CornerShift { role, speed_m_s });
+        let pair = SpeedPair {
+            by_time_m_s: [4e-3, 1e-3],
+            corner_shifts: [shift(Role::VelocityX, 3e-3), shift(Role::VelocityY, -2e-3)],
+            picked_up_m_s: [0.3, -0.1],
+            ..SpeedPair::of_speeds(0.5, 0.37, 5e-3)
+        };
+        let mut block = ImpactBlock::of_pairs(vec![pair], 4e-3);
+        let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
+        parameters.corners = [1.1, 0.9, 1.0, 1.0, 1.0, 1.0];
+        let parameters = parameters.with(Coordinate::Effect(Effect::PickupX), 2e-3);
+        block.typical_approach_m_s = 0.3;
+        let coordinates = [
+            Coordinate::Effect(Effect::RestitutionSpeed),
+            Coordinate::Restitution,
+            Coordinate::Corner(0),
+            Coordinate::Corner(1),
+            Coordinate::Effect(Effect::PickupX),
+            Coordinate::Effect(Effect::PickupY),
+        ];
+        let (here, columns) = block.slopes(0, &parameters, &coordinates).expect("slopes");
+        for (coordinate, exact) in coordinates.iter().zip(columns) {
+            let found = difference(&parameters, *coordinate, &here, |p| block.residuals(0, p));
+            let apart = found.expect("differences")[0] - exact[0];
+            assert!(
+                apart.abs() < 1e-7 * exact[0].abs(),
+                "{coordinate:?}: {apart}"
+            );
+        }
+    }
+
+    #[test]
+    fn valid_impacts_whose_r_follows_the_speed_fit_with_its_slope() {
+        // R = 0.8 − 0.02 ln v/v₀: to second order of the slope the residuals vanish
+        let restitution = |v: f64| 0.8 - 0.02 * (v / 0.4).ln();
+        let pair = |v: f64| SpeedPair::of_speeds(v, restitution(v) * v, 1e-3);
+        let block = ImpactBlock::of_pairs([0.2, 0.4, 0.7].map(pair).into(), 0.0);
+        assert!((block.typical_approach_m_s - 0.4).abs() < 1e-12);
+        let constant = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
+        let slope = constant.with(Coordinate::Effect(Effect::RestitutionSpeed), -0.02);
+        for (item, v) in [0.2, 0.4, 0.7].into_iter().enumerate() {
+            let off = |p: &Parameters| block.residuals(item, p).expect("a residual")[0];
+            let unexplained = off(&constant).abs();
+            assert!(
+                off(&slope).abs() < 0.02 * unexplained + 1e-9,
+                "{v}: {unexplained}"
+            );
+        }
+    }
+
+    #[test]
+    fn valid_speeds_are_read_where_the_delays_of_the_channels_place_them() {
+        let pair = SpeedPair {
+            lags: [
+                lag(Role::VelocityX, Role::DisplacementX, [10.0, 4.0]),
+                lag(Role::VelocityY, Role::DisplacementY, [20.0, 8.0]),
+            ],
+            ..SpeedPair::of_speeds(0.5, 0.4, 1e-3)
+        };
+        let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
+        parameters.delays_s = [5e-4, 2e-4, 1e-4, 3e-4, 0.0, 0.0];
+        // the kink is 0.2 ms late: x is read 0.3 − 0.1 ms later, y 0 − 0.1 ms
+        let delayed = |pair: SpeedPair, parameters: &Parameters| {
+            let mut block = ImpactBlock::of_pairs(vec![pair], 0.0);
+            block.delay(Vec::new(), parameters);
+            block.pairs[0]
+        };
+        let found = delayed(pair, &parameters);
+        assert!((found.before_m_s - (0.5 + 2e-4 * 10.0 - 1e-4 * 20.0)).abs() < 1e-12);
+        assert!((found.after_m_s - (0.4 - 2e-4 * 4.0 + 1e-4 * 8.0)).abs() < 1e-12);
+        // read once more with the same delays, nothing changes; without delays, all comes back
+        assert_eq!(delayed(found, &parameters), found);
+        parameters.delays_s = [1e-4, 1e-4, 0.0, 0.0, 0.0, 0.0];
+        let back = delayed(found, &parameters);
+        assert!((back.before_m_s - 0.5).abs() < 1e-12 && (back.after_m_s - 0.4).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,224 @@
+//! Errors that the impacts of a driven record share.
+//!
+//! What sampling leaves open of an impact's time and speeds depends on where between two samples it falls.
+//! Where the period of a motion is close to a whole number of samples, or to a ratio of small ones, all impacts of
+//! a record fall at the same few places, and their errors do not average out. Of an error that runs evenly
+//! through its range from one sample to the next, two impacts whose places are Δ apart share the correlation
+//!
+//! c(Δ) = 1 − 6Δ(1 − Δ),
+//!
+//! so that the variance of the mean of n deviations of unit variance, of which a is independent and s depends on
+//! the place, is (a + s K)/n, K = Σc/n over all pairs, each with itself too: 0 where the places are spread evenly, n
+//! where they are one. a and s follow from the scatter within records and that of their means (analysis of
+//! variance), and a + s K is the factor on the variance of each impact. Means are taken about a parabola over the
+//! records' speeds, so that a restitution that changes with the speed does not pass for shared errors.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::methods::impacts::block::{ImpactBlock, SpeedPair};
+use crate::solver::normal::inverse;
+use impact_records::signal::robust;
+
+/// Terms of the law over the speed that records may follow.
+const TERMS: usize = 3;
+/// Fewest records beyond those terms from which what they share is found.
+const FEWEST: usize = 4;
+
+/// The deviations of a record's impacts from one R over their errors.
+#[derive(Default)]
+struct Deviations {
+    speeds_m_s: Vec<f64>,
+    scores: Vec<f64>,
+    places: Vec<Option<f64>>,
+}
+
+impl Deviations {
+    fn count(&self) -> f64 {
+        self.scores.len() as f64
+    }
+
+    fn mean(&self) -> f64 {
+        robust::mean(&self.scores)
+    }
+
+    /// Sum of squares about the mean.
+    fn within(&self) -> f64 {
+        let mean = self.mean();
+        self.scores.iter().map(|s| (s - mean).powi(2)).sum()
+    }
+
+    /// K: the variance of the mean over that of independent errors.
+    fn alike(&self) -> f64 {
+        let pair =
+            |a: &Option<f64>, b: &Option<f64>| a.zip(*b).map_or(0.0, |(a, b)| alike((a - b).abs()));
+        let apart = self.places.iter().enumerate().map(|(i, a)| {
+            let others = self.places[i + 1..].iter();
+            others.map(|b| pair(a, b)).sum::<f64>()
+        });
+        1.0 + 2.0 * apart.sum::<f64>() / self.count()
+    }
+}
+
+/// Correlation of the errors of two impacts whose places between samples are apart.
+fn alike(apart: f64) -> f64 {
+    1.0 - 6.0 * apart * (1.0 - apart)
+}
+
+/// Find what the impacts of each record share, and enlarge their errors by it. Undriven impacts, whose order
+/// and records are looked at by themselves, stay as they are.
+pub fn share(block: &mut ImpactBlock) {
+    block.pairs.iter_mut().for_each(|pair| pair.in_record = 1.0);
+    if block.free {
+        return;
+    }
+    let records = records(block);
+    let Some([independent, by_place]) = variances(&records) else {
+        return;
+    };
+    let factor = |r: &Deviations| (independent + by_place * r.alike()).max(1.0).sqrt();
+    let factors: BTreeMap<usize, f64> = records.iter().map(|(i, r)| (*i, factor(r))).collect();
+    for pair in &mut block.pairs {
+        pair.in_record = factors[&pair.observation];
+    }
+}
+
+fn records(block: &ImpactBlock) -> BTreeMap<usize, Deviations> {
+    let mut records: BTreeMap<usize, Deviations> = BTreeMap::new();
+    let Some(restitution) = block.typical_ratio() else {
+        return records;
+    };
+    let score = |pair: &SpeedPair| {
+        (pair.after_m_s - restitution * pair.before_m_s) / block.error(pair, restitution)
+    };
+    for pair in &block.pairs {
+        let record = records.entry(pair.observation).or_default();
+        record.scores.push(score(pair));
+        record.speeds_m_s.push(pair.before_m_s);
+        record.places.push(pair.sample_place);
+    }
+    records
+}
+
+/// a and s: the variances of independent deviations and of those that depend on the place; `None` of too few
+/// records.
+fn variances(records: &BTreeMap<usize, Deviations>) -> Option<[f64; 2]> {
+    let records: Vec<&Deviations> = records.values().collect();
+    let count: f64 = records.iter().map(|r| r.count()).sum();
+    let known = records.len().checked_sub(TERMS).filter(|n| *n >= FEWEST)? as f64;
+    // of the records' means, some follow the law
+    let means = about_law(&records)? * records.len() as f64 / known;
+    let within: f64 = records.iter().map(|r| r.within()).sum();
+    let alike: f64 = records.iter().map(|r| r.alike()).sum();
+    // means = a k + s ΣK and within = a (N − k) + s (N − ΣK)
+    let k = records.len() as f64;
+    let determinant = k * (count - alike) - (count - k) * alike;
+    let independent = (means * (count - alike) - within * alike) / determinant;
+    let by_place = (k * within - (count - k) * means) / determinant;
+    let all = (means + within) / count;
+    let solved = independent.is_finite() && by_place.is_finite();
+    Some(match solved {
+        true if by_place <= 0.0 => [all, 0.0],
+        true if independent <= 0.0 => [0.0, all],
+        true => [independent, by_place],
+        false => [all, 0.0],
+    })
+}
+
+/// Sum of squares of the records' means about a parabola over their speeds, each times its impacts.
+fn about_law(records: &[&Deviations]) -> Option<f64> {
+    let speeds: Vec<f64> = records
+        .iter()
+        .map(|r| robust::mean(&r.speeds_m_s))
+        .collect();
+    let (low, high) = robust::range(speeds.iter().copied())?;
+    let middle = 0.5 * (low + high);
+    let half = (0.5 * (high - low)).max(f64::MIN_POSITIVE);
+    let weights: Vec<f64> = records.iter().map(|r| r.count().sqrt()).collect();
+    let powers = |x: f64| [1.0, x, x * x];
+    let term = |i: usize, k: usize| weights[i] * powers((speeds[i] - middle) / half)[k];
+    let design = DMatrix::from_fn(records.len(), TERMS, term);
+    let target = DVector::from_fn(records.len(), |i, _| weights[i] * records[i].mean());
+    let square = design.tr_mul(&design);
+    let left = match inverse(&square) {
+        Some(inverse) => &target - &design * (inverse * design.tr_mul(&target)),
+        // one speed in all records
+        None => {
+            let mean = target.dot(&design.column(0)) / square[(0, 0)];
+            &target - design.column(0) * mean
+        }
+    };
+    Some(left.norm_squared())
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+
+    const ERROR_M_S: f64 = 2e-3;
+    const IMPACTS: usize = 12;
+
+    /// Records of impacts with R over the speed, every fourth of a period of so many samples and the others of
+    /// one that is no ratio of small numbers; the errors run through their range from one sample to the next.
+    fn block(samples: f64, law: fn(f64) -> f64, seed: u64) -> ImpactBlock {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+        let mut pairs = Vec::new();
+        for record in 0..400usize {
+            let speed = 0.1 + 7.5e-4 * record as f64;
+            let period = if record % 4 == 0 {
+                samples
+            } else {
+                150.618_034
+            };
+            let first = 17.0 * normal();
+            for impact in 0..IMPACTS {
+                let place = (period * impact as f64).rem_euclid(1.0);
+                let by_place = 12f64.sqrt() * ((first + place).rem_euclid(1.0) - 0.5);
+                let error = (by_place + normal()) / 2f64.sqrt();
+                let after = law(speed) * speed + ERROR_M_S * 1f64.hypot(law(speed)) * error;
+                pairs.push(SpeedPair {
+                    observation: record,
+                    time_s: impact as f64,
+                    sample_place: Some(place),
+                    ..SpeedPair::of_speeds(speed, after, ERROR_M_S)
+                });
+            }
+        }
+        ImpactBlock::of_pairs(pairs, 0.0)
+    }
+
+    /// Factor on the variance in the records of the given period and in the others.
+    fn factors(block: &ImpactBlock) -> [f64; 2] {
+        [0, IMPACTS].map(|i| block.pairs[i].in_record.powi(2))
+    }
+
+    #[test]
+    fn valid_errors_at_the_same_place_between_samples_count_once() {
+        for seed in 0..4 {
+            // half of the variance is shared by all twelve: 0.5 + 0.5 * 12
+            let mut block = block(150.0, |_| 0.8, seed);
+            share(&mut block);
+            let [alike, others] = factors(&block);
+            assert!((alike / 6.5 - 1.0).abs() < 0.4, "{seed}: {alike}");
+            assert!(others < 1.2, "{seed}: {others}");
+            // found once more, it is the same
+            share(&mut block);
+            assert_eq!(factors(&block), [alike, others]);
+        }
+    }
+
+    #[test]
+    fn places_that_differ_and_a_restitution_that_changes_with_the_speed_are_no_shared_errors() {
+        for law in [|_: f64| 0.8, |v: f64| 0.9 - 0.3 * v] {
+            let mut block = block(150.381_966, law, 5);
+            share(&mut block);
+            assert!(factors(&block)[0] < 1.5, "{:?}", factors(&block));
+        }
+    }
+}

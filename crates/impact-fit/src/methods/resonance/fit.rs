@@ -1,0 +1,98 @@
+//! f0, β and `x_st` from the impactless records.
+
+use crate::evidence::Nominal;
+use crate::methods::blocks::Blocks;
+use crate::methods::fit::{FitResult, alone};
+use crate::methods::resonance::block::ResonanceBlock;
+use crate::parameters::{Coordinate, Parameters};
+use crate::solver::{FitError, Precision, mean_squares};
+
+/// What the impactless records tell.
+pub const TELLS: [Coordinate; 3] = [
+    Coordinate::Frequency,
+    Coordinate::Damping,
+    Coordinate::Deflection,
+];
+
+/// f0, β and `x_st` from the impactless records; the gains' uncertainty enters `x_st`.
+pub fn first(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
+    if !enough(blocks) {
+        return None;
+    }
+    let (few, ideal) = (blocks.resonance.few(MOST_FOR_A_START), nominal.ideal());
+    let curve = |start| resonance_curve(&few, blocks, &ideal, (start, Precision::Start));
+    let fits = starts(&few, nominal)
+        .into_iter()
+        .filter_map(|start| curve(start)?.ok());
+    let best = fits.min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
+    match best {
+        Some(best) => from(blocks, nominal, best.fit.parameters),
+        None => Some(Err(FitError::Singular)),
+    }
+}
+
+/// The same from a start near the optimum.
+pub fn from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
+    let begin = (start, Precision::Result);
+    resonance_curve(&blocks.resonance, blocks, nominal, begin)
+}
+
+fn resonance_curve(
+    block: &ResonanceBlock,
+    blocks: &Blocks,
+    nominal: &Nominal,
+    begin: (Parameters, Precision),
+) -> Option<FitResult> {
+    enough(blocks).then(|| alone(block, blocks, nominal, &TELLS, begin))
+}
+
+fn enough(blocks: &Blocks) -> bool {
+    blocks.resonance.points.len() >= TELLS.len()
+}
+
+/// Impactless records from which the fit of all is started.
+const MOST_FOR_A_START: usize = 64;
+
+/// Starting values of the resonance curve: the stated ones, and a coarse grid whose deflection
+/// follows from the greatest response.
+fn starts(block: &ResonanceBlock, nominal: &Nominal) -> Vec<Parameters> {
+    let frequencies: Vec<f64> = block.points.iter().map(|p| p.frequency_hz).collect();
+    let low = frequencies.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = frequencies.iter().copied().fold(0.0, f64::max);
+    let mut out = Vec::new();
+    let mut grid: Vec<f64> = (0..7)
+        .map(|i| low * 0.8 * (high * 1.25 / (low * 0.8)).powf(f64::from(i) / 6.0))
+        .collect();
+    grid.extend(nominal.natural_frequency_hz);
+    for f0 in grid {
+        for beta in [0.01, 0.05, 0.2] {
+            let beta = nominal.damping_ratio.unwrap_or(beta);
+            let unit = nominal.applied(Parameters::symmetric(0.8, f0, beta, 1.0));
+            out.push(Parameters {
+                static_deflection_m: deflection_guess(block, &unit),
+                ..unit
+            });
+        }
+    }
+    let cost = |p: Parameters| {
+        let mean_squares = mean_squares(block, &p);
+        (mean_squares.into_iter().flatten().sum::<f64>(), p)
+    };
+    let mut costs: Vec<(f64, Parameters)> = out.into_iter().map(cost).collect();
+    costs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    costs.into_iter().take(3).map(|(_, start)| start).collect()
+}
+
+/// Deflection that best scales the unit response to the measured amplitudes.
+pub fn deflection_guess(block: &ResonanceBlock, unit: &Parameters) -> f64 {
+    let (mut product, mut square) = (0.0, 0.0);
+    for point in &block.points {
+        for r in &point.responses {
+            let model = block.response(unit, point, r.role);
+            let weight = r.error.hypot(1e-2 * r.amplitude()).powi(-2);
+            product += weight * model.norm() * r.amplitude();
+            square += weight * model.norm_sqr();
+        }
+    }
+    if square > 0.0 { product / square } else { 1e-3 }
+}

@@ -1,0 +1,123 @@
+//! How much residuals may be trusted: what is allowed beside the noise, and which records do not
+//! belong to the bulk.
+
+use rayon::prelude::*;
+
+use crate::methods::blocks::Blocks;
+use crate::methods::trajectories::record::Misfit;
+use crate::parameters::Parameters;
+use crate::solver::mean_squares;
+use impact_records::signal::robust;
+
+impl Blocks {
+    /// Weigh resonance curve and trajectories as the fit that led to these parameters did.
+    pub fn weigh(&mut self, parameters: &Parameters) {
+        self.weigh_resonance(parameters);
+        self.weigh_trajectories(parameters);
+    }
+
+    /// Allow impactless and periodic records the least error beside the noise, with the changes by effects as they
+    /// are at parameters; periodic ones without an orbit there are left out.
+    pub fn allow_least(&mut self, at: &Parameters) {
+        self.resonance.find_changes(at);
+        self.trajectory.find_changes(at);
+        self.resonance.allow(LEAST_ALLOWANCE);
+        self.trajectory.allow(LEAST_ALLOWANCE);
+        let has_orbit = mean_squares(&self.trajectory, at);
+        let mut has_orbit = has_orbit.iter().map(Option::is_some);
+        let records = &mut self.trajectory.records;
+        records.retain(|_| has_orbit.next().unwrap_or(false));
+    }
+
+    /// Find what the errors of the drive's frequency change in the impactless records, and allow them
+    /// the least relative error that explains the rest.
+    pub fn weigh_resonance(&mut self, parameters: &Parameters) {
+        let block = &mut self.resonance;
+        block.find_changes(parameters);
+        let allowed = least_allowance(|allowance| {
+            block.allow(allowance);
+            mean_squares(block, parameters)
+                .into_iter()
+                .flatten()
+                .collect()
+        });
+        block.allow(allowed);
+    }
+
+    /// Find what the points of each periodic record share and what effects beyond the model change
+    /// in them, and allow all the least relative error that explains the rest.
+    pub fn weigh_trajectories(&mut self, parameters: &Parameters) {
+        let block = &mut self.trajectory;
+        block.find_changes(parameters);
+        let differences = block.differences(parameters);
+        let pairs = block.records.par_iter().zip(&differences);
+        let misfits: Vec<Misfit<'_>> = pairs
+            .filter_map(|(record, apart)| Some(Misfit::new(record, apart.as_ref()?)))
+            .collect();
+        let scores = |allowance: f64| {
+            misfits
+                .par_iter()
+                .map(|m| m.mean_square(allowance))
+                .collect()
+        };
+        let allowed = least_allowance(scores);
+        block.allow(allowed);
+    }
+}
+
+/// Relative error that is always allowed, so that weights stay finite on noiseless data.
+pub const LEAST_ALLOWANCE: f64 = 1e-6;
+/// Greatest relative error that instruments and model may be allowed.
+const MOST_ALLOWANCE: f64 = 0.1;
+
+/// The least relative error beside the noise with which residuals are of unit size; next to none where
+/// the noise alone explains them. The median of the items' mean squares, `scores`, is judged, so that a few records that do not belong change nothing.
+fn least_allowance(mut scores: impl FnMut(f64) -> Vec<f64>) -> f64 {
+    let mut excess = |allowance: f64| robust::median(&scores(allowance)).unwrap_or(0.0) - 1.0;
+    if excess(LEAST_ALLOWANCE) <= 0.0 {
+        return LEAST_ALLOWANCE;
+    }
+    let (mut low, mut high) = (LEAST_ALLOWANCE, MOST_ALLOWANCE);
+    for _ in 0..14 {
+        let middle = (low * high).sqrt();
+        if excess(middle) > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+/// What mean squares of records that belong together look like.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bulk {
+    /// The typical one, at least 1.
+    pub typical: f64,
+    /// The greatest that still belongs.
+    pub limit: f64,
+}
+
+/// How many times the typical mean square a record of the bulk may have at most.
+const OUTLYING: f64 = 25.0;
+/// And how many times it may always have.
+const SCATTER: f64 = 1.6;
+
+impl Bulk {
+    /// The bulk of mean squares: up to six robust deviations of their logarithm above their
+    /// median, so that records of one quality do not hide one that is worse.
+    pub fn of(scores: &[f64]) -> Self {
+        let logs: Vec<f64> = scores.iter().map(|s| s.max(1e-12).ln()).collect();
+        let typical = robust::median(scores).unwrap_or(1.0).max(1.0);
+        let spread = robust::robust_deviation(&logs).unwrap_or(1.0);
+        Self {
+            typical,
+            limit: typical * (6.0 * spread).exp().clamp(SCATTER, OUTLYING),
+        }
+    }
+
+    /// How many times worse than the typical record one fits.
+    pub fn times_worse(self, score: f64) -> f64 {
+        (score / self.typical).sqrt()
+    }
+}

@@ -1,0 +1,125 @@
+//! All items of a problem at given parameters, folded together by groups.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
+
+use rayon::prelude::*;
+
+use crate::parameters::{Coordinate, Parameters};
+use crate::solver::block::Block;
+use crate::solver::factor::Factor;
+use crate::solver::group::Group;
+use crate::solver::normal::Normal;
+
+/// The factors of all groups of some blocks at given parameters.
+pub(super) struct Evaluation {
+    at: Parameters,
+    /// Of each block its groups; items that belong to none are one of their own.
+    pub(super) blocks: Vec<Vec<(Option<Group>, Part)>>,
+}
+
+impl Evaluation {
+    /// Of blocks with their weights over the free coordinates.
+    pub(super) fn of(blocks: &[(&dyn Block, f64)], free: &[Coordinate], at: &Parameters) -> Self {
+        let of_block = |block: &(&dyn Block, f64)| {
+            let mut items: BTreeMap<Option<Group>, Vec<usize>> = BTreeMap::new();
+            for i in 0..block.0.items() {
+                items.entry(block.0.group(i)).or_default().push(i);
+            }
+            items
+                .into_par_iter()
+                .map(|(group, items)| (group, Part::of(*block, free, at, &items)))
+                .collect()
+        };
+        Self {
+            at: *at,
+            blocks: blocks.par_iter().map(of_block).collect(),
+        }
+    }
+}
+
+/// The evaluation of a problem that was made last: a fit ends where its groups are asked for.
+#[derive(Default)]
+pub(crate) struct LastEvaluation(Mutex<Option<Arc<Evaluation>>>);
+
+impl LastEvaluation {
+    /// The last one if it was made at these parameters, else a new one, which is kept.
+    pub(super) fn at_or(
+        &self,
+        parameters: &Parameters,
+        evaluate: impl FnOnce() -> Evaluation,
+    ) -> Arc<Evaluation> {
+        let last = self.0.lock().ok().and_then(|last| last.clone());
+        if let Some(last) = last.filter(|e| e.at == *parameters) {
+            return last;
+        }
+        let evaluation = Arc::new(evaluate());
+        if let Ok(mut last) = self.0.lock() {
+            *last = Some(Arc::clone(&evaluation));
+        }
+        evaluation
+    }
+}
+
+/// Items of a block that are folded together.
+const SHARE: usize = 16;
+
+/// Factor of some items of a block.
+pub(super) struct Part {
+    pub(super) factor: Factor,
+    /// Places of its coordinates among the free ones.
+    pub(super) places: Vec<usize>,
+    /// Items without a model.
+    pub(super) missing: Vec<usize>,
+}
+
+impl Part {
+    /// Of some items of a block with its weight, over the coordinates that the block depends on. Items are
+    /// folded together in shares of fixed size, so that the number of threads changes nothing.
+    pub(super) fn of(
+        (block, weight): (&dyn Block, f64),
+        free: &[Coordinate],
+        at: &Parameters,
+        items: &[usize],
+    ) -> Self {
+        let (places, coordinates) = kept(free, |c| block.touches(c));
+        let shares: Vec<(Factor, Vec<usize>)> = items
+            .par_chunks(SHARE)
+            .map(|items| {
+                let (mut rows, mut missing) = (Vec::new(), Vec::new());
+                for i in items {
+                    let (own, touched) = kept(&coordinates, |c| block.item_touches(*i, c));
+                    match block.rows(*i, at, &touched, weight) {
+                        Some(found) => rows.push((found, own)),
+                        None => missing.push(*i),
+                    }
+                }
+                let mut share = Factor::empty(places.len());
+                share.add(&Vec::from_iter(
+                    rows.iter().map(|(rows, own)| (rows, own.as_slice())),
+                ));
+                (share, missing)
+            })
+            .collect();
+        let (factors, missing): (Vec<Factor>, Vec<Vec<usize>>) = shares.into_iter().unzip();
+        Self {
+            factor: Factor::stacked(places.len(), factors),
+            places,
+            missing: missing.concat(),
+        }
+    }
+
+    /// Its normal equations over all unknowns.
+    pub(super) fn normal(&self, unknowns: usize) -> Normal {
+        self.factor.rows().normal(&self.places, unknowns)
+    }
+}
+
+/// The coordinates that are touched, with their places.
+pub(super) fn kept(
+    coordinates: &[Coordinate],
+    touched: impl Fn(Coordinate) -> bool,
+) -> (Vec<usize>, Vec<Coordinate>) {
+    let places = coordinates.iter().copied().enumerate();
+    places.filter(|(_, c)| touched(*c)).unzip()
+}
