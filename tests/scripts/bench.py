@@ -52,12 +52,18 @@ class Bench:
         self.stuck = False
         self.phase = self.rng.uniform(0.0, 2.0 * math.pi)
         self.p = machine(d, kind)
+        self.other = False
         self.force = self.p[[rig.FX, rig.FY]].copy()
 
-    def other_rig(self):
-        """From here on another rig."""
-        d = {**self.d, "R": self.d["R"] + self.kind.other_restitution}
-        d["f0"] *= 1.0 + self.kind.other_frequency
+    def take_rig(self, other):
+        """From here on the rig itself, or the other one."""
+        if other == self.other:
+            return
+        self.other = other
+        d = dict(self.d)
+        if other:
+            d["R"] += self.kind.other_restitution
+            d["f0"] *= 1.0 + self.kind.other_frequency
         self.p = machine(d, self.kind)
         # Another stiffness with the same masses: the same static deflection.
         self.force = self.p[[rig.FX, rig.FY]].copy()
@@ -137,6 +143,11 @@ class Bench:
         return None
 
 
+def is_other(kind, later, index, direction):
+    """Whether a record is taken on the other rig, of a campaign of two."""
+    return {"half": later, "gap": index == 1, "sweep": direction == "down"}[kind.other_of]
+
+
 def measure(d, kind):
     """All records: (setting, counts, size of a count, label, settled, impacts with their speeds, masses that stuck)."""
     bench, sensors = Bench(d, kind), instruments.channels(d, kind)
@@ -152,8 +163,7 @@ def measure(d, kind):
         clearance = stated_m * (1.0 + d["gap_error"] * d["gaps"][index] / 2.0) + (kind.gap_off_m if index == 1 else 0.0)
         gap = clearance * (2.0 if kind.machine == "double" else 1.0)
         for frequency, recorded in chain:
-            if changes and number == half:
-                bench.other_rig()
+            bench.take_rig(changes and is_other(kind, number >= half, index, direction))
             bench.set(frequency, gap)
             if not recorded:
                 _, _ = bench.run(0.0, 3.0, np.empty(0))

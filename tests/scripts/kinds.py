@@ -38,7 +38,8 @@ class Kind:
     second_mode: float = 0.0  # mass of the second mode over that of the part that is struck
     second_mode_ratio: float = 12.0  # its frequency over f0
     effects: float = 0.0  # hardening, friction, a distorted drive and a force slope, in typical strengths
-    other_restitution: float = 0.0  # what R of the second half of the records has beside the first
+    other_of: str = "half"  # which records are of another rig: the second "half", the second "gap", the "sweep" down
+    other_restitution: float = 0.0  # what R of the other rig has beside the first
     other_frequency: float = 0.0  # the same of f0, relative
     gap_off_m: float = 0.0  # by how much the second clearance is larger than stated
     # instruments that are off
@@ -115,6 +116,8 @@ KINDS = {
     "half_restitution": Kind("second half: R -0.04", other_restitution=-0.04),
     "half_frequency": Kind("second half: f0 +1 %", other_frequency=0.01),
     "half_other_large": Kind("second half: R -0.1, f0 +7 %", other_restitution=-0.1, other_frequency=0.07),
+    "gap_other": Kind("second clearance: R -0.04, f0 +1 %", other_of="gap", other_restitution=-0.04, other_frequency=0.01),
+    "sweep_other": Kind("sweeps down: R -0.04, f0 +1 %", other_of="sweep", other_restitution=-0.04, other_frequency=0.01),
     "unsettled": Kind("records begin at once, nothing has settled", settle_s=0.0),
     "unsettled_half": Kind("records begin after 1.5 s", settle_s=1.5),
     "z0_only": Kind("impactless records alone", select="z0"),

@@ -151,6 +151,22 @@ pub enum Finding {
         /// The same after.
         after: Vec<StatedValue>,
     },
+    /// The records of a clearance are of another rig than all others.
+    ClearanceOnOtherRig {
+        /// The clearance, m.
+        clearance_m: f64,
+        /// What differs, as these records have it.
+        own: Vec<StatedValue>,
+        /// The same of all others.
+        others: Vec<StatedValue>,
+    },
+    /// The records of sweeps down are of another rig than all others.
+    SweepsDownOnOtherRig {
+        /// What differs, as these records have it.
+        own: Vec<StatedValue>,
+        /// The same of all others.
+        others: Vec<StatedValue>,
+    },
     /// Many records begin before their motion has settled.
     RecordsNotSettled {
         /// How many.
@@ -271,7 +287,9 @@ impl Finding {
     pub fn cause(&self) -> Option<Cause> {
         match self {
             Self::UndeclaredHighPass { .. } => Some(Cause::Channel),
-            Self::RigChanged { .. } => Some(Cause::Change),
+            Self::RigChanged { .. }
+            | Self::ClearanceOnOtherRig { .. }
+            | Self::SweepsDownOnOtherRig { .. } => Some(Cause::Change),
             Self::RecordsNotSettled { records, of, .. } if 4 * records > *of => {
                 Some(Cause::Unsettled)
             }
@@ -340,6 +358,13 @@ message_table! { "finding": Finding, key = template_key;
         of = Value::Count(*of),
         before = Value::list(before),
         after = Value::list(after);
+    Self::ClearanceOnOtherRig { clearance_m, own, others } =>
+        gap = millimetres(*clearance_m),
+        own = Value::list(own),
+        others = Value::list(others);
+    Self::SweepsDownOnOtherRig { own, others } =>
+        own = Value::list(own),
+        others = Value::list(others);
     Self::RecordsNotSettled { records, of, wait_s } =>
         records = Value::Count(*records),
         of = Value::Count(*of),

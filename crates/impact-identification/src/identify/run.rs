@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::identify::diagnostics::beyond;
 use crate::identify::diagnostics::cause;
-use crate::identify::diagnostics::change::{self, Change};
+use crate::identify::diagnostics::change::{self, Change, Fitted};
 use crate::identify::diagnostics::clock;
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::doubt::{self, Suspicion};
@@ -242,8 +242,8 @@ impl<'a> IdentificationRun<'a> {
         Some(self.problem(self.found.start())?.strained(&at))
     }
 
-    /// The records that contradict all others where a fit ends that is drawn to what is stated, and where that is;
-    /// `None` where no fit is strained, or more contradict than may be left out.
+    /// The records that contradict all others most where a fit ends that is drawn to what is stated, and where that
+    /// is; `None` where the joint fit is not strained, or no record does.
     fn straining(&self) -> Option<(Parameters, Places)> {
         let at = self.found.together()?.fit.parameters;
         let problem = self.problem(self.found.start())?;
@@ -251,8 +251,8 @@ impl<'a> IdentificationRun<'a> {
         let near = drawn.fit(at).ok()?.parameters;
         let present = joint::present(&self.selection.blocks, &self.found.weights);
         let most = MOST_INFLUENTIAL.max(self.selection.judged() / 30);
-        let (found, too_many) = self.selection.influential(&drawn, &present, (&near, most));
-        (!found.is_empty() && !too_many).then_some((near, found))
+        let (found, _) = self.selection.influential(&drawn, &present, (&near, most));
+        (!found.is_empty()).then_some((near, found))
     }
 
     /// Leave out the records that draw the joint fit away from what all others state.
@@ -418,7 +418,7 @@ impl<'a> IdentificationRun<'a> {
         let observations = self.evidence.observations;
         let Widened { methods, joint, .. } = results;
         suspicions.extend(settling::not_settled(observations, &joint.parameters));
-        let change = self.change();
+        let change = self.change(cause::leading(suspicions, methods));
         suspicions.extend(change.as_ref().map(|c| c.finding(observations.len())));
         let leading = cause::leading(suspicions, methods);
         let withdraw = |cause| cause::withdraw(cause, joint, methods);
@@ -430,8 +430,9 @@ impl<'a> IdentificationRun<'a> {
         (leading, replaced)
     }
 
-    /// Where the campaign's rig became another one, if it did.
-    fn change(&self) -> Option<Change> {
+    /// Which part of the campaign is of another rig, if one is: from some record on or, where nothing else than the
+    /// contact explains the data, by clearance or direction of the sweep.
+    fn change(&self, cause: Option<Cause>) -> Option<Change> {
         let joint = self.found.together()?;
         let blocks = &self.selection.blocks;
         // Speeds go with the gap, and the gap with the time: R over the speed would take up some of a change.
@@ -444,10 +445,19 @@ impl<'a> IdentificationRun<'a> {
         let start = self.found.start();
         let problem = joint::problem(blocks, start, weights, &constant, self.of_brackets())?;
         let present = joint::present(blocks, &self.found.weights);
-        let fitted = (&self.selection, &problem, &present[..]);
         let over_speed = Coordinate::Effect(Effect::RestitutionSpeed);
-        let at = joint.fit.parameters.with(over_speed, 0.0);
-        change::change(self.evidence, fitted, (&at, joint.factor))
+        let fitted = Fitted {
+            selection: &self.selection,
+            problem: &problem,
+            present: &present,
+            at: &joint.fit.parameters.with(over_speed, 0.0),
+            factor: joint.factor,
+        };
+        let groups = cause.is_none_or(|cause| cause == Cause::Contact);
+        change::change(self.evidence, fitted).or_else(|| {
+            let found = groups.then(|| change::between_groups(self.evidence, fitted));
+            found.flatten()
+        })
     }
 
     /// The gap that deviates most from what the others say, if one does.

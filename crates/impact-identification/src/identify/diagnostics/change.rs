@@ -3,7 +3,8 @@
 //! First it is looked for where in the campaign, if anywhere, the fit of all would gain most by a change: by
 //! the rows of the records at the fit's optimum (a score test: no fit is made), by the records that the fit
 //! lost, and by R of the records' impacts. The two parts about that moment are then fitted each by itself,
-//! with allowances of their own, and compared.
+//! with allowances of their own, and compared. So are the records of each clearance with all others, and those
+//! of both directions of the sweep.
 
 use std::collections::BTreeMap;
 
@@ -16,6 +17,7 @@ use impact_fit::messages::{Finding, Note, StatedValue};
 use impact_fit::method::Method;
 use impact_fit::methods::answer::MethodResult;
 use impact_fit::methods::blocks::Blocks;
+use impact_fit::methods::impacts::block::SpeedPair;
 use impact_fit::methods::selection::Selection;
 use impact_fit::parameters::effect::Effect;
 use impact_fit::parameters::{Coordinate, Parameters};
@@ -25,6 +27,7 @@ use impact_fit::solver::placed_rows::PlacedRows;
 use impact_fit::statistics::distribution::student_tail;
 use impact_fit::statistics::scatter::Spread;
 use impact_records::motion::Observation;
+use impact_records::record::Sweep;
 use impact_records::signal::robust;
 
 /// Records that either part has at least.
@@ -56,52 +59,130 @@ fn least(parameter: Coordinate) -> f64 {
 /// A campaign of two rigs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Change {
-    /// The first record after the change: its place in the order of acquisition, from 0.
-    rank: usize,
-    record: String,
+    /// Which records are of the second rig.
+    of: Other,
     /// What each part says of each parameter that both determine: the coordinate and how far it may be off.
-    parts: BTreeMap<Coordinate, [(f64, Spread); 2]>,
+    parts: Parts,
+}
+
+/// The records that are of another rig than all others.
+#[derive(Debug, Clone, PartialEq)]
+enum Other {
+    /// Those from one on.
+    From {
+        /// Its place in the order of acquisition, from 0.
+        rank: usize,
+        /// Its name.
+        record: String,
+    },
+    /// Those of a clearance, m.
+    Clearance(f64),
+    /// Those of sweeps down.
+    SweepsDown,
+}
+
+impl Other {
+    /// Whether it holds a record, by its place in the order of acquisition.
+    fn holds(&self, observation: &Observation, at: usize) -> bool {
+        match self {
+            Self::From { rank, .. } => at >= *rank,
+            Self::Clearance(gap_m) => observation.setting.clearance_m == Some(*gap_m),
+            Self::SweepsDown => observation.setting.sweep == Sweep::Down,
+        }
+    }
+}
+
+/// What two parts of a campaign say of each parameter that both determine.
+type Parts = BTreeMap<Coordinate, [(f64, Spread); 2]>;
+
+/// A joint fit: what it was made of, its problem with the methods in its order, its optimum and variance factor.
+#[derive(Clone, Copy)]
+pub struct Fitted<'a> {
+    /// What was fitted.
+    pub selection: &'a Selection<'a>,
+    /// The problem.
+    pub problem: &'a Problem<'a>,
+    /// The methods in it.
+    pub present: &'a [Method],
+    /// The optimum.
+    pub at: &'a Parameters,
+    /// Its variance factor.
+    pub factor: f64,
 }
 
 /// Where the records of a fit would most be of two rigs, and whether they are; `None` of one rig.
-pub fn change(
-    evidence: &Evidence<'_>,
-    (selection, problem, present): (&Selection<'_>, &Problem<'_>, &[Method]),
-    (at, factor): (&Parameters, f64),
-) -> Option<Change> {
+pub fn change(evidence: &Evidence<'_>, fitted: Fitted<'_>) -> Option<Change> {
     let ranks = ranks(evidence.observations);
-    let of_rank = |rank: usize| ranks.iter().position(|r| *r == rank);
     let suspects = [
-        by_rows(&ranks, problem, present, (&selection.blocks, at, factor)),
-        by_impacts(&ranks, evidence.observations, &selection.blocks),
-        by_lost_records(&ranks, selection),
+        by_rows(&records_by_rank(&ranks, fitted), fitted).map(|(_, rank)| rank),
+        by_impacts(&ranks, evidence.observations, &fitted.selection.blocks),
+        by_lost_records(&ranks, fitted.selection),
     ];
     let found = suspects.into_iter().flatten().filter_map(|rank| {
-        let both = [false, true].map(|later| {
-            let within = |i: usize| (ranks[i] >= rank) == later;
-            part_alone(evidence, &within)
-        });
-        let [Some(before), Some(after)] = both else {
-            return None;
-        };
-        let parts: BTreeMap<Coordinate, [(f64, Spread); 2]> = before
-            .into_iter()
-            .filter_map(|(c, a)| Some((c, [a, *after.get(&c)?])))
-            .collect();
-        let record = evidence.observations[of_rank(rank)?].record.clone();
-        parts
-            .iter()
-            .any(|(c, both)| differs(*c, both))
-            .then_some(Change {
-                rank,
-                record,
-                parts,
-            })
+        let first = ranks.iter().position(|r| *r == rank)?;
+        let record = evidence.observations[first].record.clone();
+        apart(evidence, Other::From { rank, record })
     });
     let found: Vec<Change> = found.collect();
     let most = found.iter().map(Change::chi2).fold(0.0, f64::max);
     // Parts that begin a few records apart differ about as much: the first suspect then weighs most records.
     found.into_iter().find(|change| change.chi2() >= 0.5 * most)
+}
+
+/// The clearance or the direction of the sweep whose records would most be of another rig than all others, and
+/// whether they are. The speed at impacts goes with the clearance: where R over it explains the impacts as well,
+/// there is no other rig.
+pub fn between_groups(evidence: &Evidence<'_>, fitted: Fitted<'_>) -> Option<Change> {
+    let tried = groups(evidence.observations).into_iter().filter_map(|of| {
+        let observations = evidence.observations.iter();
+        let inside: Vec<usize> = observations.map(|o| usize::from(of.holds(o, 0))).collect();
+        let (chi2, _) = by_rows(&records_by_rank(&inside, fitted), fitted)?;
+        let pairs = &fitted.selection.blocks.impact.pairs;
+        explains_more_than_speed(&inside, pairs).then_some((chi2, of))
+    });
+    let (_, of) = tried.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    apart(evidence, of)
+}
+
+/// Each clearance beside others, and the sweep down.
+fn groups(observations: &[Observation]) -> Vec<Other> {
+    let stated = observations.iter().filter_map(|o| o.setting.clearance_m);
+    let mut gaps_m: Vec<f64> = stated.collect();
+    gaps_m.sort_by(f64::total_cmp);
+    gaps_m.dedup();
+    let gaps = gaps_m.into_iter().map(Other::Clearance);
+    gaps.chain([Other::SweepsDown]).collect()
+}
+
+/// Whether impacts inside and outside a group differ in R by more than over their speeds.
+fn explains_more_than_speed(inside: &[usize], pairs: &[SpeedPair]) -> bool {
+    let left = |of: &dyn Fn(&SpeedPair) -> f64| {
+        let ratio = |p: &SpeedPair| p.after_m_s / p.before_m_s;
+        let points: Vec<[f64; 2]> = pairs.iter().map(|p| [of(p), ratio(p)]).collect();
+        let slope = slope(&points);
+        let rest: Vec<f64> = points.iter().map(|[x, y]| y - slope * x).collect();
+        let mean = robust::mean(&rest);
+        rest.iter().map(|r| (r - mean).powi(2)).sum::<f64>()
+    };
+    left(&|p| inside[p.observation] as f64) <= left(&|p| p.before_m_s)
+}
+
+/// Both parts of a campaign, each fitted by itself, where they differ.
+fn apart(evidence: &Evidence<'_>, of: Other) -> Option<Change> {
+    let ranks = ranks(evidence.observations);
+    let both = [false, true].map(|second| {
+        let within = |i: usize| of.holds(&evidence.observations[i], ranks[i]) == second;
+        part_alone(evidence, &within)
+    });
+    let [Some(first), Some(second)] = both else {
+        return None;
+    };
+    let parts: Parts = first
+        .into_iter()
+        .filter_map(|(c, a)| Some((c, [a, *second.get(&c)?])))
+        .collect();
+    let differ = parts.iter().any(|(c, both)| differs(*c, both));
+    differ.then_some(Change { of, parts })
 }
 
 /// Whether a parameter of two parts differs beyond chance and beyond what drifts.
@@ -125,37 +206,37 @@ fn ranks(observations: &[Observation]) -> Vec<usize> {
     ranks
 }
 
-/// The rank from which on a change of all four parameters explains most, by the records' rows at an
-/// optimum: with A and g the information and the gradient of all, B the columns of the parameters in the
-/// information of the records after it, C their own block of that and h their part of its gradient, the
-/// change is δ of [A B; Bᵀ C] [θ; δ] = −[g; h].
-fn by_rows(
-    ranks: &[usize],
-    problem: &Problem<'_>,
-    present: &[Method],
-    (blocks, at, factor): (&Blocks, &Parameters, f64),
-) -> Option<usize> {
+/// The rows of the records at the optimum, by their ranks; of very many, every second, third …
+fn records_by_rank(ranks: &[usize], fitted: Fitted<'_>) -> Vec<(usize, PlacedRows)> {
     let mut records: Vec<(usize, PlacedRows)> = Vec::new();
-    for ((block, weight), method) in problem.blocks.iter().zip(present) {
+    for ((block, weight), method) in fitted.problem.blocks.iter().zip(fitted.present) {
         if !Method::BY_RECORD.contains(method) {
             continue;
         }
-        let owners = blocks.owners(*method);
-        let rows = problem.rows_of(*block, *weight, at);
+        let owners = fitted.selection.blocks.owners(*method);
+        let rows = fitted.problem.rows_of(*block, *weight, fitted.at);
         if rows.len() == owners.len() {
             records.extend(owners.into_iter().map(|i| ranks[i]).zip(rows));
         }
     }
     records.sort_by_key(|(rank, _)| *rank);
     let stride = records.len().div_ceil(MOST).max(1);
-    let records: Vec<(usize, PlacedRows)> = records.into_iter().step_by(stride).collect();
+    records.into_iter().step_by(stride).collect()
+}
+
+/// The rank from which on a change of all four parameters explains most, by the records' rows at an
+/// optimum, and its χ²: with A and g the information and the gradient of all, B the columns of the parameters in the
+/// information of the records after it, C their own block of that and h their part of its gradient, the
+/// change is δ of [A B; Bᵀ C] [θ; δ] = −[g; h].
+fn by_rows(records: &[(usize, PlacedRows)], fitted: Fitted<'_>) -> Option<(f64, usize)> {
+    let problem = fitted.problem;
     let free = problem.free.iter();
     let places: Vec<usize> = free
         .enumerate()
         .filter(|(_, c)| Coordinate::PHYSICAL.contains(c))
         .map(|(i, _)| i)
         .collect();
-    let mut all = problem.priors_normal(at);
+    let mut all = problem.priors_normal(fitted.at);
     records.iter().for_each(|(_, rows)| all.inform(rows));
     let mut after = Normal::zeros(problem.free.len());
     let mut best: Option<(f64, usize)> = None;
@@ -172,8 +253,7 @@ fn by_rows(
             best = Some((chi2, *rank));
         }
     }
-    best.filter(|(chi2, _)| *chi2 > SUSPECT * factor)
-        .map(|(_, rank)| rank)
+    best.filter(|(chi2, _)| *chi2 > SUSPECT * fitted.factor)
 }
 
 /// χ² of a change of some coordinates in the records of `after`, all others being fitted to all.
@@ -297,12 +377,21 @@ impl Change {
             });
             values.collect()
         };
-        Finding::RigChanged {
-            record: self.record.clone(),
-            number: self.rank + 1,
-            of,
-            before: of_part(0),
-            after: of_part(1),
+        let [others, own] = [of_part(0), of_part(1)];
+        match &self.of {
+            Other::From { rank, record } => Finding::RigChanged {
+                record: record.clone(),
+                number: rank + 1,
+                of,
+                before: others,
+                after: own,
+            },
+            Other::Clearance(clearance_m) => Finding::ClearanceOnOtherRig {
+                clearance_m: *clearance_m,
+                own,
+                others,
+            },
+            Other::SweepsDown => Finding::SweepsDownOnOtherRig { own, others },
         }
     }
 
@@ -468,12 +557,44 @@ mod tests {
     }
 
     #[test]
+    fn valid_a_clearance_on_another_rig_is_named() {
+        // one rig measured at all clearances, the records of one clearance taken again on another
+        let gap = |r: &Record| r.setting.clearance_m;
+        let records = recorded((0.8, 12.0), 72, 11);
+        let mut gaps: Vec<f64> = records.iter().filter_map(gap).collect();
+        gaps.sort_by(f64::total_cmp);
+        let of = |other: &[Record]| {
+            let middle = gaps[gaps.len() / 2];
+            let mixed = records.iter().zip(other).map(|(one, other)| {
+                let other_rig = gap(one) == Some(middle);
+                if other_rig { other } else { one }.clone()
+            });
+            let observations = observed(&mixed.collect::<Vec<_>>());
+            let found = identify(&evidence(&observations));
+            let named = found
+                .suspicions
+                .into_iter()
+                .find_map(|finding| match finding {
+                    Finding::ClearanceOnOtherRig { clearance_m, .. } => Some(clearance_m),
+                    _ => None,
+                });
+            (found.verdict.kind, named, middle)
+        };
+        let (kind, named, _) = of(&records);
+        assert_eq!((kind, named), (VerdictKind::Identified, None));
+        let (kind, named, middle) = of(&recorded((0.76, 12.1), 72, 11));
+        assert_eq!((kind, named), (VerdictKind::DoesNotFit, Some(middle)));
+    }
+
+    #[test]
     fn both_values_stand_in_the_result_and_in_the_finding() {
         let known = |value: f64| (value, Spread::known(1e-3));
         let f0 = 12f64.ln();
         let change = Change {
-            rank: 36,
-            record: "r37".into(),
+            of: Other::From {
+                rank: 36,
+                record: "r37".into(),
+            },
             parts: BTreeMap::from([
                 (Coordinate::Restitution, [known(0.8), known(0.76)]),
                 (Coordinate::Frequency, [known(f0), known(f0 + 1e-4)]),
