@@ -4,6 +4,7 @@ mod circles;
 mod dependencies;
 mod licences;
 mod links;
+mod methods;
 mod signatures;
 mod sources;
 mod systems;

@@ -66,6 +66,9 @@ impl Method {
     /// Those whose residuals are kept: of records and of impacts.
     pub const WITH_RESIDUALS: [Self; 3] = [Self::Resonance, Self::Trajectories, Self::Impacts];
 
+    /// Those whose R is that of single impacts, speeds before times.
+    pub const OF_SINGLE_IMPACTS: [Self; 2] = [Self::Impacts, Self::FlightTimes];
+
     /// Whether impacts act on what it observes.
     pub fn observes_impacts(self) -> bool {
         !matches!(self, Self::Resonance | Self::FreeDecay)
@@ -83,6 +86,26 @@ impl Method {
     /// Whether its R is that of the bodies as a whole, not that at the contact.
     pub fn observes_whole_bodies(self) -> bool {
         matches!(self, Self::Trajectories | Self::Boundaries)
+    }
+
+    /// Whether it observes the response without impacts.
+    pub fn observes_response(self) -> bool {
+        self.observes_settled_motion() && !self.observes_impacts()
+    }
+
+    /// Whether it observes where motions end.
+    pub fn observes_boundaries(self) -> bool {
+        self == Self::Boundaries
+    }
+
+    /// Whether its R is that at the contact, by the speeds there.
+    pub fn observes_contact(self) -> bool {
+        self == Self::Impacts
+    }
+
+    /// Whether it has no effects beyond the model, so that it is no witness where the rig has any.
+    pub fn takes_rig_for_ideal(self) -> bool {
+        self == Self::Flights
     }
 
     /// Name in `identification.json`: that of the report.

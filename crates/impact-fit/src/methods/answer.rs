@@ -50,6 +50,15 @@ pub struct MethodResult {
     pub further: BTreeMap<Coordinate, Estimate>,
 }
 
+/// The result of the first method with a property.
+pub fn found_by(
+    methods: &BTreeMap<Method, MethodResult>,
+    property: impl Fn(Method) -> bool,
+) -> Option<&MethodResult> {
+    let mut with = methods.iter().filter(|(method, _)| property(**method));
+    with.next().map(|(_, result)| result)
+}
+
 impl MethodResult {
     /// R that differs between bounces or records is not one number, whatever interval would hold it.
     pub fn judge_structure(&mut self, grouping: Grouping) {

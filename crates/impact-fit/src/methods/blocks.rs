@@ -133,32 +133,7 @@ impl Blocks {
 
     /// The observation of each item of a method's block; none where an item is of several.
     pub fn owners(&self, method: Method) -> Vec<usize> {
-        match method {
-            Method::Resonance => self
-                .resonance
-                .points
-                .iter()
-                .map(|p| p.observation)
-                .collect(),
-            Method::Trajectories => self
-                .trajectory
-                .records
-                .iter()
-                .map(|r| r.observation)
-                .collect(),
-            Method::Impacts => self.impact.pairs.iter().map(|p| p.observation).collect(),
-            Method::Flights => self.flight.records.iter().map(|r| r.observation).collect(),
-            _ => Vec::new(),
-        }
-    }
-
-    /// Remove an item of a method each item of whose block is one record.
-    pub fn remove(&mut self, method: Method, item: usize) {
-        match method {
-            Method::Resonance => drop(self.resonance.points.remove(item)),
-            Method::Trajectories => drop(self.trajectory.records.remove(item)),
-            _ => {}
-        }
+        self.of(method).map_or_else(Vec::new, Block::owners)
     }
 
     /// Half the time between two samples in the median record, s.

@@ -58,16 +58,6 @@ impl Fits {
         self.alone.remove(&method)
     }
 
-    /// The fit of the waveforms.
-    pub fn waveforms(&self) -> Option<&MethodFit> {
-        self.of(Method::Trajectories)
-    }
-
-    /// The fit of the resonance curve.
-    pub fn curve(&self) -> Option<&MethodFit> {
-        self.of(Method::Resonance)
-    }
-
     /// The joint fit.
     pub fn together(&self) -> Option<&MethodFit> {
         self.joint.as_ref()?.as_ref().ok()
@@ -76,11 +66,5 @@ impl Fits {
     /// Where fits start: at the waveforms', which know most.
     pub fn start(&self) -> Parameters {
         self.waveforms().map_or(self.begin, |f| f.fit.parameters)
-    }
-
-    /// Whether multiple shooting enters the joint fit: it rests on the speeds at impacts, which then do not, and
-    /// waveforms tell the same better than either.
-    pub fn joins_flights(&self) -> bool {
-        self.of(Method::Flights).is_some() && self.waveforms().is_none()
     }
 }

@@ -2,9 +2,11 @@
 
 use crate::method::Method;
 use crate::methods::answer::MethodResult;
+use crate::methods::blocks::Blocks;
 use crate::methods::fit::FitResult;
 use crate::methods::fits::Fits;
 use crate::methods::selection::Selection;
+use crate::parameters::Parameters;
 
 /// A method as a run uses it.
 pub trait Identifier: Sync {
@@ -13,12 +15,6 @@ pub trait Identifier: Sync {
 
     /// Fit what the method rests on, beside what those before it found, and add it to that.
     fn fit(&self, _: &mut Selection<'_>, _: &mut Fits) {}
-
-    /// Fit again from where the joint fit is, after influential records were left out; of a method whose
-    /// records are judged by their influence.
-    fn fit_again(&self, _: &Selection<'_>, _: &Fits) -> Option<FitResult> {
-        None
-    }
 
     /// Its weight in the joint fit; `None` if it is not part of it.
     fn weight(&self, _: &Selection<'_>, found: &Fits) -> Option<f64> {
@@ -30,4 +26,24 @@ pub trait Identifier: Sync {
 
     /// What it gives; `None` where there was nothing to fit.
     fn result(&self, selection: &Selection<'_>, found: &Fits) -> Option<MethodResult>;
+}
+
+/// A method each item of whose block is one record, which is judged by its influence on the joint fit and can be left
+/// out by itself.
+pub trait ByRecord: Identifier {
+    /// Fit again from where the joint fit is, after influential records were left out.
+    fn fit_again(&self, selection: &Selection<'_>, found: &Fits) -> Option<FitResult>;
+
+    /// Remove an item of its block.
+    fn remove(&self, blocks: &mut Blocks, item: usize);
+
+    /// Whether an item need not be what the method takes it for, so that it is left out before others.
+    fn is_doubtful(&self, _: &Selection<'_>, _item: usize, _at: &Parameters) -> bool {
+        false
+    }
+
+    /// The items that no fit by slopes can use near parameters.
+    fn unusable(&self, _: &Selection<'_>, _at: &Parameters) -> Vec<usize> {
+        Vec::new()
+    }
 }

@@ -7,10 +7,10 @@ use rayon::prelude::*;
 use crate::evidence::influence;
 use crate::messages::Reason;
 use crate::method::Method;
+use crate::methods::registry::{BY_RECORD, by_record};
 use crate::methods::selection::Selection;
-use crate::methods::trajectories::select::END;
 use crate::parameters::Parameters;
-use crate::solver::Problem;
+use crate::solver::{Block, Problem};
 
 /// Records of methods by their places in the methods' blocks.
 pub type Places = Vec<(Method, usize)>;
@@ -36,16 +36,16 @@ impl Selection<'_> {
                 others.add(&problem.block_normal(*block, *weight, at));
             }
         }
-        let mut doubtful: Vec<bool> = owners
-            .par_iter()
-            .map(|(method, i)| *method == Method::Trajectories && self.settles_slowly(*i, at))
-            .collect();
-        let ended = self.near_their_end(at, END);
-        let has_ended = |(method, item): &(Method, usize)| {
-            *method == Method::Trajectories && ended.contains(item)
+        let is_doubtful = |(method, i): &(Method, usize)| {
+            by_record(*method).is_some_and(|of| of.is_doubtful(self, *i, at))
         };
+        let mut doubtful: Vec<bool> = owners.par_iter().map(is_doubtful).collect();
+        let unusable: Places = BY_RECORD
+            .iter()
+            .flat_map(|of| of.unusable(self, at).into_iter().map(|i| (of.method(), i)))
+            .collect();
         let mut ends: Vec<usize> = (0..owners.len())
-            .filter(|k| has_ended(&owners[*k]))
+            .filter(|k| unusable.contains(&owners[*k]))
             .collect();
         let mut found = Vec::new();
         while let Some(influences) = influence::influences(&records, &others) {
@@ -74,7 +74,10 @@ impl Selection<'_> {
 
     /// Number of records whose influence is judged.
     pub fn judged(&self) -> usize {
-        self.blocks.resonance.points.len() + self.blocks.trajectory.records.len()
+        let blocks = BY_RECORD
+            .iter()
+            .filter_map(|of| self.blocks.of(of.method()));
+        blocks.map(Block::items).sum()
     }
 
     /// Leave influential records out, and note them.
@@ -83,7 +86,9 @@ impl Selection<'_> {
         influential.sort_unstable_by_key(|(method, place)| (*method, Reverse(*place)));
         for (method, place) in influential {
             let observation = self.blocks.owners(method)[place];
-            self.blocks.remove(method, place);
+            if let Some(of) = by_record(method) {
+                of.remove(&mut self.blocks, place);
+            }
             self.note(observation, Reason::Influential { method });
         }
     }

@@ -86,12 +86,18 @@ pub fn rough(
 
 /// The weight of the resonance curve alone, by its noise.
 pub fn curve() -> Weights {
-    Weights::from([(Method::Resonance, 1.0)])
+    by_noise(Method::observes_response)
 }
 
 /// The weights of waveforms and resonance curve, each by its noise.
 pub fn curve_and_waveforms() -> Weights {
-    Weights::from([(Method::Resonance, 1.0), (Method::Trajectories, 1.0)])
+    by_noise(|_| true)
+}
+
+/// The weights of some methods each item of which is a record, by its noise.
+fn by_noise(of: impl Fn(Method) -> bool) -> Weights {
+    let some = Method::BY_RECORD.into_iter().filter(|method| of(*method));
+    some.map(|method| (method, 1.0)).collect()
 }
 
 #[cfg(test)]

@@ -5,12 +5,16 @@ use serde::Deserialize;
 
 use crate::estimate::{estimate, not_identifiable};
 use crate::messages::{Finding, Note, PublishedSetting, Remark, Sentence};
+use crate::method::Method;
 use crate::methods::answer::{MethodResult, Verdict, VerdictKind};
 use crate::parameters::Coordinate;
 use crate::solver::scalar;
 use crate::statistics::quantile::NORMAL_975;
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::params::Machine;
+
+/// The method.
+pub const METHOD: Method = Method::PublishedSpeeds;
 
 /// Where a published speed belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]

@@ -1,10 +1,11 @@
 //! The methods in the order of a run.
 
+use crate::method::Method;
 use crate::methods::boundaries::Boundaries;
 use crate::methods::decays::FreeDecays;
 use crate::methods::flight_times::FlightTimes;
 use crate::methods::flights::Flights;
-use crate::methods::identifier::Identifier;
+use crate::methods::identifier::{ByRecord, Identifier};
 use crate::methods::impacts::Impacts;
 use crate::methods::resonance::Resonance;
 use crate::methods::trajectories::Trajectories;
@@ -20,3 +21,11 @@ pub const REGISTRY: [&dyn Identifier; 7] = [
     &FreeDecays,
     &FlightTimes,
 ];
+
+/// Those whose records are judged one by one ([`Method::BY_RECORD`]), in the order of a run.
+pub const BY_RECORD: [&dyn ByRecord; 2] = [&Trajectories, &Resonance];
+
+/// A method whose records are judged one by one.
+pub fn by_record(method: Method) -> Option<&'static dyn ByRecord> {
+    BY_RECORD.into_iter().find(|of| of.method() == method)
+}

@@ -57,6 +57,11 @@ pub trait Block: Sync {
         None
     }
 
+    /// The observation of each item; none where an item is of several.
+    fn owners(&self) -> Vec<usize> {
+        Vec::new()
+    }
+
     /// Which coordinates one of its items depends on; as the whole block does, unless it overrides this.
     fn item_touches(&self, _item: usize, coordinate: Coordinate) -> bool {
         self.touches(coordinate)

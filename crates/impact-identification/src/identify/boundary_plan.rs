@@ -4,11 +4,14 @@
 use serde::{Deserialize, Serialize};
 
 use impact_fit::evidence::Evidence;
+use impact_fit::method::Method;
 use impact_fit::methods::answer::MethodResult;
+use impact_fit::methods::boundaries::Boundaries;
 use impact_fit::methods::boundaries::block::{BoundaryBlock, predicted_hz};
 use impact_fit::methods::boundaries::posterior::{self, Posterior};
 use impact_fit::methods::boundaries::result;
 use impact_fit::methods::boundaries::surroundings::Surroundings;
+use impact_fit::methods::identifier::Identifier;
 use impact_fit::methods::impacts;
 use impact_fit::methods::selection::Selection;
 use impact_fit::parameters::Parameters;
@@ -96,10 +99,11 @@ fn half_width(found: &Posterior) -> f64 {
 
 /// R as the boundaries alone have it, beside the impactless records: no waveform enters. `None` where they do not
 /// determine it.
-pub fn restitution(evidence: &Evidence<'_>) -> Option<MethodResult> {
+pub fn restitution(evidence: &Evidence<'_>) -> Option<(Method, MethodResult)> {
     let alone = Alone::of(evidence, None)?;
     let blocks = &alone.selection.blocks;
-    Some(result::by_posterior(blocks, &alone.posterior, &alone.curve))
+    let found = result::by_posterior(blocks, &alone.posterior, &alone.curve);
+    Some((Boundaries.method(), found))
 }
 
 /// The coarsest steps through the ends of z = 1 with which the boundaries alone would hold R in half of its interval now,

@@ -3,11 +3,14 @@
 use std::collections::BTreeMap;
 
 use impact_fit::evidence::Evidence;
-use impact_fit::method::Method;
 use impact_fit::methods::fit::FitResult;
 use impact_fit::methods::fits::Fits;
-use impact_fit::methods::impacts::{self, block::ImpactBlock};
+use impact_fit::methods::identifier::Identifier;
+use impact_fit::methods::impacts::{self, Impacts, block::ImpactBlock};
+use impact_fit::methods::registry::REGISTRY;
+use impact_fit::methods::resonance::Resonance;
 use impact_fit::methods::selection::Selection;
+use impact_fit::methods::trajectories::Trajectories;
 use impact_fit::parameters::{Coordinate, Parameters};
 use impact_fit::statistics::scatter::Spread;
 use impact_records::motion::Observation;
@@ -18,8 +21,8 @@ pub(super) fn first_values(selection: &Selection<'_>, resonance: Option<FitResul
     let begin = start(selection.evidence, resonance.as_ref());
     let impacts = impacts::fit::from(blocks, nominal, begin);
     let mut found = Fits::new(with_restitution(begin, &impacts, &blocks.impact));
-    found.set(Method::Resonance, resonance);
-    found.set(Method::Impacts, impacts);
+    found.set(Resonance.method(), resonance);
+    found.set(Impacts.method(), impacts);
     found
 }
 
@@ -92,13 +95,9 @@ pub(super) fn part_alone(
     let mut selection = Selection::new(&evidence);
     let resonance = selection.fit_resonance();
     let mut found = first_values(&selection, resonance);
-    found.set(
-        Method::Trajectories,
-        selection.fit_trajectories(found.begin),
-    );
+    Trajectories.fit(&mut selection, &mut found);
     let mut told = BTreeMap::new();
-    let first = [Method::Trajectories, Method::Resonance, Method::Impacts];
-    for found in first.into_iter().filter_map(|method| found.of(method)) {
+    for found in REGISTRY.iter().filter_map(|of| found.of(of.method())) {
         for (_, parameter) in found.fit.estimated() {
             let value = found.fit.parameters.coordinate(parameter);
             if let Some(spread) = found.spread(parameter) {

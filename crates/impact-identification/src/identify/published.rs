@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::identify::identification::Identification;
-use impact_fit::Method;
-use impact_fit::methods::published::{PublishedSpeed, fit};
+use impact_fit::methods::published::{METHOD, PublishedSpeed, fit};
 
 /// Identify β from published speeds and test printed values of it.
 pub fn identify(speeds: &[PublishedSpeed], printed: &[f64]) -> Identification {
@@ -12,7 +11,7 @@ pub fn identify(speeds: &[PublishedSpeed], printed: &[f64]) -> Identification {
     Identification {
         verdict,
         joint: result.clone(),
-        methods: BTreeMap::from([(Method::PublishedSpeeds, result)]),
+        methods: BTreeMap::from([(METHOD, result)]),
         ..Identification::default()
     }
 }

@@ -25,9 +25,10 @@ pub fn joint(
     methods: &BTreeMap<Method, MethodResult>,
 ) -> MethodResult {
     let Some(attempt) = attempt else {
-        let of = |method| methods.get(&method).cloned();
-        let only = of(Method::FreeDecay).or_else(|| of(Method::FlightTimes));
-        return only.unwrap_or_default();
+        let of = REGISTRY.iter().map(|of| of.method());
+        let mut apart = of.filter(|method| !Method::FITTED.contains(method));
+        let only = apart.find_map(|method| methods.get(&method));
+        return only.cloned().unwrap_or_default();
     };
     let tells: Vec<Coordinate> = match attempt {
         Ok(found) => found.fit.free.clone(),

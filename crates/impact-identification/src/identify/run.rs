@@ -42,7 +42,7 @@ use impact_fit::methods::identifier::Identifier;
 use impact_fit::methods::impacts::{self, Impacts};
 use impact_fit::methods::influence::Places;
 use impact_fit::methods::joint::{self, Weights};
-use impact_fit::methods::registry::REGISTRY;
+use impact_fit::methods::registry::{BY_RECORD, REGISTRY};
 use impact_fit::methods::selection::Selection;
 use impact_fit::parameters::effect::{Effect, EffectKind};
 use impact_fit::parameters::{Coordinate, Parameters};
@@ -290,7 +290,7 @@ impl<'a> IdentificationRun<'a> {
     /// Fit methods again whose records were left out, from a start near the optimum, then what rests on them.
     fn fit_again(&mut self, start: Parameters, of: &BTreeSet<Method>) {
         self.found.begin = start;
-        for method in REGISTRY.iter().filter(|m| of.contains(&m.method())) {
+        for method in BY_RECORD.iter().filter(|m| of.contains(&m.method())) {
             let fitted = method.fit_again(&self.selection, &self.found);
             self.found.set(method.method(), fitted);
         }

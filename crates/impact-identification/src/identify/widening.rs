@@ -83,11 +83,12 @@ impl Widened {
         } else {
             self.widen_ideal();
             let mut others = self.methods.clone();
-            others.remove(&Method::Flights);
+            others.retain(|method, _| !method.takes_rig_for_ideal());
             agreement(&others)
         };
-        if let Some(impacts) = self.methods.get_mut(&Method::Impacts) {
-            impacts.remarks.extend(which_restitution(&compared));
+        let which = which_restitution(&compared);
+        if let Some(impacts) = self.found_by(Method::observes_contact) {
+            impacts.remarks.extend(which);
         }
         let apart = between_methods(&self.methods, &compared, &self.joint);
         let open = self.widen_apart(apart, found);
@@ -95,24 +96,31 @@ impl Widened {
         compared
     }
 
-    /// Widen what multiple shooting is off the joint estimate.
+    /// The result of the method with a property.
+    fn found_by(&mut self, property: impl Fn(Method) -> bool) -> Option<&mut MethodResult> {
+        let mut methods = self.methods.iter_mut();
+        let found = methods.find(|(method, _)| property(**method));
+        found.map(|(_, result)| result)
+    }
+
+    /// Widen what a method that takes the rig for ideal is off the joint estimate.
     fn widen_ideal(&mut self) {
-        let Some(flights) = self.methods.get_mut(&Method::Flights) else {
+        let joint = self.joint.parameters.clone();
+        let Some(ideal) = self.found_by(Method::takes_rig_for_ideal) else {
             return;
         };
         for coordinate in Coordinate::PHYSICAL {
             let value = |set: &ParameterSet| set.get(coordinate)?.value;
-            let joint = value(&self.joint.parameters);
-            let Some((own, all)) = value(&flights.parameters).zip(joint) else {
+            let Some((own, all)) = value(&ideal.parameters).zip(value(&joint)) else {
                 continue;
             };
             let unit = coordinate.slope(all);
-            if let Some(Some(estimate)) = flights.parameters.slot(coordinate) {
+            if let Some(Some(estimate)) = ideal.parameters.slot(coordinate) {
                 *estimate = estimate::widened(coordinate, estimate, (own - all).abs() / unit);
                 estimate.note = None;
             }
         }
-        flights.remarks.push(Remark::IdealRig);
+        ideal.remarks.push(Remark::IdealRig);
     }
 
     /// Widen the joint estimates by what a disagreement of methods leaves open, and those that the methods agree on by

@@ -3,6 +3,7 @@
 use super::input::Input;
 use crate::identify::SpecimenResult;
 use crate::identify::residuals::MethodResiduals;
+use impact_fit::methods::answer::found_by;
 use impact_fit::methods::blocks::impacts_of_bulk;
 use impact_fit::methods::impacts::block::SpeedPair;
 use impact_fit::methods::impacts::contact_law::Law;
@@ -189,7 +190,7 @@ pub(super) fn impacts(input: &Input<'_>) -> Vec<ImpactScatter> {
     }
     let specimens = &input.identification.specimens;
     if specimens.is_empty() {
-        let method = input.identification.methods.get(&Method::Impacts);
+        let method = found_by(&input.identification.methods, Method::observes_contact);
         let pairs: Vec<&SpeedPair> = block.pairs.iter().collect();
         return scatter(input, None, &pairs, method).into_iter().collect();
     }
@@ -203,7 +204,7 @@ pub(super) fn impacts(input: &Input<'_>) -> Vec<ImpactScatter> {
             input,
             Some(name),
             &pairs,
-            result.methods.get(&Method::Impacts),
+            found_by(&result.methods, Method::observes_contact),
         )
     };
     specimens.iter().filter_map(of_specimen).collect()

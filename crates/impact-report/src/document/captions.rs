@@ -6,6 +6,7 @@ use crate::kit::numbered;
 use crate::locale::Locale;
 use crate::parameters::parameter;
 use crate::phrase::Phrase;
+use impact_fit::methods::answer::found_by;
 use impact_fit::{Method, MethodResult};
 use impact_identification::replay::ReplayedRecord;
 use impact_records::message::sentence;
@@ -116,7 +117,7 @@ fn impacts(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
                 (format!("{name}. {text}"), methods)
             }
         };
-        let method = methods.and_then(|m| m.get(&Method::Impacts));
+        let method = methods.and_then(|m| found_by(m, Method::observes_contact));
         (numbered("impacts", i), with_remarks(&text, method, locale))
     })
     .collect()
@@ -125,7 +126,7 @@ fn impacts(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
 fn resonance(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
     let text = Phrase::CaptionResonance;
     let text = locale.translate(text);
-    let method = content.identification.methods.get(&Method::Resonance);
+    let method = found_by(&content.identification.methods, Method::observes_response);
     let text = with_remarks(&text, method, locale);
     let curves = 0..content.compared.resonance.len();
     curves

@@ -11,6 +11,7 @@ use crate::figures::plane::Plane;
 use crate::locale::Locale;
 use crate::parameters::{method_inline, parameter, short};
 use crate::phrase::Phrase;
+use impact_fit::methods::answer::found_by;
 use impact_fit::parameters::Coordinate;
 use impact_fit::{Finding, Method, MethodResult};
 
@@ -102,7 +103,7 @@ fn boundaries_alone(content: &ReportContent, locale: Locale<'_>) -> Option<Strin
         let known = estimate.filter(|e| e.value.is_some());
         known.map(|e| short(look, Some(e), locale))
     };
-    let boundaries = of(id.methods.get(&Method::Boundaries)?)?;
+    let boundaries = of(found_by(&id.methods, Method::observes_boundaries)?)?;
     let joint = of(&id.joint)?;
     let values = [("boundaries", boundaries.as_str()), ("joint", &joint)];
     Some(locale.translate_with(Phrase::CaptionBoundariesAlone, &values))

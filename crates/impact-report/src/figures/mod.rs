@@ -21,6 +21,7 @@ use crate::content::ReportContent;
 use crate::kit::figure::{Figure, numbered};
 use crate::locale::Locale;
 use impact_fit::Method;
+use impact_fit::methods::answer::found_by;
 
 /// A figure waiting to be drawn.
 type Job<'a> = Box<dyn Fn() -> Option<Figure> + Send + Sync + 'a>;
@@ -64,7 +65,7 @@ fn method_jobs<'a>(content: &'a ReportContent, locale: Locale<'a>, jobs: &mut Ve
             impacts::draw(scatter, &numbered("impacts", i), locale)
         }));
     }
-    let method = content.identification.methods.get(&Method::Resonance);
+    let method = found_by(&content.identification.methods, Method::observes_response);
     let fits = method.and_then(|m| m.fits);
     for (i, curve) in content.compared.resonance.iter().enumerate() {
         jobs.push(Box::new(move || {

@@ -10,10 +10,10 @@ use serde::Serialize;
 use seen::Seen;
 
 use impact_campaign::pipeline::{PipelineError, Progress};
+use impact_fit::Estimator;
 use impact_fit::evidence::options::{IntervalMethod, UncertaintyOptions};
 use impact_fit::evidence::{Evidence, Nominal};
 use impact_fit::parameters::Parameters;
-use impact_fit::{Estimator, Method};
 use impact_identification::identify::run::identify;
 use impact_identification::identify::uncertainty::bound::bounds;
 use impact_identification::identify::uncertainty::coverage::{Score, Trial, scores, table};
@@ -99,10 +99,7 @@ fn spoilt(draw: &Laboratory, change: impl Fn(&mut [Record])) -> Result<Seen, Pip
 /// Simulate and observe a campaign, and identify R from its boundaries alone.
 fn boundaries_alone(draw: &Laboratory) -> Result<Seen, PipelineError> {
     let identify = |evidence: &Evidence<'_>| Identification {
-        methods: boundary_plan::restitution(evidence)
-            .into_iter()
-            .map(|result| (Method::Boundaries, result))
-            .collect(),
+        methods: boundary_plan::restitution(evidence).into_iter().collect(),
         ..Identification::default()
     };
     seen(draw, |_| (), identify)
@@ -265,7 +262,7 @@ pub fn study(plan: &CoveragePlan, progress: Progress<'_>) -> Result<Coverage, Pi
 mod tests {
     use super::mistake::widen_one_gap;
     use super::*;
-    use impact_fit::Finding;
+    use impact_fit::{Finding, Method};
 
     /// The clearance as stated and as it fits of a gap that alone is named, m.
     fn named_gap(seen: &Seen) -> (f64, f64) {

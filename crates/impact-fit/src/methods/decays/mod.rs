@@ -1,7 +1,5 @@
 //! Free decays: f0 and β of each, pooled, and records that are filed under the wrong name.
 
-#[cfg(test)]
-mod coverage;
 mod dry_friction;
 
 use std::collections::BTreeMap;
@@ -407,3 +405,6 @@ pub fn misfiled(observations: &[Observation]) -> Vec<LeftOut> {
     }
     out
 }
+
+#[cfg(test)]
+mod coverage;

@@ -319,6 +319,10 @@ impl Block for FlightBlock {
         self.records.len()
     }
 
+    fn owners(&self) -> Vec<usize> {
+        self.records.iter().map(|item| item.observation).collect()
+    }
+
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let record = &self.records[item];
         let machine = parameters.machine(self.rig);

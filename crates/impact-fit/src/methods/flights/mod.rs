@@ -38,3 +38,11 @@ impl Identifier for Flights {
         Some(result::result(&selection.blocks, fitted))
     }
 }
+
+impl Fits {
+    /// Whether multiple shooting enters the joint fit: it rests on the speeds at impacts, which then do not, and
+    /// waveforms tell the same better than either.
+    pub fn joins_flights(&self) -> bool {
+        self.of(Method::Flights).is_some() && self.waveforms().is_none()
+    }
+}

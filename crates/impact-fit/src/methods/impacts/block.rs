@@ -403,6 +403,10 @@ impl Block for ImpactBlock {
         self.pairs.len()
     }
 
+    fn owners(&self) -> Vec<usize> {
+        self.pairs.iter().map(|item| item.observation).collect()
+    }
+
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let pair = &self.pairs[item];
         let r = parameters.restitution;

@@ -651,6 +651,10 @@ impl Block for ResonanceBlock {
         self.points.len()
     }
 
+    fn owners(&self) -> Vec<usize> {
+        self.points.iter().map(|item| item.observation).collect()
+    }
+
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let point = &self.points[item];
         let mut out = self.apart(&self.model(point, parameters));

@@ -6,10 +6,12 @@ mod result;
 mod select;
 
 use crate::method::Method;
+use crate::method_fit::MethodFit;
 use crate::methods::answer::MethodResult;
+use crate::methods::blocks::Blocks;
 use crate::methods::fit::FitResult;
 use crate::methods::fits::Fits;
-use crate::methods::identifier::Identifier;
+use crate::methods::identifier::{ByRecord, Identifier};
 use crate::methods::selection::Selection;
 
 /// The resonance curve.
@@ -29,10 +31,6 @@ impl Identifier for Resonance {
         }
     }
 
-    fn fit_again(&self, selection: &Selection<'_>, found: &Fits) -> Option<FitResult> {
-        fit::from(&selection.blocks, &selection.evidence.nominal, found.begin)
-    }
-
     fn records(&self, selection: &Selection<'_>) -> Vec<usize> {
         selection.blocks.owners(self.method())
     }
@@ -40,5 +38,22 @@ impl Identifier for Resonance {
     fn result(&self, selection: &Selection<'_>, found: &Fits) -> Option<MethodResult> {
         let fitted = found.attempt(self.method())?;
         Some(result::result(&selection.blocks, fitted))
+    }
+}
+
+impl ByRecord for Resonance {
+    fn fit_again(&self, selection: &Selection<'_>, found: &Fits) -> Option<FitResult> {
+        fit::from(&selection.blocks, &selection.evidence.nominal, found.begin)
+    }
+
+    fn remove(&self, blocks: &mut Blocks, item: usize) {
+        blocks.resonance.points.remove(item);
+    }
+}
+
+impl Fits {
+    /// The fit of the resonance curve.
+    pub fn curve(&self) -> Option<&MethodFit> {
+        self.of(Method::Resonance)
     }
 }

@@ -279,6 +279,10 @@ impl Block for TrajectoryBlock {
         self.records.len()
     }
 
+    fn owners(&self) -> Vec<usize> {
+        self.records.iter().map(|item| item.observation).collect()
+    }
+
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let record = &self.records[item];
         let values = RecordMotion::new(self.rig, record, parameters)?.values();

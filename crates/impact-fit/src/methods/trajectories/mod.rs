@@ -7,15 +7,19 @@ pub mod record;
 pub mod record_motion;
 pub mod reduced_record;
 mod result;
-pub(super) mod select;
+mod select;
 mod starts;
 
 use crate::method::Method;
+use crate::method_fit::MethodFit;
 use crate::methods::answer::MethodResult;
+use crate::methods::blocks::Blocks;
 use crate::methods::fit::FitResult;
 use crate::methods::fits::Fits;
-use crate::methods::identifier::Identifier;
+use crate::methods::identifier::{ByRecord, Identifier};
 use crate::methods::selection::Selection;
+use crate::methods::trajectories::select::END;
+use crate::parameters::Parameters;
 use crate::solver::Precision;
 
 /// The waveforms.
@@ -30,11 +34,6 @@ impl Identifier for Trajectories {
         found.set(self.method(), selection.fit_trajectories(found.begin));
     }
 
-    fn fit_again(&self, selection: &Selection<'_>, found: &Fits) -> Option<FitResult> {
-        let (blocks, nominal) = (&selection.blocks, &selection.evidence.nominal);
-        fit::from(blocks, nominal, found.begin, Precision::Result)
-    }
-
     fn records(&self, selection: &Selection<'_>) -> Vec<usize> {
         selection.blocks.owners(self.method())
     }
@@ -45,5 +44,31 @@ impl Identifier for Trajectories {
             blocks, evidence, ..
         } = selection;
         Some(result::result(blocks, fitted, evidence))
+    }
+}
+
+impl ByRecord for Trajectories {
+    fn fit_again(&self, selection: &Selection<'_>, found: &Fits) -> Option<FitResult> {
+        let (blocks, nominal) = (&selection.blocks, &selection.evidence.nominal);
+        fit::from(blocks, nominal, found.begin, Precision::Result)
+    }
+
+    fn remove(&self, blocks: &mut Blocks, item: usize) {
+        blocks.trajectory.records.remove(item);
+    }
+
+    fn is_doubtful(&self, selection: &Selection<'_>, item: usize, at: &Parameters) -> bool {
+        selection.settles_slowly(item, at)
+    }
+
+    fn unusable(&self, selection: &Selection<'_>, at: &Parameters) -> Vec<usize> {
+        selection.near_their_end(at, END)
+    }
+}
+
+impl Fits {
+    /// The fit of the waveforms.
+    pub fn waveforms(&self) -> Option<&MethodFit> {
+        self.of(Method::Trajectories)
     }
 }

@@ -42,7 +42,7 @@ fn differs(pair: &PairAgreement, pairs: usize) -> bool {
 /// and R of the whole bodies.
 pub fn which_restitution(agreement: &Agreement) -> Option<Remark> {
     let of = |pair: &PairAgreement| {
-        let impact = pair.methods.iter().position(|m| *m == Method::Impacts)?;
+        let impact = pair.methods.iter().position(|m| m.observes_contact())?;
         let other = 1 - impact;
         let method = pair.methods[other];
         let differs = pair.parameter == Coordinate::Restitution && pair.p_value < LEVEL;

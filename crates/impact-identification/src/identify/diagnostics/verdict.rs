@@ -12,7 +12,7 @@ use impact_fit::parameters::Coordinate;
 
 /// R from the impacts alone that is not one number makes the joint R no better.
 pub fn carry_over(joint: &mut MethodResult, methods: &BTreeMap<Method, MethodResult>) {
-    let of_impacts = [Method::Impacts, Method::FlightTimes]
+    let of_impacts = Method::OF_SINGLE_IMPACTS
         .into_iter()
         .filter_map(|m| methods.get(&m)?.parameters.restitution.as_ref())
         .find(|r| r.note == Some(Note::NotOneNumber));
@@ -25,8 +25,8 @@ pub fn carry_over(joint: &mut MethodResult, methods: &BTreeMap<Method, MethodRes
 /// What a small change of R with the speed leaves open in one R: the standard deviation of values spread evenly
 /// over its range. Where a motion's impacts have one speed, waveforms tell R there.
 pub fn open_by_speed(methods: &BTreeMap<Method, MethodResult>) -> Option<f64> {
-    let remarks = &methods.get(&Method::Impacts)?.remarks;
-    remarks.iter().find_map(|remark| match remark {
+    let mut remarks = methods.values().flat_map(|method| &method.remarks);
+    remarks.find_map(|remark| match remark {
         Remark::RestitutionChangesLittle { slower, faster } => {
             Some((slower.restitution - faster.restitution).abs() / 12f64.sqrt())
         }
