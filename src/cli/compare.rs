@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::load::load_campaign;
+use super::patterns::expanded;
 use super::progress::Progress;
 use super::report_args::{each_once, language_parser, paper_parser, quoted};
 use super::stdout::{print, print_json};
@@ -74,7 +75,9 @@ impl Compare {
     ///
     /// # Errors
     /// [`Failure`] where a campaign cannot be used, they cannot be compared or an output cannot be written.
-    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+    pub(super) fn run(mut self, verbosity: Verbosity) -> Result<Exit, Failure> {
+        let remedy = "give results folders of `impactid run`, or campaign.toml files";
+        self.campaigns = expanded(&self.campaigns, remedy)?;
         // what is wrong with one of them is told before any is identified
         for number in 0..self.campaigns.len() {
             self.refuse_twice(number)?;

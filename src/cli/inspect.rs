@@ -7,6 +7,7 @@ use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::patterns::expanded;
 use super::sparkline::sparkline;
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity};
@@ -64,7 +65,8 @@ impl Inspect {
         let mut exit = Exit::Done;
         let mut listed = Vec::new();
         let mut text = String::new();
-        for path in &self.files {
+        let remedy = "name record files, or a pattern that matches some";
+        for path in &expanded(&self.files, remedy)? {
             let done = open(path).and_then(|s| {
                 if self.json {
                     self.list(&*s, &mut listed)

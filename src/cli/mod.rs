@@ -25,6 +25,7 @@ mod merge;
 #[cfg(feature = "mpi")]
 mod mpi;
 mod pairs;
+mod patterns;
 mod plan;
 mod progress;
 mod read_log;

@@ -247,7 +247,7 @@ mod tests {
         assert_eq!(each_once(&twice), [Format::Pdf, Format::Html]);
         let refused = refuse_formats(&["html".into()]).unwrap_err();
         assert!(refused.problems()[0].1.contains("--format pdf,html"));
-        // a campaign that is not there does not stop the others
+        // a campaign that is not there is refused as such
         assert!(refuse_formats(&["none/campaign.toml".into()]).is_ok());
     }
 
