@@ -8,6 +8,7 @@ use super::load::load_campaign;
 use super::patterns::expanded;
 use super::progress::Progress;
 use super::report_args::{each_once, language_parser, paper_parser, quoted};
+use super::speech::{Output, plain, said};
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
@@ -112,7 +113,8 @@ impl Compare {
             print(&table(comparison, self.options().locale()))?;
         }
         for (name, _) in files.iter().filter(|(name, _)| !name.contains('/')) {
-            verbosity.info(&format!("Written: {}", self.out.join(name).display()));
+            let path = self.out.join(name).display().to_string();
+            verbosity.info(&said(&Output::Written(path), self.options().locale()));
         }
         Ok(Exit::Done)
     }
@@ -275,15 +277,10 @@ fn decided_by(comparison: &Comparison, locale: Locale<'_>) -> String {
     }
 }
 
-/// A text without the markup of symbols, which a terminal does not set: `f0` and `x_st`.
-fn plain(text: &str) -> String {
-    text.replace(['$', '{', '}'], "").replace("f_0", "f0")
-}
-
 /// The differences as lines.
 fn table(comparison: &Comparison, locale: Locale<'_>) -> String {
     let word = |word: Word| locale.message(&word);
-    let said = |message: &dyn Message| plain(&locale.message(message));
+    let said = |message: &dyn Message| said(message, locale);
     let mut text = String::new();
     for (i, campaign) in comparison.campaigns.iter().enumerate() {
         text += &format!("{:>3}  {}\n", i + 1, campaign.name);

@@ -99,11 +99,11 @@ impl Inspect {
             let (expected, remedy) = match datasets {
                 [one] if one.name.is_empty() => (
                     "no name, as the file holds a single dataset without one".to_owned(),
-                    "Leave --dataset out.",
+                    "leave --dataset out",
                 ),
                 _ => (
                     named(datasets),
-                    "Name one of them, or leave --dataset out to see all.",
+                    "name one of them, or leave --dataset out to see all",
                 ),
             };
             return Err(ReadError::new(

@@ -39,8 +39,20 @@ fn commands() -> Vec<Case> {
             &["rnu"],
             &[
                 "unrecognized subcommand 'rnu'",
-                "did you mean `impactid run`?",
+                "a similar subcommand exists: 'run'",
             ],
+        ),
+        case(
+            "a command below another, misspelt",
+            |_| {},
+            &["study", "coverag"],
+            &["a similar subcommand exists: 'coverage'"],
+        ),
+        case(
+            "no thread",
+            |_| {},
+            &["-j", "0", "check"],
+            &["invalid value '0' for '--threads <N>'", "1.."],
         ),
         case(
             "an unknown flag",

@@ -154,7 +154,7 @@ fn without_numbers(sources: &[Box<dyn Source>]) -> ReadError {
         path,
         "a channel of numbers to convert",
         "none",
-        "List its channels; the measurement may be in another file.",
+        "list its channels; the measurement may be in another file",
     )
 }
 

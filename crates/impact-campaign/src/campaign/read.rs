@@ -33,6 +33,7 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
             Some(format) => (a_record(format), NAME_CAMPAIGN),
             None => (unreadable(), "save it as UTF-8 in your editor"),
         },
+        (_, std::io::ErrorKind::PermissionDenied) => (unreadable(), "allow reading it"),
         _ => (
             unreadable(),
             "name the right file; `impactid init DIR` writes one",
