@@ -336,12 +336,40 @@ fn draw(summaries: &[Summary], samples: &[Samples], text: &mut String) {
             };
             let _ = writeln!(text, "  {mark:>11} {line}");
         }
+        let _ = writeln!(
+            text,
+            "  {:>11} {}",
+            "",
+            time_axis(summary.samples, summary.sample_rate_hz)
+        );
     }
+}
+
+/// The line below a picture: where it begins and ends, in seconds, or in samples where no rate is known.
+fn time_axis(samples: u64, rate_hz: Option<f64>) -> String {
+    let last = samples.saturating_sub(1);
+    let (begin, end) = match rate_hz.filter(|rate| *rate > 0.0) {
+        Some(rate) => (
+            "0 s".to_owned(),
+            format!("{} s", rounded(last as f64 / rate)),
+        ),
+        None => ("sample 0".to_owned(), last.to_string()),
+    };
+    let room = PICTURE.0.saturating_sub(begin.len());
+    format!("{begin}{end:>room$}")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_picture_states_its_times() {
+        let line = time_axis(2001, Some(1000.0));
+        assert!(line.starts_with("0 s ") && line.ends_with(" 2 s"), "{line}");
+        assert_eq!(line.chars().count(), PICTURE.0);
+        assert!(time_axis(2001, None).ends_with(" 2000"));
+    }
 
     #[test]
     fn rates_are_rounded() {
