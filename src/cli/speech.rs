@@ -3,7 +3,7 @@
 use super::Failure;
 use impact_campaign::campaign::sections::report::ReportSettings;
 use impact_campaign::pipeline;
-use impact_records::message::{Message, Value};
+use impact_records::message::{Message, Print, Value};
 use impact_records::message_table;
 use impact_report::catalog::Catalog;
 use impact_report::locale::Locale;
@@ -48,7 +48,25 @@ impl Speech {
 
 /// A message without markup.
 pub(super) fn said(message: &dyn Message, locale: Locale<'_>) -> String {
-    plain(&locale.message(message))
+    Plain(locale).print(message)
+}
+
+/// A locale without the markup of symbols; names are as they are.
+struct Plain<'a>(Locale<'a>);
+
+impl Print for Plain<'_> {
+    fn template(&self, message: &dyn Message) -> String {
+        let template = self.0.template(message);
+        template.replace("$f_0$", "f0").replace('$', "")
+    }
+
+    fn number(&self, digits: String) -> String {
+        self.0.number(digits)
+    }
+
+    fn name(&self, name: &str) -> String {
+        name.to_owned()
+    }
 }
 
 /// A text without the markup of symbols, which a terminal does not set: `f0` and `x_st`.
@@ -93,7 +111,7 @@ mod tests {
         let one = [Sentence::MethodsAgree];
         assert_eq!(Speech::default().say_all(&one), "The methods agree.");
         assert_ne!(german.say_all(&one), "The methods agree.");
-        let written = Output::Written("out/comparison.pdf".to_owned());
-        assert_eq!(german.say(&written), "Geschrieben: out/comparison.pdf");
+        let written = Output::Written("half_01/$x.pdf".to_owned());
+        assert_eq!(german.say(&written), "Geschrieben: half_01/$x.pdf");
     }
 }

@@ -99,7 +99,10 @@ fn stages_go_on_from_another_directory() {
     };
     for stage in ["classify", "identify", "report"] {
         let (code, said) = from_elsewhere(stage);
-        assert!(code == 0 || stage == "identify" && code == 1, "{stage}: {said}");
+        assert!(
+            code == 0 || stage == "identify" && code == 1,
+            "{stage}: {said}"
+        );
     }
     // what stage 1 left is named where it is gone
     lab.remove("out/ingested.h5");

@@ -123,7 +123,11 @@ fn convert_writes_over_files_with_force_alone_and_never_over_what_it_reads() {
     }
     let ran = lab.run(&["convert", "raw/*.csv", "--out", "raw.csv", "--force"]);
     assert_eq!(ran.code, 2);
-    assert!(ran.said.contains("is read and would be written over"), "{}", ran.said);
+    assert!(
+        ran.said.contains("is read and would be written over"),
+        "{}",
+        ran.said
+    );
     let after = ["r1.csv", "r2.csv"].map(|name| lab.read(&format!("raw/{name}")));
     assert!(after == before, "raw records were changed");
 }

@@ -220,6 +220,7 @@ pub enum Phrase {
     TableRecordsByMethod,
     TableRecords,
     TableMethods,
+    EdgeMeans,
     FarBrackets,
     TableBrackets,
     TableManyBrackets,
