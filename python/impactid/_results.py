@@ -238,6 +238,13 @@ def run(
     resume: bool = False,
     threads: Optional[int] = None,
     frames: Optional[str] = None,
+    title: Optional[str] = None,
+    language: Optional[str] = None,
+    paper: Optional[str] = None,
+    decimal_comma: bool = False,
+    template: Optional[StrPath] = None,
+    words: Optional[StrPath] = None,
+    logo: Optional[StrPath] = None,
 ) -> Results:
     """Run all stages on a campaign, from campaign.toml to the report.
 
@@ -248,6 +255,8 @@ def run(
         resume: resume an interrupted run in `out`.
         threads: number of threads; all processors if it is not given.
         frames: see Results.
+        title, language, paper, decimal_comma, template, words, logo: of the report, instead of what campaign.toml
+            states under [report].
 
     Returns:
         The results, also where the answer is "does not fit" or "not identifiable": see `verdict`.
@@ -259,5 +268,9 @@ def run(
     arguments += ["--format", ",".join(formats)] if formats else []
     arguments += ["--resume"] if resume else []
     arguments += ["--threads", str(threads)] if threads else []
+    report = {"title": title, "language": language, "paper": paper}
+    report |= {"template": template, "words": words, "logo": logo}
+    arguments += [f"--{name}={value}" for name, value in report.items() if value is not None]
+    arguments += ["--decimal-comma"] if decimal_comma else []
     start(arguments, accept=(0, 1))
     return Results(out, frames)

@@ -122,6 +122,10 @@ def simulate(
     )
 
 
+#: Kinds of boundaries.
+_KINDS = ("s2", "s1", "grazing", "further-impact", "dead-zone", "joined")
+
+
 def boundary(
     kind: str,
     *,
@@ -144,11 +148,13 @@ def boundary(
         restitution, damping_ratio, single, machine: as for simulate.
 
     Raises:
-        ValueError: unless exactly one of eta and rho is given.
-        ProgramError: for a kind or a motion that does not exist.
+        ValueError: unless exactly one of eta and rho is given, and for a kind that does not exist.
+        ProgramError: for a motion that does not exist.
     """
     if (eta is None) == (rho is None):
         raise ValueError("give either eta or rho")
+    if kind not in _KINDS:
+        raise ValueError(f"kind is one of {', '.join(_KINDS)}, not {kind!r}")
     name, given = ("eta", eta) if eta is not None else ("rho", rho)
     values = np.atleast_1d(np.asarray(given, dtype=np.float64))
     arguments = ["--quiet", "boundary", f"--kind={kind}", "--json"]

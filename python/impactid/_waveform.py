@@ -82,6 +82,7 @@ def replay(folder: Path, record: str) -> dict[str, dict[str, Signal]]:
         ValueError: where the record has no waveform to be compared.
     """
     campaign = json.loads((folder / "campaign.resolved.json").read_text(encoding="utf-8"))
+    campaign = _found(folder, campaign)
     _require_file(campaign, record)
     # nothing but the data of its figures is written
     campaign["report"].update(points=[record], template=None, words=None, logo=None)
@@ -98,14 +99,31 @@ def replay(folder: Path, record: str) -> dict[str, dict[str, Signal]]:
         return signals(columns(path))
 
 
+def _found(folder: Path, campaign: dict[str, Any]) -> dict[str, Any]:
+    """The campaign with paths that lead to its files from the working directory: as stated, or below the nearest
+    folder above the results from which they do. The program finds them so too."""
+    if Path(campaign["file"]).exists():
+        return campaign
+    above = (base for base in folder.resolve().parents if (base / campaign["file"]).exists())
+    base = next(above, None)
+    if base is None:
+        return campaign
+    campaign["file"] = str(base / campaign["file"])
+    if campaign.get("run_table") is not None:
+        campaign["run_table"] = str(base / campaign["run_table"])
+    for entry in campaign["records"]:
+        entry["file"] = str(base / entry["file"])
+    return campaign
+
+
 def _require_file(campaign: Mapping[str, Any], record: str) -> None:
     """The program leaves out what it cannot read; here it was asked for."""
     entry = next((entry for entry in campaign["records"] if entry["id"] == record), None)
     if entry is None or Path(entry["file"]).is_file():
         return
     raise FileNotFoundError(
-        f"{entry['file']}, the file of {record}, is not there: paths that are not absolute hold in the folder "
-        "in which the program was started; change to it with os.chdir"
+        f"{entry['file']}, the file of {record}, is not there: paths that are not absolute hold in the working "
+        "directory, or in a folder above the results"
     )
 
 

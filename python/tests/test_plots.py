@@ -162,8 +162,19 @@ def test_records_that_cannot_be_plotted_are_named(results, tmp_path):
     for entry in campaign["records"]:
         entry["file"] = "gone/records.h5"
     path.write_text(json.dumps(campaign), encoding="utf-8")
-    with pytest.raises(FileNotFoundError, match="gone/records.h5.*os.chdir"):
+    with pytest.raises(FileNotFoundError, match="gone/records.h5.*above the results"):
         impactid.Results(tmp_path / "copy").plot_record(record_with_impacts(results))
+
+
+def test_a_waveform_is_found_from_another_directory(campaign, tmp_path, monkeypatch):
+    shutil.copytree(campaign.parent, tmp_path / "rig")
+    monkeypatch.chdir(tmp_path)
+    record = record_with_impacts(impactid.run("rig/campaign.toml", "results", formats=["csv"]))
+    expected = impactid.Results(tmp_path / "results").waveform(record)
+    monkeypatch.chdir(tmp_path / "rig")
+    found = impactid.Results(tmp_path / "results").waveform(record)
+    assert found.measured.keys() == expected.measured.keys()
+    np.testing.assert_array_equal(found.impacts_s, expected.impacts_s)
 
 
 def test_without_matplotlib_the_remedy_is_named(results, monkeypatch):

@@ -56,6 +56,16 @@ def test_wrong_input_is_the_program_s_message(tmp_path):
         impactid._frames.library("excel")
 
 
+def test_options_of_the_report_are_handed_on(campaign, tmp_path):
+    impactid.run(
+        campaign, tmp_path, formats=["html"], title="Unser Prüfstand", language="de", paper="letter", decimal_comma=True
+    )
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "Unser Prüfstand" in page and '<html lang="de">' in page
+    with pytest.raises(impactid.ProgramError, match="none.typ"):
+        impactid.run(campaign, tmp_path, template="none.typ")
+
+
 def test_a_figure_that_is_not_there_is_named(results):
     with pytest.raises(FileNotFoundError, match="map"):
         results.figure("nothing")

@@ -68,8 +68,8 @@ const EXAMPLE: &str = "\
 Example:
   impactid atlas --restitution 0.9 --damping-ratio 0.07 --out atlas/
   impactid atlas --columns 2000 --rows 1500 --shard 3/16 --out parts/
-  impactid merge parts/*.json --out atlas/
 
+All of --shard 0/16 to 15/16 make one atlas: impactid merge parts/*.json --out atlas/
 It writes atlas-curves and atlas-map as CSV and Parquet, the figure atlas as SVG, PNG and PDF, \
 atlas.json with how curves and brute force agree, and study.toml to replay it; with --shard \
 only part-I-of-N.json. Rounding differs between instruction sets: parts for machines of \

@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::load::load_campaign;
+use super::patterns::expanded;
 use super::progress::Progress;
 use super::report_args::{each_once, language_parser, paper_parser, quoted};
+use super::speech::{Output, plain, said};
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
@@ -74,7 +76,9 @@ impl Compare {
     ///
     /// # Errors
     /// [`Failure`] where a campaign cannot be used, they cannot be compared or an output cannot be written.
-    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+    pub(super) fn run(mut self, verbosity: Verbosity) -> Result<Exit, Failure> {
+        let remedy = "give results folders of `impactid run`, or campaign.toml files";
+        self.campaigns = expanded(&self.campaigns, remedy)?;
         // what is wrong with one of them is told before any is identified
         for number in 0..self.campaigns.len() {
             self.refuse_twice(number)?;
@@ -109,7 +113,8 @@ impl Compare {
             print(&table(comparison, self.options().locale()))?;
         }
         for (name, _) in files.iter().filter(|(name, _)| !name.contains('/')) {
-            verbosity.info(&format!("Written: {}", self.out.join(name).display()));
+            let path = self.out.join(name).display().to_string();
+            verbosity.info(&said(&Output::Written(path), self.options().locale()));
         }
         Ok(Exit::Done)
     }
@@ -272,15 +277,10 @@ fn decided_by(comparison: &Comparison, locale: Locale<'_>) -> String {
     }
 }
 
-/// A text without the markup of symbols, which a terminal does not set: `f0` and `x_st`.
-fn plain(text: &str) -> String {
-    text.replace(['$', '{', '}'], "").replace("f_0", "f0")
-}
-
 /// The differences as lines.
 fn table(comparison: &Comparison, locale: Locale<'_>) -> String {
     let word = |word: Word| locale.message(&word);
-    let said = |message: &dyn Message| plain(&locale.message(message));
+    let said = |message: &dyn Message| said(message, locale);
     let mut text = String::new();
     for (i, campaign) in comparison.campaigns.iter().enumerate() {
         text += &format!("{:>3}  {}\n", i + 1, campaign.name);

@@ -1,9 +1,11 @@
 //! `impactid convert`: records of any format to HDF5, Parquet, CSV or universal files.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use super::patterns::expanded;
 use super::read_log::ReadLog;
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_records::message::counted;
@@ -29,6 +31,9 @@ pub(super) struct Convert {
     /// Attribute for every record, with the unit in its name: `clearance_m=0.0005`
     #[arg(long, value_name = "NAME=VALUE", value_parser = name_and_value)]
     set: Vec<(String, String)>,
+    /// Overwrite existing files, but never one that is read
+    #[arg(long)]
+    force: bool,
 }
 
 /// The formats that are written.
@@ -53,6 +58,7 @@ Example:
   impactid convert campaign.h5 --out records.uff
 
 The layout of the HDF5 file is described in docs/formats.md.
+Files that are there are overwritten with --force only.
 Exit codes: 0 success; 2 a file could not be read or written (then no output is left).";
 
 /// An attribute that is not a name and a value.
@@ -90,19 +96,24 @@ impl Convert {
             )
         };
         let target = target.ok_or_else(unknown)?;
-        self.refuse_own_input(target)?;
+        let remedy = "name record files, or a pattern that matches some";
+        let files = expanded(&self.files, remedy)?;
         let log = ReadLog::new(verbosity);
-        let sources = self
-            .files
+        let sources = files
             .iter()
             .map(|p| log.open(p))
             .collect::<Result<Vec<_>, ReadError>>()?;
         log.print();
-        interrupt::watch(self.out.parent().map(Path::to_path_buf).unwrap_or_default());
         let options = Options {
             single_precision: self.single,
             attributes: self.set.into_iter().collect(),
         };
+        let written = convert::files(&sources, target, &self.out, &options);
+        refuse_inputs(&written, &files)?;
+        if !self.force {
+            refuse_existing(&written)?;
+        }
+        interrupt::watch(self.out.parent().map(Path::to_path_buf).unwrap_or_default());
         let done = convert::convert(&sources, target, &self.out, &options).map_err(failure)?;
         done.notes.iter().for_each(|note| verbosity.info(note));
         let count = done.records;
@@ -116,25 +127,33 @@ impl Convert {
         verbosity.info(&format!("{records} written to {}", written.display()));
         Ok(Exit::Done)
     }
+}
 
-    /// Refuse to write over a file that is read: the output itself, or one of the folder that several
-    /// records are written into as CSV, which have the names of their files there.
-    fn refuse_own_input(&self, target: Target) -> Result<(), Failure> {
-        let folder = self.out.with_extension("").canonicalize().ok();
-        let folder = folder.filter(|_| target == Target::Csv && self.files.len() > 1);
-        let out = self.out.canonicalize().ok();
-        let is_out = |file: &&PathBuf| {
-            let file = file.canonicalize().ok();
-            let within = file.as_deref().and_then(Path::parent);
-            file.is_some() && (file == out || within.is_some() && within == folder.as_deref())
-        };
-        self.files.iter().find(is_out).map_or(Ok(()), |file| {
-            Err(Failure::new(
-                format!("{} is read and would be written over", file.display()),
-                "name another file with --out",
-            ))
-        })
-    }
+/// Refuse to write over a file that is read.
+fn refuse_inputs(written: &[PathBuf], files: &[PathBuf]) -> Result<(), Failure> {
+    let real = |path: &PathBuf| path.canonicalize().ok();
+    let written: HashSet<PathBuf> = written.iter().filter_map(real).collect();
+    let is_written = |file: &&PathBuf| real(file).is_some_and(|file| written.contains(&file));
+    files.iter().find(is_written).map_or(Ok(()), |file| {
+        Err(Failure::new(
+            format!("{} is read and would be written over", file.display()),
+            "name another file with --out",
+        ))
+    })
+}
+
+/// Refuse to write over files that are there.
+fn refuse_existing(written: &[PathBuf]) -> Result<(), Failure> {
+    let mut existing = written.iter().filter(|path| path.exists());
+    let Some(first) = existing.next() else {
+        return Ok(());
+    };
+    let message = match existing.count() {
+        0 => format!("{} exists already", first.display()),
+        n => format!("{} and {n} more files exist already", first.display()),
+    };
+    let remedy = "name another file with --out, or add --force to overwrite";
+    Err(Failure::new(message, remedy))
 }
 
 fn failure(error: ConvertError) -> Failure {

@@ -57,7 +57,10 @@ for its keys. Ctrl-C ends it. Nothing is written but the files that you export."
 
 impl From<ExploreError> for Failure {
     fn from(error: ExploreError) -> Self {
-        Self::new(error.to_string(), error.remedy())
+        match error {
+            ExploreError::Pipeline(error) => error.into(),
+            error => Self::new(error.to_string(), error.remedy()),
+        }
     }
 }
 

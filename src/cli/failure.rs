@@ -132,7 +132,7 @@ fn nothing_usable(records: &[RefusedRecord]) -> Diagnostics {
     };
     let flags = records.iter().flat_map(|r| {
         let excluding = r.flags.iter().filter(|f| f.excludes);
-        excluding.map(|f| Diagnostic::of_flag(Path::new(""), &r.record, f))
+        excluding.map(|f| Diagnostic::of_flag(&r.file, &r.record, f))
     });
     let mut all = Diagnostics(std::iter::once(whole).chain(flags).collect());
     all.sort();

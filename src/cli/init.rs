@@ -106,24 +106,29 @@ fn print_summary(path: &Path, found: &FolderContents, verbosity: Verbosity) {
         verbosity.info(&format!("{} more are no records", counted(more, "file")));
     }
     let assigned = found.channels.iter().filter(|c| c.role.is_some()).count();
+    let left_over = without_role(found);
     verbosity.info(&format!(
-        "{}: {} with {} ({}), {assigned} of {} channels assigned to a role{}. Complete it, then run: impactid \
+        "{}: {} with {} ({}), {assigned} of {} signals assigned to a role{}. Complete it, then run: impactid \
          check {}",
         path.display(),
         counted(found.files, "file"),
         counted(found.records, "record"),
         found.format,
-        found.channels.len(),
-        without_role(found),
+        assigned + left_over.len(),
+        named(&left_over),
         path.display()
     ));
 }
 
-/// The signals without a role, as the end of a sentence.
-fn without_role(found: &FolderContents) -> String {
+/// The signals without a role: neither the time nor single values.
+fn without_role(found: &FolderContents) -> Vec<&str> {
     let signal = |c: &&InferredChannel| c.role.is_none() && !c.is_time && c.samples > 1;
     let names = found.channels.iter().filter(signal);
-    let names: Vec<&str> = names.map(|c| c.name.as_str()).collect();
+    names.map(|c| c.name.as_str()).collect()
+}
+
+/// The signals left over, as the end of a sentence.
+fn named(names: &[&str]) -> String {
     if names.is_empty() {
         return String::new();
     }

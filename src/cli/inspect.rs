@@ -7,6 +7,7 @@ use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::patterns::expanded;
 use super::sparkline::sparkline;
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity};
@@ -64,7 +65,8 @@ impl Inspect {
         let mut exit = Exit::Done;
         let mut listed = Vec::new();
         let mut text = String::new();
-        for path in &self.files {
+        let remedy = "name record files, or a pattern that matches some";
+        for path in &expanded(&self.files, remedy)? {
             let done = open(path).and_then(|s| {
                 if self.json {
                     self.list(&*s, &mut listed)
@@ -97,11 +99,11 @@ impl Inspect {
             let (expected, remedy) = match datasets {
                 [one] if one.name.is_empty() => (
                     "no name, as the file holds a single dataset without one".to_owned(),
-                    "Leave --dataset out.",
+                    "leave --dataset out",
                 ),
                 _ => (
                     named(datasets),
-                    "Name one of them, or leave --dataset out to see all.",
+                    "name one of them, or leave --dataset out to see all",
                 ),
             };
             return Err(ReadError::new(
@@ -334,12 +336,40 @@ fn draw(summaries: &[Summary], samples: &[Samples], text: &mut String) {
             };
             let _ = writeln!(text, "  {mark:>11} {line}");
         }
+        let _ = writeln!(
+            text,
+            "  {:>11} {}",
+            "",
+            time_axis(summary.samples, summary.sample_rate_hz)
+        );
     }
+}
+
+/// The line below a picture: where it begins and ends, in seconds, or in samples where no rate is known.
+fn time_axis(samples: u64, rate_hz: Option<f64>) -> String {
+    let last = samples.saturating_sub(1);
+    let (begin, end) = match rate_hz.filter(|rate| *rate > 0.0) {
+        Some(rate) => (
+            "0 s".to_owned(),
+            format!("{} s", rounded(last as f64 / rate)),
+        ),
+        None => ("sample 0".to_owned(), last.to_string()),
+    };
+    let room = PICTURE.0.saturating_sub(begin.len());
+    format!("{begin}{end:>room$}")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_picture_states_its_times() {
+        let line = time_axis(2001, Some(1000.0));
+        assert!(line.starts_with("0 s ") && line.ends_with(" 2 s"), "{line}");
+        assert_eq!(line.chars().count(), PICTURE.0);
+        assert!(time_axis(2001, None).ends_with(" 2000"));
+    }
 
     #[test]
     fn rates_are_rounded() {

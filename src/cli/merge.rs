@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::atlas_part::NAME;
+use super::patterns::expanded;
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity};
 use impact_oscillator::atlas::shard::{AtlasPart, merge};
@@ -37,8 +38,8 @@ impl Merge {
     /// # Errors
     /// [`Failure`] where the parts do not make up one atlas, or a file cannot be written.
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
-        let parts: Vec<AtlasPart> = self
-            .parts
+        let remedy = "name the files that `impactid atlas --shard I/N` wrote";
+        let parts: Vec<AtlasPart> = expanded(&self.parts, remedy)?
             .iter()
             .map(|path| read(path))
             .collect::<Result<_, _>>()?;

@@ -25,7 +25,9 @@ mod merge;
 #[cfg(feature = "mpi")]
 mod mpi;
 mod pairs;
+mod patterns;
 mod plan;
+mod premises;
 mod progress;
 mod read_log;
 mod report_args;
@@ -36,6 +38,7 @@ mod screen;
 mod selftest;
 mod simulate;
 mod sparkline;
+mod speech;
 mod stage;
 mod stdout;
 mod study;
@@ -44,10 +47,11 @@ mod theory;
 mod verbosity;
 mod watch;
 
-use std::num::NonZeroUsize;
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 
 pub(crate) use exit::Exit;
@@ -98,8 +102,8 @@ pub(crate) struct Common {
     )]
     verbose: u8,
     /// Number of threads [default: all processors]
-    #[arg(long, short = 'j', global = true, help_heading = GENERAL, value_name = "N")]
-    threads: Option<NonZeroUsize>,
+    #[arg(long, short = 'j', global = true, help_heading = GENERAL, value_name = "N", value_parser = machine::at_least::<1>())]
+    threads: Option<usize>,
 }
 
 /// Defines the commands; each runs itself.
@@ -175,11 +179,12 @@ pub(crate) fn main() -> ExitCode {
     failure::hush_caught_panics();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) => {
-            let _ = error.print();
+        Err(mut error) => {
             if let Some(command) = meant(&error) {
-                eprintln!("did you mean `impactid {command}`?");
+                let suggested = ContextValue::Strings(vec![command]);
+                error.insert(ContextKind::SuggestedSubcommand, suggested);
             }
+            let _ = error.print();
             return if error.use_stderr() {
                 Exit::BadInput
             } else {
@@ -203,32 +208,47 @@ pub(crate) fn main() -> ExitCode {
     exit.into()
 }
 
-/// The command that was probably meant by one that does not exist, and that clap does not name itself.
+/// The command that was probably meant by one that does not exist, and that clap does not name itself: one of the
+/// program, or one below the command that was typed first.
 fn meant(error: &clap::Error) -> Option<String> {
-    use clap::error::{ContextKind, ContextValue};
     let typed = match error.get(ContextKind::InvalidSubcommand) {
-        Some(ContextValue::String(typed)) => typed,
-        _ => return None,
+        Some(ContextValue::String(typed)) => typed.clone(),
+        _ => return below(std::env::args().skip(1)),
     };
     if error.get(ContextKind::SuggestedSubcommand).is_some() {
         return None;
     }
+    nearest_of(&Cli::command(), &typed)
+}
+
+/// The command below another that was probably meant: `study coverag` is read as a file otherwise.
+fn below(mut typed: impl Iterator<Item = String>) -> Option<String> {
+    let (command, verb) = (typed.next()?, typed.next()?);
     let program = Cli::command();
-    let commands: Vec<&str> = program
+    let command = program.find_subcommand(command)?;
+    let is_file = verb.starts_with('-') || Path::new(&verb).exists();
+    let is_one = command.find_subcommand(&verb).is_some();
+    if is_file || is_one {
+        return None;
+    }
+    nearest_of(command, &verb)
+}
+
+fn nearest_of(command: &clap::Command, typed: &str) -> Option<String> {
+    let names: Vec<&str> = command
         .get_subcommands()
         .map(clap::Command::get_name)
         .collect();
-    impact_campaign::campaign::nearest(typed, &commands).map(str::to_owned)
+    impact_campaign::campaign::nearest(typed, &names).map(str::to_owned)
 }
 
 /// Starts the threads that all work is shared among: as many as stated, else one for each core.
-fn start_threads(stated: Option<NonZeroUsize>) -> Result<(), rayon::ThreadPoolBuildError> {
+fn start_threads(stated: Option<usize>) -> Result<(), rayon::ThreadPoolBuildError> {
     /// As much as a main thread has: nested templates take it.
     const STACK_BYTES: usize = 8 << 20;
     let pool = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES);
     // 0: one for each core
-    let threads = stated.map_or(0, NonZeroUsize::get);
-    pool.num_threads(threads).build_global()
+    pool.num_threads(stated.unwrap_or(0)).build_global()
 }
 
 /// Versions of the program and of the layouts that it writes.
@@ -252,6 +272,16 @@ mod tests {
         }
         let error = Cli::try_parse_from(["impactid", "xyzzy"]).unwrap_err();
         assert_eq!(meant(&error), None);
+        let below = |typed: &[&str]| below(typed.iter().map(|&word| word.to_owned()));
+        assert_eq!(below(&["study", "coverag"]).as_deref(), Some("coverage"));
+        for typed in [
+            &["study", "pairs"][..],
+            &["study", "."],
+            &["run", "pairs"],
+            &["study"],
+        ] {
+            assert_eq!(below(typed), None, "{typed:?}");
+        }
     }
 
     #[test]

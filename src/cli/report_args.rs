@@ -1,12 +1,14 @@
 //! Options of the report, shared by the commands that write one. They override those of
 //! campaign.toml.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Arg, Args, Command};
 
+use super::speech::{Output, Speech};
 use super::{Failure, Verbosity};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
 use impact_campaign::campaign::sections::report::ReportSettings;
@@ -47,10 +49,33 @@ pub(super) struct ReportArgs {
     decimal_comma: bool,
 }
 
+/// Takes names in capitals too, and with blanks around them.
+#[derive(Clone)]
+struct Lenient(PossibleValuesParser);
+
+impl TypedValueParser for Lenient {
+    type Value = String;
+
+    fn parse_ref(
+        &self,
+        command: &Command,
+        argument: Option<&Arg>,
+        typed: &OsStr,
+    ) -> Result<String, clap::Error> {
+        let name = typed.to_string_lossy().trim().to_lowercase();
+        self.0.parse_ref(command, argument, OsStr::new(&name))
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        self.0.possible_values()
+    }
+}
+
 /// The languages of the program, by their codes.
 pub(super) fn language_parser() -> impl TypedValueParser<Value = Language> {
     let each = Language::all().map(|l| PossibleValue::new(l.code()).help(l.name()));
-    PossibleValuesParser::new(each).map(|code| Language::of_code(&code).unwrap_or_default())
+    Lenient(PossibleValuesParser::new(each))
+        .map(|code| Language::of_code(&code).unwrap_or_default())
 }
 
 /// Reads the name of a paper on the command line.
@@ -59,7 +84,7 @@ pub(super) fn paper_parser() -> impl TypedValueParser<Value = Paper> {
         PossibleValue::new("a4"),
         PossibleValue::new("letter").alias("us-letter"),
     ];
-    PossibleValuesParser::new(names).map(|name| match name.as_str() {
+    Lenient(PossibleValuesParser::new(names)).map(|name| match name.as_str() {
         "a4" => Paper::A4,
         _ => Paper::UsLetter,
     })
@@ -107,6 +132,9 @@ impl ReportArgs {
         }
         report.date = Some(today());
         report.decimal_comma |= self.decimal_comma;
+        if let Some(what) = report.without_texts() {
+            verbosity.info(&format!("note: {what}"));
+        }
         if let Some(catalog) = pipeline::report::catalog(report)? {
             for remark in catalog.remarks() {
                 verbosity.info(&format!("note: {remark}"));
@@ -209,8 +237,12 @@ pub(super) fn refuse_formats(campaigns: &[std::path::PathBuf]) -> Result<(), Fai
     ))
 }
 
-/// Print the paths of the report.
-pub(super) fn print_report_paths(campaign: &ResolvedCampaign, out: &Path, verbosity: Verbosity) {
+/// Print the paths of a campaign's report in a folder.
+pub(super) fn print_report_paths(
+    (campaign, out): (&ResolvedCampaign, &Path),
+    speech: &Speech,
+    verbosity: Verbosity,
+) {
     for format in &campaign.report.formats {
         let name = match format {
             Format::Pdf => "report.pdf",
@@ -218,11 +250,8 @@ pub(super) fn print_report_paths(campaign: &ResolvedCampaign, out: &Path, verbos
             Format::Svg | Format::Png | Format::FigurePdf | Format::Csv => "figures/",
             Format::Tex => "tables/",
         };
-        verbosity.info(&format!(
-            "Report ({}): {}",
-            format.name(),
-            out.join(name).display()
-        ));
+        let path = out.join(name).display().to_string();
+        verbosity.info(&speech.say(&Output::Report(format.name(), path)));
     }
 }
 
@@ -247,8 +276,32 @@ mod tests {
         assert_eq!(each_once(&twice), [Format::Pdf, Format::Html]);
         let refused = refuse_formats(&["html".into()]).unwrap_err();
         assert!(refused.problems()[0].1.contains("--format pdf,html"));
-        // a campaign that is not there does not stop the others
+        // a campaign that is not there is refused as such
         assert!(refuse_formats(&["none/campaign.toml".into()]).is_ok());
+    }
+
+    #[test]
+    fn names_are_taken_in_capitals_and_with_blanks() {
+        #[derive(clap::Parser)]
+        struct Typed {
+            #[command(flatten)]
+            report: ReportArgs,
+        }
+        let read = |args: &[&str]| {
+            let all = std::iter::once("impactid").chain(args.iter().copied());
+            <Typed as clap::Parser>::try_parse_from(all).map(|typed| typed.report.typed())
+        };
+        let typed = [
+            "--format",
+            "PDF, html",
+            "--paper",
+            "A4",
+            "--language",
+            " DE",
+        ];
+        let plain = ["--format", "pdf,html", "--paper", "a4", "--language", "de"];
+        assert_eq!(read(&typed).unwrap(), read(&plain).unwrap());
+        assert!(read(&["--paper", "a5"]).is_err());
     }
 
     #[test]

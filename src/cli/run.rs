@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::report_args::{ReportArgs, refuse_formats};
+use super::report_args::ReportArgs;
 use super::run_one::RunOptions;
 use super::stdout::print_json_file;
 use super::{Exit, Failure, Verbosity, run_several};
@@ -41,7 +41,7 @@ figures in figures/, identification.json, uncertainty_budget.csv, records.parque
 impacts.parquet, boundaries.csv, campaign.resolved.json. Outputs are written atomically.
 Several campaigns: each has the folder in DIR that is named after its own, as if it had been \
 run alone with that folder as --out; summary.csv and summary.json in DIR list the answers. One \
-that fails does not stop the others.
+that fails does not stop the others; where a path is no description of a campaign, none is run.
 Exit codes: 0 success (also with a parameter that is only weak); 1 the model does not fit or a \
 parameter is not identifiable; 2 bad input or output; 130 interrupted; of several campaigns \
 the greatest.";
@@ -52,8 +52,7 @@ impl Run {
             resume: self.resume,
             report: &self.options,
         };
-        let campaigns = run_several::expanded(&self.campaigns)?;
-        refuse_formats(&campaigns)?;
+        let campaigns = run_several::campaigns(&self.campaigns)?;
         let (exit, file) = match &campaigns[..] {
             [alone] => {
                 let done = options.run(alone, &self.out, verbosity)?;

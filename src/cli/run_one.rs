@@ -5,8 +5,10 @@ use std::path::Path;
 use super::details::{print_fits, print_records};
 use super::left_out::print_left_out;
 use super::load::load_campaign;
+use super::premises::print_premises;
 use super::progress::{LATER, Progress};
 use super::report_args::{ReportArgs, print_report_paths, quoted};
+use super::speech::Speech;
 use super::{Failure, Verbosity, interrupt};
 use impact_campaign::pipeline::{self, Completed, Destination, PipelineError, checkpoint};
 use impact_fit::{Finding, VerdictKind};
@@ -55,12 +57,14 @@ impl RunOptions<'_> {
         };
         let done = pipeline::run(&resolved, &destination, &|s, d, t| bar.step(s, d, t));
         drop(bar);
+        let speech = Speech::of(&resolved.report)?;
         if let Err(PipelineError::AnswerUnwritten { answer, .. }) = &done {
-            print_verdict(answer, verbosity);
+            print_verdict(answer, &speech, verbosity);
         }
         let done = done?;
-        print_completed(&done, verbosity);
-        print_report_paths(&resolved, out, verbosity);
+        print_premises(&resolved, &done.observations, verbosity);
+        print_completed(&done, &speech, verbosity);
+        print_report_paths((&resolved, out), &speech, verbosity);
         Ok(done)
     }
 }
@@ -76,21 +80,25 @@ pub(super) fn command_line(campaign: &Path, out: &Path, report: &ReportArgs) -> 
 }
 
 /// Print the answer of a run, and with `-v` what led to it.
-pub(super) fn print_completed(done: &Completed, verbosity: Verbosity) {
+pub(super) fn print_completed(done: &Completed, speech: &Speech, verbosity: Verbosity) {
     print_records(&done.observations, verbosity);
     print_fits(&done.identification, verbosity);
     print_left_out(&done.observations, verbosity);
-    print_verdict(&done.identification, verbosity);
+    print_verdict(&done.identification, speech, verbosity);
 }
 
 /// Print the verdict and its findings.
-pub(super) fn print_verdict(identification: &Identification, verbosity: Verbosity) {
+pub(super) fn print_verdict(
+    identification: &Identification,
+    speech: &Speech,
+    verbosity: Verbosity,
+) {
     let verdict = &identification.verdict;
-    verbosity.info(&verdict.to_string());
+    verbosity.info(&speech.say_all(&verdict.sentences));
     for finding in &verdict.findings {
-        verbosity.info(&format!("  - {finding}"));
+        verbosity.info(&format!("  - {}", speech.say(finding)));
         if let Some(first) = first_of_specimen(finding, identification) {
-            verbosity.info(&format!("      {first}"));
+            verbosity.info(&format!("      {}", speech.say(first)));
         }
     }
 }

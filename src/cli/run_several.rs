@@ -4,42 +4,38 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use super::estimate_text::with_error;
+use super::patterns::expanded;
+use super::report_args::refuse_formats;
 use super::run_one::RunOptions;
 use super::{Exit, Failure, Verbosity, interrupt};
+use impact_campaign::campaign::{
+    self,
+    diagnostic::{Diagnostic, Diagnostics},
+};
 use impact_campaign::pipeline::summary::{Fault, Found, RunOutcome, RunSummary, SummaryRow};
 use impact_campaign::pipeline::{campaign_folders, layout, summary};
 use impact_fit::VerdictKind;
 
-/// The campaigns as typed; a pattern that the shell has left as it is stands for the files that match
-/// it, and one that is named twice is there once.
+/// The campaigns as typed, each once, patterns expanded.
 ///
 /// # Errors
-/// [`Failure`] where no file matches a pattern.
-pub(super) fn expanded(typed: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
-    let mut all = Vec::new();
-    for path in typed {
-        let text = path.to_string_lossy();
-        if text.contains(['*', '?', '[']) && !path.exists() {
-            all.extend(matching(&text)?);
-        } else {
-            all.push(path.clone());
-        }
-    }
+/// [`Failure`] where nothing matches a pattern, or one of several is no description of a campaign: then none is run.
+pub(super) fn campaigns(typed: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let remedy = "name the campaign.toml of each campaign; `impactid init DIR` writes one";
+    let mut all = expanded(typed, remedy)?;
+    refuse_formats(&all)?;
     let mut seen = HashSet::new();
     all.retain(|path| seen.insert(path.canonicalize().unwrap_or_else(|_| path.clone())));
-    Ok(all)
-}
-
-fn matching(pattern: &str) -> Result<Vec<PathBuf>, Failure> {
-    let files = glob::glob(pattern).into_iter().flatten();
-    let files: Vec<PathBuf> = files.filter_map(Result::ok).collect();
-    if files.is_empty() {
-        return Err(Failure::new(
-            format!("no file matches '{pattern}'"),
-            "name the campaign.toml of each campaign; `impactid init DIR` writes one",
-        ));
+    if all.len() > 1 {
+        let mistyped = all
+            .iter()
+            .flat_map(|path| campaign::not_a_description(path).0);
+        let mistyped: Vec<Diagnostic> = mistyped.collect();
+        if !mistyped.is_empty() {
+            return Err(Diagnostics(mistyped).into());
+        }
     }
-    Ok(files)
+    Ok(all)
 }
 
 /// Run every campaign into a folder of its own in `out`, and write the summary there.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::machine::{MachineArgs, StartArgs};
+use super::machine::{MachineArgs, StartArgs, at_least};
 use super::theory::OutArgs;
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_campaign::pipeline::synthesise::{Recipe, write_campaign};
@@ -174,8 +174,8 @@ pub(super) struct Campaign {
     #[arg(long, value_name = "X", default_value_t = 1e-3, value_parser = within(1e-9, 1.0))]
     pub static_deflection_m: f64,
     /// Number of records [default: 200]
-    #[arg(long, value_name = "N")]
-    pub records: Option<std::num::NonZeroUsize>,
+    #[arg(long, value_name = "N", value_parser = at_least::<1>())]
+    pub records: Option<usize>,
     /// Folder for the campaign
     #[arg(long, short, value_name = "DIR")]
     pub out: PathBuf,
@@ -240,9 +240,7 @@ impl Campaign {
             .with_differences(&differences),
             faults,
             rig: self.rig,
-            records: self
-                .records
-                .map_or(DEFAULT_RECORDS, std::num::NonZeroUsize::get),
+            records: self.records.unwrap_or(DEFAULT_RECORDS),
             beats: self.beats,
             seed: self.seed,
             rig_seed: self.rig_seed,

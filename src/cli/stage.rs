@@ -9,9 +9,11 @@ use clap::Args;
 use super::details::{print_fits, print_records};
 use super::left_out::print_left_out;
 use super::load::load_campaign;
+use super::premises::print_premises;
 use super::progress::Progress;
 use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::run_one::{command_line, print_verdict};
+use super::speech::Speech;
 use super::stdout::{print, print_json_file};
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
@@ -176,9 +178,11 @@ impl Identify {
         let found = pipeline::identify::identify(&campaign, &observed, Some(bar.fits()))?;
         store::write_identified(&found, &folder)?;
         drop(bar);
+        print_premises(&campaign, &observed.observations, verbosity);
         print_fits(&found.identification, verbosity);
         print_left_out(&observed.observations, verbosity);
-        print_verdict(&found.identification, verbosity);
+        let speech = Speech::of(&campaign.report)?;
+        print_verdict(&found.identification, &speech, verbosity);
         if self.json {
             print_json_file(&folder.join(pipeline::identify::FILE))?;
         }
@@ -206,7 +210,8 @@ impl Report {
         let report = pipeline::report::files(&campaign, &observed, &found, &command)?;
         pipeline::report::write(&report, &folder)?;
         drop(bar);
-        print_report_paths(&campaign, &folder, verbosity);
+        let speech = Speech::of(&campaign.report)?;
+        print_report_paths((&campaign, &folder), &speech, verbosity);
         Ok(Exit::Done)
     }
 }

@@ -8,10 +8,12 @@ use clap::Args;
 use strum::VariantArray;
 
 use super::load::load_campaign;
+use super::premises::print_premises;
 use super::progress::Progress;
 use super::report_args::{ReportArgs, print_report_paths};
 use super::run_one::{command_line, keep_from, print_completed};
 use super::screen::Screen;
+use super::speech::Speech;
 use super::{Exit, Failure, Verbosity, interrupt, live_text};
 use impact_campaign::pipeline::watch::{
     News, NewsKind, Pace, Seen, WatchPatience, Watcher, write_live,
@@ -168,8 +170,10 @@ impl Watch {
         };
         let done = watcher.complete(&campaign, &destination, &|s, d, t| bar.step(s, d, t))?;
         drop(bar);
-        print_completed(&done, verbosity);
-        print_report_paths(&campaign, &self.out, verbosity);
+        let speech = Speech::of(&campaign.report)?;
+        print_premises(&campaign, &done.observations, verbosity);
+        print_completed(&done, &speech, verbosity);
+        print_report_paths((&campaign, &self.out), &speech, verbosity);
         verbosity.info(&format!("Page: {}", self.out.join("report.html").display()));
         Ok(done)
     }

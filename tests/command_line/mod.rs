@@ -2,6 +2,7 @@
 
 mod json;
 mod keys;
+mod notes;
 mod several;
 mod verbosity;
 mod warnings;

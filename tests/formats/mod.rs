@@ -101,6 +101,38 @@ fn convert_keeps_numbers_units_and_attributes() {
 }
 
 #[test]
+fn convert_writes_over_files_with_force_alone_and_never_over_what_it_reads() {
+    let lab = Lab::new();
+    let before = ["r1.csv", "r2.csv"].map(|name| lab.read(name));
+    // the pattern is left to the program, as by the shells of Windows
+    let day = ["convert", "r[12].csv", "--out", "day.csv"];
+    assert_eq!(lab.run(&day).code, 0);
+    lab.write("day/r2.csv", "mine");
+    std::fs::remove_file(lab.path("day/r1.csv")).expect("it was written");
+    let ran = lab.run(&day);
+    assert_eq!(ran.code, 2);
+    let says = ["day/r2.csv exists already", "add --force to overwrite"];
+    assert!(says.iter().all(|s| ran.said.contains(s)), "{}", ran.said);
+    assert!(lab.read("day/r2.csv") == "mine" && !lab.path("day/r1.csv").exists());
+    assert_eq!(lab.run(&[&day[..], &["--force"]].concat()).code, 0);
+    assert_ne!(lab.read("day/r2.csv"), "mine");
+    // a folder of the records' own names would be that of the input
+    std::fs::create_dir(lab.path("raw")).expect("a folder");
+    for (name, text) in ["r1.csv", "r2.csv"].iter().zip(&before) {
+        lab.write(&format!("raw/{name}"), text);
+    }
+    let ran = lab.run(&["convert", "raw/*.csv", "--out", "raw.csv", "--force"]);
+    assert_eq!(ran.code, 2);
+    assert!(
+        ran.said.contains("is read and would be written over"),
+        "{}",
+        ran.said
+    );
+    let after = ["r1.csv", "r2.csv"].map(|name| lab.read(&format!("raw/{name}")));
+    assert!(after == before, "raw records were changed");
+}
+
+#[test]
 fn convert_refuses_what_it_cannot_write() {
     let lab = Lab::new();
     let from = own("compact.h5");

@@ -39,8 +39,20 @@ fn commands() -> Vec<Case> {
             &["rnu"],
             &[
                 "unrecognized subcommand 'rnu'",
-                "did you mean `impactid run`?",
+                "a similar subcommand exists: 'run'",
             ],
+        ),
+        case(
+            "a command below another, misspelt",
+            |_| {},
+            &["study", "coverag"],
+            &["a similar subcommand exists: 'coverage'"],
+        ),
+        case(
+            "no thread",
+            |_| {},
+            &["-j", "0", "check"],
+            &["invalid value '0' for '--threads <N>'", "1.."],
         ),
         case(
             "an unknown flag",
@@ -89,8 +101,31 @@ fn commands() -> Vec<Case> {
                 "nowhere/campaign.toml",
                 "campaign.toml cannot be read",
                 "impactid init",
-                "summary.csv",
             ],
+        ),
+        case(
+            "run on a campaign, a record and a folder",
+            |_| {},
+            &["run", "campaign.toml", "r1.csv", ".", "--out", "out"],
+            &["it is a folder", "r1.csv", "it is a record (csv)"],
+        ),
+        case(
+            "convert on a pattern that no file matches",
+            |_| {},
+            &["convert", "day?/*.tdms", "--out", "all.h5"],
+            &["no file matches 'day?/*.tdms'", "name record files"],
+        ),
+        case(
+            "convert onto a file that is there",
+            |_| {},
+            &["convert", "r1.csv", "--out", "r2.csv"],
+            &["r2.csv exists already", "--force"],
+        ),
+        case(
+            "convert onto its input, with --force",
+            |_| {},
+            &["convert", "r1.csv", "--out", "r1.csv", "--force"],
+            &["r1.csv is read and would be written over", "name another"],
         ),
         case(
             "a format behind a blank",
@@ -212,6 +247,7 @@ fn folders() -> Vec<Case> {
             |lab| {
                 std::fs::create_dir(lab.path("out")).expect("a folder");
                 lab.write("out/summary.json", r#"{"versions": {"summary.json": "0"}}"#);
+                lab.write("other.toml", &lab.read("campaign.toml"));
             },
             &["run", "campaign.toml", "other.toml", "--out", "out"],
             &["summary.json has layout 0", "into another folder (--out)"],

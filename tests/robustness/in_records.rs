@@ -333,6 +333,15 @@ fn values() -> Vec<Case> {
             ],
         ),
         refused(
+            "a record that was cut off after two samples",
+            |lab| lab.lines("r2.csv", |i, line| (i < 3).then(|| line.to_owned())),
+            &[
+                "the record is too short: 2 samples",
+                "whether the file is whole",
+                "2 of 3 records can be used",
+            ],
+        ),
+        refused(
             "a constant drive",
             |lab| lab.column("r2.csv", 1, |_, _| "0".into()),
             &["r2.csv: drive", "is constant", "2 of 3 records can be used"],

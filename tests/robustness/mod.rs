@@ -77,6 +77,9 @@ fn test_all(cases: &[Case]) {
             .iter()
             .filter(|s| !ran.said.contains(**s))
             .collect();
+        let helps = ran.said.lines().filter_map(|l| l.strip_prefix("  help: "));
+        let unlike: Vec<&str> = helps.filter(|help| !is_in_style(help)).collect();
+        assert!(unlike.is_empty(), "{}: {unlike:?}", case.input);
         if !missing.is_empty() || ran.code != case.code {
             failures.push(format!(
                 "{}: exit {} (expected {}), not said: {missing:?}\n{}",
@@ -85,6 +88,14 @@ fn test_all(cases: &[Case]) {
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// Whether a remedy begins with a small letter (names and symbols aside) and ends without a full stop.
+fn is_in_style(help: &str) -> bool {
+    let mut letters = help.chars();
+    let capital = letters.next().is_some_and(char::is_uppercase);
+    let word = letters.next().is_some_and(char::is_lowercase);
+    !(capital && word) && !help.ends_with('.')
 }
 
 #[test]

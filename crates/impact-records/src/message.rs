@@ -161,6 +161,12 @@ pub fn faults(messages: &[Box<dyn Message>]) -> Vec<String> {
     faults
 }
 
+/// Digits as Rust writes them with a true minus, of which a zero has none.
+pub fn with_minus(digits: &str) -> String {
+    let is_zero = digits.chars().all(|c| matches!(c, '-' | '0' | '.'));
+    digits.replace('-', if is_zero { "" } else { "\u{2212}" })
+}
+
 /// English without markup.
 struct Plain;
 
@@ -171,7 +177,7 @@ impl Print for Plain {
     }
 
     fn number(&self, digits: String) -> String {
-        digits
+        with_minus(&digits)
     }
 
     fn name(&self, name: &str) -> String {

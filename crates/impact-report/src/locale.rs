@@ -2,9 +2,9 @@
 //! reader's language.
 
 use super::catalog::Catalog;
-use super::phrase::{Phrase, Text, motion_text, role_text};
+use super::phrase::{Phrase, Text, motion_text};
 use impact_records::language::Language;
-use impact_records::message::{Message, Print, filled, sentence};
+use impact_records::message::{Message, Print, filled, sentence, with_minus};
 use impact_records::motion::Motion;
 use impact_records::record::Role;
 use impact_records::signal::digits::decimal_exponent;
@@ -41,6 +41,7 @@ impl Locale<'_> {
         match text {
             Text::Phrase(phrase) => self.translate(*phrase),
             Text::Followed(phrase, rest) => self.translate(*phrase) + rest,
+            Text::Role(role) => self.role(*role),
             Text::Plain(text) => text.clone(),
         }
     }
@@ -52,7 +53,7 @@ impl Locale<'_> {
 
     /// The name of what a channel measures.
     pub(crate) fn role(self, role: Role) -> String {
-        self.text(&role_text(role))
+        self.message(&role)
     }
 
     /// A message in the reader's language, its symbols between dollars.
@@ -94,9 +95,7 @@ impl Locale<'_> {
 
     /// Digits as Rust writes them, with a true minus and the chosen decimal sign.
     pub fn digits(self, text: &str) -> String {
-        let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
-        let minus = if is_zero { "" } else { "\u{2212}" };
-        let text = text.replace('-', minus);
+        let text = with_minus(text);
         if self.decimal_comma {
             text.replace('.', ",")
         } else {

@@ -72,7 +72,9 @@ impl std::str::FromStr for Format {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        let found = Self::ALL.iter().find(|f| f.name() == name).copied();
+        let name = name.trim();
+        let is_named = |f: &&Self| f.name().eq_ignore_ascii_case(name);
+        let found = Self::ALL.iter().find(is_named).copied();
         let known = <Self as strum::VariantNames>::VARIANTS.join(", ");
         found.ok_or_else(|| format!("unknown format '{name}'; known are {known}"))
     }

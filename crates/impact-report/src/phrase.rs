@@ -125,23 +125,6 @@ pub enum Phrase {
     Sticking,
     Undetermined,
     Edge,
-    AccelerationX,
-    AccelerationY,
-    DisplacementX,
-    DisplacementY,
-    FrameX,
-    FrameY,
-    VelocityX,
-    VelocityY,
-    CornerOf,
-    GainOf,
-    DelayOf,
-    ClearanceErrorOf,
-    DampingAsymmetry,
-    DriveAsymmetry,
-    MassAsymmetry,
-    ScrewZero,
-    StiffnessAsymmetry,
     CoefficientOfRestitution,
     DampingRatio,
     NaturalFrequency,
@@ -229,6 +212,7 @@ pub enum Phrase {
     CaptionRegions,
     CaptionAlikeInKind,
     CaptionResiduals,
+    CaptionResidualsThinned,
     // Tables
     TablePublished,
     PublishedSpeed,
@@ -236,6 +220,7 @@ pub enum Phrase {
     TableRecordsByMethod,
     TableRecords,
     TableMethods,
+    EdgeMeans,
     FarBrackets,
     TableBrackets,
     TableManyBrackets,
@@ -314,6 +299,8 @@ pub enum Text {
     Phrase(Phrase),
     /// A phrase and what follows it.
     Followed(Phrase, String),
+    /// What a channel measures.
+    Role(Role),
     /// Symbols, names and the theory's figures, which are English.
     Plain(String),
 }
@@ -328,6 +315,12 @@ impl From<Phrase> for Text {
 impl From<(Phrase, &str)> for Text {
     fn from((phrase, unit): (Phrase, &str)) -> Self {
         Self::Followed(phrase, format!(" ({unit})"))
+    }
+}
+
+impl From<Role> for Text {
+    fn from(role: Role) -> Self {
+        Self::Role(role)
     }
 }
 
@@ -352,21 +345,4 @@ pub(crate) fn motion_text(motion: &Motion) -> Text {
         Motion::Sticking => Phrase::Sticking.into(),
         Motion::Undetermined { .. } => Phrase::Undetermined.into(),
     }
-}
-
-/// The name of what a channel measures.
-pub(crate) fn role_text(role: Role) -> Text {
-    match role {
-        Role::Drive => Phrase::Drive,
-        Role::Contact => Phrase::Contact,
-        Role::VelocityX => Phrase::VelocityX,
-        Role::VelocityY => Phrase::VelocityY,
-        Role::DisplacementX => Phrase::DisplacementX,
-        Role::DisplacementY => Phrase::DisplacementY,
-        Role::AccelerationX => Phrase::AccelerationX,
-        Role::AccelerationY => Phrase::AccelerationY,
-        Role::FrameX => Phrase::FrameX,
-        Role::FrameY => Phrase::FrameY,
-    }
-    .into()
 }

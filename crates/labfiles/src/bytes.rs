@@ -30,7 +30,7 @@ impl ByteOrder {
     }
 }
 
-const DAMAGED: &str = "The file is damaged or was cut short: copy or export it again.";
+const DAMAGED: &str = "the file is damaged or was cut short: copy or export it again";
 
 /// A file mapped into memory for reading.
 #[derive(Debug)]
@@ -92,7 +92,7 @@ impl FileBytes {
             length,
             format!("only {length}: it was cut short while it was read"),
             format!("the file's {} bytes", self.mapped().len()),
-            "Let no other program write the file while it is read, and run again.",
+            "let no other program write the file while it is read, and run again",
         ))
     }
 

@@ -23,10 +23,10 @@ mod parquet;
 mod uff;
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::clocks;
-use crate::convert::item::{Item, once};
+use crate::convert::item::{Item, grouped, once};
 use crate::source::{ReadError, Source, StoredType};
 
 pub use crate::convert::item::{ConvertError, Options};
@@ -74,7 +74,20 @@ pub struct Converted {
     pub notes: Vec<String>,
 }
 
-/// Convert all records of the sources to one output.
+/// The files that [`convert`] writes: `out`, or for several records as CSV those of its folder.
+pub fn files(
+    sources: &[Box<dyn Source>],
+    target: Target,
+    out: &Path,
+    options: &Options,
+) -> Vec<PathBuf> {
+    match target {
+        Target::Csv => csv::files(&items(sources, options), out),
+        _ => vec![out.to_path_buf()],
+    }
+}
+
+/// Convert all records of the sources to one output; files that are there are written over.
 ///
 /// # Errors
 /// If a record cannot be read, no record holds numbers or the output cannot be written;
@@ -92,7 +105,7 @@ pub fn convert(
         Target::UffText => (false, true),
     };
     let note = if tables { filled_up } else { texts_left_out };
-    let mut notes: Vec<String> = items.iter().filter_map(note).collect();
+    let mut notes = grouped(&items, note);
     if matches!(target, Target::Uff | Target::UffText) {
         notes.extend(uff::notes(&items, text, options.single_precision));
     }
@@ -112,21 +125,16 @@ pub fn convert(
     })
 }
 
-/// A note if a record has texts, which HDF5 and universal files cannot hold.
+/// That a record has texts, which HDF5 and universal files cannot hold.
 fn texts_left_out(item: &Item<'_>) -> Option<String> {
     let texts = item.channels().iter();
     let texts = texts.filter(|c| c.stored == StoredType::Text);
     let names: Vec<&str> = texts.map(|c| c.name.as_str()).collect();
-    (!names.is_empty()).then(|| {
-        let names = names.join(", ");
-        format!(
-            "record '{}': texts are left out ({names}); Parquet and CSV keep them",
-            item.name
-        )
-    })
+    let said = |names: String| format!("texts are left out ({names}); Parquet and CSV keep them");
+    (!names.is_empty()).then(|| said(names.join(", ")))
 }
 
-/// A note if a record has channels of several lengths, which the columns of a table cannot have.
+/// That a record has channels of several lengths, which the columns of a table cannot have.
 fn filled_up(item: &Item<'_>) -> Option<String> {
     let channels = item.channels();
     let longest = channels.iter().map(|c| c.samples).max()?;
@@ -135,9 +143,7 @@ fn filled_up(item: &Item<'_>) -> Option<String> {
     (!names.is_empty()).then(|| {
         let names = names.join(", ");
         format!(
-            "record '{}': empty cells fill shorter channels up to {longest} rows ({names}); HDF5 \
-             keeps their lengths",
-            item.name
+            "empty cells fill shorter channels up to {longest} rows ({names}); HDF5 keeps their lengths"
         )
     })
 }
@@ -148,7 +154,7 @@ fn without_numbers(sources: &[Box<dyn Source>]) -> ReadError {
         path,
         "a channel of numbers to convert",
         "none",
-        "List its channels; the measurement may be in another file.",
+        "list its channels; the measurement may be in another file",
     )
 }
 

@@ -147,7 +147,7 @@ fn refuse_ambiguous(
         text.path(),
         "numbers with a decimal mark, or with their thousands separated",
         format!("'{cell}' beside whole numbers of hundreds, where '{mark}' may be either"),
-        "Export the table without separators of thousands.",
+        "export the table without separators of thousands",
     )
     .channel(header.names[column].clone()))
 }

@@ -78,7 +78,7 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
                 Some(note) => note.clone(),
                 None => "no sheet".to_owned(),
             },
-            "Write the record into a sheet of its own, beginning with its heading.",
+            "write the record into a sheet of its own, beginning with its heading",
         ));
     }
     opened("excel", path, datasets, notes, Workbook { tables, places })
@@ -120,7 +120,7 @@ fn whole(path: &Path) -> Result<Vec<u8>, ReadError> {
             path,
             format!("a workbook of at most {} MiB", GREATEST_BYTES >> 20),
             format!("{} MiB", length >> 20),
-            "Save the sheet as CSV: it is read piece by piece.",
+            "save the sheet as CSV: it is read piece by piece",
         ));
     }
     std::fs::read(path).map_err(|e| ReadError::io(path, &e))
@@ -142,7 +142,7 @@ fn refuse_bomb(path: &Path, bytes: &[u8]) -> Result<(), ReadError> {
         path,
         format!("a workbook of at most {} MiB unpacked", most >> 20),
         format!("parts of {} MiB", stated >> 20),
-        "Save the sheet as CSV.",
+        "save the sheet as CSV",
     ))
 }
 

@@ -58,7 +58,7 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
             path,
             "arrays of numbers in the HDF5 file",
             format!("none ({})", notes.join("; ")),
-            "Check that the measurement was saved into this file.",
+            "check that the measurement was saved into this file",
         ));
     }
     let path = path.to_path_buf();
@@ -79,7 +79,7 @@ fn open_store(path: &Path) -> Result<(Store, Tree), ReadError> {
     let length = file.metadata().map_err(io)?.len();
     library::open(path, file, length).map_err(|fault| {
         let remedy =
-            "Copy the file again from the instrument, or write it with an older file layout.";
+            "copy the file again from the instrument, or write it with an older file layout";
         let byte = if fault.is_cut_off() { length } else { 0 };
         ReadError::new(path, "a complete HDF5 file", fault.to_string(), remedy).at(byte)
     })
@@ -94,7 +94,7 @@ impl Hdf5Reader {
             &self.path,
             "a dataset that is packed by a filter that this program has",
             format!("the filter {filter}"),
-            "Write it again without this filter, for example by `h5repack -f GZIP=4 IN OUT`.",
+            "write it again without this filter, for example by `h5repack -f GZIP=4 IN OUT`",
         )
         .channel(&array.path)
     }
@@ -104,7 +104,7 @@ impl Hdf5Reader {
             &self.path,
             "a readable HDF5 dataset",
             found,
-            "Copy the file again from the instrument, or leave this record out.",
+            "copy the file again from the instrument, or leave this record out",
         )
         .channel(&array.path)
     }

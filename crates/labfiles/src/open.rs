@@ -69,7 +69,7 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
             path,
             "a record file",
             "an empty file",
-            "Copy the file again, or leave it out.",
+            "copy the file again, or leave it out",
         ));
     }
     if let Some((_, reader)) = BY_BYTES.iter().find(|(is, _)| is(&front)) {
@@ -77,7 +77,7 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     }
     if let Some((_, kind)) = DOCUMENTS.iter().find(|(first, _)| front.starts_with(first)) {
         let remedy =
-            "Name the file with the numbers that the document shows, or export them as CSV.";
+            "name the file with the numbers that the document shows, or export them as CSV";
         return Err(ReadError::new(path, "a record file", *kind, remedy));
     }
     let extension = path.extension().unwrap_or_default();
@@ -113,7 +113,7 @@ fn front(path: &Path) -> Result<Vec<u8>, ReadError> {
             path,
             "a file",
             "a directory",
-            "Name a file, or a glob of files.",
+            "name a file, or a glob of files",
         ));
     }
     let mut bytes = vec![0; to_usize(metadata.len().min(FRONT_BYTES as u64))];
@@ -136,7 +136,7 @@ fn unknown(path: &Path, front: &[u8]) -> ReadError {
         path,
         "HDF5, Parquet, MATLAB, TDMS, UFF, WAV, LVM, Excel or a text table",
         format!("bytes {} of no known format", bytes.join(" ")),
-        "Convert the file with the program that wrote it, for example to CSV.",
+        "convert the file with the program that wrote it, for example to CSV",
     )
     .at(0)
 }

@@ -50,7 +50,7 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
             path,
             "columns of numbers",
             format!("none ({})", notes.join("; ")),
-            "Write the samples as numbers.",
+            "write the samples as numbers",
         ));
     }
     let reader = ParquetReader { columns, plans };

@@ -55,7 +55,7 @@ pub struct ReadError {
     pub path: PathBuf,
     /// The channel or dataset concerned.
     pub channel: Option<String>,
-    /// What the reader needed there.
+    /// What the reader needed there; empty where the system did not open or read the file.
     pub expected: String,
     /// What it found.
     pub found: String,
@@ -129,15 +129,22 @@ impl ReadError {
     pub fn fault(&self) -> String {
         let channel = self.channel.as_ref();
         let channel = channel.map(|c| format!(", channel '{c}'"));
-        let byte = self.byte.map(|b| format!(" (at byte {b})"));
         format!(
-            "{}{}: {}; expected {}{}",
+            "{}{}: {}",
             self.path.display(),
             channel.unwrap_or_default(),
-            self.found,
-            self.expected,
-            byte.unwrap_or_default()
+            self.what()
         )
+    }
+
+    /// What was found, what was expected and at which offset, without file and channel.
+    pub fn what(&self) -> String {
+        let expected = match self.expected.as_str() {
+            "" => String::new(),
+            expected => format!("; expected {expected}"),
+        };
+        let byte = self.byte.map(|b| format!(" (at byte {b})"));
+        format!("{}{expected}{}", self.found, byte.unwrap_or_default())
     }
 
     /// The same error with the offset in the file at which it was found.
@@ -158,12 +165,12 @@ impl ReadError {
     pub fn io(path: &Path, error: &std::io::Error) -> Self {
         let remedy = match error.kind() {
             std::io::ErrorKind::NotFound => {
-                "Check the path, or the row of the run table that names the file."
+                "check the path, or the row of the run table that names the file"
             }
-            std::io::ErrorKind::PermissionDenied => "Allow reading the file.",
-            _ => "Check the disk and copy the file again.",
+            std::io::ErrorKind::PermissionDenied => "allow reading the file",
+            _ => "check the disk and copy the file again",
         };
-        Self::new(path, "a readable file", said(error), remedy)
+        Self::new(path, "", said(error), remedy)
     }
 }
 
@@ -248,7 +255,7 @@ impl<R> Opened<R> {
             &self.path,
             format!("an index below {below}"),
             format!("{what}, which the file does not have"),
-            "Use an index of `datasets()` and of its channels.",
+            "use an index of `datasets()` and of its channels",
         )
     }
 }

@@ -145,7 +145,7 @@ fn valid_a_line_of_a_preamble_is_no_heading() {
     let record = &source.datasets()[0];
     assert_eq!(
         named(record),
-        [("Second", Some("Second")), ("Volt", Some("Volt"))]
+        [("Second", Some("Second")), ("CH1", Some("Volt"))]
     );
     assert_eq!(record.attributes["Software Version"], "7.1");
     assert_eq!(record.time_axis, Some(0));

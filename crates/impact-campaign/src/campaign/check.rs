@@ -11,7 +11,7 @@ use super::diagnostic::{Code, Diagnostic, Place, Severity};
 use super::discovery::Opener;
 use super::resolved::{RecordEntry, ResolvedCampaign};
 use impact_records::event::{DetectionSource, Impact};
-use impact_records::motion::observe;
+use impact_records::motion::{Observation, observe};
 use impact_records::record::calibrate;
 use impact_records::record::{Flag, FlagCode, Record, Role};
 use labfiles::Source;
@@ -74,17 +74,35 @@ pub fn read_all(
     if driven {
         all.diagnostics.extend(short(&all.fingerprints));
     }
-    let nothing = nothing_stated(campaign, &all);
-    all.diagnostics.extend(nothing);
+    if all.usable > 0 && !all.telling {
+        all.diagnostics.extend(stated_nothing(campaign));
+    }
     all
 }
 
-/// A campaign that states neither a drive nor free decays nor free flights, and whose records show none of them.
-fn nothing_stated(campaign: &ResolvedCampaign, all: &Checked) -> Option<Diagnostic> {
+/// That a campaign states neither a drive nor free decays nor free flights, and its records show none of them.
+pub fn nothing_stated(
+    campaign: &ResolvedCampaign,
+    observations: &[Observation],
+) -> Option<Diagnostic> {
+    let mut usable = observations.iter().filter(|o| !o.excluded()).peekable();
+    let silent = usable.peek().is_some() && !usable.any(tells);
+    silent.then(|| stated_nothing(campaign)).flatten()
+}
+
+/// Whether a record shows what a method of identification uses.
+fn tells(observation: &Observation) -> bool {
+    let speeds = |i: &Impact| i.approach_speed_before_m_s.is_some();
+    observation.tone().is_some()
+        || !observation.decays.is_empty()
+        || observation.impacts.iter().any(speeds)
+}
+
+/// That a campaign whose records show nothing states neither a drive nor free decays nor free flights.
+fn stated_nothing(campaign: &ResolvedCampaign) -> Option<Diagnostic> {
     let drive = campaign.channels.iter().any(|c| c.role == Role::Drive);
     let undriven = |r: &RecordEntry| campaign.driven(r) && r.setting.stated_frequency_hz.is_none();
-    let silent = all.usable > 0 && !all.telling && !drive;
-    (silent && campaign.records.iter().all(undriven)).then(|| {
+    (!drive && campaign.records.iter().all(undriven)).then(|| {
         let place = Place {
             file: campaign.file.clone(),
             item: "records".to_owned(),
@@ -117,10 +135,7 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
     // What `run` would do with it: a record that it refuses is refused here, for the same reason.
     let (detect, classify) = (campaign.detect_settings(), campaign.classify_settings());
     let observed = observe(&record, campaign.machine, &detect, &classify);
-    let speeds = |i: &Impact| i.approach_speed_before_m_s.is_some();
-    let telling = observed.tone().is_some()
-        || !observed.decays.is_empty()
-        || observed.impacts.iter().any(speeds);
+    let telling = tells(&observed);
     let mut flags = observed.flags;
     if campaign.driven(entry) && !flags.iter().any(|f| f.excludes) {
         let supported = observed.impacts.iter();

@@ -2,7 +2,7 @@
 
 use toml::Spanned;
 
-use super::diagnostic::{Code, FaultCollector};
+use super::diagnostic::{Code, Diagnostic, FaultCollector, Place, Severity};
 use super::lines::Text;
 use super::nearest::nearest;
 use super::values::{Placed, WrittenQuantity};
@@ -27,6 +27,25 @@ impl ResolveContext<'_> {
     ) {
         let line = self.text.line_of(at);
         self.faults.fault(code, line, key, message, remedy);
+    }
+
+    /// Note what stops nothing, at a placed value.
+    pub(super) fn note<T>(
+        &mut self,
+        at: &Spanned<T>,
+        key: &str,
+        message: impl Into<String>,
+        remedy: &str,
+    ) {
+        let place = Place {
+            file: self.faults.file().to_path_buf(),
+            line: self.text.line_of(at),
+            item: key.to_owned(),
+            ..Place::default()
+        };
+        let kind = (Code::InvalidValue, Severity::Note);
+        self.faults
+            .extend([Diagnostic::new(kind, place, message, remedy)]);
     }
 
     /// A quantity of a dimension in SI; `None` if it is not written or faulty.

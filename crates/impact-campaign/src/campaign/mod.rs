@@ -27,4 +27,5 @@ pub mod written;
 pub use discovery::{Opener, Taken};
 pub use named_files::NamedFiles;
 pub use nearest::nearest;
+pub use read::not_a_description;
 pub use resolve::{LoadOutcome, load, load_taken};

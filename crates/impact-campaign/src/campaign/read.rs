@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::de::{DeArray, DeTable, DeValue, Deserializer};
 
-use super::diagnostic::{Code, FaultCollector};
+use super::diagnostic::{Code, Diagnostics, FaultCollector};
 use super::lines::Text;
 use super::nearest::nearest;
 use super::resolved::RESOLVED;
@@ -33,6 +33,7 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
             Some(format) => (a_record(format), NAME_CAMPAIGN),
             None => (unreadable(), "save it as UTF-8 in your editor"),
         },
+        (_, std::io::ErrorKind::PermissionDenied) => (unreadable(), "allow reading it"),
         _ => (
             unreadable(),
             "name the right file; `impactid init DIR` writes one",
@@ -40,6 +41,20 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
     };
     faults.fault(Code::UnreadableFile, None, "", message, remedy);
     None
+}
+
+/// Why a path cannot be the description of a campaign: it is not there, a folder or a record. Nothing of a file that
+/// is one, with whatever faults.
+pub fn not_a_description(path: &Path) -> Diagnostics {
+    let mut faults = FaultCollector::new(path);
+    let may_be = match labfiles::read_text(path) {
+        Ok(text) => DeTable::parse(&text).is_ok() || record(path).is_none(),
+        Err(_) => path.is_file() && record(path).is_none(),
+    };
+    if !may_be && let Some(text) = text(path, &mut faults) {
+        let _ = read(&text, &mut faults);
+    }
+    faults.into_diagnostics()
 }
 
 /// What to do where a record is named.
@@ -192,6 +207,31 @@ mod tests {
         let mut faults = FaultCollector::new(Path::new("campaign.toml"));
         let written = read(text, &mut faults);
         (written.unwrap_or_default(), faults.into_diagnostics().0)
+    }
+
+    #[test]
+    fn what_is_no_file_a_folder_or_a_record_describes_no_campaign() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        std::fs::write(path("r1.csv"), "t [s],x [mm]\n0,1\n0.5,2\n1,3\n").unwrap();
+        for (name, says) in [
+            ("none.toml", "campaign.toml cannot be read"),
+            ("", "it is a folder"),
+            ("r1.csv", "it is a record (csv)"),
+        ] {
+            let found = not_a_description(&path(name)).0;
+            assert_eq!(found.len(), 1, "{found:?}");
+            assert!(found[0].message.contains(says), "{found:?}");
+        }
+        for text in [
+            "[campaign]\nmachine = \"triple\"\n",
+            "[campaign\nname = ",
+            "",
+        ] {
+            std::fs::write(path("campaign.toml"), text).unwrap();
+            let found = not_a_description(&path("campaign.toml"));
+            assert_eq!(found, Diagnostics::default(), "{text}");
+        }
     }
 
     #[test]

@@ -88,7 +88,8 @@ struct Header {
 /// The text of a run table, and whether it is a sheet of a workbook.
 fn text_of(path: &Path, faults: &mut FaultCollector) -> Option<(String, bool)> {
     let mut refuse = |what: String| {
-        let remedy = "check run_table in [records]";
+        let remedy = "check run_table in [records]; its path starts at the folder of campaign.toml, where that is a \
+                      link at the link's";
         faults.fault(Code::UnreadableFile, None, "", what, remedy);
     };
     let tables = match labfiles::workbook_tables(path) {

@@ -1,5 +1,7 @@
 //! Why the pipeline stops, and how it reports its progress.
 
+use std::path::PathBuf;
+
 use impact_identification::identify::Identification;
 use impact_oscillator::model::ModelError;
 use impact_records::record::Flag;
@@ -12,6 +14,8 @@ pub type Progress<'a> = &'a (dyn Fn(&'static str, u64, u64) + Sync);
 /// A record that cannot be used, with the flags that say why.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RefusedRecord {
+    /// Its file.
+    pub file: PathBuf,
     /// Its name.
     pub record: String,
     /// Its flags.

@@ -30,7 +30,7 @@ impl Observed {
         let kept = BlockCache::none();
         let whole = campaign.records.len();
         let observations = observe::observe_in_chunks(campaign, &kept, whole, progress)?;
-        Self::from_observations(aligned(campaign, observations, progress)?)
+        Self::from_observations(campaign, aligned(campaign, observations, progress)?)
     }
 
     /// Observe all records of a campaign with checkpoints in `out`; with `resume` those of an
@@ -46,7 +46,7 @@ impl Observed {
         let kept = checkpoint::open(campaign, out, resume)?;
         let chunk = checkpoint::chunk_of(campaign.records.len());
         let observations = observe::observe_in_chunks(campaign, &kept, chunk, progress)?;
-        Self::from_observations(aligned(campaign, observations, progress)?)
+        Self::from_observations(campaign, aligned(campaign, observations, progress)?)
     }
 
     /// The channels that were found late, and whose samples were moved back.
@@ -61,16 +61,19 @@ impl Observed {
         }
     }
 
-    /// What was observed, with the brackets in it.
+    /// What was observed of a campaign's records, in their order, with the brackets in it.
     ///
     /// # Errors
     /// [`PipelineError::NothingUsable`] where no record can be used.
     pub(super) fn from_observations(
+        campaign: &ResolvedCampaign,
         mut observations: Vec<Observation>,
     ) -> Result<Self, PipelineError> {
         scale_drives(&mut observations);
         if observations.iter().all(Observation::excluded) {
-            let refused = observations.into_iter().map(|o| RefusedRecord {
+            let refused = observations.into_iter().zip(&campaign.records);
+            let refused = refused.map(|(o, entry)| RefusedRecord {
+                file: entry.file.clone(),
                 record: o.record,
                 flags: o.flags,
             });

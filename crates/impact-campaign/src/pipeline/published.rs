@@ -100,7 +100,7 @@ fn read(path: &Path) -> Result<Vec<PublishedSpeed>, PipelineError> {
             path,
             "a CSV table of published speeds, one row a speed",
             found,
-            "Write its columns as docs/campaign.md lists them under [published].",
+            "write its columns as docs/campaign.md lists them under [published]",
         )
     };
     let mut reader = csv::ReaderBuilder::new()

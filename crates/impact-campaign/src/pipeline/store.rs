@@ -81,9 +81,10 @@ pub fn ingest(
         ..
     } = writer.finish()?;
     if entries.iter().all(|e| e.dataset.is_none()) {
-        let refused = entries.into_iter().zip(flags);
+        let refused = campaign.records.iter().zip(flags);
         let refused = refused.map(|(entry, flags)| RefusedRecord {
-            record: entry.id,
+            file: entry.file.clone(),
+            record: entry.id.clone(),
             flags,
         });
         return Err(PipelineError::NothingUsable(refused.collect()));
@@ -241,7 +242,7 @@ fn note_roles(roles: &mut Vec<ChannelSetup>, record: &Record) {
 /// # Errors
 /// If the files of stage 1 are missing or the outputs cannot be written.
 pub fn classify(out: &Path, progress: Progress<'_>) -> Result<Observed, PipelineError> {
-    let ingested: Ingested = read_json(&of_stage(out, INGESTED_CAMPAIGN, "calibrated records")?)?;
+    let ingested = read_ingested(out)?;
     let mut observed = Observed::of(&ingested.campaign, progress)?;
     // what was found in the record itself is first: it has the channels' own names
     for (observation, flags) in observed.observations.iter_mut().zip(ingested.flags) {
@@ -256,6 +257,20 @@ pub fn classify(out: &Path, progress: Progress<'_>) -> Result<Observed, Pipeline
     super::tables::write(&super::tables::files(&observed)?, out)?;
     write_observed(&mut observed, out)?;
     Ok(observed)
+}
+
+/// What stage 1 left in a folder, wherever the folder is now.
+fn read_ingested(out: &Path) -> Result<Ingested, PipelineError> {
+    let path = of_stage(out, INGESTED_CAMPAIGN, "calibrated records")?;
+    let mut ingested: Ingested = read_json(&path)?;
+    for entry in &mut ingested.campaign.records {
+        let name = entry.file.file_name().unwrap_or_default();
+        entry.file = out.join(name);
+        if entry.dataset.is_some() && !entry.file.is_file() {
+            return Err(store_error(&entry.file, "it is not there"));
+        }
+    }
+    Ok(ingested)
 }
 
 /// Write the observations, and their waveforms, which the report does not need, into a file of their

@@ -4,6 +4,7 @@ use strum::IntoEnumIterator;
 
 use super::{Finding, Item, Note, PairAgreement, Reason, Remark, Sentence};
 use crate::method::Method;
+use crate::parameters::Coordinate;
 use crate::parameters::effect::{Effect, EffectKind};
 use impact_records::message::{Message, boxed};
 use impact_records::motion::Undetermined;
@@ -51,10 +52,14 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         .collect()
 }
 
-/// One message of each name that a figure or a table prints: effects and kinds of effects.
+/// One message of each name that a figure or a table prints: effects and kinds of effects, channels, and
+/// parameters without a symbol.
 pub fn labels() -> Vec<Box<dyn Message>> {
+    let named = Coordinate::all().filter(|c| c.symbol().is_none());
     boxed(Effect::ALL.iter().copied())
         .chain(boxed(EffectKind::ALL.iter().copied()))
+        .chain(boxed(Role::ALL.iter().copied()))
+        .chain(boxed(named))
         .collect()
 }
 
@@ -66,7 +71,6 @@ mod tests {
     use crate::messages::direction::Direction;
     use crate::messages::{DampingPoint, GroupPoint, PublishedSetting, StatedValue};
     use crate::methods::answer::Agreement;
-    use crate::parameters::Coordinate;
     use impact_records::message::{faults, plain};
 
     /// The messages of an identification that are part of others or of no result.
@@ -116,6 +120,17 @@ mod tests {
     }
 
     #[test]
+    fn every_parameter_has_a_name_of_its_own_that_is_no_identifier() {
+        let mut names = BTreeSet::new();
+        for coordinate in Coordinate::all() {
+            let name = plain(&coordinate);
+            let is_symbol = coordinate.symbol().is_some();
+            assert!(is_symbol || !name.contains('_'), "{name}");
+            assert!(names.insert(name.clone()), "{name}");
+        }
+    }
+
+    #[test]
     fn json_has_kind_numbers_and_text_and_reads_back() {
         for finding in Finding::iter() {
             let json = serde_json::to_value(&finding).expect("JSON");
@@ -146,7 +161,14 @@ mod tests {
             z_score: -9.0,
         };
         let text = gain.to_string();
-        assert!(text.starts_with("velocity_x reads 5.0 % too low: "));
+        assert!(text.starts_with("velocity x reads 5.0 % too low: "));
+        assert!(text.contains("correct scale in [channels.velocity_x]"));
+        let leans = Note::LeansOn {
+            parameter: Coordinate::Gain(4),
+            correlation: -1.0,
+        };
+        let says = "depends on gain of acceleration x (correlation \u{2212}1.00)";
+        assert_eq!(leans.to_string(), says);
         let deflection = StatedValue {
             parameter: Coordinate::Deflection,
             value: 1e-3,
@@ -171,7 +193,8 @@ mod tests {
         };
         assert_eq!(
             outlying.to_string(),
-            "impacts with speeds far from those of the others, left out: 4 (r1 at 0.250 s, …)"
+            "impacts with speeds more than five robust deviations from those of the others, left out: 4 (r1 at \
+             0.250 s, …)"
         );
     }
 }

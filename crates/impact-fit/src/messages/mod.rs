@@ -21,24 +21,52 @@ pub use reason::{Item, LeftOut, Reason};
 pub use remark::{GroupPoint, Remark, SpeedPoint};
 pub use sentence::{Sentence, StatedValue};
 
-use crate::parameters::Coordinate;
 use crate::parameters::effect::{Effect, EffectKind};
+use crate::parameters::{Coordinate, GAIN_ROLES};
 use impact_records::language::Language;
-use impact_records::message::Message;
+use impact_records::message::{Message, Value};
 use impact_records::message_table;
 
 impl Message for Coordinate {
     fn table(&self) -> &'static str {
-        "coordinate"
+        match self {
+            Self::Effect(effect) => effect.table(),
+            _ => "coordinate",
+        }
     }
 
     fn kind(&self) -> &'static str {
         self.name()
     }
 
-    /// Its symbol, or its name, in every language.
-    fn template(&self, _: Language) -> &'static str {
-        self.symbol()
+    fn key(&self) -> String {
+        let name = match self {
+            Self::Gain(_) => "gain",
+            Self::Corner(_) => "corner",
+            Self::Delay(_) => "delay",
+            Self::Gap(_) => "clearance_error",
+            Self::Effect(effect) => return effect.key(),
+            other => other.name(),
+        };
+        name.to_owned()
+    }
+
+    /// Its symbol, which is that of every language, or its name.
+    fn template(&self, language: Language) -> &'static str {
+        let text = |of: Language| of.own_text(self.table(), &self.key());
+        let named = || text(language).or_else(|| text(Language::default()));
+        self.symbol().or_else(named).unwrap_or(self.name())
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        match self {
+            Self::Gain(i) | Self::Corner(i) | Self::Delay(i) => {
+                let role = GAIN_ROLES.get(*i).unwrap_or(&GAIN_ROLES[0]);
+                vec![("channel", Value::Message(role))]
+            }
+            Self::Gap(i) => vec![("number", Value::Count(i + 1))],
+            _ => Vec::new(),
+        }
     }
 }
 

@@ -27,6 +27,15 @@ pub enum Note {
         /// The parameter.
         parameter: Coordinate,
     },
+    /// Nothing but its interval makes it weak.
+    Wide {
+        /// The parameter.
+        parameter: Coordinate,
+        /// Half of the 95 % interval, of R absolute, of the others relative.
+        half_width: f64,
+        /// Half of the interval from which on the parameter is weak.
+        limit: f64,
+    },
     /// The estimate depends strongly on another parameter.
     LeansOn {
         /// The other parameter.
@@ -119,6 +128,9 @@ message_table! { "note": Note;
     Self::Open { parameter, standard_error } =>
         parameter = Value::Message(parameter),
         width = width(*parameter, *standard_error);
+    Self::Wide { parameter, half_width, limit } =>
+        width = width(*parameter, *half_width),
+        limit = width(*parameter, *limit);
     Self::NotDetermined { parameter } => parameter = Value::Message(parameter);
     Self::LeansOn { parameter, correlation } =>
         parameter = Value::Message(parameter),
@@ -138,11 +150,11 @@ fn digits(value: f64) -> usize {
     (2..10).find(shows).unwrap_or(9)
 }
 
-/// A standard error of a parameter: relative or, of R, absolute.
-fn width(parameter: Coordinate, standard_error: f64) -> Value<'static> {
+/// An error of a parameter: relative or, of R, absolute.
+fn width(parameter: Coordinate, error: f64) -> Value<'static> {
     if parameter.is_logarithm() {
-        Value::Percent(standard_error, 2)
+        Value::Percent(error, 2)
     } else {
-        Value::Number(standard_error, 2)
+        Value::Number(error, 2)
     }
 }

@@ -21,7 +21,7 @@ use impact_records::signal::robust;
 
 /// Relative error of instruments and model that noise does not show.
 const RELATIVE_ERROR: f64 = 3e-4;
-/// Robust deviations beyond which an impact's ratio is an outlier.
+/// Robust deviations beyond which an impact's ratio is an outlier, as the remark and docs/theory.md say.
 const OUTLYING_IMPACT: f64 = 5.0;
 /// Scatter of single impacts' ratios beside the noise.
 const IMPACT_SCATTER: f64 = 1e-3;

@@ -98,14 +98,14 @@ impl Coordinate {
         }
     }
 
-    /// Symbol between dollars, or the name of what has no symbol.
-    pub fn symbol(self) -> &'static str {
+    /// Symbol between dollars of what has one.
+    pub fn symbol(self) -> Option<&'static str> {
         match self {
-            Self::Restitution => "$R$",
-            Self::Frequency => "$f_0$",
-            Self::Damping => "$β$",
-            Self::Deflection => "$x_st$",
-            other => other.name(),
+            Self::Restitution => Some("$R$"),
+            Self::Frequency => Some("$f_0$"),
+            Self::Damping => Some("$β$"),
+            Self::Deflection => Some("$x_st$"),
+            _ => None,
         }
     }
 

@@ -282,9 +282,12 @@ fn observe_decay(record: &Record) -> Observation {
 /// Flags without those that follow from what excludes the record already, as a channel that is missing: that nothing
 /// is found in it.
 fn without_what_follows(record: &Record, mut flags: Vec<Flag>) -> Vec<Flag> {
+    let mut known = record.flags.iter();
+    let too_short = known.any(|f| f.code == FlagCode::TooFewSamples);
     let follows = |f: &Flag| {
-        use FlagCode::{NoFreeDecay, NoImpact, OneMassAlone};
+        use FlagCode::{DriveNotHarmonic, NoFreeDecay, NoImpact, OneMassAlone};
         matches!(f.code, NoImpact | NoFreeDecay | OneMassAlone)
+            || too_short && f.code == DriveNotHarmonic
     };
     if record.flags.iter().any(|f| f.excludes && !follows(f)) {
         flags.retain(|f| !follows(f));

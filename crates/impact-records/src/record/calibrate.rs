@@ -23,14 +23,10 @@ pub fn read_flag(error: &ReadError) -> Flag {
         Some(channel) => format!("channel '{channel}': "),
         None => String::new(),
     };
-    let byte = error
-        .byte
-        .map(|b| format!(" (at byte {b})"))
-        .unwrap_or_default();
     Flag::new(
         FlagCode::Unreadable,
         error.channel.as_deref(),
-        format!("{place}{}; expected {}{byte}", error.found, error.expected),
+        format!("{place}{}", error.what()),
         error.remedy.clone(),
     )
 }

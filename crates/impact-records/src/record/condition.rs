@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use super::{Channel, Flag, FlagCode, Record, Role};
+use crate::signal::digits::significant;
 use crate::signal::{columns, interpolation, robust, whole};
 
 /// Part of a channel's samples at the rail above which the record is left out.
@@ -122,6 +123,10 @@ fn keep(values: &mut Vec<f64>, first: usize, last: usize) {
 pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool) {
     if record.channels.is_empty() || record.samples() == 0 {
         record.flags.push(no_samples(record));
+        return;
+    }
+    if let Some(flag) = too_short(record, driven) {
+        record.flags.push(flag);
         return;
     }
     let mut flags = Vec::new();
@@ -284,6 +289,36 @@ impl Span {
     }
 }
 
+/// A value of a channel with its unit.
+fn si(channel: &Channel, value: f64) -> String {
+    let text = format!(
+        "{} {}",
+        significant(value, 5),
+        channel.dimension.si_symbol()
+    );
+    text.trim_end().to_owned()
+}
+
+/// Samples of the shortest record in which a constant channel is told from one that was cut short.
+const FEWEST_SAMPLES: usize = 16;
+
+/// A record of so few samples that none of its channels can be judged.
+fn too_short(record: &Record, driven: bool) -> Option<Flag> {
+    let samples = record.samples();
+    let is_dead =
+        |c: &Channel| !c.role.is_frame() && dead(c, &Span::of(&c.values), driven).is_some();
+    if samples >= FEWEST_SAMPLES || !record.channels.iter().any(is_dead) {
+        return None;
+    }
+    let noun = if samples == 1 { "sample" } else { "samples" };
+    Some(Flag::new(
+        FlagCode::TooFewSamples,
+        None,
+        format!("the record is too short: {samples} {noun}"),
+        "look whether the file is whole; export the record again, or record longer",
+    ))
+}
+
 /// A channel that shows nothing but one value or two neighbouring steps of the converter. A
 /// contact may well stay open.
 fn dead(channel: &Channel, span: &Span, driven: bool) -> Option<Flag> {
@@ -297,7 +332,11 @@ fn dead(channel: &Channel, span: &Span, driven: bool) -> Option<Flag> {
     Some(Flag::new(
         FlagCode::DeadChannel,
         Some(&channel.name),
-        format!("channel '{}' is constant at {low:.6e}", channel.name),
+        format!(
+            "channel '{}' is constant at {}",
+            channel.name,
+            si(channel, low)
+        ),
         "check for a loose cable or a wrong channel in campaign.toml; the record is left out",
     ))
 }
@@ -327,11 +366,11 @@ fn clipped(channel: &Channel, span: &Span, (range, rate_hz): (Option<f64>, f64))
         FlagCode::Clipped,
         Some(&channel.name),
         format!(
-            "channel '{}' is clipped: {count} samples ({:.1} %) at {:.4e} or {:.4e}",
+            "channel '{}' is clipped: {count} samples ({:.1} %) at {} or {}",
             channel.name,
             100.0 * part,
-            low,
-            high
+            si(channel, low),
+            si(channel, high)
         ),
         "record again with a larger range of the converter",
     );
@@ -380,11 +419,11 @@ fn clipped_spikes(channel: &Channel, spikes: &[Range<usize>], stated: bool) -> O
         FlagCode::Clipped,
         Some(&channel.name),
         format!(
-            "channel '{}' is clipped at {} impacts, at {:.4e}: what its spikes add up to is not the jump of \
+            "channel '{}' is clipped at {} impacts, at {}: what its spikes add up to is not the jump of \
              the velocity",
             channel.name,
             spikes.len(),
-            channel.values[first.start]
+            si(channel, channel.values[first.start])
         ),
         "nothing: only the motion between the impacts is used",
     );
@@ -525,7 +564,7 @@ mod tests {
             assert!(!flags[0].excludes);
             assert_eq!(
                 flags[0].message,
-                "channel 'velocity_x' is clipped at 10 impacts, at -5.0000e2: what its spikes add up to is \
+                "channel 'velocity_x' is clipped at 10 impacts, at -500 m/s: what its spikes add up to is \
                  not the jump of the velocity"
             );
         }
@@ -534,6 +573,23 @@ mod tests {
         let mut cut = record(|i| sine(i).clamp(-0.9, 0.9));
         cut.channels[1].role = Role::AccelerationX;
         assert!(inspected(cut, &[None, None])[0].excludes);
+    }
+
+    #[test]
+    fn a_record_of_two_samples_is_too_short_and_not_dead() {
+        let values = [-10.707_03, 10.624_33];
+        let mut record = Record::of(
+            1000.0,
+            &[(Role::VelocityX, &values), (Role::Drive, &values)],
+        );
+        inspect(&mut record, &[None, None], true);
+        let found: Vec<_> = record.flags.iter().map(|f| f.code).collect();
+        assert_eq!(found, [FlagCode::TooFewSamples]);
+        assert_eq!(
+            record.flags[0].message,
+            "the record is too short: 2 samples"
+        );
+        assert!(record.excluded());
     }
 
     #[test]

@@ -46,6 +46,8 @@ flag_codes! {
     Unreadable = "unreadable",
     /// There are no samples.
     Empty = "empty",
+    /// There are too few samples.
+    TooFewSamples = "too_few_samples",
     /// The dataset has no channel of the stated name.
     MissingChannel = "missing_channel",
     /// The file has no such dataset.

@@ -68,6 +68,8 @@ pub enum Role {
     FrameY,
 }
 
+crate::message_table! { "role": Role; }
+
 impl Role {
     /// All roles, in the order of campaign.toml.
     pub const ALL: &[Self] = <Self as strum::VariantArray>::VARIANTS;

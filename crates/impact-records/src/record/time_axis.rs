@@ -260,7 +260,7 @@ fn regular(times: &[f64], steps: &[f64], step: f64, flags: &mut Vec<Flag>) -> Op
                 "{lost} samples are missing in the time axis, the first after {} s",
                 times[at]
             ),
-            "record again with a larger buffer; the record is left out",
+            "record again with a larger buffer (a camera: with more light or fewer pictures a second); the record is left out",
         ));
     }
     let repeated = steps.iter().filter(|s| **s < 0.5 * step).count();

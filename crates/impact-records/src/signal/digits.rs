@@ -29,3 +29,23 @@ pub fn decimal_exponent(value: f64, digits: i32) -> i32 {
     let rounded = (value.abs() / 10f64.powi(exponent - digits + 1)).round();
     exponent + i32::from(rounded >= 10f64.powi(digits))
 }
+
+/// A number to so many significant digits, without an exponent and without zeros at its end.
+///
+/// ```
+/// use impact_records::signal::digits::significant;
+///
+/// assert_eq!([-10.707_03, 0.000_125, 1.2e7].map(|v| significant(v, 4)), ["-10.71", "0.000125", "12000000"]);
+/// ```
+pub fn significant(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let exponent = decimal_exponent(value, digits);
+    let decimals = usize::try_from(digits - 1 - exponent).unwrap_or(0);
+    let text = format!("{value:.decimals$}");
+    if decimals == 0 {
+        return text;
+    }
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

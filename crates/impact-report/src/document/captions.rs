@@ -170,7 +170,13 @@ fn residuals(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
         let text = Phrase::CaptionResiduals;
         let method = locale.message(&set.method);
         let count = set.total.to_string();
-        let text = locale.translate_with(text, &[("method", &method), ("count", &count)]);
+        let mut text = locale.translate_with(text, &[("method", &method), ("count", &count)]);
+        if set.points.len() < set.total {
+            let drawn = set.points.len().to_string();
+            let thinned = Phrase::CaptionResidualsThinned;
+            text.push(' ');
+            text.push_str(&locale.translate_with(thinned, &[("drawn", &drawn)]));
+        }
         (numbered("residuals", i), text)
     })
     .collect()

@@ -14,6 +14,7 @@ use crate::phrase::Phrase;
 use impact_fit::methods::answer::found_by;
 use impact_fit::parameters::Coordinate;
 use impact_fit::{Finding, Method, MethodResult};
+use impact_records::motion::BoundaryKind;
 
 /// All sections in their order.
 pub(super) fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
@@ -73,12 +74,20 @@ fn regions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     blocks.extend(drawn.figures_block(&[("map", &map_caption(content, drawn.locale))]));
     blocks.extend(boundaries_alone(content, drawn.locale).map(paragraph));
     blocks.extend(tables::brackets(content, drawn.locale).map(|t| t.block("brackets")));
+    blocks.extend(edges(content, drawn.locale).map(paragraph));
     blocks.extend(far_brackets(content, drawn.locale).map(paragraph));
     section(
         drawn.locale.translate(Phrase::RegionsOfMotion),
         true,
         blocks,
     )
+}
+
+/// What the table of brackets calls an edge, where it has one.
+fn edges(content: &ReportContent, locale: Locale<'_>) -> Option<String> {
+    let mut kinds = content.compared.brackets.iter().map(|b| b.kind);
+    let has_edge = kinds.any(|kind| kind == BoundaryKind::Other);
+    has_edge.then(|| locale.translate(Phrase::EdgeMeans))
 }
 
 /// Why brackets may be far off the simulated boundary, where some that are used are.
@@ -194,10 +203,10 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
             .collect();
         blocks.extend(drawn.figures_block(&named));
     }
-    // Three comparisons fill a page; below one alone there is room. Pages that begin anew are set beside
+    // Three comparisons fill a page; below one or two there is room. Pages that begin anew are set beside
     // each other.
     let comparisons = content.compared.comparisons.len();
-    let new_page = comparisons > 0 && comparisons % 3 != 1;
+    let new_page = comparisons > 0 && comparisons.is_multiple_of(3);
     section(
         drawn.locale.translate(Phrase::MethodByMethod),
         new_page,

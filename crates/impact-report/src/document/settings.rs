@@ -20,7 +20,7 @@ const DEFAULTS: [&str; 4] = [
 /// a default.
 pub(super) fn settings(settings: &Value) -> Block {
     let mut lines = Vec::new();
-    flatten("", settings, &mut lines);
+    flatten("", &rounded(settings), &mut lines);
     let text = lines.join("\n");
     let many = text.lines().count() > MANY_LINES;
     let longest = text.lines().map(|l| l.chars().count()).max().unwrap_or(0);
@@ -31,6 +31,25 @@ pub(super) fn settings(settings: &Value) -> Block {
         _ => 1,
     };
     Block::Verbatim { text, columns }
+}
+
+/// The same with its numbers to fifteen digits: a factor of a unit leaves 9.999999999999999e-6 of 10 µm.
+fn rounded(value: &Value) -> Value {
+    match value {
+        Value::Number(number) if number.is_f64() => {
+            let digits = number.as_f64().map(|n| format!("{n:.14e}"));
+            let number = digits.and_then(|digits| digits.parse::<f64>().ok());
+            number.map_or(Value::Null, Value::from)
+        }
+        Value::Array(items) => items.iter().map(rounded).collect(),
+        Value::Object(fields) => {
+            let fields = fields.iter();
+            fields
+                .map(|(key, field)| (key.clone(), rounded(field)))
+                .collect()
+        }
+        other => other.clone(),
+    }
 }
 
 fn flatten(path: &str, value: &Value, lines: &mut Vec<String>) {
@@ -111,6 +130,21 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+
+    #[test]
+    fn numbers_have_the_digits_that_were_stated() {
+        let block = settings(&json!({"gap_m": 10.0 * 1e-6 * 0.999_999_999_999_999_9, "n": 3}));
+        let expected = "gap_m = 0.00001\nn = 3";
+        assert_eq!(
+            block,
+            Block::Verbatim {
+                text: expected.into(),
+                columns: 1
+            }
+        );
+        let block = settings(&json!({"f": 0.1 + 0.2}));
+        assert!(matches!(block, Block::Verbatim { text, .. } if text == "f = 0.3"));
+    }
 
     #[test]
     fn json_settings_become_lines() {

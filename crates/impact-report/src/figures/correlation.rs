@@ -15,8 +15,7 @@ use crate::kit::path::Rect;
 use crate::kit::richtext;
 use crate::locale::Locale;
 use crate::parameters::parameter;
-use crate::phrase::{Phrase, Text};
-use impact_fit::GAIN_ROLES;
+use crate::phrase::Phrase;
 use impact_fit::parameters::Coordinate;
 use impact_identification::replay::Correlation;
 
@@ -179,37 +178,10 @@ fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, locale: Locale<'_>
 
 /// Symbol of a parameter, or the name of what is fitted beside it.
 pub(crate) fn name(coordinate: Coordinate, locale: Locale<'_>) -> String {
-    let of_channel = |phrase: Phrase, channel: usize| {
-        let role = GAIN_ROLES.get(channel).copied();
-        let role = role.map_or_else(String::new, |role| locale.role(role));
-        locale.translate_with(phrase, &[("channel", &role)])
-    };
-    match coordinate {
-        Coordinate::Gain(i) => of_channel(Phrase::GainOf, i),
-        Coordinate::Corner(i) => of_channel(Phrase::CornerOf, i),
-        Coordinate::Delay(i) => of_channel(Phrase::DelayOf, i),
-        Coordinate::Gap(i) => {
-            let number = (i + 1).to_string();
-            locale.translate_with(Phrase::ClearanceErrorOf, &[("number", &number)])
-        }
-        Coordinate::Effect(effect) => locale.message(&effect),
-        other => locale.text(&coordinate_text(other)),
+    match parameter(coordinate) {
+        Some(asked) => asked.symbol.to_owned(),
+        None => locale.message(&coordinate),
     }
-}
-
-/// Name of a coordinate that belongs to no channel, no single clearance and no effect.
-fn coordinate_text(coordinate: Coordinate) -> Text {
-    let phrase = match coordinate {
-        Coordinate::DriveAsymmetry => Phrase::DriveAsymmetry,
-        Coordinate::StiffnessAsymmetry => Phrase::StiffnessAsymmetry,
-        Coordinate::DampingAsymmetry => Phrase::DampingAsymmetry,
-        Coordinate::MassAsymmetry => Phrase::MassAsymmetry,
-        Coordinate::ScrewZero => Phrase::ScrewZero,
-        other => {
-            return parameter(other).map_or(other.name(), |p| p.symbol).into();
-        }
-    };
-    phrase.into()
 }
 
 /// Blue for positive, vermilion for negative, deeper for stronger.

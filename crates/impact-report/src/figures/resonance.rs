@@ -11,7 +11,7 @@ use crate::kit::panel::{PAIR_LEFT, Panel, Sides, pair};
 use crate::kit::path::Rect;
 use crate::kit::units::{PrintUnit, print_unit};
 use crate::locale::Locale;
-use crate::phrase::{Phrase, role_text};
+use crate::phrase::Phrase;
 use impact_identification::replay::{MeasuredAmplitude, ResonanceCurve};
 
 /// Height of the panels, points.
@@ -151,7 +151,7 @@ impl Series<'_> {
 
 fn keys(curve: &ResonanceCurve, fits: Option<bool>) -> Vec<Key> {
     let mut keys = vec![
-        Key::new(Sign::Nothing, role_text(curve.role)),
+        Key::new(Sign::Nothing, curve.role),
         Key::new(Sign::dot(look::BLUE), Phrase::MeasuredWithStandardError),
     ];
     if curve.points.iter().any(|p| !p.used) {

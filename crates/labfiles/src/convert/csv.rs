@@ -1,7 +1,7 @@
 //! Records to CSV: remarks, a header with units, one row per sample.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::convert::file_names;
 use crate::convert::item::{Column, ConvertError, Item, io};
@@ -16,13 +16,27 @@ pub(super) fn write(items: &[Item<'_>], out: &Path) -> Result<(), ConvertError> 
     }
     let target = out.with_extension("");
     let fill = |folder: &Path| {
-        let names = file_names::of_records(items.iter().map(|item| item.name.as_str()));
-        items.iter().zip(names).try_for_each(|(item, name)| {
-            let name = format!("{name}.csv");
-            one(item, &folder.join(&name), &target.join(&name))
-        })
+        items
+            .iter()
+            .zip(names(items))
+            .try_for_each(|(item, name)| one(item, &folder.join(&name), &target.join(&name)))
     };
     write_folder_whole_or(&target, fill, |source| io(&target)(source).into())
+}
+
+/// The files that [`write`] writes.
+pub(super) fn files(items: &[Item<'_>], out: &Path) -> Vec<PathBuf> {
+    if items.len() == 1 {
+        return vec![out.to_path_buf()];
+    }
+    let target = out.with_extension("");
+    names(items).iter().map(|name| target.join(name)).collect()
+}
+
+/// The names of the files of several records.
+fn names(items: &[Item<'_>]) -> Vec<String> {
+    let names = file_names::of_records(items.iter().map(|item| item.name.as_str()));
+    names.iter().map(|name| format!("{name}.csv")).collect()
 }
 
 /// Write a record to a file that has another name in an error.

@@ -60,7 +60,7 @@ pub(super) fn refused(item: &Item<'_>, channel: usize, found: &str) -> ReadError
         item.source.path(),
         "a start and an even step, by which universal files state times",
         found,
-        "Convert to HDF5, Parquet or CSV, which keep the times of each channel.",
+        "convert to HDF5, Parquet or CSV, which keep the times of each channel",
     );
     error.channel(&item.channels()[channel].name)
 }

@@ -29,6 +29,27 @@ pub struct Options {
     pub attributes: BTreeMap<String, String>,
 }
 
+/// What is to be said of records, once for all of which the same is.
+pub(super) fn grouped<N: IntoIterator<Item = String>>(
+    items: &[Item<'_>],
+    notes: impl Fn(&Item<'_>) -> N,
+) -> Vec<String> {
+    let mut groups: Vec<(String, Vec<&str>)> = Vec::new();
+    for item in items {
+        for note in notes(item) {
+            match groups.iter_mut().find(|(known, _)| *known == note) {
+                Some((_, names)) => names.push(&item.name),
+                None => groups.push((note, vec![&item.name])),
+            }
+        }
+    }
+    let of = |(note, names): (String, Vec<&str>)| match names[..] {
+        [name] => format!("record '{name}': {note}"),
+        _ => format!("{} records from '{}' on: {note}", names.len(), names[0]),
+    };
+    groups.into_iter().map(of).collect()
+}
+
 /// One record of a source, read when it is written.
 pub(super) struct Item<'a> {
     /// Its name in the output.

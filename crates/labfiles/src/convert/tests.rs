@@ -565,6 +565,42 @@ fn valid_universal_files_are_those_that_pyuff_has_read() {
 }
 
 #[test]
+fn what_is_said_of_several_records_is_said_once() {
+    let dir = tempfile::tempdir().unwrap();
+    let made: Vec<_> = ["a", "b", "c"]
+        .map(|n| dir.path().join(format!("{n}.csv")))
+        .into();
+    for path in &made {
+        std::fs::write(path, "t [s],x [mm],state\n0,1,up\n0.5,2,up\n1,3,down\n").unwrap();
+    }
+    let sources: Vec<_> = made.iter().map(|path| open(path).unwrap()).collect();
+    let out = dir.path().join("out.h5");
+    let done = convert(&sources, Target::Hdf5, &out, &Options::default()).unwrap();
+    let [note] = &done.notes[..] else {
+        panic!("{:?}", done.notes)
+    };
+    let says = "3 records from 'a' on: texts are left out (state)";
+    assert!(note.starts_with(says), "{note}");
+}
+
+#[test]
+fn the_files_that_are_written_are_known_before() {
+    let sources = [open(&own("tables_int16_gzip.h5")).unwrap()];
+    let dir = tempfile::tempdir().unwrap();
+    let options = Options::default();
+    for (target, name) in [(Target::Csv, "day.csv"), (Target::Hdf5, "day.h5")] {
+        let out = dir.path().join(name);
+        let written = files(&sources, target, &out, &options);
+        assert!(written.iter().all(|path| !path.exists()));
+        convert(&sources, target, &out, &options).unwrap();
+        assert!(written.iter().all(|path| path.is_file()), "{written:?}");
+    }
+    let within = std::fs::read_dir(dir.path().join("day")).unwrap().count();
+    let out = dir.path().join("day.csv");
+    assert_eq!(files(&sources, Target::Csv, &out, &options).len(), within);
+}
+
+#[test]
 fn a_rate_that_the_columns_do_not_hold_is_named_once() {
     let dir = tempfile::tempdir().unwrap();
     let made = dir.path().join("made.h5");

@@ -14,7 +14,7 @@ use chrono::{Datelike, NaiveDateTime};
 
 use crate::clocks;
 use crate::convert::even::{self, Even};
-use crate::convert::item::{ConvertError, Item, Options, io};
+use crate::convert::item::{ConvertError, Item, Options, grouped, io};
 use crate::numbers::to_f32;
 use crate::output::write_whole_or;
 use crate::source::{ChannelInfo, Clock, Samples};
@@ -63,20 +63,8 @@ pub(super) fn write(
 
 /// Notes on what the file cannot hold of the records, each once for all that it concerns.
 pub(super) fn notes(items: &[Item<'_>], text: bool, single: bool) -> Vec<String> {
-    let mut rates: Vec<(String, Vec<&str>)> = Vec::new();
-    for item in items {
-        for note in rates_of(item).into_iter().filter_map(rounded_rate) {
-            match rates.iter_mut().find(|(known, _)| *known == note) {
-                Some((_, names)) => names.push(&item.name),
-                None => rates.push((note, vec![&item.name])),
-            }
-        }
-    }
-    let of = |(note, names): (String, Vec<&str>)| match names[..] {
-        [name] => format!("record '{name}': {note}"),
-        _ => format!("{} records from '{}' on: {note}", names.len(), names[0]),
-    };
-    let mut notes: Vec<String> = rates.into_iter().map(of).collect();
+    let rates = |item: &Item<'_>| rates_of(item).into_iter().filter_map(rounded_rate);
+    let mut notes = grouped(items, rates);
     if text {
         let digits = if single { 6 } else { 13 };
         notes.push(format!(

@@ -136,6 +136,6 @@ fn no_table(text: &TextFile, found: &str) -> ReadError {
         text.path(),
         "a table of numbers separated by commas, semicolons, tabs or blanks",
         found,
-        "Export the record as CSV with one row per sample and a header of channel names.",
+        "export the record as CSV with one row per sample and a header of channel names",
     )
 }

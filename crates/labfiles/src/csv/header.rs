@@ -66,6 +66,7 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header
         .is_some_and(|row| row[0].starts_with("Vernier Format"));
     if alone {
         header.names = rows.pop().unwrap_or_default();
+        name_by_preamble(&rows, &mut header.names);
     } else if let Some(names) = grouped_names(&rows, dialect.columns) {
         header.names = names;
         rows.truncate(rows.len() - 2);
@@ -154,6 +155,22 @@ fn units_alone(rows: &[Vec<String>]) -> bool {
     let spelled = |unit: &String| is_time_name(unit) && unit.chars().count() > 2;
     let time = units.first().is_some_and(spelled);
     preamble.len() > FEWEST_PAIRS && preamble.iter().all(pair) && time && !names
+}
+
+/// Name the columns behind the time by the channels of the preamble: `Vertical Units,CH1:V` names `Volt`.
+fn name_by_preamble(rows: &[Vec<String>], names: &mut [String]) {
+    let mut keyed = rows.iter().filter_map(|row| row.split_first());
+    let Some((_, stated)) = keyed.find(|(key, _)| key.eq_ignore_ascii_case("vertical units"))
+    else {
+        return;
+    };
+    let channels = stated.iter().filter_map(|cell| cell.split_once(':'));
+    let channels: Vec<&str> = channels.map(|(channel, _)| channel.trim()).collect();
+    let signals = filled_cells(names).saturating_sub(1);
+    if channels.len() == signals && channels.iter().all(|c| !c.is_empty()) {
+        let named = names.iter_mut().skip(1).zip(channels);
+        named.for_each(|(name, channel)| *name = channel.to_owned());
+    }
 }
 
 /// Number of cells up to the last that is filled.

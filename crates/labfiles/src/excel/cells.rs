@@ -41,7 +41,7 @@ impl SheetCells {
         self.filled.sort_by_key(|(row, column, _)| (*row, *column));
         let refused = |found: String| {
             let expected = "a sheet with one table";
-            let remedy = "Keep one table in a sheet, or save it as CSV.";
+            let remedy = "keep one table in a sheet, or save it as CSV";
             ReadError::new(path, expected, found, remedy).channel(sheet)
         };
         let Some(first) = self.filled.iter().map(|(_, column, _)| *column).min() else {
@@ -114,6 +114,6 @@ pub(super) fn damaged(path: &Path, found: &str) -> ReadError {
         path,
         "an Excel workbook",
         found,
-        "Open it in a spreadsheet program and save it as .xlsx or CSV.",
+        "open it in a spreadsheet program and save it as .xlsx or CSV",
     )
 }

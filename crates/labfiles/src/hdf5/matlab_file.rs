@@ -27,14 +27,14 @@ pub(crate) fn open(path: &Path, store: Store, tree: &Tree) -> Result<Box<dyn Sou
             path,
             "a complete MATLAB 7.3 file",
             e.to_string(),
-            "Save the variables again.",
+            "save the variables again",
         )
     })?;
     if found.variables.leaves.is_empty() {
         let none = || {
             (
                 "no variables".to_owned(),
-                "Save arrays of numbers.".to_owned(),
+                "save arrays of numbers".to_owned(),
             )
         };
         let (left, remedy) = found.variables.nothing_read().unwrap_or_else(none);
@@ -66,7 +66,7 @@ impl MatlabReader {
     }
 
     fn error(&self, leaf: &Leaf, found: impl Into<String>) -> ReadError {
-        let remedy = "Save the variable again, or leave it out.";
+        let remedy = "save the variable again, or leave it out";
         ReadError::new(&self.path, "a readable MATLAB variable", found, remedy).channel(&leaf.name)
     }
 

@@ -192,7 +192,7 @@ impl Pass {
             text.path(),
             "***End_of_Header*** and rows of numbers after the header",
             "the end of the file",
-            "Copy the file again from the instrument: it is cut off.",
+            "copy the file again from the instrument: it is cut off",
         )
         .at(self.header_at)
     }
@@ -203,7 +203,7 @@ fn no_rows(text: &TextFile) -> ReadError {
         text.path(),
         "rows of numbers after ***End_of_Header***",
         "none",
-        "Check that the measurement was saved into this file.",
+        "check that the measurement was saved into this file",
     )
     .at(text.length())
 }

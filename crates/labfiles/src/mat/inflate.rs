@@ -60,7 +60,7 @@ impl<'a> Stream<'a> {
                     self.packed
                 ),
                 format!("an expansion below {SUSPICIOUS_EXPANSION}"),
-                "Save the file uncompressed (save -v6) if it really is so uniform.",
+                "save the file uncompressed (save -v6) if it really is so uniform",
             ));
         }
         Ok(())

@@ -157,7 +157,7 @@ impl Tree {
         Some((
             format!("{found} and nothing else"),
             format!(
-                "Save arrays of numbers or structs of them: {}.",
+                "save arrays of numbers or structs of them: {}",
                 remedies.join("; ")
             ),
         ))

@@ -71,7 +71,7 @@ fn header(file: &FileBytes, cursor: &mut Cursor<'_>) -> Result<Header, ReadError
     }
     if machine > 1 {
         let found = ["VAX D-float", "VAX G-float", "Cray"][machine as usize - 2];
-        let remedy = "Save the file again on a machine with IEEE numbers.";
+        let remedy = "save the file again on a machine with IEEE numbers";
         return Err(file.unsupported(at, format!("{found} numbers"), "IEEE numbers", remedy));
     }
     let rows = u64::from(cursor.u32("the number of rows")?);

@@ -82,7 +82,7 @@ impl Columns {
                 path,
                 expected,
                 format!("{rows} rows"),
-                "Copy the file again.",
+                "copy the file again",
             ));
         }
         let kept = fields.iter().map(|_| OnceLock::new()).collect();
@@ -306,7 +306,7 @@ fn check_footer(path: &Path, file: &File, length: u64) -> Result<(), ReadError> 
 }
 
 fn damaged(path: &Path, found: String) -> ReadError {
-    let remedy = "Copy the file again, or write it again with the program that made it.";
+    let remedy = "copy the file again, or write it again with the program that made it";
     ReadError::new(path, "a complete Parquet file", found, remedy)
 }
 

@@ -26,7 +26,7 @@ pub(super) fn share(
     }
     let code = cursor.u32("a data type")?;
     let kind = Kind::of(code).map_err(|unread| {
-        let remedy = "Save the channel again, as double precision numbers (DBL).";
+        let remedy = "save the channel again, as double precision numbers (DBL)";
         let found = unread.to_string();
         file.unsupported(at + 4, found, "a data type that is read", remedy)
     })?;

@@ -54,7 +54,7 @@ pub(crate) fn recognises(head: &[u8]) -> bool {
 pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let file = FileBytes::open(path)?;
     if file.all().starts_with(b"TDSh") {
-        let remedy = "Open the .tdms file itself.";
+        let remedy = "open the .tdms file itself";
         return Err(file.unsupported(0, "a TDMS index (.tdms_index)", "a TDMS file", remedy));
     }
     let content = segment::scan(&file)?;
@@ -86,7 +86,7 @@ impl TdmsFile {
         let unread = |fault: &ScalingFault| {
             let expected = "linear, polynomial or table scaling";
             let remedy =
-                "Save the channel scaled, or scale it in campaign.toml from its raw values.";
+                "save the channel scaled, or scale it in campaign.toml from its raw values";
             ReadError::new(self.file.path(), expected, fault.to_string(), remedy)
         };
         let reader = Chunks {

@@ -169,7 +169,7 @@ impl TextFile {
             &self.path,
             format!("lines of text of at most {LONGEST_LINE_BYTES} bytes"),
             "a line that does not end",
-            "Check that the file is a text table and that its quotes are closed.",
+            "check that the file is a text table and that its quotes are closed",
         )
         .at(at)
     }

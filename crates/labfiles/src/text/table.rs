@@ -153,7 +153,7 @@ impl Fault {
             text.path(),
             expected,
             format!("{} in row {}", self.found, row + 1),
-            "Correct the row, or turn it into a comment with '#'.",
+            "correct the row, or turn it into a comment with '#'",
         )
         .at(position + self.at as u64);
         match layout.names.get(self.column) {
@@ -351,7 +351,7 @@ pub(crate) fn refuse_ragged(
         text.path(),
         format!("rows of {columns} cells as in the first ones"),
         format!("{rows} rows, most of them much shorter"),
-        "Split the file where its number of columns changes.",
+        "split the file where its number of columns changes",
     ))
 }
 
@@ -361,7 +361,7 @@ fn mixed_line_ends(text: &TextFile, row: u64, at: u64) -> ReadError {
         text.path(),
         "lines that all end alike",
         format!("a carriage return without a line feed in row {}", row + 1),
-        "Save the file again with one kind of line ends.",
+        "save the file again with one kind of line ends",
     )
     .at(at)
 }

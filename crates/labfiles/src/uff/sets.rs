@@ -185,7 +185,7 @@ impl<'a> Scanner<'a> {
                  expected,
                  found,
              }| {
-                let remedy = "Export the function again as set 58.";
+                let remedy = "export the function again as set 58";
                 self.file
                     .unsupported(starts[line] as u64, found, expected, remedy)
             },
@@ -272,7 +272,7 @@ impl<'a> Scanner<'a> {
                 Some(other) => format!("numbers of the unknown format {other}"),
                 None => "no format of the numbers".to_owned(),
             };
-            let remedy = "Export the file again with IEEE numbers or as text (58).";
+            let remedy = "export the file again with IEEE numbers or as text (58)";
             return Err(self
                 .file
                 .unsupported(at as u64, found, "IEEE 754 numbers", remedy));

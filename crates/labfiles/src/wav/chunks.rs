@@ -177,7 +177,7 @@ impl Scanner<'_> {
         }
         let fault = |expected: &str, found: String| Err(self.file.refuse(at, expected, found));
         if !matches!(tag, PCM | FLOAT) {
-            let remedy = "Save the file as PCM or floating point.";
+            let remedy = "save the file as PCM or floating point";
             let found = format!("{} samples", codec(tag));
             return Err(self
                 .file

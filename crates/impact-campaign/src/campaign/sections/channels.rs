@@ -156,7 +156,8 @@ fn demand_motion(setups: &[ChannelSetup], flight: Flight, context: &mut ResolveC
         "channels",
         "no channel of motion is named".to_owned(),
         "add at least one of [channels.velocity_x], [channels.displacement_x] and \
-         [channels.acceleration_x]",
+         [channels.acceleration_x], with its scale where it is a signal in V, as of a strain gauge; times of \
+         impacts are [channels.contact] with content = \"times\" under flight = \"constant_force\"",
     );
 }
 

@@ -80,6 +80,21 @@ pub struct ReportSettings {
     pub date: Option<String>,
 }
 
+impl ReportSettings {
+    /// That the report has no texts in its language and stays English, unless a table of words or a template has them.
+    pub fn without_texts(&self) -> Option<String> {
+        let code = &self.language.0;
+        let has_texts =
+            Language::of_code(code).is_some() || self.words.is_some() || self.template.is_some();
+        (!has_texts).then(|| {
+            format!("there are no texts in the language \"{code}\" of [report]: the report is in English")
+        })
+    }
+}
+
+/// What to do about a language without texts.
+const WITHOUT_TEXTS: &str = "write \"en\" or \"de\", or name a table of your own as words; `impactid report --list-words` prints one to translate";
+
 /// What the report of a campaign refers to.
 pub(crate) struct Around<'a> {
     /// The campaign's name.
@@ -109,7 +124,7 @@ pub(crate) fn resolve(
     let language = value(&table.language).unwrap_or_default();
     let comma = Language::of_code(&language.0).is_some_and(Language::decimal_comma);
     let folder = around.folder;
-    ReportSettings {
+    let settings = ReportSettings {
         title: value(&table.title).unwrap_or_else(|| around.name.to_owned()),
         points: value(&table.points)
             .unwrap_or_default()
@@ -126,7 +141,11 @@ pub(crate) fn resolve(
         template: beside(&table.template, "report.template", folder, context),
         words: words_file(&table.words, folder, context),
         logo: beside(&table.logo, "report.logo", folder, context),
+    };
+    if let (Some(placed), Some(what)) = (&table.language, settings.without_texts()) {
+        context.note(placed, "report.language", what, WITHOUT_TEXTS);
     }
+    settings
 }
 
 /// A table of words that campaign.toml names; a fault where it cannot be used.

@@ -30,7 +30,7 @@ impl Listings {
                 path,
                 "a dataset",
                 "none",
-                "Wait until it is written, or remove the file.",
+                "wait until it is written, or remove the file",
             ));
         }
         let listed = Listed {

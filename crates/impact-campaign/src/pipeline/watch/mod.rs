@@ -301,7 +301,7 @@ impl Watcher {
         };
         adjust(&mut campaign.report)?;
         let observations = self.kept.observations(&campaign);
-        let Ok(observed) = Observed::from_observations(observations) else {
+        let Ok(observed) = Observed::from_observations(&campaign, observations) else {
             return Ok(None);
         };
         let (live, identified) = Live::of(campaign, observed, self.meter)?;
@@ -325,7 +325,7 @@ impl Watcher {
         progress: Progress<'_>,
     ) -> Result<Completed, PipelineError> {
         self.kept.observe(campaign, Stamp::of);
-        let observed = Observed::from_observations(self.kept.observations(campaign))?;
+        let observed = Observed::from_observations(campaign, self.kept.observations(campaign))?;
         let found = self.last.take();
         let found = found.filter(|live| live.is_of(campaign, &observed));
         let found = match found {

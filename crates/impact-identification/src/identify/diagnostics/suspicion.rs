@@ -316,7 +316,7 @@ mod tests {
         let named = of(Coordinate::MassAsymmetry, 0.01);
         assert_eq!(
             named[0].to_string(),
-            "the fit needs a mass_asymmetry of -4.1 %, 4.1 times its uncertainty off what is stated \
+            "the fit needs a mass asymmetry of −4.1 %, 4.1 times its uncertainty off what is stated \
              or assumed: weigh both masses and state mass_x and mass_y in [rig], and check springs, \
              dashpots and drives of both sides"
         );

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::identify::diagnostics::cause::explains;
-use impact_fit::estimate::{Estimate, Status};
+use impact_fit::estimate::{self, Estimate, Status};
 use impact_fit::messages::cause::Cause;
 use impact_fit::messages::{Finding, Note, Remark, Sentence, StatedValue};
 use impact_fit::method::Method;
@@ -122,7 +122,10 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
     let noted = estimates.iter().filter_map(|(parameter, estimate)| {
         Some(Finding::Parameter {
             parameter: *parameter,
-            note: estimate.note.clone()?,
+            note: estimate
+                .note
+                .clone()
+                .or_else(|| wide(*parameter, estimate))?,
         })
     });
     findings.extend(noted);
@@ -132,6 +135,24 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
         findings.retain(|finding| !explains(cause, finding));
     }
     findings
+}
+
+/// Why an estimate is weak of which nothing else says it.
+fn wide(parameter: Coordinate, estimate: &Estimate) -> Option<Note> {
+    let value = estimate.value.filter(|_| estimate.status == Status::Weak)?;
+    let [low, high] = estimate.interval95?;
+    let half = 0.5 * (high - low);
+    let half_width = if parameter.is_logarithm() {
+        half / value
+    } else {
+        half
+    };
+    let limit = estimate::limits(parameter).0;
+    (half_width >= limit).then_some(Note::Wide {
+        parameter,
+        half_width,
+        limit,
+    })
 }
 
 /// Whether a remark is on what the laboratory can mend although the model fits.
@@ -250,6 +271,19 @@ mod tests {
         let nothing = judged(&MethodResult::default(), &[], true);
         assert_eq!(nothing.kind, VerdictKind::NotIdentifiable);
         assert_eq!(nothing.sentences[0], Sentence::NothingUsable);
+    }
+
+    #[test]
+    fn what_is_weak_for_its_interval_alone_says_so() {
+        let mut weak = joint(0.04, 0.001);
+        weak.parameters.restitution.as_mut().unwrap().note = None;
+        let found = judged(&weak, &[], true);
+        assert_eq!(
+            found.findings[0].to_string(),
+            "R: its 95 % interval is ± 0.08 wide, and a parameter is weak from ± 0.05 on: more or longer records \
+             make it narrower"
+        );
+        assert_eq!(judged(&joint(0.001, 0.001), &[], true).findings, []);
     }
 
     #[test]

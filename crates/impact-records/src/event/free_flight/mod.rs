@@ -531,8 +531,8 @@ fn cut_flag(cut: &[(f64, usize)], rate_hz: f64) -> Option<Flag> {
             FlagCode::ApproachCut,
             None,
             format!(
-                "before the impact at {time_s:.3} s {seconds:.3} s of the approach that are no free flight are \
-                 left out, as of a push by hand"
+                "the approach to the impact at {time_s:.3} s is used from where it is a free flight; the \
+                 {seconds:.3} s before that are left out, as of a push by hand"
             ),
             "nothing, if the mass was pushed or released there",
         )
