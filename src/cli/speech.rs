@@ -92,7 +92,7 @@ message_table! { "output": Output;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impact_identification::identify::Sentence;
+    use impact_fit::messages::Sentence;
     use impact_records::message::{boxed, faults};
 
     #[test]
