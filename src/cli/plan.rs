@@ -9,6 +9,7 @@ use super::stdout::print_json;
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
 use impact_campaign::pipeline::plan;
 use impact_identification::identify::boundary_plan::BoundaryPlan;
+use impact_records::message::plain;
 use impact_records::motion::Motion;
 use impact_records::signal::digits::decimals_for;
 
@@ -136,7 +137,7 @@ fn print_settings(found: &plan::MeasurementPlan) {
             1e3 * p.clearance_m,
             p.frequency_ratio,
             p.clearance_ratio,
-            p.approach.name(),
+            plain(&p.approach),
             uncertainty(NORMAL_95 * p.restitution_error_after)
         );
     }

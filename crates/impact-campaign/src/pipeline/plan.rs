@@ -9,6 +9,7 @@ use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, report};
 use impact_identification::identify::boundary_plan::{BoundaryPlan, halving};
 use impact_identification::identify::plan::{Obstacle, Proposal, propose};
+use impact_records::message::plain;
 use impact_records::motion::Motion;
 use impact_report::kit::csv::Csv;
 use labfiles::output::write_together;
@@ -96,7 +97,7 @@ fn csv(proposals: &[Proposal]) -> String {
         csv.row()
             .numbers(&[Some((i + 1) as f64)])
             .numbers(&setting.map(Some))
-            .texts(&[&motion, p.approach.name()])
+            .texts(&[&motion, &plain(&p.approach)])
             .numbers(&[Some(p.restitution_error_after)]);
     }
     csv.finish()

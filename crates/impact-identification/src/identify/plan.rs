@@ -43,7 +43,10 @@ pub struct Proposal {
 }
 
 /// How a rig comes to a motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::EnumIter, strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "snake_case")]
 #[serde(rename_all = "snake_case")]
 pub enum Approach {
     /// From rest, at the setting itself.
@@ -57,16 +60,6 @@ pub enum Approach {
 }
 
 impl Approach {
-    /// The name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::FromRest => "from rest",
-            Self::Rising => "rising f",
-            Self::Falling => "falling f",
-            Self::Blow => "by a blow",
-        }
-    }
-
     /// How a machine comes to its stable z = 1/n at a setting: where z = 0 exists beside it, from the nearer of the
     /// frequencies at which it does not and up to which z = 1/n goes on.
     fn of(machine: &Machine, setting: Setting, n: u32) -> Self {
@@ -120,6 +113,8 @@ pub enum Obstacle {
 messages!(Obstacle);
 
 message_table! { "obstacle": Obstacle; }
+
+message_table! { "approach": Approach; }
 
 /// The settings that a rig can reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -374,8 +369,10 @@ mod tests {
     use impact_records::message::{boxed, faults};
 
     #[test]
-    fn every_obstacle_has_its_texts() {
-        let all: Vec<_> = boxed(Obstacle::iter()).collect();
+    fn obstacles_and_approaches_have_their_texts() {
+        let all: Vec<_> = boxed(Obstacle::iter())
+            .chain(boxed(Approach::iter()))
+            .collect();
         assert_eq!(faults(&all), Vec::<String>::new());
     }
 }

@@ -1,11 +1,11 @@
 //! One record beside what the model does there, with any parameters.
 
-use std::fmt;
-
 use super::decays::{FreeDecay, free_decay};
 use super::input::Input;
 use super::replays::{ReplayedRecord, comparison};
 use impact_fit::parameters::Parameters;
+use impact_records::message::Value;
+use impact_records::message_table;
 
 /// A record beside its simulation.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,27 +19,22 @@ pub enum BesideRecord {
 }
 
 /// Why a record cannot be shown beside a simulation.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, strum::EnumIter, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum WhyNot {
     /// There is no such record.
     Unknown,
-    /// Its file cannot be read; the flag's message.
-    Unreadable(String),
+    /// Its file cannot be read.
+    Unreadable {
+        /// What its flag states.
+        message: String,
+    },
     /// It has neither a drive nor a free decay that was found.
     NeitherDriveNorDecay,
 }
 
-impl fmt::Display for WhyNot {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unknown => f.write_str("the campaign has no such record"),
-            Self::Unreadable(message) => write!(f, "the record cannot be read: {message}"),
-            Self::NeitherDriveNorDecay => f.write_str(
-                "no drive was found in the record, so it has no phase to be simulated in step with, \
-                 and no free decay",
-            ),
-        }
-    }
+message_table! { "why_not": WhyNot;
+    Self::Unreadable { message } => message = Value::Name(message);
 }
 
 /// A record by its index beside what the model with parameters does there.
@@ -52,7 +47,8 @@ pub fn beside(input: &Input<'_>, index: usize, parameters: &Parameters) -> Besid
     };
     if record.samples() == 0 {
         let message = record.flags.first().map(|flag| flag.message.clone());
-        return BesideRecord::Nothing(WhyNot::Unreadable(message.unwrap_or_default()));
+        let message = message.unwrap_or_default();
+        return BesideRecord::Nothing(WhyNot::Unreadable { message });
     }
     if let Some(decay) = free_decay(o, &record, None) {
         return BesideRecord::Decay(Box::new(decay));
@@ -60,5 +56,19 @@ pub fn beside(input: &Input<'_>, index: usize, parameters: &Parameters) -> Besid
     match comparison(input, o, &record, ('A', Some(parameters))) {
         Some(found) => BesideRecord::Motion(Box::new(found)),
         None => BesideRecord::Nothing(WhyNot::NeitherDriveNorDecay),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use strum::IntoEnumIterator;
+
+    use super::*;
+    use impact_records::message::{boxed, faults};
+
+    #[test]
+    fn every_reason_has_its_texts() {
+        let all: Vec<_> = boxed(WhyNot::iter()).collect();
+        assert_eq!(faults(&all), Vec::<String>::new());
     }
 }

@@ -15,6 +15,7 @@ use impact_fit::solver::Block;
 use impact_fit::{Method, Remark};
 use impact_identification::identify::plan::propose;
 use impact_identification::replay::{BesideRecord, Signal, beside};
+use impact_records::message::plain;
 use impact_records::motion::{BoundaryKind, Motion, Observation};
 use impact_report::style::MotionStyle;
 
@@ -79,7 +80,7 @@ pub(super) fn record(campaign: &OpenCampaign, state: &State, job: &Job) -> Resul
             .column("measured0", d.measured.values.iter().copied())
             .column("t1", d.fitted.time_s.iter().copied())
             .column("simulated1", d.fitted.values.iter().copied()),
-        BesideRecord::Nothing(why) => frame.with("shown", "nothing").with("why", why.to_string()),
+        BesideRecord::Nothing(why) => frame.with("shown", "nothing").with("why", plain(&why)),
     };
     Ok(job.send(frame)?)
 }
