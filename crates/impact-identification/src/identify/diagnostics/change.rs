@@ -557,17 +557,13 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_clearance_on_another_rig_is_named() {
-        // one rig measured at all clearances, the records of one clearance taken again on another
-        let gap = |r: &Record| r.setting.clearance_m;
+    fn valid_sweeps_down_on_another_rig_are_named() {
         let records = recorded((0.8, 12.0), 72, 11);
-        let mut gaps: Vec<f64> = records.iter().filter_map(gap).collect();
-        gaps.sort_by(f64::total_cmp);
-        let of = |other: &[Record]| {
-            let middle = gaps[gaps.len() / 2];
-            let mixed = records.iter().zip(other).map(|(one, other)| {
-                let other_rig = gap(one) == Some(middle);
-                if other_rig { other } else { one }.clone()
+        let of = |down: &[Record]| {
+            let mixed = records.iter().zip(down).enumerate().map(|(i, (up, down))| {
+                let mut record = if i % 2 == 0 { up } else { down }.clone();
+                record.setting.sweep = if i % 2 == 0 { Sweep::Up } else { Sweep::Down };
+                record
             });
             let observations = observed(&mixed.collect::<Vec<_>>());
             let found = identify(&evidence(&observations));
@@ -575,15 +571,23 @@ mod tests {
                 .suspicions
                 .into_iter()
                 .find_map(|finding| match finding {
-                    Finding::ClearanceOnOtherRig { clearance_m, .. } => Some(clearance_m),
+                    Finding::SweepsDownOnOtherRig { own, .. } => Some(own),
                     _ => None,
                 });
-            (found.verdict.kind, named, middle)
+            (found.verdict.kind, named)
         };
-        let (kind, named, _) = of(&records);
-        assert_eq!((kind, named), (VerdictKind::Identified, None));
-        let (kind, named, middle) = of(&recorded((0.76, 12.1), 72, 11));
-        assert_eq!((kind, named), (VerdictKind::DoesNotFit, Some(middle)));
+        assert_eq!(of(&records), (VerdictKind::Identified, None));
+        let (kind, named) = of(&recorded((0.76, 12.1), 72, 11));
+        assert_eq!(kind, VerdictKind::DoesNotFit);
+        let truth = [
+            (Coordinate::Restitution, 0.76),
+            (Coordinate::Frequency, 12.1),
+        ];
+        for (value, (parameter, truth)) in named.expect("a finding").iter().zip(truth) {
+            assert_eq!(value.parameter, parameter);
+            let apart = (value.value - truth).abs();
+            assert!(apart < 1.5 * value.half_width, "{value:?}");
+        }
     }
 
     #[test]
