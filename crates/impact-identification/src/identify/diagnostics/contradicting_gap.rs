@@ -20,7 +20,7 @@ const FEW: usize = 8;
 const FEWEST_GAPS: usize = 3;
 
 /// A fit of some records: its parameters, and the mean square of its residuals.
-pub type Fitted = (Parameters, f64);
+pub type FittedWithMeanSquare = (Parameters, f64);
 
 /// The gap without which all other records fit far better, by `fit`, where that is so of one gap alone;
 /// `lost` are records that the blocks have no more, `start` is where fits start.
@@ -28,7 +28,7 @@ pub fn contradicting_gap(
     blocks: &Blocks,
     lost: &[TrajectoryRecord],
     start: &Parameters,
-    fit: &dyn Fn(&Blocks) -> Option<Fitted>,
+    fit: &dyn Fn(&Blocks) -> Option<FittedWithMeanSquare>,
 ) -> Option<OddGap> {
     let records = of_each_gap(blocks.trajectory.records.iter().chain(lost).collect());
     let mut few = blocks.with_trajectory(blocks.trajectory.with_records(records));
