@@ -79,7 +79,8 @@ pub fn late_channels(observations: &[Observation]) -> Vec<LateChannel> {
 pub fn one_pole_hz(shown_hz: f64, step_s: f64) -> f64 {
     let rise = RISE / shown_hz / step_s;
     let takes = |constant: f64| -constant * (LEAST_STEP / -(-constant.recip()).exp_m1()).ln();
-    let (mut low, mut high) = (0.1, 1e3);
+    // slower jumps than those of 7 steps have none of a twentieth
+    let (mut low, mut high) = (0.1, 7.0);
     for _ in 0..60 {
         let middle = f64::midpoint(low, high);
         if takes(middle) < rise {
