@@ -95,7 +95,7 @@ fn is_in_style(help: &str) -> bool {
     let mut letters = help.chars();
     let capital = letters.next().is_some_and(char::is_uppercase);
     let word = letters.next().is_some_and(char::is_lowercase);
-    !(capital && word) && !help.ends_with('.')
+    !(help.ends_with('.') || capital && word)
 }
 
 #[test]
