@@ -268,7 +268,7 @@ def run(
     arguments += ["--format", ",".join(formats)] if formats else []
     arguments += ["--resume"] if resume else []
     arguments += ["--threads", str(threads)] if threads else []
-    report = {"title": title, "language": language, "paper": paper}
+    report: "dict[str, Optional[StrPath]]" = {"title": title, "language": language, "paper": paper}
     report |= {"template": template, "words": words, "logo": logo}
     arguments += [f"--{name}={value}" for name, value in report.items() if value is not None]
     arguments += ["--decimal-comma"] if decimal_comma else []
