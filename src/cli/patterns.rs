@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::Failure;
+use impact_campaign::campaign::matching;
 
 /// The paths as typed; a pattern that the shell has left as it is stands for the files and folders that match
 /// it, without hidden ones, as in shells that expand it.
@@ -24,15 +25,6 @@ pub(super) fn expanded(typed: &[PathBuf], remedy: &str) -> Result<Vec<PathBuf>, 
         }
     }
     Ok(all)
-}
-
-fn matching(pattern: &str) -> Vec<PathBuf> {
-    let visible = glob::MatchOptions {
-        require_literal_leading_dot: true,
-        ..glob::MatchOptions::new()
-    };
-    let paths = glob::glob_with(pattern, visible).into_iter().flatten();
-    paths.filter_map(Result::ok).collect()
 }
 
 #[cfg(test)]

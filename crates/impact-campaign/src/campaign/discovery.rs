@@ -101,17 +101,19 @@ pub(super) fn list_files(
 /// are left out, as `init` does.
 pub(super) fn expand(folder: &Path, pattern: &str) -> Vec<PathBuf> {
     let whole = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
+    let mut found = matching(&whole.to_string_lossy());
+    found.retain(|p| p.is_file() || (p.is_symlink() && !p.exists()));
+    found
+}
+
+/// All that a glob matches but what is hidden, as in a shell; nothing where it is no glob.
+pub fn matching(pattern: &str) -> Vec<PathBuf> {
     let visible = glob::MatchOptions {
         require_literal_leading_dot: true,
         ..glob::MatchOptions::new()
     };
-    let Ok(paths) = glob::glob_with(&whole.to_string_lossy(), visible) else {
-        return Vec::new();
-    };
-    paths
-        .filter_map(Result::ok)
-        .filter(|p| p.is_file() || (p.is_symlink() && !p.exists()))
-        .collect()
+    let paths = glob::glob_with(pattern, visible).into_iter().flatten();
+    paths.filter_map(Result::ok).collect()
 }
 
 /// The records of a file, and a note on its datasets that are none.

@@ -24,7 +24,7 @@ pub mod template;
 pub mod values;
 pub mod written;
 
-pub use discovery::{Opener, Taken};
+pub use discovery::{Opener, Taken, matching};
 pub use named_files::NamedFiles;
 pub use nearest::nearest;
 pub use read::not_a_description;

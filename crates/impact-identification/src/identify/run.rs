@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::identify::diagnostics::beyond;
 use crate::identify::diagnostics::cause;
-use crate::identify::diagnostics::change::{self, Change, Fitted};
+use crate::identify::diagnostics::change::{Change, Fitted, Search};
 use crate::identify::diagnostics::clock;
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::doubt::{self, Suspicion};
@@ -61,14 +61,13 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
 
 /// The same where all filters are known.
 fn identify_as_stated(evidence: &Evidence<'_>) -> Identification {
-    let mut selection = Selection::new(evidence);
-    let resonance = selection.fit_resonance();
-    let curve = resonance.as_ref().and_then(|r| r.as_ref().ok());
+    let begin = begun(evidence);
+    let curve = begin.1.as_ref().and_then(|r| r.as_ref().ok());
     let curve = curve.map(|f| &f.fit.parameters);
     if let Some(contradicted) = curve.and_then(|f| stated_clearances::contradicted(evidence, f)) {
         return without_clearances(evidence, contradicted);
     }
-    let run = IdentificationRun::of(evidence, (selection, resonance), evidence.nominal);
+    let run = IdentificationRun::of(evidence, begin, evidence.nominal);
     let Some(masses) = run.other_masses() else {
         return run.identification();
     };
@@ -80,9 +79,14 @@ fn identify_as_stated(evidence: &Evidence<'_>) -> Identification {
         nominal,
         ..*evidence
     };
-    let mut selection = Selection::new(&other);
+    IdentificationRun::of(&other, begun(&other), evidence.nominal).identification()
+}
+
+/// Everything that may be used, with the fit of the resonance curve, from which all others start.
+fn begun<'a>(evidence: &'a Evidence<'a>) -> (Selection<'a>, Option<FitResult>) {
+    let mut selection = Selection::new(evidence);
     let resonance = selection.fit_resonance();
-    IdentificationRun::of(&other, (selection, resonance), evidence.nominal).identification()
+    (selection, resonance)
 }
 
 /// Identify as if no clearance were stated, as all of them are `contradicted`.
@@ -116,8 +120,10 @@ const ON_TIME: f64 = 0.05;
 /// Rounds of leaving out influential records.
 const MOST_ROUNDS: usize = 8;
 
-/// Influential records that may always be left out.
-const MOST_INFLUENTIAL: usize = 2;
+/// Influential records that may be left out of so many: two, or one in thirty.
+fn most_influential(judged: usize) -> usize {
+    (judged / 30).max(2)
+}
 
 /// Standard errors from which contacts last.
 const LASTS: f64 = 4.0;
@@ -250,7 +256,7 @@ impl<'a> IdentificationRun<'a> {
         let drawn = problem.drawn(&at).filter(|_| problem.strained(&at))?;
         let near = drawn.fit(at).ok()?.parameters;
         let present = joint::present(&self.selection.blocks, &self.found.weights);
-        let most = MOST_INFLUENTIAL.max(self.selection.judged() / 30);
+        let most = most_influential(self.selection.judged());
         let (found, _) = self.selection.influential(&drawn, &present, (&near, most));
         (!found.is_empty()).then_some((near, found))
     }
@@ -269,7 +275,7 @@ impl<'a> IdentificationRun<'a> {
                 break;
             };
             let judged = self.selection.judged() + left_out;
-            let most = MOST_INFLUENTIAL.max(judged / 30).saturating_sub(left_out);
+            let most = most_influential(judged).saturating_sub(left_out);
             // More than that do not err alone: it is the model, and their scatter widens the intervals.
             let (influential, too_many) =
                 self.selection
@@ -454,10 +460,9 @@ impl<'a> IdentificationRun<'a> {
             factor: joint.factor,
         };
         let groups = cause.is_none_or(|cause| cause == Cause::Contact);
-        change::change(self.evidence, fitted).or_else(|| {
-            let found = groups.then(|| change::between_groups(self.evidence, fitted));
-            found.flatten()
-        })
+        let search = Search::new(self.evidence, fitted);
+        let between_groups = || groups.then(|| search.between_groups()).flatten();
+        search.in_time().or_else(between_groups)
     }
 
     /// The gap that deviates most from what the others say, if one does.

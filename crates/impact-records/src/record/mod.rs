@@ -102,6 +102,17 @@ impl Role {
         self.dimension().is_some()
     }
 
+    /// How many times the displacement of a mass is differentiated to what a channel of this role watches; `None` of
+    /// other channels.
+    pub fn derivative(self) -> Option<u8> {
+        match self {
+            Self::Drive | Self::Contact | Self::FrameX | Self::FrameY => None,
+            Self::DisplacementX | Self::DisplacementY => Some(0),
+            Self::VelocityX | Self::VelocityY => Some(1),
+            Self::AccelerationX | Self::AccelerationY => Some(2),
+        }
+    }
+
     /// The dimension a channel of this role must have once in SI; `None` if several are accepted
     /// (a drive in V or N, a contact in V or N, a frame in m, m/s or m/s²).
     pub fn dimension(self) -> Option<Dimension> {

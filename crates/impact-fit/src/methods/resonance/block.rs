@@ -254,11 +254,7 @@ fn respond(
     };
     let eta = frequency_hz / parameters.natural_frequency_hz;
     let rate = Complex::new(0.0, std::f64::consts::TAU * frequency_hz);
-    let order: u8 = match role {
-        Role::VelocityX | Role::VelocityY => 1,
-        Role::AccelerationX | Role::AccelerationY => 2,
-        _ => 0,
-    };
+    let order = role.derivative().unwrap_or(0);
     let scale = parameters.gain(role) * parameters.static_deflection_m * drive_amplitude;
     let unit = rate.powu(u32::from(order)) * scale * (-rate * parameters.delay_s(role)).exp();
     let forced = forced_amplitude(&oscillator, Drive { eta, phase: 0.0 });

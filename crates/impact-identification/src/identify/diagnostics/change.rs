@@ -110,38 +110,110 @@ pub struct Fitted<'a> {
     pub factor: f64,
 }
 
-/// Where the records of a fit would most be of two rigs, and whether they are; `None` of one rig.
-pub fn change(evidence: &Evidence<'_>, fitted: Fitted<'_>) -> Option<Change> {
-    let ranks = ranks(evidence.observations);
-    let suspects = [
-        by_rows(&records_by_rank(&ranks, fitted), fitted).map(|(_, rank)| rank),
-        by_impacts(&ranks, evidence.observations, &fitted.selection.blocks),
-        by_lost_records(&ranks, fitted.selection),
-    ];
-    let found = suspects.into_iter().flatten().filter_map(|rank| {
-        let first = ranks.iter().position(|r| *r == rank)?;
-        let record = evidence.observations[first].record.clone();
-        apart(evidence, Other::From { rank, record })
-    });
-    let found: Vec<Change> = found.collect();
-    let most = found.iter().map(Change::chi2).fold(0.0, f64::max);
-    // Parts that begin a few records apart differ about as much: the first suspect then weighs most records.
-    found.into_iter().find(|change| change.chi2() >= 0.5 * most)
+/// What tells where the records of a fit would most be of two rigs.
+pub struct Search<'a> {
+    evidence: &'a Evidence<'a>,
+    fitted: Fitted<'a>,
+    /// The rows of the records at the optimum, with their places among the observations.
+    rows: Vec<(usize, PlacedRows)>,
 }
 
-/// The clearance or the direction of the sweep whose records would most be of another rig than all others, and
-/// whether they are. The speed at impacts goes with the clearance: where R over it explains the impacts as well,
-/// there is no other rig.
-pub fn between_groups(evidence: &Evidence<'_>, fitted: Fitted<'_>) -> Option<Change> {
-    let tried = groups(evidence.observations).into_iter().filter_map(|of| {
-        let observations = evidence.observations.iter();
-        let inside: Vec<usize> = observations.map(|o| usize::from(of.holds(o, 0))).collect();
-        let (chi2, _) = by_rows(&records_by_rank(&inside, fitted), fitted)?;
-        let pairs = &fitted.selection.blocks.impact.pairs;
-        explains_more_than_speed(&inside, pairs).then_some((chi2, of))
-    });
-    let (_, of) = tried.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    apart(evidence, of)
+impl<'a> Search<'a> {
+    /// In the records of a fit.
+    pub fn new(evidence: &'a Evidence<'a>, fitted: Fitted<'a>) -> Self {
+        let mut rows: Vec<(usize, PlacedRows)> = Vec::new();
+        for ((block, weight), method) in fitted.problem.blocks.iter().zip(fitted.present) {
+            if !Method::BY_RECORD.contains(method) {
+                continue;
+            }
+            let owners = fitted.selection.blocks.owners(*method);
+            let own = fitted.problem.rows_of(*block, *weight, fitted.at);
+            if own.len() == owners.len() {
+                rows.extend(owners.into_iter().zip(own));
+            }
+        }
+        Self {
+            evidence,
+            fitted,
+            rows,
+        }
+    }
+
+    /// From which record on they are of another rig; `None` of one rig.
+    pub fn in_time(&self) -> Option<Change> {
+        let (observations, selection) = (self.evidence.observations, self.fitted.selection);
+        let ranks = ranks(observations);
+        let suspects = [
+            self.by_rows(&ranks).map(|(_, rank)| rank),
+            by_impacts(&ranks, observations, &selection.blocks),
+            by_lost_records(&ranks, selection),
+        ];
+        let found = suspects.into_iter().flatten().filter_map(|rank| {
+            let first = ranks.iter().position(|r| *r == rank)?;
+            let record = observations[first].record.clone();
+            apart(self.evidence, Other::From { rank, record })
+        });
+        let found: Vec<Change> = found.collect();
+        let most = found.iter().map(Change::chi2).fold(0.0, f64::max);
+        // Parts that begin a few records apart differ about as much: the first suspect then weighs most records.
+        found.into_iter().find(|change| change.chi2() >= 0.5 * most)
+    }
+
+    /// The clearance or the direction of the sweep whose records are of another rig than all others; `None` of one
+    /// rig. The speed at impacts goes with the clearance: where R over it explains the impacts as well, there is no
+    /// other rig.
+    pub fn between_groups(&self) -> Option<Change> {
+        let observations = self.evidence.observations;
+        let pairs = &self.fitted.selection.blocks.impact.pairs;
+        let tried = groups(observations).into_iter().filter_map(|of| {
+            let inside = observations.iter().map(|o| usize::from(of.holds(o, 0)));
+            let inside: Vec<usize> = inside.collect();
+            let (chi2, _) = self.by_rows(&inside)?;
+            explains_more_than_speed(&inside, pairs).then_some((chi2, of))
+        });
+        let (_, of) = tried.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        apart(self.evidence, of)
+    }
+
+    /// The rank from which on a change of all four parameters explains most, by the records' rows, and its χ²: with A
+    /// and g the information and the gradient of all, B the columns of the parameters in the information of the
+    /// records after it, C their own block of that and h their part of its gradient, the change is δ of
+    /// [A B; Bᵀ C] [θ; δ] = −[g; h]. Of very many records every second, third … is looked at.
+    fn by_rows(&self, ranks: &[usize]) -> Option<(f64, usize)> {
+        let problem = self.fitted.problem;
+        let mut records: Vec<(usize, &PlacedRows)> = self
+            .rows
+            .iter()
+            .map(|(i, rows)| (ranks[*i], rows))
+            .collect();
+        records.sort_by_key(|(rank, _)| *rank);
+        let stride = records.len().div_ceil(MOST).max(1);
+        let records: Vec<(usize, &PlacedRows)> = records.into_iter().step_by(stride).collect();
+        let free = problem.free.iter();
+        let places: Vec<usize> = free
+            .enumerate()
+            .filter(|(_, c)| Coordinate::PHYSICAL.contains(c))
+            .map(|(i, _)| i)
+            .collect();
+        let mut all = problem.priors_normal(self.fitted.at);
+        records.iter().for_each(|(_, rows)| all.inform(rows));
+        let mut after = Normal::zeros(problem.free.len());
+        let mut best: Option<(f64, usize)> = None;
+        for (k, (rank, rows)) in records.iter().enumerate().rev() {
+            after.inform(rows);
+            let enough = k >= FEWEST && records.len() - k >= FEWEST;
+            // records of one rank stay together
+            let begins = k > 0 && records[k - 1].0 < *rank;
+            if let Some(chi2) = (enough && begins)
+                .then(|| gain(&all, &after, &places))
+                .flatten()
+                && best.is_none_or(|(most, _)| chi2 > most)
+            {
+                best = Some((chi2, *rank));
+            }
+        }
+        best.filter(|(chi2, _)| *chi2 > SUSPECT * self.fitted.factor)
+    }
 }
 
 /// Each clearance beside others, and the sweep down.
@@ -204,56 +276,6 @@ fn ranks(observations: &[Observation]) -> Vec<usize> {
         ranks[i] = rank;
     }
     ranks
-}
-
-/// The rows of the records at the optimum, by their ranks; of very many, every second, third …
-fn records_by_rank(ranks: &[usize], fitted: Fitted<'_>) -> Vec<(usize, PlacedRows)> {
-    let mut records: Vec<(usize, PlacedRows)> = Vec::new();
-    for ((block, weight), method) in fitted.problem.blocks.iter().zip(fitted.present) {
-        if !Method::BY_RECORD.contains(method) {
-            continue;
-        }
-        let owners = fitted.selection.blocks.owners(*method);
-        let rows = fitted.problem.rows_of(*block, *weight, fitted.at);
-        if rows.len() == owners.len() {
-            records.extend(owners.into_iter().map(|i| ranks[i]).zip(rows));
-        }
-    }
-    records.sort_by_key(|(rank, _)| *rank);
-    let stride = records.len().div_ceil(MOST).max(1);
-    records.into_iter().step_by(stride).collect()
-}
-
-/// The rank from which on a change of all four parameters explains most, by the records' rows at an
-/// optimum, and its χ²: with A and g the information and the gradient of all, B the columns of the parameters in the
-/// information of the records after it, C their own block of that and h their part of its gradient, the
-/// change is δ of [A B; Bᵀ C] [θ; δ] = −[g; h].
-fn by_rows(records: &[(usize, PlacedRows)], fitted: Fitted<'_>) -> Option<(f64, usize)> {
-    let problem = fitted.problem;
-    let free = problem.free.iter();
-    let places: Vec<usize> = free
-        .enumerate()
-        .filter(|(_, c)| Coordinate::PHYSICAL.contains(c))
-        .map(|(i, _)| i)
-        .collect();
-    let mut all = problem.priors_normal(fitted.at);
-    records.iter().for_each(|(_, rows)| all.inform(rows));
-    let mut after = Normal::zeros(problem.free.len());
-    let mut best: Option<(f64, usize)> = None;
-    for (k, (rank, rows)) in records.iter().enumerate().rev() {
-        after.inform(rows);
-        let enough = k >= FEWEST && records.len() - k >= FEWEST;
-        // records of one rank stay together
-        let begins = k > 0 && records[k - 1].0 < *rank;
-        if let Some(chi2) = (enough && begins)
-            .then(|| gain(&all, &after, &places))
-            .flatten()
-            && best.is_none_or(|(most, _)| chi2 > most)
-        {
-            best = Some((chi2, *rank));
-        }
-    }
-    best.filter(|(chi2, _)| *chi2 > SUSPECT * fitted.factor)
 }
 
 /// χ² of a change of some coordinates in the records of `after`, all others being fitted to all.

@@ -15,9 +15,8 @@ use impact_fit::methods::answer::MethodResult;
 use impact_fit::parameters::Coordinate;
 use impact_fit::statistics::quantile::{NORMAL_975, student_975};
 use impact_records::motion::Observation;
-use impact_records::record::{FlagCode, Role};
+use impact_records::record::FlagCode;
 use impact_records::signal::robust;
-use labfiles::units::Dimension;
 
 /// Standard deviations from which a common ratio is named.
 const SURE: f64 = 3.0;
@@ -45,19 +44,17 @@ pub fn suspicion(observations: &[Observation], clock: f64) -> Option<Suspicion> 
 /// What a relative error of all times leaves open: f0, and `x_st` once for each time that displacements are
 /// integrated from what is measured.
 fn left_open(observations: &[Observation], by: f64) -> Vec<Doubt> {
-    let order = |role: Role| match role.dimension() {
-        Some(Dimension::Velocity) => 1.0,
-        Some(Dimension::Acceleration) => 2.0,
-        _ => 0.0,
-    };
     let measured = observations.iter().flat_map(|o| &o.amplitudes);
-    let integrations = measured.map(|a| order(a.role)).fold(0.0, f64::max);
+    let integrations = measured.filter_map(|a| a.role.derivative()).max();
     let doubt = |parameter, by| Doubt {
         parameter,
         by,
         note: Note::InstrumentOff,
     };
-    let deflection = doubt(Coordinate::Deflection, integrations * by);
+    let deflection = doubt(
+        Coordinate::Deflection,
+        f64::from(integrations.unwrap_or(0)) * by,
+    );
     let open = [doubt(Coordinate::Frequency, by), deflection];
     open.into_iter().filter(|d| d.by > 0.0).collect()
 }
@@ -115,6 +112,7 @@ mod tests {
     use super::*;
     use impact_records::event::DriveTone;
     use impact_records::motion::{Amplitude, Motion};
+    use impact_records::record::Role;
 
     /// Records at stated frequencies, and the ratio at which each is measured.
     fn observed(ratios: impl Fn(usize) -> f64) -> Vec<Observation> {
