@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::process::Command;
 
-use impact_oscillator::atlas::map::even;
+use impact_oscillator::atlas::map::{RegionMap, even, first_map};
 use impact_oscillator::{
-    Initial, Machine, MapGrid, MapSettings, Restitution, Setting, Watch, region_map, rho_s2, settle,
+    Initial, Machine, MapGrid, MapSettings, ModelError, Restitution, Setting, Watch, region_map,
+    rho_s2, settle,
 };
 use serde_json::{Value, json};
 
@@ -33,18 +34,25 @@ fn labels(page: &mut Page, state: &Value, level: u64) -> Vec<String> {
     }
 }
 
-fn expected(machine: &Machine, (columns, rows): (usize, usize), start: Initial) -> Vec<String> {
+type Map = fn(&Machine, &MapGrid, &MapSettings) -> Result<RegionMap, ModelError>;
+
+fn expected(
+    map: Map,
+    machine: &Machine,
+    (columns, rows): (usize, usize),
+    start: Initial,
+) -> Vec<String> {
     let grid = MapGrid::even((0.6, 2.4, columns), (-0.5, 4.0, rows));
     let settings = MapSettings {
         start,
         ..MapSettings::default()
     };
-    let map = region_map(machine, &grid, &settings).expect("a map");
+    let map = map(machine, &grid, &settings).expect("a map");
     map.cells.iter().map(|c| c.label()).collect()
 }
 
 #[test]
-fn valid_tiles_equal_the_region_map_cell_for_cell() {
+fn valid_tiles_equal_the_maps_cell_for_cell() {
     let explorer = Explorer::theory();
     let mut page = explorer.page();
     let mut state = page.hello().header["state"].clone();
@@ -53,24 +61,28 @@ fn valid_tiles_equal_the_region_map_cell_for_cell() {
     let rest = Initial::rest();
     assert_eq!(
         labels(&mut page, &state, 0),
-        expected(&machine, (32, 24), rest)
+        expected(first_map, &machine, (32, 24), rest)
     );
     assert_eq!(
         labels(&mut page, &state, 1),
-        expected(&machine, (128, 96), rest)
+        expected(first_map, &machine, (128, 96), rest)
     );
     let start = Initial::both(0.0, 3.0);
     state["map_start"] = json!(start);
     assert_eq!(
         labels(&mut page, &state, 1),
-        expected(&machine, (128, 96), start)
+        expected(first_map, &machine, (128, 96), start)
+    );
+    assert_eq!(
+        labels(&mut page, &state, 2),
+        expected(region_map, &machine, (384, 288), start)
     );
     let law = Restitution::Table(vec![(0.0, 0.95), (6.0, 0.8)]);
     state["restitution"] = json!(law);
     let machine = machine.with_restitution(law);
     assert_eq!(
         labels(&mut page, &state, 0),
-        expected(&machine, (32, 24), start)
+        expected(region_map, &machine, (32, 24), start)
     );
 }
 

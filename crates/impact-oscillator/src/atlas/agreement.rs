@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::brute::{SEEDINGS, Seeding};
+use super::grid::End;
 use super::line::{Slice, orbit_of_cell};
-use super::map::End;
 use super::resting::RestingSlice;
 use super::settings::AtlasSettings;
 use crate::model::{Existence, Machine, SettledMotion, rho_grazing};

@@ -3,7 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::map::{MapSettings, Start, even, march_from};
+use super::grid::{MapSettings, Start, even};
+use super::map::march_from;
 use crate::model::{Initial, Machine, ModelError, Setting, SettledMotion};
 
 /// Which masses take the start.

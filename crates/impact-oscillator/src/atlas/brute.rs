@@ -3,11 +3,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::grid::{End, MapGrid, MapSettings, Start};
 use super::kernel::{Cell, Feed, Outcome, run};
-use super::map::{
-    End, MapGrid, MapSettings, Start, UnitMass, available, check, march_from, march_grid,
-};
-use super::watched::watch_again;
+use super::map::{check, march_from, march_grid};
+use super::threads::available;
+use super::unit_mass::UnitMass;
+use super::watched::{Follow, watch_again};
 use crate::model::{Initial, Machine, ModelError, patience};
 use crate::parallel;
 
@@ -131,7 +132,7 @@ fn carried_in_lanes(
     }
     done.sort_unstable_by_key(|d| place(grid, d.0));
     let mut outcomes: Vec<Outcome> = done.into_iter().map(|d| d.1).collect();
-    watch_again(&unit, &mut outcomes, settings);
+    watch_again(&unit, &mut outcomes, settings, Follow::Decision);
     let mut rising: Vec<End> = outcomes.iter().map(|o| unit.end(o)).collect();
     let falling = rising.split_off(grid.len());
     Ok([rising, falling])

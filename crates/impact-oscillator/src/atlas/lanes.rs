@@ -2,13 +2,10 @@
 //! once: AVX-512, AVX2 with FMA, and one lane of plain arithmetic for every other machine.
 //!
 //! The methods are inlined into functions that enable the instruction set; they must only be
-//! called where the processor has it, which [`Kernel`](super::map::Kernel) checks at run time.
+//! called where the processor has it, which [`Kernel`](super::kernel::Kernel) checks at run time.
 
 #[cfg(target_arch = "x86_64")]
-mod x86;
-
-#[cfg(target_arch = "x86_64")]
-pub(super) use x86::{Avx2, Avx512};
+pub(super) mod x86;
 
 /// A vector of lanes.
 pub(super) trait Lanes: Copy {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::continuation::{Along, branch_at_doubling, follow};
 use super::edge::{Edge, EdgeKind};
-use super::map::{End, clear_of};
+use super::grid::{End, clear_of};
 use super::settings::AtlasSettings;
 use crate::model::boundary::etas_s2;
 use crate::model::orbit::stable_orbit;

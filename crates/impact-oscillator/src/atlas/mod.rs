@@ -7,6 +7,7 @@ pub mod coexisting;
 mod continuation;
 pub mod curves;
 mod edge;
+mod grid;
 pub mod kernel;
 mod lanes;
 mod line;
@@ -21,6 +22,8 @@ mod settings;
 mod settling;
 pub mod shard;
 pub mod sweep;
+mod threads;
+mod unit_mass;
 mod watched;
 
 pub use agreement::{Agreement, Cause, Differing};

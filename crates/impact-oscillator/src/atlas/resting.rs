@@ -9,11 +9,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::edge::EdgeKind;
-use super::kernel::Cell;
-use super::map::{
-    End as MapEnd, Kernel, MapGrid, MapSettings, Start, UnitMass, clear_of, march_all,
-};
+use super::grid::{End as MapEnd, MapGrid, MapSettings, Start, clear_of};
+use super::kernel::{Cell, Kernel};
 use super::release::{Label, Releases as ExactReleases, RestingStart, Run, RunEnd};
+use super::threads::march_all;
+use super::unit_mass::UnitMass;
 use crate::model::{Initial, Machine, Watch};
 use crate::parallel;
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::map::{MapGrid, MapSettings};
+use super::grid::{MapGrid, MapSettings};
 
 /// What an atlas covers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -117,7 +117,7 @@ impl<'a> Carried<'a> {
         initial: Initial,
         watch: Watch,
     ) -> Result<Self, ModelError> {
-        let start = super::map::clear_of(machine, setting.clearance, initial);
+        let start = super::grid::clear_of(machine, setting.clearance, initial);
         Ok(Self {
             machine,
             watch,

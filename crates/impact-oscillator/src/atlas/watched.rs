@@ -1,10 +1,12 @@
 //! Cells in which the kernel recognised no orbit, watched once more with their impacts: they may
 //! converge slowly, beat, or be chaotic.
 
+use super::grid::MapSettings;
 use super::kernel::{Cell, Course, Feed, Outcome, Strike, run};
 use super::lyapunov::{Lyapunov, Variations};
-use super::map::{MapSettings, Shared, UnitMass, available, on_all_threads};
 use super::settling::{CHAOTIC_PERIODS, settle_on};
+use super::threads::{Shared, available, on_all_threads};
+use super::unit_mass::UnitMass;
 use crate::model::recurrence::{Return, observe, of_returns};
 use crate::model::{
     Impact, ImpactKind, Initial, Machine, Setting, SettledMotion, Simulator, Watch,
@@ -129,14 +131,33 @@ fn bounce(start: &Cell, restitution: f64, strike: Strike) -> Return {
     }
 }
 
-/// Watch the outcomes without a recognised motion once more, in the kernel, longer where it stays open whether they
-/// are chaotic, and where a mass comes to rest or variations decay in the exact simulator.
-pub(super) fn watch_again(unit: &UnitMass, outcomes: &mut [Outcome], settings: &MapSettings) {
+/// How long a motion is followed in which no orbit was recognised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Follow {
+    /// One watch long: what is open then has not settled.
+    Watch,
+    /// Until it recurs or is known to be chaos, within limits.
+    Decision,
+}
+
+/// Watch the outcomes without a recognised motion once more, in the kernel, where a mass comes to rest in the exact
+/// simulator; up to a decision, longer where it stays open whether they are chaotic, and settling on where variations
+/// decay.
+pub(super) fn watch_again(
+    unit: &UnitMass,
+    outcomes: &mut [Outcome],
+    settings: &MapSettings,
+    follow: Follow,
+) {
     let is_open = |o: &Outcome| o.motion == SettledMotion::Chaotic;
     let mut open: Vec<&mut Outcome> = outcomes.iter_mut().filter(|o| is_open(o)).collect();
     let (machine, watch) = (unit.machine(), settings.watch);
     let mut inexact: Vec<&mut Outcome> = Vec::new();
-    for periods in [watch.watch_periods, CHAOTIC_PERIODS] {
+    let rounds: &[f64] = match follow {
+        Follow::Watch => &[0.0],
+        Follow::Decision => &[0.0, CHAOTIC_PERIODS],
+    };
+    for &periods in rounds {
         let watch_periods = watch.watch_periods.max(periods);
         let ends: Vec<Cell> = open.iter().map(|o| o.end).collect();
         let watch = Watch {
@@ -153,9 +174,16 @@ pub(super) fn watch_again(unit: &UnitMass, outcomes: &mut [Outcome], settings: &
             }
         }
     }
-    inexact.append(&mut open);
+    match follow {
+        Follow::Watch => {
+            for outcome in open {
+                outcome.motion = SettledMotion::NotSettled;
+            }
+        }
+        Follow::Decision => inexact.append(&mut open),
+    }
     let ends: Vec<Cell> = inexact.iter().map(|o| o.end).collect();
-    let motion = |end: &Cell| observed(&machine, end, &watch);
+    let motion = |end: &Cell| observed(&machine, end, &watch, follow);
     for (outcome, motion) in inexact.iter_mut().zip(parallel::map(&ends, motion)) {
         outcome.motion = motion;
     }
@@ -186,8 +214,8 @@ fn watched(unit: &UnitMass, ends: &[Cell], settings: &MapSettings) -> Vec<Seen> 
     })
 }
 
-/// The motion from a cell's end on, in the exact simulator; it settles on where it is no chaos.
-fn observed(machine: &Machine, end: &Cell, watch: &Watch) -> SettledMotion {
+/// The motion from a cell's end on, in the exact simulator; up to a decision it settles on where it is no chaos.
+fn observed(machine: &Machine, end: &Cell, watch: &Watch, follow: Follow) -> SettledMotion {
     let setting = Setting::new(end.eta, end.rho).at_phase(end.phase);
     let start = Initial {
         x: end.x.min(end.rho),
@@ -197,9 +225,12 @@ fn observed(machine: &Machine, end: &Cell, watch: &Watch) -> SettledMotion {
     let Ok(mut simulator) = Simulator::new(machine, setting, start) else {
         return SettledMotion::NotSettled;
     };
-    match observe(&mut simulator, setting, watch).0 {
-        SettledMotion::Chaotic => settle_on(machine, &mut simulator, setting, watch).motion,
-        motion => motion,
+    match (observe(&mut simulator, setting, watch).0, follow) {
+        (SettledMotion::Chaotic, Follow::Watch) => SettledMotion::NotSettled,
+        (SettledMotion::Chaotic, Follow::Decision) => {
+            settle_on(machine, &mut simulator, setting, watch).motion
+        }
+        (motion, _) => motion,
     }
 }
 
@@ -243,9 +274,9 @@ mod tests {
             let mut outcomes = ends(&unit, &settings);
             let exact: Vec<SettledMotion> = outcomes
                 .iter()
-                .map(|o| observed(&machine, &o.end, &settings.watch))
+                .map(|o| observed(&machine, &o.end, &settings.watch, Follow::Decision))
                 .collect();
-            watch_again(&unit, &mut outcomes, &settings);
+            watch_again(&unit, &mut outcomes, &settings, Follow::Decision);
             let mut kinds = [0; 3];
             for (outcome, exact) in outcomes.iter().zip(&exact) {
                 // a chaotic motion is another after a few impacts

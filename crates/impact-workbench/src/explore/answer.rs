@@ -5,30 +5,10 @@ use std::time::Duration;
 use serde_json::json;
 
 use super::frame::Frame;
-use super::jobs::{Job, Stale, refusal};
+use super::job::{Job, refusal};
+use super::stop::Stop;
 use super::wire::{Ask, Request};
 use super::{ExploreError, Session, demo, evidence, export, limits, maps, motions};
-
-/// Why an answer ends early.
-#[derive(Debug)]
-pub(super) enum Stop {
-    /// Nobody waits for it.
-    Stale,
-    /// It is refused.
-    Refused(ExploreError),
-}
-
-impl From<Stale> for Stop {
-    fn from(_: Stale) -> Self {
-        Self::Stale
-    }
-}
-
-impl<E: Into<ExploreError>> From<E> for Stop {
-    fn from(error: E) -> Self {
-        Self::Refused(error.into())
-    }
-}
 
 /// Longest time that one motion may take.
 const LONGEST: Duration = Duration::from_secs(20);

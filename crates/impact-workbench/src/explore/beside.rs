@@ -27,7 +27,6 @@ pub(super) fn coexisting(
     state: &State,
     machine: &Machine,
     grid: &MapGrid,
-    own: &[SettledMotion],
 ) -> Result<Vec<SettledMotion>, ModelError> {
     let from = |start| MapSettings {
         start,
@@ -42,14 +41,15 @@ pub(super) fn coexisting(
         (0..grid.len()).map(start).collect::<Vec<Start>>()
     };
     let (rest, settings) = (start(state.map_start), from(state.map_start));
+    let own = motions(&march_from(machine, &rest, &settings)?);
     let other = march_from(machine, &start(other_start(state)), &settings)?;
     let [up, down] = carried_maps(machine, grid, &settings)?;
     let maps = [other, up, down];
     let labels: Vec<Vec<SettledMotion>> = maps.iter().map(|ends| motions(ends)).collect();
     let [other, up, down] = &labels[..] else {
-        return Ok(own.to_vec());
+        return Ok(own);
     };
-    let mut found = beside(machine, grid, &[own, other, up, down])?;
+    let mut found = beside(machine, grid, &[&own, other, up, down])?;
     let ends = |i: usize| maps.iter().map(move |ends| ends[i]);
     let doubtful: Vec<(usize, Start, Start)> = (0..grid.len())
         .filter(|i| found[*i] != own[*i] && (is_doubtful(own[*i]) || is_doubtful(found[*i])))

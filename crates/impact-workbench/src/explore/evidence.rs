@@ -4,9 +4,9 @@
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use super::answer::Stop;
 use super::campaign::OpenCampaign;
-use super::jobs::Job;
+use super::job::Job;
+use super::stop::Stop;
 use super::{ExploreError, State};
 use impact_campaign::pipeline::identify::evidence;
 use impact_fit::methods::boundaries::block::predicted_hz;

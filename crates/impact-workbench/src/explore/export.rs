@@ -5,9 +5,9 @@ use std::sync::Mutex;
 use serde_json::json;
 
 use super::ExploreError;
-use super::answer::Stop;
-use super::jobs::Job;
+use super::job::Job;
 use super::state::State;
+use super::stop::Stop;
 use super::wire::ExportFile;
 use crate::theory::{Pictures, StudyContext, run};
 use impact_campaign::pipeline::block_cache::BlockCache;

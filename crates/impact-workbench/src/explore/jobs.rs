@@ -3,14 +3,13 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
-use impact_oscillator::Patience;
 use tokio::sync::{mpsc, watch};
 
 use super::answer::answer;
-use super::first_tiles::{FirstTiles, Underway};
+use super::first_tiles::FirstTiles;
 use super::frame::Frame;
+use super::job::{Audience, Job, refusal};
 use super::pools::Pools;
 use super::wire::{Ask, Kind, Request};
 use super::{ExploreError, Session, maps};
@@ -24,76 +23,6 @@ pub(super) struct Jobs {
     queue: mpsc::Sender<Request>,
     outbox: mpsc::Sender<Frame>,
     first_tiles: Arc<FirstTiles>,
-}
-
-/// A job that is being done.
-pub(super) struct Job {
-    /// The request's number.
-    pub id: u32,
-    /// The threads of its page.
-    pub pools: Arc<Pools>,
-    audience: Audience,
-    first_tiles: Arc<FirstTiles>,
-}
-
-/// Who waits for what a job finds.
-#[derive(Clone)]
-struct Audience {
-    newest: Option<watch::Receiver<Option<Request>>>,
-    outbox: mpsc::Sender<Frame>,
-}
-
-impl Audience {
-    /// Whether the page is gone or has asked for something newer.
-    fn is_gone(&self) -> bool {
-        let replaced = |newest: &watch::Receiver<_>| newest.has_changed().unwrap_or(true);
-        self.outbox.is_closed() || self.newest.as_ref().is_some_and(replaced)
-    }
-}
-
-/// The page is gone, or asked for something newer: the job stops.
-#[derive(Debug)]
-pub(super) struct Stale;
-
-impl Job {
-    /// Simulations go on as long as somebody waits for them, and a single motion no longer than a limit.
-    pub(super) fn patience(&self, longest: Option<Duration>) -> Patience {
-        let (audience, begin) = (self.audience.clone(), Instant::now());
-        let in_time = move || longest.is_none_or(|longest| begin.elapsed() < longest);
-        Patience::new(move || in_time() && !audience.is_gone())
-    }
-
-    /// This map's first tiles begin.
-    pub(super) fn first_tiles(&self) -> Underway<'_> {
-        self.first_tiles.underway(self.id)
-    }
-
-    /// Wait until the first tiles of the page's newest map are through.
-    pub(super) fn wait_for_first_tiles(&self) {
-        self.first_tiles.wait_while(|| !self.is_stale());
-    }
-
-    /// Whether the page is gone or has asked for something newer.
-    pub(super) fn is_stale(&self) -> bool {
-        self.audience.is_gone()
-    }
-
-    /// Send a frame.
-    pub(super) fn send(&self, frame: Frame) -> Result<(), Stale> {
-        self.audience.outbox.blocking_send(frame).map_err(|_| Stale)
-    }
-
-    /// A frame in answer to this request.
-    pub(super) fn frame(&self, kind: &str) -> Frame {
-        Frame::new(kind, self.id)
-    }
-}
-
-/// A refusal, as the page shows it.
-pub(super) fn refusal(id: u32, error: &ExploreError) -> Frame {
-    Frame::new("refused", id)
-        .with("message", error.to_string())
-        .with("remedy", error.remedy())
 }
 
 impl Jobs {

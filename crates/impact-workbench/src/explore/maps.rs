@@ -2,14 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::answer::Stop;
 use super::beside::coexisting;
 use super::frame::Frame;
-use super::jobs::Job;
+use super::job::Job;
 use super::state::MAP_CELLS;
+use super::stop::Stop;
 use super::{ExploreError, State};
 use impact_oscillator::atlas::coexisting::MOST_PERIODS;
-use impact_oscillator::atlas::map::{UnitMass, even};
+use impact_oscillator::atlas::map::{UnitMass, even, first_map};
 use impact_oscillator::model::boundary::{rho_sticking, s1_of_branch, s2_of_branch};
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::patience::carry;
@@ -81,18 +81,14 @@ pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
         job,
     };
     let mut waiting = Some(before_boundaries);
-    let mut shown = Vec::new();
     for (level, &size) in levels.iter().enumerate() {
         if level >= tiles.first {
             waiting = None;
         }
-        let cells = tiles.send(level, size)?;
-        if size == MAP_CELLS {
-            shown = cells;
-        }
+        tiles.send(level, size)?;
     }
     drop(waiting);
-    tiles.send_coexisting(&shown)
+    tiles.send_coexisting()
 }
 
 /// The levels of a map.
@@ -109,38 +105,32 @@ struct Tiles<'a> {
 }
 
 impl Tiles<'_> {
-    /// Send a level strip by strip, each a frame; returns its motions.
-    fn send(&self, level: usize, size: (usize, usize)) -> Result<Vec<SettledMotion>, Stop> {
+    /// Send a level strip by strip, each a frame.
+    fn send(&self, level: usize, size: (usize, usize)) -> Result<(), Stop> {
         let settings = MapSettings {
             start: self.state.map_start,
             ..self.state.map_settings()
         };
-        let mut all = Vec::with_capacity(size.0 * size.1);
         self.strips(size, |grid, first_row, last| {
-            let march = || region_map(self.machine, grid, &settings);
-            let map = match level < self.first {
-                true => self.job.pools.first_tiles(march),
-                false => self.job.pools.work(march),
+            let (machine, pools) = (self.machine, &self.job.pools);
+            let map = if level < self.first {
+                pools.first_tiles(|| first_map(machine, grid, &settings))
+            } else {
+                pools.work(|| region_map(machine, grid, &settings))
             }?;
             let last = last && level == self.finest;
             let frame = self.frame("map", size, first_row).with("level", level);
             let (motions, cells) = cells(map.cells.iter());
             let frame = frame.with("last", last).with("motions", motions);
-            self.job.send(frame.cells(cells))?;
-            all.extend(map.cells);
-            Ok(())
-        })?;
-        Ok(all)
+            Ok(self.job.send(frame.cells(cells))?)
+        })
     }
 
     /// Send what coexists with the motions of 128 × 96 cells.
-    fn send_coexisting(&self, shown: &[SettledMotion]) -> Result<(), Stop> {
+    fn send_coexisting(&self) -> Result<(), Stop> {
         self.strips(MAP_CELLS, |grid, first_row, _| {
-            let own = &shown[first_row * MAP_CELLS.0..][..grid.len()];
-            let found = self
-                .job
-                .pools
-                .work(|| coexisting(self.state, self.machine, grid, own))?;
+            let find = || coexisting(self.state, self.machine, grid);
+            let found = self.job.pools.work(find)?;
             let (motions, cells) = cells(found.iter());
             let frame = self.frame("beside", MAP_CELLS, first_row);
             Ok(self.job.send(frame.with("motions", motions).cells(cells))?)

@@ -15,6 +15,7 @@ mod evidence;
 mod export;
 mod first_tiles;
 mod frame;
+mod job;
 mod jobs;
 mod limits;
 mod maps;
@@ -23,6 +24,7 @@ mod pools;
 mod server;
 mod session;
 mod state;
+mod stop;
 mod wire;
 
 pub use campaign::OpenCampaign;

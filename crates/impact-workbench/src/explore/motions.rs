@@ -4,11 +4,11 @@ use std::time::{Duration, Instant};
 
 use serde_json::json;
 
-use super::answer::Stop;
 use super::frame::Frame;
-use super::jobs::Job;
+use super::job::Job;
 use super::maps::{BEYOND, cells, style};
 use super::state::Cursor;
+use super::stop::Stop;
 use super::{ExploreError, State};
 use impact_oscillator::atlas::BasinGrid;
 use impact_oscillator::atlas::basins::basin_rows;

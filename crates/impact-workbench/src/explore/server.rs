@@ -24,7 +24,8 @@ use tokio::sync::{Semaphore, mpsc};
 
 use super::answer::campaign_now;
 use super::frame::Frame;
-use super::jobs::{Jobs, refusal};
+use super::job::refusal;
+use super::jobs::Jobs;
 use super::{ExploreError, Session, wire};
 use impact_report::style::{FontFace, font};
 

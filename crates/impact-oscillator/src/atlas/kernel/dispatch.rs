@@ -68,7 +68,8 @@ pub(in crate::atlas) fn run(kernel: Kernel, course: &Course, feed: &mut impl Fee
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::{Course, Feed, march};
-    use crate::atlas::lanes::{Avx2, Avx512, Two};
+    use crate::atlas::lanes::Two;
+    use crate::atlas::lanes::x86::{Avx2, Avx512};
 
     #[target_feature(enable = "avx2,fma")]
     pub(super) fn march_avx2(light: bool, course: &Course, feed: &mut impl Feed) {
