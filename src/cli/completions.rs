@@ -1,53 +1,60 @@
 //! `impactid completions` and `impactid man`.
 
 use std::io::{self, Write};
+use std::marker::PhantomData;
 use std::path::PathBuf;
 
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 
+use super::exit::Exit;
+use super::failure::Failure;
 use super::stdout::print;
-use super::{Cli, Exit, Failure, Verbosity};
+use super::verbosity::Verbosity;
 use labfiles::output;
 
-/// Arguments of `impactid completions`.
+/// Arguments of `impactid completions`, of the program whose command line is `P`.
 #[derive(Debug, Args)]
 #[command(after_help = COMPLETIONS)]
-pub(super) struct Completions {
+pub(super) struct Completions<P> {
     /// The shell
     shell: Shell,
+    #[arg(skip)]
+    program: PhantomData<P>,
 }
 
 const COMPLETIONS: &str = "\
 Example:
   impactid completions bash > ~/.local/share/bash-completion/completions/impactid";
 
-impl Completions {
+impl<P: CommandFactory> Completions<P> {
     pub(super) fn run(self, _verbosity: Verbosity) -> Result<Exit, Failure> {
         let mut text = Vec::new();
-        clap_complete::generate(self.shell, &mut Cli::command(), "impactid", &mut text);
+        clap_complete::generate(self.shell, &mut P::command(), "impactid", &mut text);
         print(&String::from_utf8_lossy(&text))?;
         Ok(Exit::Done)
     }
 }
 
-/// Arguments of `impactid man`.
+/// Arguments of `impactid man`, of the program whose command line is `P`.
 #[derive(Debug, Args)]
 #[command(after_help = MAN)]
-pub(super) struct Man {
+pub(super) struct Man<P> {
     /// Folder for the pages; created if it does not exist
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
+    #[arg(skip)]
+    program: PhantomData<P>,
 }
 
 const MAN: &str = "\
 Example:
   impactid man --out ~/.local/share/man/man1";
 
-impl Man {
+impl<P: CommandFactory> Man<P> {
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         output::make_folder(&self.out)?;
-        let mut command = Cli::command();
+        let mut command = P::command();
         command.build();
         let mut pages = 0;
         self.write(&command, "impactid", &mut pages)?;
@@ -106,6 +113,7 @@ fn set(help: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::Cli;
 
     #[test]
     fn a_page_has_its_name_and_its_examples_line_by_line() {

@@ -169,9 +169,9 @@ commands! {
     /// Reproduce the paper's published numbers on this machine
     Selftest(selftest::SelfTest),
     /// Print shell completions
-    Completions(completions::Completions),
+    Completions(completions::Completions<Cli>),
     /// Write manual pages
-    Man(completions::Man),
+    Man(completions::Man<Cli>),
 }
 
 /// Run the program on the process's own arguments.

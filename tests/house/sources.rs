@@ -118,6 +118,7 @@ fn expanded(tree: &str) -> Vec<String> {
 fn used(code: &str) -> Vec<String> {
     let mut paths = Vec::new();
     let mut rest = String::new();
+    let code = &without_visibility(code);
     for statement in code.split_inclusive(';') {
         let start = statement.rfind("use ").filter(|at| {
             let before = statement[..*at].trim_end();
@@ -134,6 +135,15 @@ fn used(code: &str) -> Vec<String> {
     let spelt = rest.split(|c| !word(c)).filter(|w| w.contains("::"));
     paths.extend(spelt.map(str::to_owned));
     paths
+}
+
+/// Code without the paths of `pub(in path)`, which import nothing.
+fn without_visibility(code: &str) -> String {
+    let mut parts = code.split("pub(in ");
+    let first = parts.next().unwrap_or("").to_owned();
+    parts.fold(first, |text, part| {
+        text + "pub " + part.split_once(')').map_or(part, |(_, rest)| rest)
+    })
 }
 
 /// Modules that a file declares in files of their own.
@@ -292,6 +302,13 @@ mod tests {
             ("a", "use super::Item;"),
         ]);
         assert_eq!(found, [["", "a"]]);
+        // visibility is no import
+        let found = circles(&[
+            root,
+            ("a", "pub(in crate::b) fn f() {}"),
+            ("b", "use crate::a::f;"),
+        ]);
+        assert!(found.is_empty());
         // tests and comments are no imports
         let found = circles(&[
             root,

@@ -1,7 +1,10 @@
 //! What ends a smooth piece of motion, and where.
 
-use super::{Integrator, SHORTEST, Touch};
+use super::piece::{Piece, Touch};
 use crate::equations::{ContactModel, Phase4};
+
+/// Steps shorter than this count as none.
+pub(super) const SHORTEST: f64 = 1e-11;
 
 /// What ends a smooth piece of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,7 +30,7 @@ pub(super) struct Crossing {
     pub(super) fires: bool,
 }
 
-impl Integrator {
+impl Piece {
     /// Positive until an event happens.
     fn margin(&self, event: Event, t: f64, s: &Phase4) -> f64 {
         let e = &self.equations;
@@ -59,17 +62,6 @@ impl Integrator {
                     self.slides[mass] * s[2 * mass + 1]
                 }
             }
-        }
-    }
-
-    /// Force that friction has to hold, per sliding mass.
-    pub(super) fn pull(&self, mass: usize, drive: f64, s: &Phase4) -> f64 {
-        let forces = self.forces(drive, s);
-        if self.touch == Touch::Joined {
-            let share = self.equations.mobility;
-            share[1 - mass] * forces[mass] - share[mass] * forces[1 - mass]
-        } else {
-            forces[mass]
         }
     }
 

@@ -5,10 +5,12 @@
 use std::f64::consts::TAU;
 
 mod events;
+mod piece;
 mod recording;
 
 use super::equations::{ContactModel, Equations, Phase4};
-use events::Event;
+use events::{Event, SHORTEST};
+use piece::{Piece, Touch};
 use recording::Segment;
 pub(super) use recording::{Hit, Recording};
 
@@ -18,35 +20,13 @@ const STEPS_PER_PERIOD: f64 = 200.0;
 const STEPS_PER_CONTACT: f64 = 30.0;
 /// Separation speed of an instantaneous impact below which pressed masses stay together.
 const STICKS_BELOW: f64 = 1e-6;
-/// Steps shorter than this count as none.
-const SHORTEST: f64 = 1e-11;
-
-/// Where the masses are relative to each other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Touch {
-    /// Apart.
-    Apart,
-    /// In a compliant contact that presses.
-    Pressed,
-    /// Still overlapping, but separating faster than the contact recovers.
-    Recovering,
-    /// Together after an instantaneous impact (dead zone).
-    Joined,
-}
-
-/// Sliding direction of a mass under dry friction: 1, −1, or 0 while it sticks.
-type Direction = f64;
 
 /// A motion that can be continued with other coefficients; phase and motion stay continuous unless
 /// the phase is shifted.
 #[derive(Debug, Clone)]
 pub struct Integrator {
-    equations: Equations,
+    piece: Piece,
     tau: f64,
-    phase: f64,
-    state: Phase4,
-    touch: Touch,
-    slides: [Direction; 2],
     recording: Option<Recording>,
     touched_at: f64,
     hits: usize,
@@ -57,12 +37,14 @@ impl Integrator {
     /// Both masses at rest, the drive at phase 0.
     pub fn at_rest(equations: Equations) -> Self {
         let mut new = Self {
-            equations,
+            piece: Piece {
+                equations,
+                phase: 0.0,
+                state: [0.0; 4],
+                touch: Touch::Apart,
+                slides: [0.0; 2],
+            },
             tau: 0.0,
-            phase: 0.0,
-            state: [0.0; 4],
-            touch: Touch::Apart,
-            slides: [0.0; 2],
             recording: None,
             touched_at: 0.0,
             hits: 0,
@@ -75,14 +57,14 @@ impl Integrator {
 
     /// Continue with other coefficients.
     pub fn set(&mut self, equations: Equations) {
-        self.equations = equations;
+        self.piece.equations = equations;
     }
 
     /// Let the drive's phase jump, rad.
     pub fn shift_phase(&mut self, jump_rad: f64) {
-        self.phase = (self.phase + jump_rad).rem_euclid(TAU);
+        self.piece.phase = (self.piece.phase + jump_rad).rem_euclid(TAU);
         for mass in 0..2 {
-            if self.slides[mass] == 0.0 && self.state[2 * mass + 1] == 0.0 {
+            if self.piece.slides[mass] == 0.0 && self.piece.state[2 * mass + 1] == 0.0 {
                 self.turn(mass);
             }
         }
@@ -90,7 +72,7 @@ impl Integrator {
 
     /// How the masses act on each other.
     pub fn law(&self) -> ContactModel {
-        self.equations.law
+        self.piece.equations.law
     }
 
     /// Dimensionless time.
@@ -100,12 +82,12 @@ impl Integrator {
 
     /// Phase of the drive, rad in [0, 2π).
     pub fn phase(&self) -> f64 {
-        self.phase
+        self.piece.phase
     }
 
     /// [X, X', Y, Y'].
     pub fn state(&self) -> Phase4 {
-        self.state
+        self.piece.state
     }
 
     /// Impacts since the start, and those with a dead zone.
@@ -131,15 +113,15 @@ impl Integrator {
     /// One step of at most `limit`, shorter if an event comes first.
     fn step(&mut self, limit: f64) {
         let mut length = self.usual_step().min(limit);
-        let mut to = self.moved(length);
+        let mut to = self.piece.moved(length);
         if let Some(apex) = self.grazing(length, &to) {
-            (length, to) = (apex, self.moved(apex));
+            (length, to) = (apex, self.piece.moved(apex));
         }
         let mut happening = None;
         for event in Event::ALL {
-            if let Some(crossing) = self.crossing(event, length, &to) {
+            if let Some(crossing) = self.piece.crossing(event, length, &to) {
                 length = crossing.length;
-                to = self.moved(length);
+                to = self.piece.moved(length);
                 happening = crossing.fires.then_some(event);
             }
         }
@@ -150,8 +132,8 @@ impl Integrator {
     }
 
     fn usual_step(&self) -> f64 {
-        let smooth = TAU / self.equations.eta.max(1.0) / STEPS_PER_PERIOD;
-        match (self.touch, &self.equations.law) {
+        let smooth = TAU / self.piece.equations.eta.max(1.0) / STEPS_PER_PERIOD;
+        match (self.piece.touch, &self.piece.equations.law) {
             (Touch::Pressed | Touch::Recovering, ContactModel::Compliant(c)) => {
                 smooth.min(c.duration / STEPS_PER_CONTACT)
             }
@@ -159,98 +141,60 @@ impl Integrator {
         }
     }
 
-    /// Forces on both masses beside friction.
-    fn forces(&self, drive: f64, s: &Phase4) -> [f64; 2] {
-        let free = self.equations.free(drive, s);
-        match (self.touch, &self.equations.law) {
-            (Touch::Pressed, ContactModel::Compliant(c)) => {
-                let press = c.press(self.equations.overlap(s), s[1] + s[3]);
-                // The contact is that of two unit masses: on unlike ones with the same reduced mass.
-                std::array::from_fn(|i| free[i] - 2.0 * self.equations.mobility[i] * press)
-            }
-            _ => free,
-        }
-    }
-
-    fn rate(&self, drive: f64, s: &Phase4) -> Phase4 {
-        let friction = self.equations.friction;
-        let forces = self.forces(drive, s);
-        let mut a: [f64; 2] = std::array::from_fn(|i| {
-            let sticks = friction > 0.0 && self.slides[i] == 0.0;
-            if sticks {
-                0.0
-            } else {
-                forces[i] - friction * self.slides[i]
-            }
-        });
-        if self.touch == Touch::Joined {
-            let [of_x, of_y] = self.equations.mobility;
-            let together = of_y * a[0] - of_x * a[1];
-            a = [together, -together];
-        }
-        [s[1], a[0], s[3], a[1]]
-    }
-
-    /// The state after a time, by one Runge–Kutta step: rates at its start, middle and end.
-    fn moved(&self, t: f64) -> Phase4 {
-        let eta = self.equations.eta;
-        let drive = |share: f64| self.equations.drive(self.phase + share * eta * t);
-        let (p0, p1, p2) = (drive(0.0), drive(0.5), drive(1.0));
-        let s = &self.state;
-        let along = |k: &Phase4, h: f64| std::array::from_fn(|i| s[i] + h * k[i]);
-        let k1 = self.rate(p0, s);
-        let k2 = self.rate(p1, &along(&k1, 0.5 * t));
-        let k3 = self.rate(p1, &along(&k2, 0.5 * t));
-        let k4 = self.rate(p2, &along(&k3, t));
-        std::array::from_fn(|i| s[i] + t / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]))
-    }
-
     fn move_to(&mut self, length: f64, to: Phase4) {
-        let phase = self.phase + self.equations.eta * length;
+        let phase = self.piece.phase + self.piece.equations.eta * length;
         if self.recording.is_some() {
             let segment = Segment {
                 tau: self.tau,
                 length,
-                from: self.state,
-                from_rate: self.rate(self.equations.drive(self.phase), &self.state),
+                from: self.piece.state,
+                from_rate: self.piece.rate(
+                    self.piece.equations.drive(self.piece.phase),
+                    &self.piece.state,
+                ),
                 to,
-                to_rate: self.rate(self.equations.drive(phase), &to),
+                to_rate: self.piece.rate(self.piece.equations.drive(phase), &to),
             };
             if let Some(recording) = &mut self.recording {
                 recording.segments.push(segment);
             }
         }
         self.tau += length;
-        self.phase = phase.rem_euclid(TAU);
-        self.state = to;
+        self.piece.phase = phase.rem_euclid(TAU);
+        self.piece.state = to;
     }
 
     /// Time within a step at which masses that nearly touch come closest, if they overlap there:
     /// both ends of such a step are apart.
     fn grazing(&self, length: f64, to: &Phase4) -> Option<f64> {
-        let (from, e) = (&self.state, &self.equations);
+        let (from, e) = (&self.piece.state, &self.piece.equations);
         let (closing, opening) = (from[1] + from[3], to[1] + to[3]);
-        if self.touch != Touch::Apart || closing <= 0.0 || opening >= 0.0 || e.overlap(to) > 0.0 {
+        if self.piece.touch != Touch::Apart
+            || closing <= 0.0
+            || opening >= 0.0
+            || e.overlap(to) > 0.0
+        {
             return None;
         }
         let apex = closing / (closing - opening) * length;
         let near = e.overlap(from) + 0.75 * closing * apex > 0.0;
-        (near && e.overlap(&self.moved(apex)) > 0.0).then_some(apex)
+        (near && e.overlap(&self.piece.moved(apex)) > 0.0).then_some(apex)
     }
 
     fn happen(&mut self, event: Event) {
-        match (event, self.touch, self.equations.law) {
+        match (event, self.piece.touch, self.piece.equations.law) {
             (Event::TurnX, ..) => self.turn(0),
             (Event::TurnY, ..) => self.turn(1),
-            (Event::PressedAgain, ..) => self.touch = Touch::Pressed,
+            (Event::PressedAgain, ..) => self.piece.touch = Touch::Pressed,
             (Event::Contact, Touch::Apart, ContactModel::Newton(r)) => self.bounce(r),
             (Event::Contact, Touch::Apart, ContactModel::Compliant(_)) => {
                 self.begin_hit();
-                self.touch = Touch::Pressed;
+                self.piece.touch = Touch::Pressed;
             }
             (Event::Contact, Touch::Pressed, ContactModel::Compliant(c)) => {
-                let overlaps = c.damping > 0.0 && self.equations.overlap(&self.state) > 0.0;
-                self.touch = if overlaps {
+                let overlaps =
+                    c.damping > 0.0 && self.piece.equations.overlap(&self.piece.state) > 0.0;
+                self.piece.touch = if overlaps {
                     Touch::Recovering
                 } else {
                     Touch::Apart
@@ -258,30 +202,30 @@ impl Integrator {
                 self.end_hit(3.0 * c.duration);
             }
             (Event::Contact, Touch::Joined, _) => {
-                self.touch = Touch::Apart;
+                self.piece.touch = Touch::Apart;
                 self.end_hit(0.0);
             }
-            (Event::Contact, ..) => self.touch = Touch::Apart,
+            (Event::Contact, ..) => self.piece.touch = Touch::Apart,
         }
     }
 
     /// An instantaneous impact by Newton's law.
     fn bounce(&mut self, restitution: f64) {
         self.begin_hit();
-        let approach = self.state[1] + self.state[3];
-        let drive = self.equations.drive(self.phase);
-        let forces = self.forces(drive, &self.state);
+        let approach = self.piece.state[1] + self.piece.state[3];
+        let drive = self.piece.equations.drive(self.piece.phase);
+        let forces = self.piece.forces(drive, &self.piece.state);
         let sticks = restitution * approach < STICKS_BELOW && forces[0] + forces[1] > 0.0;
         let ratio = if sticks { 0.0 } else { restitution };
-        let [of_x, of_y] = self.equations.mobility;
+        let [of_x, of_y] = self.piece.equations.mobility;
         let change = (1.0 + ratio) * approach;
-        self.state[1] -= of_x * change;
-        self.state[3] -= of_y * change;
+        self.piece.state[1] -= of_x * change;
+        self.piece.state[3] -= of_y * change;
         for mass in [0, 1] {
-            self.slides[mass] = self.state[2 * mass + 1].signum();
+            self.piece.slides[mass] = self.piece.state[2 * mass + 1].signum();
         }
         if sticks {
-            self.touch = Touch::Joined;
+            self.piece.touch = Touch::Joined;
         } else {
             self.end_hit(f64::INFINITY);
         }
@@ -289,17 +233,21 @@ impl Integrator {
 
     /// A mass stands still for an instant: it sticks, or slides where it is pulled.
     fn turn(&mut self, mass: usize) {
-        let pull = self.pull(mass, self.equations.drive(self.phase), &self.state);
-        let slides = if pull.abs() > self.equations.friction {
+        let pull = self.piece.pull(
+            mass,
+            self.piece.equations.drive(self.piece.phase),
+            &self.piece.state,
+        );
+        let slides = if pull.abs() > self.piece.equations.friction {
             pull.signum()
         } else {
             0.0
         };
-        self.state[2 * mass + 1] = 0.0;
-        self.slides[mass] = slides;
-        if self.touch == Touch::Joined {
-            self.state[3 - 2 * mass] = 0.0;
-            self.slides[1 - mass] = -slides;
+        self.piece.state[2 * mass + 1] = 0.0;
+        self.piece.slides[mass] = slides;
+        if self.piece.touch == Touch::Joined {
+            self.piece.state[3 - 2 * mass] = 0.0;
+            self.piece.slides[1 - mass] = -slides;
         }
     }
 
@@ -309,7 +257,7 @@ impl Integrator {
         if let Some(recording) = &mut self.recording {
             recording.hits.push(Hit {
                 tau: self.tau,
-                approach: self.state[1] + self.state[3],
+                approach: self.piece.state[1] + self.piece.state[3],
                 separation: 0.0,
                 duration: 0.0,
                 dead_zone: f64::INFINITY,
@@ -324,7 +272,7 @@ impl Integrator {
         self.dead_zones += usize::from(stays);
         // A contact that began before the recording is not in it.
         if let Some(hit) = self.recording.as_mut().and_then(|r| r.hits.last_mut()) {
-            hit.separation = -(self.state[1] + self.state[3]);
+            hit.separation = -(self.piece.state[1] + self.piece.state[3]);
             [hit.duration, hit.dead_zone] = if stays {
                 [0.0, duration]
             } else {
@@ -342,7 +290,7 @@ mod tests {
     /// Turning points of mass x from displacement `a` at rest: time and displacement.
     fn turning_points(equations: Equations, a: f64, count: usize) -> Vec<(f64, f64)> {
         let mut motion = Integrator::at_rest(equations);
-        motion.state = [a, 0.0, 0.0, 0.0];
+        motion.piece.state = [a, 0.0, 0.0, 0.0];
         motion.turn(0);
         let recording = motion.record(TAU * (count as f64 + 1.0));
         let turns = recording
@@ -406,16 +354,19 @@ mod tests {
         let mu = 0.01;
         let equations = Equations::undriven(1.0, 0.0, mu, ContactModel::Newton(0.9));
         let mut motion = Integrator::at_rest(equations);
-        motion.state = [1.0, 0.0, 0.0, 0.0];
+        motion.piece.state = [1.0, 0.0, 0.0, 0.0];
         motion.turn(0);
         for half in 1..=40 {
             motion.advance(0.5 * TAU);
             let expected = 1.0 - 2.0 * mu * f64::from(half);
-            assert!((motion.state[0].abs() - expected).abs() < 1e-7, "{half}");
+            assert!(
+                (motion.piece.state[0].abs() - expected).abs() < 1e-7,
+                "{half}"
+            );
         }
         // 1 − 2μ·49.5 = μ: after the fiftieth half cycle it sticks within ±μ
         motion.advance(20.0 * TAU);
-        assert!(motion.state[0].abs() <= mu && motion.state[1] == 0.0);
+        assert!(motion.piece.state[0].abs() <= mu && motion.piece.state[1] == 0.0);
     }
 
     #[test]
@@ -424,7 +375,7 @@ mod tests {
             let law = ContactModel::Compliant(Compliance::new(r, duration).unwrap());
             let equations = Equations::undriven(0.0, 0.0, 0.0, law);
             let mut motion = Integrator::at_rest(equations);
-            motion.state = [499.0, 2.0, 499.0, 1.0];
+            motion.piece.state = [499.0, 2.0, 499.0, 1.0];
             let recording = motion.record(3.0);
             let hit = recording.hits[0];
             assert!((hit.tau - 2.0 / 3.0).abs() < 1e-9 && recording.hits.len() == 1);
@@ -437,7 +388,7 @@ mod tests {
                 "{r} {hit:?}"
             );
             // momentum of both masses: X' − Y'
-            assert!((motion.state[1] - motion.state[3] - 1.0).abs() < 1e-9);
+            assert!((motion.piece.state[1] - motion.piece.state[3] - 1.0).abs() < 1e-9);
         }
     }
 }

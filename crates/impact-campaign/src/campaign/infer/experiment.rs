@@ -1,6 +1,7 @@
 //! What was probably measured: a driven rig, free decays, free flights, or the times of impacts.
 
-use super::{FolderContents, InferredChannel, Place, spread};
+use super::found::{Experiment, FolderContents, InferredChannel};
+use super::place::{Place, spread};
 use impact_records::event::{DetectSettings, Detection, FlightKind, RigKind, detect};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
 use impact_records::record::{ContactContent, FlagCode, Record, Role, Setting, changes};
@@ -8,20 +9,6 @@ use impact_records::signal::columns::{self, dot};
 use impact_records::signal::{decay, onsets, robust};
 use labfiles::DatasetInfo;
 use labfiles::units::{self, Dimension};
-
-/// What was probably measured.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Experiment {
-    /// A driven rig, or nothing that the records show.
-    #[default]
-    Driven,
-    /// Free decays.
-    FreeDecay,
-    /// Masses that fly freely between impacts.
-    FreeFlight(RigKind),
-    /// The times of impacts alone.
-    Events(ContactContent),
-}
 
 /// Records that are looked at.
 const MOST_RECORDS: usize = 6;

@@ -3,8 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::slashed;
-
 /// Folders from which on one pattern matches the files in all of them.
 const MANY_FOLDERS: usize = 4;
 
@@ -19,6 +17,14 @@ pub(super) fn of(records: &[&Path], files: &[PathBuf]) -> Vec<String> {
     } else {
         named(records)
     }
+}
+
+/// A path with `/` on every system.
+pub(super) fn slashed(path: &Path) -> String {
+    path.iter()
+        .map(|p| p.to_string_lossy())
+        .collect::<Vec<_>>()
+        .join("/")
 }
 
 /// Patterns with stars.

@@ -1,10 +1,12 @@
 //! The records in a folder of files, and the role that each channel probably has.
 
 mod experiment;
+mod found;
 mod globs;
+mod place;
 mod roles;
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::HashSet;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -12,84 +14,18 @@ use std::path::{Path, PathBuf};
 use super::discovery::Opener;
 use super::resolved::RESOLVED;
 use super::run_table;
-use impact_records::record::{Role, time_axis};
+use impact_records::record::time_axis;
 use impact_records::signal::robust;
-use labfiles::{ChannelInfo, Clock, DatasetInfo, Samples, Source};
+use labfiles::{ChannelInfo, Clock, DatasetInfo, Source};
 
-pub use experiment::Experiment;
+use globs::slashed;
+use place::{Place, spread};
+
+pub use found::{Experiment, FolderContents, InferredChannel, RefusedFile};
 pub use roles::is_rate;
 
 /// Depth of the search below the folder.
 const DEPTH: usize = 4;
-
-/// What was found in a folder.
-#[derive(Debug, Default)]
-pub struct FolderContents {
-    /// Globs of the record files, relative to the folder.
-    pub globs: Vec<String>,
-    /// A table that names files, relative to the folder.
-    pub run_table: Option<String>,
-    /// Number of record files.
-    pub files: usize,
-    /// Number of datasets in the first record file.
-    pub datasets: usize,
-    /// Format of the first record file.
-    pub format: &'static str,
-    /// The first record file, relative to the folder.
-    pub example: String,
-    /// Number of records whose signals were looked at.
-    pub looked_at: usize,
-    /// Its channels.
-    pub channels: Vec<InferredChannel>,
-    /// Attributes of its first dataset.
-    pub attributes: BTreeMap<String, String>,
-    /// Files that no reader accepts.
-    pub refused: Vec<RefusedFile>,
-    /// Whether the file has a time axis or a sample rate.
-    pub timed: bool,
-    /// Whether it has neither but counts a camera's frames.
-    pub counts_frames: bool,
-    /// Number of records in all files.
-    pub records: usize,
-    /// Tables that are no records, as those of settings and notes: files, or sheets of them.
-    pub others: Vec<String>,
-    /// What was probably measured.
-    pub experiment: Experiment,
-}
-
-/// A file that no reader accepts.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RefusedFile {
-    /// The file, relative to the folder.
-    pub file: String,
-    /// What the reader found.
-    pub reason: String,
-    /// What the user can do.
-    pub remedy: String,
-}
-
-/// A channel and the role inferred for it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct InferredChannel {
-    /// Name in the file.
-    pub name: String,
-    /// What the file calls its signal beside its name, if it does.
-    pub label: Option<String>,
-    /// Unit in the file.
-    pub unit: Option<String>,
-    /// Number of samples.
-    pub samples: u64,
-    /// Least and greatest value in the records looked at.
-    pub range: Option<[f64; 2]>,
-    /// Whether it holds the time, or counts the rows.
-    pub is_time: bool,
-    /// The role inferred.
-    pub role: Option<Role>,
-    /// Levels of a signal that has only two.
-    pub levels: Option<[f64; 2]>,
-    /// The sign that its impacts show: 1 toward the other mass or the stop, -1 away from it.
-    pub sign: i8,
-}
 
 /// Read the headers of all files below a folder, and infer the channels' roles.
 pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
@@ -161,26 +97,6 @@ fn lists_sheets(set: &DatasetInfo) -> bool {
     run_table::lists_sheets(set.channels.iter().map(|c| c.name.as_str()))
 }
 
-/// A record: a dataset of a file.
-#[derive(Clone, Copy)]
-struct Place<'a> {
-    source: &'a dyn Source,
-    dataset: usize,
-}
-
-impl<'a> Place<'a> {
-    fn set(self) -> &'a DatasetInfo {
-        &self.source.datasets()[self.dataset]
-    }
-
-    /// A channel's numbers; none if it cannot be read or holds others.
-    fn numbers(self, channel: usize) -> Vec<f64> {
-        let samples = self.source.read(self.dataset, &[channel]).ok();
-        let samples = samples.and_then(|mut s| s.pop());
-        samples.and_then(Samples::into_real).unwrap_or_default()
-    }
-}
-
 /// How many times longer than a table of notes, with times of its own, a record is.
 const LONGER_THAN_NOTES: u64 = 4;
 
@@ -228,19 +144,6 @@ fn records_in(source: &dyn Source) -> impl Iterator<Item = Place<'_>> {
     let sets = source.datasets().iter().enumerate();
     let records = sets.filter(|(_, set)| is_record(set));
     records.map(move |(dataset, _)| Place { source, dataset })
-}
-
-/// At most so many of a list, evenly spread over it from the first on.
-fn spread<T: Copy>(all: &[T], most: usize) -> Vec<T> {
-    let count = all.len().min(most);
-    (0..count).map(|k| all[k * all.len() / count]).collect()
-}
-
-fn slashed(path: &Path) -> String {
-    path.iter()
-        .map(|p| p.to_string_lossy())
-        .collect::<Vec<_>>()
-        .join("/")
 }
 
 /// The files below a folder, also through links, each folder once; folders of results are left out.
@@ -422,6 +325,7 @@ fn two_levels(values: &[f64]) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impact_records::record::Role;
 
     fn seen(name: &str, unit: Option<&str>) -> InferredChannel {
         InferredChannel {

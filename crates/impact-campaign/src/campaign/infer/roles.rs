@@ -1,6 +1,6 @@
 //! The role that each channel probably has, from its name, unit and shape.
 
-use super::InferredChannel;
+use super::found::InferredChannel;
 use impact_records::record::Role;
 use labfiles::units::{self, Dimension};
 

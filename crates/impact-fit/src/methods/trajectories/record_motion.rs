@@ -2,9 +2,7 @@
 //! over every parameter, over the drive's phase and over its frequency.
 
 mod effects;
-mod points;
-
-pub use points::MotionPoints;
+pub mod points;
 
 use crate::evidence::direction::{change, relative_length, relative_rate};
 use crate::evidence::high_pass::{HighPass, HighPassSlope, Passed};
@@ -249,13 +247,6 @@ impl<'a> RecordMotion<'a> {
         f64::from(self.record.folded.periods_n) * std::f64::consts::TAU / self.eta
     }
 
-    /// Values at all points, channel after channel, SI, gains and effects included.
-    pub fn values(&self) -> Vec<f64> {
-        let mut values = self.points().values(&self.unperturbed());
-        self.perturb(&mut values);
-        values
-    }
-
     /// Add the masses' own responses to the effects that act as extra accelerations: as they were found,
     /// whatever the parameters are now.
     pub fn perturb(&self, values: &mut [f64]) {
@@ -280,11 +271,6 @@ impl<'a> RecordMotion<'a> {
                 ..vibration.values(&delayed(&shown.motion, self.eta, channel.delay))
             }
         })
-    }
-
-    /// Where terms are taken at all points.
-    pub fn points(&self) -> MotionPoints<'a> {
-        MotionPoints::new(self)
     }
 
     /// How fast the channels' terms change.

@@ -1,9 +1,10 @@
 //! Records whose channels are positive the other way round.
 
 use crate::event::contact::Closed;
-use crate::event::free_flight::{FreeFlights, Search};
 use crate::event::kinematics::{Body, Kinematics, RigKind, Series};
 use crate::record::{Flag, FlagCode};
+
+use super::search::{FreeFlights, Search};
 
 /// The impacts of a record that is measured the other way round; `None` if it has none then either.
 ///

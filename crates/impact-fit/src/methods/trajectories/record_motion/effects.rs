@@ -1,6 +1,7 @@
 //! Change of a record's values by effects that act as a small extra acceleration along the orbit.
 
-use super::{ChannelMotion, Measured, MotionPoints, RecordMotion, measured};
+use super::points::MotionPoints;
+use super::{ChannelMotion, Measured, RecordMotion, measured};
 use crate::evidence::pickup::Pickups;
 use crate::methods::trajectories::record::Perturbation;
 use crate::parameters::effect::Effect;

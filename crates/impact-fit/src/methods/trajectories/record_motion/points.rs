@@ -20,8 +20,22 @@ struct ChannelPoints {
     tail: Option<Vec<f64>>,
 }
 
+impl<'a> RecordMotion<'a> {
+    /// Values at all points, channel after channel, SI, gains and effects included.
+    pub fn values(&self) -> Vec<f64> {
+        let mut values = self.points().values(&self.unperturbed());
+        self.perturb(&mut values);
+        values
+    }
+
+    /// Where terms are taken at all points.
+    pub fn points(&self) -> MotionPoints<'a> {
+        MotionPoints::new(self)
+    }
+}
+
 impl<'a> MotionPoints<'a> {
-    pub(super) fn new(motion: &RecordMotion<'a>) -> Self {
+    fn new(motion: &RecordMotion<'a>) -> Self {
         let record = motion.record;
         let measured = |of_y: bool| motion.channels.iter().any(|c| c.role.is_of_y() == of_y);
         let vibrations = record.phases.iter().map(|phases| {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::event::free_flight::detect;
 use crate::record::{Record, Role};
 
 const RATE_HZ: f64 = 50.0;
