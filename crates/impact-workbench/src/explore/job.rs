@@ -65,6 +65,20 @@ impl Job {
         self.audience.is_gone()
     }
 
+    /// Wait for a time as long as somebody waits for the job.
+    pub(super) fn wait_while_wanted(&self, time: Duration) -> Result<(), Stale> {
+        /// Between two looks at whether somebody does.
+        const LOOK: Duration = Duration::from_millis(20);
+        let begin = Instant::now();
+        while begin.elapsed() < time {
+            if self.is_stale() {
+                return Err(Stale);
+            }
+            std::thread::sleep(LOOK);
+        }
+        Ok(())
+    }
+
     /// Send a frame.
     pub(super) fn send(&self, frame: Frame) -> Result<(), Stale> {
         self.audience.outbox.blocking_send(frame).map_err(|_| Stale)

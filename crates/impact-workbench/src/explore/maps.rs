@@ -1,5 +1,7 @@
 //! The map's tiles, coarse first, and the boundaries, bare first.
 
+use std::time::Duration;
+
 use rayon::prelude::*;
 
 use super::beside::coexisting;
@@ -25,10 +27,12 @@ use impact_report::style::MotionStyle;
 const COARSE: (usize, usize) = (32, 24);
 /// Of the last one, of machines that the vector kernel marches.
 const FINE: (usize, usize) = (384, 288);
-/// Cells computed between two looks at whether the page wants something newer.
-const STRIP_CELLS: usize = 12_288;
-/// The same of machines that the exact simulator marches, some 0.4 ms a cell.
+/// Cells of a strip of the last tile: what is asked for meanwhile, as the boundaries, waits for one strip at most.
+const STRIP_CELLS: usize = 3072;
+/// The same of every tile of machines that the exact simulator marches, some 0.4 ms a cell.
 const SLOW_STRIP_CELLS: usize = 192;
+/// How long a page is left as it is before what coexists is sought, which keeps the processors from a next map.
+const UNTOUCHED: Duration = Duration::from_millis(250);
 /// Most points of a boundary that a page may ask for.
 const MOST_POINTS: usize = 2000;
 
@@ -75,7 +79,7 @@ pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
     let tiles = Tiles {
         state,
         machine: &machine,
-        strip_cells: if fast { STRIP_CELLS } else { SLOW_STRIP_CELLS },
+        fast,
         finest: levels.len() - 1,
         first: if fast { levels.len() - 1 } else { 0 },
         job,
@@ -88,6 +92,7 @@ pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
         tiles.send(level, size)?;
     }
     drop(waiting);
+    job.wait_while_wanted(UNTOUCHED)?;
     tiles.send_coexisting()
 }
 
@@ -95,8 +100,8 @@ pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
 struct Tiles<'a> {
     state: &'a State,
     machine: &'a Machine,
-    /// Cells of a strip at most.
-    strip_cells: usize,
+    /// Whether the vector kernel marches it.
+    fast: bool,
     /// The last level.
     finest: usize,
     /// The first level that is not of the first tiles.
@@ -145,6 +150,15 @@ impl Tiles<'_> {
             .with("rho", self.state.view.rho)
     }
 
+    /// Cells of a strip at most: the first tiles of fast machines are whole.
+    fn strip_cells(&self, size: (usize, usize)) -> usize {
+        match (self.fast, size) {
+            (false, _) => SLOW_STRIP_CELLS,
+            (true, FINE) => STRIP_CELLS,
+            (true, _) => size.0 * size.1,
+        }
+    }
+
     /// Work on strips of rows, each with the number of its first row and whether it is the last.
     fn strips(
         &self,
@@ -153,7 +167,7 @@ impl Tiles<'_> {
     ) -> Result<(), Stop> {
         let plan = self.state.map_plan(size);
         let (eta, rho) = (even(plan.eta), even(plan.rho));
-        let rows = (self.strip_cells / size.0).max(1);
+        let rows = (self.strip_cells(size) / size.0).max(1);
         let last = (rho.len() - 1) / rows;
         for (number, strip) in rho.chunks(rows).enumerate() {
             if self.job.is_stale() {
@@ -204,7 +218,7 @@ pub(super) fn boundaries(state: &State, points: usize, job: &Job) -> Result<(), 
     let curve = &|c: &(&str, u32, Boundary)| curve(&machine, &etas, *c, job);
     job.wait_for_first_tiles();
     let tasks: Vec<_> = curves.iter().map(|c| carry(move || curve(c))).collect();
-    let frames: Vec<Frame> = job.pools.work(|| {
+    let frames: Vec<Frame> = job.pools.boundaries(|| {
         let found = tasks.into_par_iter().map(|task| task());
         found.collect::<Result<_, Stop>>()
     })?;
