@@ -154,3 +154,28 @@ fn valid_contacts_of_two_milliseconds_are_impacts_and_those_of_ten_give_no_r() {
     let long = Simulated::of("contact=10").found_with("campaign.toml", as_is);
     assert_ne!(long["verdict"]["kind"], "identified");
 }
+
+#[test]
+fn valid_a_drive_that_is_later_than_stated_is_named_and_moved_back() {
+    let simulated = Simulated::of("realistic");
+    // the drive's samples are taken for later than they are: moved back by that, they are early
+    let stated = |delay: &str| {
+        simulated.found_with("campaign.toml", |text| {
+            let (before, drive) = text.split_once("[channels.drive]\n").expect("a drive");
+            format!("{before}[channels.drive]\ndelay = \"{delay}\"\n{drive}")
+        })
+    };
+    for (delay, later_ms) in [("-5 ms", 5.0), ("12 ms", -12.0)] {
+        let found = stated(delay);
+        let suspicion = &found["suspicions"][0];
+        assert_eq!(first_suspicion(&found), "late_channel", "{found}");
+        assert_eq!(suspicion["channel"], "drive");
+        let told = suspicion["later_ms"].as_f64().expect("a lag");
+        assert!((told - later_ms).abs() < 0.5, "{told} ms of {later_ms}");
+        let [low, high] = interval_of_r(&found);
+        assert!(
+            low < 0.75 && 0.75 < high && high - low < 0.03,
+            "{low} to {high}"
+        );
+    }
+}

@@ -8,6 +8,7 @@ pub mod campaign_folders;
 pub mod campaigns;
 pub mod checkpoint;
 pub mod error;
+mod evidence;
 mod gzip_json;
 pub mod identify;
 pub mod inputs;

@@ -5,11 +5,15 @@ use std::path::Path;
 use super::block_cache::BlockCache;
 use super::checkpoint;
 use super::error::{PipelineError, Progress, RefusedRecord};
+use super::evidence;
 use super::observe;
 use crate::campaign::resolved::ResolvedCampaign;
+use impact_fit::evidence::Evidence;
+use impact_fit::methods::resonance::late_drive::late_drive;
 use impact_records::motion::{
     Bracket, LateChannel, Observation, brackets, late_channels, scale_drives,
 };
+use impact_records::record::Role;
 use labfiles::output::OutputError;
 
 /// All records as observed.
@@ -51,7 +55,12 @@ impl Observed {
 
     /// The channels that were found late, and whose samples were moved back.
     pub fn late(&self) -> &[LateChannel] {
-        self.observations.first().map_or(&[], |o| &o.late)
+        evidence::late(&self.observations)
+    }
+
+    /// What an identification of the campaign starts from.
+    pub fn evidence(&self, campaign: &ResolvedCampaign) -> Evidence<'_> {
+        evidence::evidence(campaign, &self.observations, &self.brackets)
     }
 
     /// Forget the folded waveforms of all records.
@@ -92,21 +101,36 @@ impl Observed {
 }
 
 /// The observations; made again where they show that channels are later than stated, with what these show
-/// moved back.
+/// moved back: channels beside each other by their impacts, then the drive's by the phases of the motion.
 fn aligned(
     campaign: &ResolvedCampaign,
     observations: Vec<Observation>,
     progress: Progress<'_>,
 ) -> Result<Vec<Observation>, OutputError> {
-    let late = late_channels(&observations);
-    if late.is_empty() {
-        return Ok(observations);
+    let mut late = late_channels(&observations);
+    let mut observations = observations;
+    if !late.is_empty() {
+        observations = observed_again(campaign, &late, progress)?;
     }
-    let (campaign, kept) = (campaign.with_late(&late), BlockCache::none());
+    scale_drives(&mut observations);
+    let Some(delay_s) = late_drive(&evidence::evidence(campaign, &observations, &[])) else {
+        return Ok(observations);
+    };
+    late.push(LateChannel::by(Role::Drive, delay_s));
+    observed_again(campaign, &late, progress)
+}
+
+/// The observations with what late channels show moved back.
+fn observed_again(
+    campaign: &ResolvedCampaign,
+    late: &[LateChannel],
+    progress: Progress<'_>,
+) -> Result<Vec<Observation>, OutputError> {
+    let (campaign, kept) = (campaign.with_late(late), BlockCache::none());
     let whole = campaign.records.len();
     let mut again = observe::observe_in_chunks(&campaign, &kept, whole, progress)?;
     for observation in &mut again {
-        observation.late.clone_from(&late);
+        observation.late = late.to_vec();
     }
     Ok(again)
 }

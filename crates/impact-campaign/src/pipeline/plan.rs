@@ -48,7 +48,7 @@ pub fn plan(
     let observed = Observed::of(campaign, progress)?;
     progress("identify", 0, 1);
     let found = identify::identify(campaign, &observed, None)?;
-    let evidence = identify::evidence(campaign, &observed);
+    let evidence = observed.evidence(campaign);
     let proposals = propose(&evidence, found.identification.joint_fit.as_ref(), count);
     let (proposals, obstacle) = match proposals {
         Ok(proposals) => (proposals, None),

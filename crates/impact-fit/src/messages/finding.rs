@@ -426,7 +426,17 @@ fn template_key(finding: &Finding) -> String {
             let way = if *strength > 0.0 { "above" } else { "below" };
             format!("{}_{}_zero", effect.name(), way)
         }
-        Finding::LateChannel { later_ms, .. } if *later_ms <= 0.0 => "early_channel".to_owned(),
+        Finding::LateChannel {
+            channel, later_ms, ..
+        } => {
+            let which = if *later_ms > 0.0 { "late" } else { "early" };
+            let what = if *channel == Role::Drive {
+                "drive"
+            } else {
+                "channel"
+            };
+            format!("{which}_{what}")
+        }
         Finding::UndeclaredLowPass { order: Some(1), .. } => "undeclared_low_pass_1".to_owned(),
         Finding::UndeclaredLowPass { order: Some(_), .. } => "undeclared_low_pass_2".to_owned(),
         _ => finding.kind().to_owned(),

@@ -21,12 +21,17 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
             z_score: 0.0,
         })
     });
-    // an early channel has a text of its own
-    let late = Finding::LateChannel {
-        channel: Role::default(),
-        later_ms: 1.0,
+    // an early channel has a text of its own, and so has the drive
+    let late = [
+        (Role::VelocityX, 1.0),
+        (Role::VelocityX, -1.0),
+        (Role::Drive, 1.0),
+    ];
+    let late = late.map(|(channel, later_ms)| Finding::LateChannel {
+        channel,
+        later_ms,
         z_score: 0.0,
-    };
+    });
     // as has a low-pass whose order is known
     let filters = [1, 2].map(|order| Finding::UndeclaredLowPass {
         channel: Role::default(),
@@ -40,7 +45,7 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         .chain(boxed(Remark::iter()))
         .chain(boxed(Reason::iter()))
         .chain(boxed(findings))
-        .chain(boxed([late].into_iter()))
+        .chain(boxed(late.into_iter()))
         .chain(boxed(filters.into_iter()))
         .chain(boxed(beyond))
         .chain(boxed(Undetermined::iter()))

@@ -20,6 +20,18 @@ pub struct LateChannel {
     pub order_share: f64,
 }
 
+impl LateChannel {
+    /// A channel that is later by a time, s, and shows no low-pass.
+    pub fn by(role: Role, delay_s: f64) -> Self {
+        Self {
+            role,
+            delay_s,
+            low_pass: None,
+            order_share: all(),
+        }
+    }
+}
+
 fn all() -> f64 {
     1.0
 }

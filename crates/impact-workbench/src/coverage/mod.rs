@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use seen::Seen;
 
+use impact_campaign::pipeline::table::Table;
 use impact_campaign::pipeline::{PipelineError, Progress};
 use impact_fit::Estimator;
 use impact_fit::evidence::options::{IntervalMethod, UncertaintyOptions};
@@ -16,7 +17,9 @@ use impact_fit::evidence::{Evidence, Nominal};
 use impact_fit::parameters::Parameters;
 use impact_identification::identify::run::identify;
 use impact_identification::identify::uncertainty::bound::bounds;
-use impact_identification::identify::uncertainty::coverage::{Score, Trial, scores, table};
+use impact_identification::identify::uncertainty::coverage::{
+    Estimated, Score, Trial, all_estimates, scores,
+};
 use impact_identification::identify::{Identification, boundary_plan};
 use impact_records::event::{DetectSettings, RigKind};
 use impact_records::motion::{
@@ -251,11 +254,25 @@ pub fn study(plan: &CoveragePlan, progress: Progress<'_>) -> Result<Coverage, Pi
         seed,
         rig: rig.to_string(),
         methods: scores(&trials),
-        estimates: table(&trials),
+        estimates: table(&all_estimates(&trials)).csv(),
         nothing_touches,
         mistakes,
         tallies: Tallies::of(&statements),
     })
+}
+
+/// A line for each estimate; of R interval and bound are absolute, of the others relative.
+fn table(all: &[Estimated]) -> Table {
+    let low_and_high = |i: usize| all.iter().map(move |e| e.interval95.map(|ends| ends[i]));
+    Table::new()
+        .counts("campaign", all.iter().map(|e| e.campaign))
+        .texts("method", all.iter().map(|e| e.estimator.name()))
+        .texts("parameter", all.iter().map(|e| e.coordinate.name()))
+        .numbers("truth", all.iter().map(|e| e.truth))
+        .missing("value", all.iter().map(|e| e.value))
+        .missing("interval_low", low_and_high(0))
+        .missing("interval_high", low_and_high(1))
+        .missing("bound", all.iter().map(|e| e.bound))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::state::State;
 use impact_oscillator::atlas::carried_maps;
 use impact_oscillator::atlas::coexisting::beside;
-use impact_oscillator::atlas::map::{End, Start, march_from};
+use impact_oscillator::atlas::map::{End, Start, first_map, march_from};
 use impact_oscillator::{Initial, Machine, MapGrid, MapSettings, ModelError, SettledMotion, Watch};
 
 /// X' and Y' of the lively start.
@@ -41,7 +41,8 @@ pub(super) fn coexisting(
         (0..grid.len()).map(start).collect::<Vec<Start>>()
     };
     let (rest, settings) = (start(state.map_start), from(state.map_start));
-    let own = motions(&march_from(machine, &rest, &settings)?);
+    // as the tile shows them
+    let own = first_map(machine, grid, &settings)?.cells;
     let other = march_from(machine, &start(other_start(state)), &settings)?;
     let [up, down] = carried_maps(machine, grid, &settings)?;
     let maps = [other, up, down];

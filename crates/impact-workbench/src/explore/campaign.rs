@@ -9,7 +9,7 @@ use super::limits::{DEFLECTION, ETA, FREQUENCY, RHO};
 use super::state::{Cursor, Panel, RigScale, State, Window};
 use crate::theory::plan::RestitutionLaw;
 use impact_campaign::campaign::resolved::ResolvedCampaign;
-use impact_campaign::pipeline::identify::{IdentificationFile, evidence};
+use impact_campaign::pipeline::identify::IdentificationFile;
 use impact_campaign::pipeline::observe::read_one;
 use impact_campaign::pipeline::watch::Live;
 use impact_campaign::pipeline::{
@@ -91,7 +91,7 @@ impl OpenCampaign {
         identification: Identification,
     ) -> Self {
         resolved.sources.close();
-        let mut blocks = Blocks::new(&evidence(&resolved, &observed));
+        let mut blocks = Blocks::new(&observed.evidence(&resolved));
         if let Some(joint) = &identification.joint_fit {
             blocks.weigh(&joint.fit.parameters);
             blocks.boundary.fit_early_scale(&joint.fit.parameters);

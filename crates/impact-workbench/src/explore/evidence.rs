@@ -8,7 +8,6 @@ use super::campaign::OpenCampaign;
 use super::job::Job;
 use super::stop::Stop;
 use super::{ExploreError, State};
-use impact_campaign::pipeline::identify::evidence;
 use impact_fit::methods::boundaries::block::predicted_hz;
 use impact_fit::parameters::Parameters;
 use impact_fit::solver::Block;
@@ -199,7 +198,7 @@ pub(super) fn residuals(campaign: &OpenCampaign, state: &State, job: &Job) -> Re
 
 /// The settings to measure next.
 pub(super) fn proposals(campaign: &OpenCampaign, job: &Job) -> Result<(), Stop> {
-    let evidence = evidence(&campaign.resolved, &campaign.observed);
+    let evidence = campaign.observed.evidence(&campaign.resolved);
     let joint = campaign.identification.joint_fit.as_ref();
     let found = propose(&evidence, joint, PROPOSALS).unwrap_or_default();
     Ok(job.send(job.frame("proposals").with("proposals", found))?)

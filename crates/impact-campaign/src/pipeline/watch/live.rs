@@ -39,7 +39,7 @@ impl Live {
     ) -> Result<(Self, Duration), PipelineError> {
         let found = identify::identify(&campaign, &observed, None)?;
         let identified = meter.read();
-        let evidence = identify::evidence(&campaign, &observed);
+        let evidence = observed.evidence(&campaign);
         let next = propose(&evidence, found.identification.joint_fit.as_ref(), 1);
         let next = next.ok().and_then(|mut all| all.pop());
         let live = Self {

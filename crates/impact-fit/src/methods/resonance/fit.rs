@@ -19,16 +19,21 @@ pub fn first(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
     if !enough(blocks) {
         return None;
     }
+    match start(blocks, nominal) {
+        Some(start) => from(blocks, nominal, start),
+        None => Some(Err(FitError::Singular)),
+    }
+}
+
+/// The best of several fits of few records without effects, from which that of all starts.
+pub fn start(blocks: &Blocks, nominal: &Nominal) -> Option<Parameters> {
     let (few, ideal) = (blocks.resonance.few(MOST_FOR_A_START), nominal.ideal());
     let curve = |start| resonance_curve(&few, blocks, &ideal, (start, Precision::Start));
     let fits = starts(&few, nominal)
         .into_iter()
         .filter_map(|start| curve(start)?.ok());
     let best = fits.min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
-    match best {
-        Some(best) => from(blocks, nominal, best.fit.parameters),
-        None => Some(Err(FitError::Singular)),
-    }
+    best.map(|best| best.fit.parameters)
 }
 
 /// The same from a start near the optimum.

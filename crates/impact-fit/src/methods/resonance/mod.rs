@@ -2,6 +2,7 @@
 
 pub mod block;
 pub mod fit;
+pub mod late_drive;
 mod result;
 mod select;
 

@@ -7,7 +7,7 @@ use impact_fit::method_fit::MethodFit;
 use impact_fit::methods::blocks::Blocks;
 use impact_fit::parameters::{Coordinate, GAIN_ROLES};
 use impact_records::motion::{Observation, one_pole_hz};
-use impact_records::record::LowPass;
+use impact_records::record::{LowPass, Role};
 
 /// Standard deviations of what is stated from which a delay is named.
 const SURE: f64 = 4.0;
@@ -52,7 +52,17 @@ pub fn late_channels(
         };
         (moved.is_some() || sure.abs() > SURE).then(|| finding.into())
     };
-    GAIN_ROLES.iter().enumerate().filter_map(of).collect()
+    let drive = moved.iter().find(|l| l.role == Role::Drive);
+    let drive = drive.map(|l| {
+        let finding = Finding::LateChannel {
+            channel: Role::Drive,
+            later_ms: 1e3 * l.delay_s,
+            z_score: l.delay_s / blocks.half_sample_s().max(f64::MIN_POSITIVE),
+        };
+        finding.into()
+    });
+    let motion = GAIN_ROLES.iter().enumerate().filter_map(of);
+    motion.chain(drive).collect()
 }
 
 /// What is open where a filter's order is not known, or its corner: behind one pole an amplitude at the frequency f

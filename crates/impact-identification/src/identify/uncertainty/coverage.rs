@@ -147,36 +147,52 @@ fn score(trials: &[Trial], estimator: Estimator, coordinate: Coordinate) -> Opti
     Some(score)
 }
 
-/// All estimates as CSV, a line each: campaign, method, parameter, truth, value, interval and bound
-/// (of R absolute, of the others relative); what is not known is left empty.
-pub fn table(trials: &[Trial]) -> String {
-    let mut text =
-        String::from("campaign,method,parameter,truth,value,interval_low,interval_high,bound\n");
-    let number = |v: Option<f64>| v.map(|v| format!("{v:.9e}")).unwrap_or_default();
-    for (campaign, trial) in trials.iter().enumerate() {
-        for (estimator, estimates) in &trial.estimates {
-            for coordinate in Coordinate::PHYSICAL {
-                let Some(estimate) = estimates.get(coordinate) else {
-                    continue;
-                };
-                let bound = trial
-                    .bounds
-                    .get(estimator)
-                    .and_then(|b| b.error(coordinate));
-                let (method, name) = (estimator.name(), coordinate.name());
-                let known = [
-                    Some(true_value(&trial.truth, coordinate).0),
-                    estimate.value,
-                    estimate.interval95.map(|i| i[0]),
-                    estimate.interval95.map(|i| i[1]),
-                    bound,
-                ]
-                .map(number);
-                text += &format!("{campaign},{method},{name},{}\n", known.join(","));
-            }
-        }
-    }
-    text
+/// What one method found of one parameter in one campaign: of R absolute, errors of the others relative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimated {
+    /// The campaign, counted from 0.
+    pub campaign: usize,
+    /// The method, or the joint fit.
+    pub estimator: Estimator,
+    /// The parameter.
+    pub coordinate: Coordinate,
+    /// Its true value.
+    pub truth: f64,
+    /// Its estimate.
+    pub value: Option<f64>,
+    /// Its 95 % interval.
+    pub interval95: Option<[f64; 2]>,
+    /// The Cramér–Rao bound of its standard error.
+    pub bound: Option<f64>,
+}
+
+/// All estimates, campaign by campaign.
+pub fn all_estimates(trials: &[Trial]) -> Vec<Estimated> {
+    let of_campaign = |(campaign, trial): (usize, &Trial)| {
+        let of_method = |(estimator, estimates): (&Estimator, &ParameterSet)| {
+            let bound = trial.bounds.get(estimator);
+            let of_parameter = |coordinate: Coordinate| {
+                let estimate = estimates.get(coordinate)?;
+                Some(Estimated {
+                    campaign,
+                    estimator: *estimator,
+                    coordinate,
+                    truth: true_value(&trial.truth, coordinate).0,
+                    value: estimate.value,
+                    interval95: estimate.interval95,
+                    bound: bound.and_then(|b| b.error(coordinate)),
+                })
+            };
+            let all = Coordinate::PHYSICAL.into_iter();
+            all.filter_map(of_parameter).collect::<Vec<_>>()
+        };
+        trial
+            .estimates
+            .iter()
+            .flat_map(of_method)
+            .collect::<Vec<_>>()
+    };
+    trials.iter().enumerate().flat_map(of_campaign).collect()
 }
 
 /// True value of a parameter and the unit of its errors.

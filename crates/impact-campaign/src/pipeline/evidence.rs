@@ -1,0 +1,106 @@
+//! What is stated and what was observed, as an identification takes it.
+
+use crate::campaign::resolved::ResolvedCampaign;
+use crate::campaign::sections::rig::NominalValues;
+use impact_fit::evidence::options::UncertaintyOptions;
+use impact_fit::evidence::{Evidence, Nominal};
+use impact_fit::parameters::effect::Effects;
+use impact_fit::parameters::gain_index;
+use impact_records::motion::{Bracket, LateChannel, Observation};
+use impact_records::record::Role;
+use impact_records::record::calibrate::ChannelSetup;
+use impact_records::record::late::remainder_s;
+use impact_records::signal::robust;
+
+/// What the campaign states about its rig.
+fn nominal(campaign: &ResolvedCampaign) -> Nominal {
+    Nominal {
+        restitution: campaign.rig.restitution,
+        natural_frequency_hz: campaign.rig.natural_frequency_hz,
+        damping_ratio: campaign.rig.damping_ratio,
+        static_deflection_m: campaign.rig.static_deflection_m,
+        gain_uncertainty: campaign.rig.gain_uncertainty,
+        corner_uncertainty: campaign.rig.corner_uncertainty,
+        clock_uncertainty: campaign.rig.clock_uncertainty,
+        clearance_uncertainty_m: campaign.rig.clearance_uncertainty_m,
+        mass_asymmetry: mass_asymmetry(&campaign.rig),
+        effects: match &campaign.rig.effects {
+            Some(kinds) => Effects::of(kinds),
+            None => Effects::all(),
+        },
+        flight: campaign.flight,
+        ..delays(&campaign.channels)
+    }
+}
+
+/// ln(`m_x`/`m_y`) of the stated masses, with its standard uncertainty; `None` unless both are stated.
+fn mass_asymmetry(rig: &NominalValues) -> Option<[f64; 2]> {
+    let (x, y) = rig.mass_x_kg.zip(rig.mass_y_kg)?;
+    let deviation = rig.mass_uncertainty * std::f64::consts::SQRT_2;
+    Some([(x / y).ln(), deviation])
+}
+
+/// The stated delays of the motion channels beside the drive's.
+fn delays(channels: &[ChannelSetup]) -> Nominal {
+    let mut nominal = Nominal::default();
+    let drive = channels.iter().find(|c| c.role == Role::Drive);
+    let of_drive_s = drive.map_or(0.0, |c| c.delay_s);
+    for channel in channels {
+        if let Some(i) = gain_index(channel.role) {
+            nominal.delays_s[i] = channel.delay_s - of_drive_s;
+            nominal.delay_uncertainties_s[i] = channel.delay_uncertainty_s;
+        }
+    }
+    nominal
+}
+
+/// Uncertainty of the delay of a low-pass whose corner and order jumps told, relative.
+const ROUGHLY: f64 = 0.5;
+
+/// What is stated, with what is left of the delays of channels whose whole samples were removed.
+fn nominal_of(campaign: &ResolvedCampaign, observations: &[Observation]) -> Nominal {
+    let mut nominal = nominal(campaign);
+    let late = late(observations);
+    let campaign = campaign.with_late(late);
+    let rates: Vec<f64> = observations.iter().map(|o| o.sample_rate_hz).collect();
+    if let Some(rate_hz) = robust::median(&rates) {
+        let drive = campaign.channels.iter().find(|c| c.role == Role::Drive);
+        let of_drive_s = drive.map_or(0.0, |setup| remainder_s(setup, rate_hz));
+        for setup in &campaign.channels {
+            if let Some(i) = gain_index(setup.role) {
+                nominal.delays_s[i] = remainder_s(setup, rate_hz) - of_drive_s;
+                let found = late.iter().find(|l| l.role == setup.role);
+                if let Some(filter) = found.and_then(|l| l.low_pass) {
+                    // its corner is known roughly, and with it its delay
+                    nominal.delay_uncertainties_s[i] = Some(ROUGHLY * filter.delay_s());
+                }
+            }
+        }
+    }
+    nominal
+}
+
+/// The channels that were found late, and whose samples were moved back.
+pub(super) fn late(observations: &[Observation]) -> &[LateChannel] {
+    observations.first().map_or(&[], |o| &o.late)
+}
+
+/// What an identification of a campaign starts from.
+pub(super) fn evidence<'a>(
+    campaign: &ResolvedCampaign,
+    observations: &'a [Observation],
+    brackets: &'a [Bracket],
+) -> Evidence<'a> {
+    Evidence {
+        rig: campaign.machine,
+        observations,
+        brackets,
+        nominal: nominal_of(campaign, observations),
+        uncertainty: UncertaintyOptions {
+            intervals: campaign.analysis.uncertainty,
+            replicas: campaign.analysis.replicas,
+            seed: campaign.analysis.seed,
+        },
+        progress: None,
+    }
+}
