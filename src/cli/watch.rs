@@ -171,7 +171,7 @@ impl Watch {
         let done = watcher.complete(&campaign, &destination, &|s, d, t| bar.step(s, d, t))?;
         drop(bar);
         let speech = Speech::of(&campaign.report)?;
-        print_premises(&campaign, &done.observations, verbosity);
+        print_premises(&campaign, &done.observations, &speech, verbosity);
         print_completed(&done, &speech, verbosity);
         print_report_paths((&campaign, &self.out), &speech, verbosity);
         verbosity.info(&format!("Page: {}", self.out.join("report.html").display()));
@@ -182,7 +182,7 @@ impl Watch {
 /// Tell what a look brought.
 pub(super) fn tell(seen: &Seen, screen: &mut Screen) {
     if !seen.faults.0.is_empty() {
-        screen.problems(&seen.faults);
+        screen.problems(&seen.faults, &Speech::default());
     }
     for (name, paths) in grouped(&seen.news) {
         screen.say(&live_text::news(name, &paths));

@@ -13,8 +13,10 @@ pub mod consistency;
 mod content;
 mod events;
 mod flag;
+mod flag_code;
 pub mod late;
 mod low_pass;
+pub mod problem;
 pub mod time_axis;
 mod times;
 
@@ -23,8 +25,10 @@ use serde::{Deserialize, Serialize};
 use labfiles::units::Dimension;
 
 pub use content::ContactContent;
-pub use flag::{Flag, FlagCode};
+pub use flag::Flag;
+pub use flag_code::FlagCode;
 pub use low_pass::LowPass;
+pub use problem::{MeasuredQuantity, MistakenUnits, Problem, Remedy};
 
 /// What a channel measures on the rig.
 #[derive(
