@@ -497,6 +497,15 @@ mod tests {
     }
 
     #[test]
+    fn numbers_may_have_a_minus_and_a_decimal_comma() {
+        let text = "bei (\u{2212}1,5) V, r1,2";
+        let pattern = with_numbers(text, |_, _| "#".to_owned());
+        assert_eq!(pattern, "bei (#) V, r1,2");
+        let both = range(&["1,5", "\u{2212}2,5"], &Typed);
+        assert_eq!(both, "\u{2212}2,5 to 1,5");
+    }
+
+    #[test]
     fn lines_of_a_table_are_named_where_there_is_no_record() {
         let mut faults = FaultCollector::new(Path::new("runs.csv"));
         for line in [3, 5] {
