@@ -56,7 +56,8 @@ impl Speech {
         }
     }
 
-    fn locale(&self) -> Locale<'_> {
+    /// Language and decimal sign, as the report has them.
+    pub(super) fn locale(&self) -> Locale<'_> {
         Locale {
             decimal_comma: self.decimal_comma,
             catalog: self.catalog.as_ref(),

@@ -161,6 +161,7 @@ pub struct Channel {
     Ord,
     Serialize,
     Deserialize,
+    strum::EnumIter,
     strum::EnumString,
     strum::IntoStaticStr,
     strum::VariantNames,
@@ -176,6 +177,8 @@ pub enum Sweep {
     #[default]
     Unknown,
 }
+
+crate::message_table! { "sweep": Sweep; }
 
 impl Sweep {
     /// The direction's name in tables.

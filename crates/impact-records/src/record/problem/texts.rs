@@ -324,12 +324,14 @@ mod tests {
     use super::super::parts::parts;
     use super::*;
     use crate::message::{boxed, faults, plain, typed};
+    use crate::record::Sweep;
 
     #[test]
     fn every_problem_and_remedy_has_its_texts() {
         let all = boxed(Problem::iter())
             .chain(boxed(Problem::iter().map(Remedy)))
-            .chain(parts());
+            .chain(parts())
+            .chain(boxed(Sweep::iter()));
         let all: Vec<_> = all.collect();
         assert!(all.len() > 170);
         assert_eq!(faults(&all), Vec::<String>::new());
