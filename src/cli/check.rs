@@ -70,7 +70,7 @@ impl Check {
             usable = Some((checked.usable, total));
         }
         let speech = self.speech(outcome.campaign.as_ref());
-        print_diagnostics(&outcome.diagnostics, &speech, verbosity);
+        print_diagnostics(&outcome.diagnostics, speech.words().as_ref(), verbosity);
         if self.json {
             let (usable_records, records) = usable.unwrap_or_default();
             print_json(&Found {

@@ -5,9 +5,9 @@ use std::path::Path;
 use miette::{GraphicalReportHandler, GraphicalTheme};
 
 use super::Verbosity;
-use super::speech::Speech;
 use impact_campaign::campaign::diagnostic::{Code, Diagnostic, Diagnostics, Place, Severity};
 use impact_campaign::pipeline::{PipelineError, RefusedRecord};
+use impact_records::message::{Print, Typed};
 use labfiles::ReadError;
 use labfiles::output::OutputError;
 use labfiles::panic_is_caught;
@@ -82,7 +82,7 @@ impl Failure {
     /// Print it on the standard error stream.
     pub(super) fn print(&self, verbosity: Verbosity) {
         match self {
-            Self::Campaign(all) => print_diagnostics(all, &Speech::default(), verbosity),
+            Self::Campaign(all) => print_diagnostics(all, &Typed, verbosity),
             Self::Other { message, remedy } => {
                 eprint!("{}", rendered(message, remedy, Severity::Campaign));
             }
@@ -141,9 +141,8 @@ const MANY: usize = 3;
 
 /// Print problems on the standard error stream in the words of a language, those alike as one unless details are asked for;
 /// with `--quiet` no notes.
-pub(super) fn print_diagnostics(all: &Diagnostics, speech: &Speech, verbosity: Verbosity) {
-    let words = speech.words();
-    let all = all.said(words.as_ref());
+pub(super) fn print_diagnostics(all: &Diagnostics, words: &dyn Print, verbosity: Verbosity) {
+    let all = all.said(words);
     let mut shortened = false;
     for group in all.groups() {
         let members = group.0.as_slice();
@@ -151,7 +150,7 @@ pub(super) fn print_diagnostics(all: &Diagnostics, speech: &Speech, verbosity: V
         if note && verbosity.is_quiet() {
             continue;
         }
-        match group.summary(words.as_ref()) {
+        match group.summary(words) {
             Some(summary) if members.len() >= MANY && !verbosity.is_detailed() => {
                 shortened = true;
                 print_one(&summary);

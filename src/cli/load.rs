@@ -31,7 +31,11 @@ pub(super) fn load_campaign(
     }
     if !verbosity.is_quiet() {
         let speech = Speech::of(&campaign.report).unwrap_or_default();
-        print_diagnostics(&Diagnostics(worth_printing), &speech, verbosity);
+        print_diagnostics(
+            &Diagnostics(worth_printing),
+            speech.words().as_ref(),
+            verbosity,
+        );
     }
     Ok(campaign)
 }

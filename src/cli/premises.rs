@@ -18,7 +18,11 @@ pub(super) fn print_premises(
     verbosity: Verbosity,
 ) {
     if !verbosity.is_quiet() {
-        print_diagnostics(&premises(campaign, observations), speech, verbosity);
+        print_diagnostics(
+            &premises(campaign, observations),
+            speech.words().as_ref(),
+            verbosity,
+        );
     }
 }
 

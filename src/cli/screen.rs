@@ -36,7 +36,7 @@ impl Screen {
 
     /// Problems, which stay.
     pub(super) fn problems(&mut self, all: &Diagnostics, speech: &Speech) {
-        self.above(|screen| print_diagnostics(all, speech, screen.verbosity));
+        self.above(|screen| print_diagnostics(all, speech.words().as_ref(), screen.verbosity));
     }
 
     /// What could not be done, which stays.

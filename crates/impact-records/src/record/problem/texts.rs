@@ -1,9 +1,9 @@
 //! The values that the sentences about problems of a record have.
 
-use super::Problem;
+use super::kind::Problem;
 use crate::message::Value;
 use crate::message_table;
-use crate::record::Role;
+use crate::record::role::Role;
 use crate::signal::digits::significant;
 use labfiles::units::Dimension;
 
