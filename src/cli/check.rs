@@ -7,11 +7,15 @@ use serde::Serialize;
 
 use super::failure::print_diagnostics;
 use super::read_log::ReadLog;
+use super::report_args::language_parser;
+use super::speech::Speech;
 use super::stdout::print_json;
 use super::{Exit, Failure, Progress, Verbosity};
 use impact_campaign::campaign::check;
 use impact_campaign::campaign::diagnostic::{Code, Diagnostic, Diagnostics, Place, Severity};
 use impact_campaign::campaign::load;
+use impact_campaign::campaign::resolved::ResolvedCampaign;
+use impact_records::language::Language;
 use impact_records::message::counted;
 
 /// Arguments of `impactid check`.
@@ -21,6 +25,9 @@ pub(super) struct Check {
     /// The campaign's description
     #[arg(value_name = "CAMPAIGN.TOML", default_value = "campaign.toml")]
     campaign: PathBuf,
+    /// Language in which what was found in records is printed [default: that of the report]
+    #[arg(long, value_name = "LANGUAGE", value_parser = language_parser())]
+    language: Option<Language>,
     /// Print JSON: how many records can be used, and every problem
     #[arg(long)]
     json: bool,
@@ -62,7 +69,8 @@ impl Check {
             outcome.diagnostics.sort();
             usable = Some((checked.usable, total));
         }
-        print_diagnostics(&outcome.diagnostics, verbosity);
+        let speech = self.speech(outcome.campaign.as_ref());
+        print_diagnostics(&outcome.diagnostics, speech.words().as_ref(), verbosity);
         if self.json {
             let (usable_records, records) = usable.unwrap_or_default();
             print_json(&Found {
@@ -82,6 +90,15 @@ impl Check {
 }
 
 impl Check {
+    /// The language asked for, else that of the campaign's report.
+    fn speech(&self, campaign: Option<&ResolvedCampaign>) -> Speech {
+        let of_report = || Speech::of(&campaign?.report).ok();
+        match self.language {
+            Some(language) => Speech::in_language(language),
+            None => of_report().unwrap_or_default(),
+        }
+    }
+
     fn nothing_usable(&self, records: u64) -> Diagnostic {
         let place = Place {
             file: self.campaign.clone(),

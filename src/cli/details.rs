@@ -46,7 +46,7 @@ fn record_line(o: &Observation) -> String {
             "; {}{}: {}",
             flag.code,
             channel.unwrap_or_default(),
-            flag.message
+            flag.message()
         );
     }
     if o.excluded() {

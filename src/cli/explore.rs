@@ -10,6 +10,7 @@ use clap::Args;
 
 use super::load::load_campaign;
 use super::screen::Screen;
+use super::speech::Speech;
 use super::stdout::print;
 use super::watch::{PaceArgs, tell};
 use super::{Exit, Failure, Progress, Verbosity};
@@ -193,7 +194,9 @@ impl Watched {
     fn at_next_fit(&mut self) -> OpenCampaign {
         loop {
             let seen = self.watcher.look(self.begin.elapsed());
-            tell(&seen, &mut self.screen);
+            let report = self.watcher.report().map(Speech::of);
+            let speech = report.and_then(Result::ok).unwrap_or_default();
+            tell(&seen, &speech, &mut self.screen);
             if self.watcher.is_due(self.begin.elapsed()) {
                 let fitted = self.watcher.fit::<Failure>(|_| Ok(()), |_| Ok(()));
                 match fitted.map(|live| live.map(OpenCampaign::live)) {

@@ -7,6 +7,7 @@ use miette::{GraphicalReportHandler, GraphicalTheme};
 use super::Verbosity;
 use impact_campaign::campaign::diagnostic::{Code, Diagnostic, Diagnostics, Place, Severity};
 use impact_campaign::pipeline::{PipelineError, RefusedRecord};
+use impact_records::message::{Print, Typed};
 use labfiles::ReadError;
 use labfiles::output::OutputError;
 use labfiles::panic_is_caught;
@@ -81,7 +82,7 @@ impl Failure {
     /// Print it on the standard error stream.
     pub(super) fn print(&self, verbosity: Verbosity) {
         match self {
-            Self::Campaign(all) => print_diagnostics(all, verbosity),
+            Self::Campaign(all) => print_diagnostics(all, &Typed, verbosity),
             Self::Other { message, remedy } => {
                 eprint!("{}", rendered(message, remedy, Severity::Campaign));
             }
@@ -120,16 +121,12 @@ impl From<PipelineError> for Failure {
 /// That no record can be used, and why each of them cannot.
 fn nothing_usable(records: &[RefusedRecord]) -> Diagnostics {
     let error = PipelineError::NothingUsable(records.to_vec());
-    let whole = Diagnostic {
-        code: Code::Missing,
-        severity: Severity::Campaign,
-        place: Place {
-            item: "records".to_owned(),
-            ..Place::default()
-        },
-        message: error.to_string(),
-        remedy: error.remedy(),
+    let place = Place {
+        item: "records".to_owned(),
+        ..Place::default()
     };
+    let kind = (Code::Missing, Severity::Campaign);
+    let whole = Diagnostic::new(kind, place, error.to_string(), &error.remedy());
     let flags = records.iter().flat_map(|r| {
         let excluding = r.flags.iter().filter(|f| f.excludes);
         excluding.map(|f| Diagnostic::of_flag(&r.file, &r.record, f))
@@ -142,9 +139,10 @@ fn nothing_usable(records: &[RefusedRecord]) -> Diagnostics {
 /// Problems that are alike are printed as one from this many on.
 const MANY: usize = 3;
 
-/// Print problems on the standard error stream, those alike as one unless details are asked for;
+/// Print problems on the standard error stream in the words of a language, those alike as one unless details are asked for;
 /// with `--quiet` no notes.
-pub(super) fn print_diagnostics(all: &Diagnostics, verbosity: Verbosity) {
+pub(super) fn print_diagnostics(all: &Diagnostics, words: &dyn Print, verbosity: Verbosity) {
+    let all = all.said(words);
     let mut shortened = false;
     for group in all.groups() {
         let members = group.0.as_slice();
@@ -152,7 +150,7 @@ pub(super) fn print_diagnostics(all: &Diagnostics, verbosity: Verbosity) {
         if note && verbosity.is_quiet() {
             continue;
         }
-        match group.summary() {
+        match group.summary(words) {
             Some(summary) if members.len() >= MANY && !verbosity.is_detailed() => {
                 shortened = true;
                 print_one(&summary);

@@ -3,16 +3,19 @@
 use std::path::Path;
 
 use super::Verbosity;
+use super::speech::{LeftOutRecords, Output, Speech};
 use impact_campaign::campaign::check::LISTED;
 use impact_campaign::campaign::diagnostic::{Diagnostic, Diagnostics, Group};
+use impact_records::message::Print;
 use impact_records::motion::Observation;
 use impact_records::record::FlagCode;
 
 /// Print one line for each kind of fault that leaves records out; with `-v` each record too.
-pub(super) fn print_left_out(observations: &[Observation], verbosity: Verbosity) {
-    let faults = faults(observations);
+pub(super) fn print_left_out(observations: &[Observation], speech: &Speech, verbosity: Verbosity) {
+    let words = speech.words();
+    let faults = faults(observations).said(words.as_ref());
     for group in faults.groups() {
-        verbosity.info(&line(&group, observations.len()));
+        verbosity.info(&line(&group, observations.len(), words.as_ref()));
         for one in &group.0 {
             verbosity.detail(&format!("  {}", one.headline()));
         }
@@ -32,44 +35,52 @@ fn faults(observations: &[Observation]) -> Diagnostics {
 }
 
 /// One kind of fault: in how many records, which one, the first of them, and what to do.
-fn line(group: &Group<'_>, records: usize) -> String {
+fn line(group: &Group<'_>, records: usize, words: &dyn Print) -> String {
     let count = group.0.len();
-    let verb = if count == 1 { "is" } else { "are" };
-    let remedy = group.0.first().map_or("", |first| &first.remedy);
-    format!(
-        "{count} of {records} records {verb} left out: {}. To do: {remedy}",
-        group.headline()
-    )
+    let left = LeftOutRecords {
+        count,
+        of: records,
+        fault: group.headline(words),
+        remedy: group.0.first().map_or(String::new(), |d| d.remedy.clone()),
+    };
+    let output = match count {
+        1 => Output::OneLeftOut(left),
+        _ => Output::SomeLeftOut(left),
+    };
+    words.print(&output)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impact_records::record::Flag;
+    use impact_records::message::Typed;
+    use impact_records::record::{Flag, Problem};
 
     #[test]
     fn a_line_counts_the_records_of_one_fault_and_names_the_first() {
         let of = |record: &str, jumps: usize| {
-            let message = format!("{jumps} jumps go up");
-            let remedy = "turn the sign";
-            let code = FlagCode::JumpsPointTheWrongWay;
-            let flag = Flag::new(code, Some("laser_x"), message, remedy);
+            let flag = Flag::new(Some("laser_x"), Problem::UpwardJumps { up: jumps, down: 0 });
             Diagnostic::of_flag(Path::new(""), record, &flag)
         };
         let lines = |all: Vec<Diagnostic>| -> Vec<String> {
             let all = Diagnostics(all);
-            all.groups().iter().map(|g| line(g, 9)).collect()
+            all.groups().iter().map(|g| line(g, 9, &Typed)).collect()
         };
         assert_eq!(
             lines(vec![of("r1", 5), of("r2", 7)]),
             [
-                "2 of 9 records are left out: laser_x: 5 to 7 jumps go up (r1, r2). To do: turn the \
-              sign"
+                "2 of 9 records are left out: laser_x: 5 to 7 jumps of the approach velocity go up, 0 down; an impact \
+                 jumps down (r1, r2). To do: turn the `sign` of the velocity or displacement channels: positive is \
+                 toward the other mass"
             ]
         );
         assert_eq!(
             lines(vec![of("r3", 5)]),
-            ["1 of 9 records is left out: laser_x: 5 jumps go up (r3). To do: turn the sign"]
+            [
+                "1 of 9 records is left out: laser_x: 5 jumps of the approach velocity go up, 0 down; an impact jumps \
+                 down (r3). To do: turn the `sign` of the velocity or displacement channels: positive is toward the \
+                 other mass"
+            ]
         );
     }
 }

@@ -4,20 +4,163 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::estimate_text::with_error;
+use super::speech::Speech;
 use impact_campaign::pipeline::watch::{Live, NewsKind, Outline, Watcher};
 use impact_fit::parameters::Coordinate;
 use impact_identification::identify::Identification;
 use impact_identification::identify::plan::Proposal;
-use impact_records::message::counted;
+use impact_identification::identify::uncertainty::budget::UncertaintySource;
+use impact_records::message::{Print, Value};
+use impact_records::message_table;
 use impact_records::motion::{Bracket, Motion, Observation};
+use impact_records::record::Sweep;
 use impact_records::signal::{robust, whole};
 use impact_report::budget_source;
+
+/// What is said of a watched campaign.
+#[derive(Debug, Clone, strum::EnumIter, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
+pub(super) enum LiveText {
+    /// How to end.
+    Ends,
+    /// A fit is made.
+    Fitting,
+    /// Where the page is.
+    Page(String),
+    /// The first of several names, and how many more there are.
+    AndMore(String, usize),
+    /// A file is gone.
+    OneRemoved(String),
+    /// Files are gone.
+    SomeRemoved(String),
+    /// A file is no longer named.
+    OneUnlisted(String),
+    /// Files are no longer named.
+    SomeUnlisted(String),
+    /// A file is rewritten.
+    OneReplaced(String),
+    /// Files are rewritten.
+    SomeReplaced(String),
+    /// A file is not whole.
+    OneHalfWritten(String),
+    /// Files are not whole.
+    SomeHalfWritten(String),
+    /// What the letters of the map mean.
+    Key,
+    /// There is no bracket.
+    NoBracket,
+    /// There is one.
+    OneBracket(NewestBracket),
+    /// How many there are, and the newest of them.
+    SomeBrackets(usize, NewestBracket),
+    /// R is not determined.
+    RestitutionOpen,
+    /// R with its interval.
+    Restitution(String),
+    /// R and f0 with their intervals.
+    RestitutionAndFrequency(String, String),
+    /// The source of most of R's uncertainty, and its share of the variance.
+    MostUncertain(String, f64),
+    /// What to measure next.
+    Next(NextRecord),
+    /// One record.
+    OneRecord,
+    /// Several records, or none.
+    SomeRecords(usize),
+    /// How many of them are left out.
+    LeftOut(usize),
+    /// There is no fit.
+    NoFit,
+    /// Of how many records the fit is.
+    FitOf(usize),
+    /// How many files are not whole yet.
+    Waiting(usize),
+}
+
+message_table! { "live": LiveText;
+    Self::Page(path) => path = Value::Name(path);
+    Self::AndMore(names, more) => names = Value::Name(names), count = Value::Count(*more);
+    Self::OneRemoved(names) | Self::SomeRemoved(names) | Self::OneUnlisted(names) | Self::SomeUnlisted(names)
+    | Self::OneReplaced(names) | Self::SomeReplaced(names) | Self::OneHalfWritten(names)
+    | Self::SomeHalfWritten(names) => names = Value::Name(names);
+    Self::OneBracket(newest) =>
+        kind = Value::Name(newest.kind),
+        motion = Value::Name(&newest.motion),
+        clearance = Value::Number(newest.clearance_mm, 3),
+        low = Value::Number(newest.low_hz, 3),
+        high = Value::Number(newest.high_hz, 3),
+        sweep = Value::Message(&newest.sweep);
+    Self::SomeBrackets(count, newest) =>
+        count = Value::Count(*count),
+        kind = Value::Name(newest.kind),
+        motion = Value::Name(&newest.motion),
+        clearance = Value::Number(newest.clearance_mm, 3),
+        low = Value::Number(newest.low_hz, 3),
+        high = Value::Number(newest.high_hz, 3),
+        sweep = Value::Message(&newest.sweep);
+    Self::Restitution(restitution) => restitution = Value::Name(restitution);
+    Self::RestitutionAndFrequency(restitution, frequency) =>
+        restitution = Value::Name(restitution),
+        frequency = Value::Name(frequency);
+    Self::MostUncertain(source, share) => source = Value::Name(source), share = Value::Percent(*share, 0);
+    Self::Next(next) =>
+        frequency = Value::Number(next.frequency_hz, 3),
+        clearance = Value::Number(next.clearance_mm, 3),
+        motion = Value::Name(&next.motion),
+        error = Value::Digits(format!("{:.1e}", next.error));
+    Self::SomeRecords(count) | Self::LeftOut(count) | Self::FitOf(count) | Self::Waiting(count) =>
+        count = Value::Count(*count);
+}
+
+/// The newest bracket as a line has it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct NewestBracket {
+    kind: &'static str,
+    motion: String,
+    clearance_mm: f64,
+    low_hz: f64,
+    high_hz: f64,
+    sweep: Sweep,
+}
+
+impl NewestBracket {
+    fn of(bracket: &Bracket) -> Self {
+        Self {
+            kind: bracket.kind.name(),
+            motion: bracket.from.clone(),
+            clearance_mm: 1e3 * bracket.clearance_m,
+            low_hz: bracket.frequency_low_hz,
+            high_hz: bracket.frequency_high_hz,
+            sweep: bracket.sweep,
+        }
+    }
+}
+
+/// What to measure next, as a line has it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct NextRecord {
+    frequency_hz: f64,
+    clearance_mm: f64,
+    motion: String,
+    error: f64,
+}
+
+impl NextRecord {
+    fn of(next: &Proposal) -> Self {
+        Self {
+            frequency_hz: next.frequency_hz,
+            clearance_mm: 1e3 * next.clearance_m,
+            motion: Motion::periodic(1, next.periods_n).label(),
+            error: next.restitution_error_after,
+        }
+    }
+}
 
 /// Most files that are named in one line.
 const MOST_NAMES: usize = 4;
 
 /// A line on files to which the same happened.
-pub(super) fn news(what: NewsKind, files: &[(&Path, Option<&str>)]) -> String {
+pub(super) fn news(what: NewsKind, files: &[(&Path, Option<&str>)], words: &dyn Print) -> String {
     let named = files
         .iter()
         .take(MOST_NAMES)
@@ -27,34 +170,32 @@ pub(super) fn news(what: NewsKind, files: &[(&Path, Option<&str>)]) -> String {
         });
     let mut names = named.collect::<Vec<_>>().join(", ");
     if files.len() > MOST_NAMES {
-        names += &format!(" and {} more", files.len() - MOST_NAMES);
+        names = words.print(&LiveText::AndMore(names, files.len() - MOST_NAMES));
     }
-    let one = files.len() == 1;
-    let (is, its) = if one { ("is", "its") } else { ("are", "their") };
-    match what {
-        NewsKind::Removed => format!("{names} {is} gone: {its} records are left out."),
-        NewsKind::Unlisted => {
-            format!("{names} {is} no longer named by the campaign: {its} records are left out.")
-        }
-        NewsKind::Replaced => {
-            format!("{names} {is} rewritten: {its} records are observed again.")
-        }
-        NewsKind::HalfWritten => format!(
-            "{names} {is} not whole after an hour, and not used: finish or remove {}.",
-            if one { "it" } else { "them" }
-        ),
-    }
+    let text = match (what, files.len()) {
+        (NewsKind::Removed, 1) => LiveText::OneRemoved,
+        (NewsKind::Removed, _) => LiveText::SomeRemoved,
+        (NewsKind::Unlisted, 1) => LiveText::OneUnlisted,
+        (NewsKind::Unlisted, _) => LiveText::SomeUnlisted,
+        (NewsKind::Replaced, 1) => LiveText::OneReplaced,
+        (NewsKind::Replaced, _) => LiveText::SomeReplaced,
+        (NewsKind::HalfWritten, 1) => LiveText::OneHalfWritten,
+        (NewsKind::HalfWritten, _) => LiveText::SomeHalfWritten,
+    };
+    words.print(&text(names))
 }
 
 /// Everything that is drawn again.
-pub(super) fn status(watcher: &Watcher, outline: &Outline) -> String {
-    let mut text = map(outline);
-    text += &newest_bracket(&outline.brackets);
+pub(super) fn status(watcher: &Watcher, outline: &Outline, speech: &Speech) -> String {
+    let words = speech.words();
+    let words = words.as_ref();
+    let mut text = map(outline, words);
+    text += &newest_bracket(&outline.brackets, words);
     if let Some(live) = watcher.last() {
-        text += &answer(&live.found.identification);
-        text += &next(live.next.as_ref());
+        text += &answer(&live.found.identification, speech);
+        text += &next(live.next.as_ref(), words);
     }
-    text += &counts(outline, watcher.last(), watcher.waiting());
+    text += &counts(outline, watcher.last(), watcher.waiting(), words);
     text
 }
 
@@ -64,7 +205,7 @@ const COLUMNS: usize = 64;
 const MOST_ROWS: usize = 12;
 
 /// The motions over drive frequency and clearance, a row for each clearance, with the brackets.
-fn map(outline: &Outline) -> String {
+fn map(outline: &Outline, words: &dyn Print) -> String {
     let places: Vec<(f64, f64, &Observation)> = outline
         .records
         .iter()
@@ -101,20 +242,13 @@ fn map(outline: &Outline) -> String {
     let mut text = String::new();
     for (place, row) in rows.iter().rev() {
         let row: String = row.iter().collect();
-        text += &format!(
-            "{:>8.3} mm {}\n",
-            f64::from(*place) * step * 1e3,
-            row.trim_end()
-        );
+        let clearance = words.number(format!("{:.3}", f64::from(*place) * step * 1e3));
+        text += &format!("{clearance:>8} mm {}\n", row.trim_end());
     }
-    text += &format!(
-        "{:>11} {low:<.2} Hz{:>w$.2} Hz\n",
-        "",
-        high,
-        w = COLUMNS - 10
-    );
-    text += "0 none  1 2 3 z = 1/n  + other  ~ beat  # chaos  j joined  ? unclear  │ bracket\n";
-    text
+    let [low, high] = [low, high].map(|hz| words.number(format!("{hz:.2}")));
+    let w = COLUMNS - 10;
+    text += &format!("{:>11} {low} Hz{high:>w$} Hz\n", "");
+    text + &words.print(&LiveText::Key) + "\n"
 }
 
 /// Step of the rows: 1 µm, or coarser where that gives more rows than fit.
@@ -152,42 +286,39 @@ fn letter(motion: &Motion) -> char {
     }
 }
 
-fn newest_bracket(brackets: &[Bracket]) -> String {
-    let Some(newest) = brackets.last() else {
-        return "no bracket yet\n".to_owned();
+fn newest_bracket(brackets: &[Bracket], words: &dyn Print) -> String {
+    let text = match brackets {
+        [] => LiveText::NoBracket,
+        [one] => LiveText::OneBracket(NewestBracket::of(one)),
+        [.., newest] => LiveText::SomeBrackets(brackets.len(), NewestBracket::of(newest)),
     };
-    format!(
-        "{}; newest: {} of z = {}, {:.3} mm, {:.3} to {:.3} Hz, {}\n",
-        counted(brackets.len(), "bracket"),
-        newest.kind.name(),
-        newest.from,
-        1e3 * newest.clearance_m,
-        newest.frequency_low_hz,
-        newest.frequency_high_hz,
-        newest.sweep.name()
-    )
+    words.print(&text) + "\n"
 }
 
 /// R and f0 with their intervals, and the greatest item of R's budget.
-fn answer(found: &Identification) -> String {
+fn answer(found: &Identification, speech: &Speech) -> String {
+    let words = speech.words();
+    let words = words.as_ref();
     let joint = &found.joint.parameters;
     let Some(restitution) = &joint.restitution else {
-        return "R is not determined yet\n".to_owned();
+        return words.print(&LiveText::RestitutionOpen) + "\n";
     };
-    let mut text = format!("R = {}", with_error(restitution));
-    if let Some(frequency) = &joint.natural_frequency_hz {
-        text += &format!(", f0 = {} Hz", with_error(frequency));
-    }
-    text += " (95 %)\n";
+    let restitution = with_error(restitution, words);
+    let mut text = words.print(&match &joint.natural_frequency_hz {
+        Some(f0) => LiveText::RestitutionAndFrequency(restitution, with_error(f0, words)),
+        None => LiveText::Restitution(restitution),
+    });
+    text += "\n";
     if let Some((source, share)) = greatest_item(found) {
-        let percent = 1e2 * share;
-        text += &format!("most of R's uncertainty: {source} ({percent:.0} % of the variance)\n");
+        let source = budget_source(source, speech.locale());
+        text += &words.print(&LiveText::MostUncertain(source, share));
+        text += "\n";
     }
     text
 }
 
 /// The source that contributes most to the variance of R, with its share.
-fn greatest_item(found: &Identification) -> Option<(String, f64)> {
+fn greatest_item(found: &Identification) -> Option<(UncertaintySource, f64)> {
     let budget = &found.uncertainty.budget;
     let whole = budget.combined.iter();
     let whole = whole
@@ -200,45 +331,38 @@ fn greatest_item(found: &Identification) -> Option<(String, f64)> {
     });
     let (source, greatest) = of_restitution.max_by(|a, b| a.1.total_cmp(&b.1))?;
     let share = (greatest / whole.standard_uncertainty).powi(2);
-    Some((budget_source(source), share))
+    Some((source, share))
 }
 
-fn next(proposal: Option<&Proposal>) -> String {
-    let Some(next) = proposal else {
-        return String::new();
+fn next(proposal: Option<&Proposal>, words: &dyn Print) -> String {
+    proposal.map_or(String::new(), |next| {
+        words.print(&LiveText::Next(NextRecord::of(next))) + "\n"
+    })
+}
+
+fn counts(outline: &Outline, last: Option<&Live>, waiting: usize, words: &dyn Print) -> String {
+    let taken = match outline.records.len() {
+        1 => LiveText::OneRecord,
+        count => LiveText::SomeRecords(count),
     };
-    format!(
-        "measure next: {:.3} Hz, {:.3} mm (z = {}): standard error of R then {:.1e}\n",
-        next.frequency_hz,
-        1e3 * next.clearance_m,
-        Motion::periodic(1, next.periods_n).label(),
-        next.restitution_error_after
-    )
-}
-
-fn counts(outline: &Outline, last: Option<&Live>, waiting: usize) -> String {
-    let taken = outline.records.len();
     let out = outline.records.iter().filter(|o| o.excluded()).count();
-    let fitted = last.map_or(0, |live| live.observed.observations.len());
-    let mut text = counted(taken, "record");
-    if out > 0 {
-        text += &format!(", {out} left out");
-    }
-    text += &match fitted {
-        0 => "; no fit yet".to_owned(),
-        fitted => format!("; the fit is of {fitted}"),
+    let fit = match last.map_or(0, |live| live.observed.observations.len()) {
+        0 => LiveText::NoFit,
+        count => LiveText::FitOf(count),
     };
-    if waiting > 0 {
-        text += &format!("; files that are not whole yet: {waiting}");
-    }
+    let out = (out > 0).then_some(LiveText::LeftOut(out));
+    let waiting = (waiting > 0).then_some(LiveText::Waiting(waiting));
+    let all = [Some(taken), out, Some(fit), waiting].into_iter().flatten();
+    let text: String = all.map(|part| words.print(&part)).collect();
     text + "\n"
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impact_records::language::Language;
+    use impact_records::message::{Typed, boxed, faults};
     use impact_records::motion::brackets;
-    use impact_records::record::Sweep;
 
     fn observed(sequence: usize, frequency_hz: f64, motion: Motion) -> Observation {
         let mut o = Observation::of("r", frequency_hz, motion);
@@ -258,10 +382,11 @@ mod tests {
             observed(4, 10.0, Motion::Chaotic),
         ];
         let drawn = |records: &[Observation]| {
-            map(&Outline {
+            let outline = Outline {
                 brackets: brackets(records),
                 records: records.to_vec(),
-            })
+            };
+            map(&outline, &Typed)
         };
         let open = drawn(&records);
         let lines: Vec<&str> = open.lines().collect();
@@ -281,16 +406,48 @@ mod tests {
     }
 
     #[test]
+    fn everything_that_is_said_has_its_texts_and_the_key_fits_into_a_line() {
+        let all = boxed(<LiveText as strum::IntoEnumIterator>::iter());
+        assert_eq!(faults(&all.collect::<Vec<_>>()), Vec::<String>::new());
+        for language in Language::all() {
+            let key = language.text("live", "key");
+            assert!(key.chars().count() < 80, "{key}");
+        }
+    }
+
+    #[test]
+    fn a_bracket_is_said_in_the_language_of_the_report() {
+        let records = [
+            observed(0, 10.0, Motion::Impactless),
+            observed(1, 12.5, Motion::periodic(1, 1)),
+        ];
+        let german = Speech::in_language(Language::of_code("de").unwrap());
+        let said = |speech: &Speech| newest_bracket(&brackets(&records), speech.words().as_ref());
+        assert_eq!(
+            said(&Speech::default()),
+            "1 bracket; newest: grazing of z = 0, 1.000 mm, 10.000 to 12.500 Hz, up\n"
+        );
+        assert_eq!(
+            said(&german),
+            "1 Schranke; neueste: grazing von z = 0, 1,000 mm, 10,000 bis 12,500 Hz, aufwärts\n"
+        );
+    }
+
+    #[test]
     fn news_name_a_few_files_and_count_the_others() {
         let path = Path::new("r1.csv");
         let all = vec![(path, None); 6];
         assert_eq!(
-            news(NewsKind::Removed, &all[..1]),
+            news(NewsKind::Removed, &all[..1], &Typed),
             "r1.csv is gone: its records are left out."
         );
-        let many = news(NewsKind::Replaced, &all);
+        let many = news(NewsKind::Replaced, &all, &Typed);
         assert!(many.contains("r1.csv and 2 more are rewritten"), "{many}");
-        let torn = news(NewsKind::HalfWritten, &[(path, Some("no signature"))]);
+        let torn = news(
+            NewsKind::HalfWritten,
+            &[(path, Some("no signature"))],
+            &Typed,
+        );
         assert!(
             torn.starts_with("r1.csv (no signature) is not whole after an hour"),
             "{torn}"

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::failure::print_diagnostics;
 use super::read_log::ReadLog;
+use super::speech::Speech;
 use super::{Failure, Verbosity};
 use impact_campaign::campaign::diagnostic::{Diagnostics, Severity};
 use impact_campaign::campaign::load;
@@ -29,7 +30,12 @@ pub(super) fn load_campaign(
         worth_printing.retain(|d| d.severity > Severity::Note);
     }
     if !verbosity.is_quiet() {
-        print_diagnostics(&Diagnostics(worth_printing), verbosity);
+        let speech = Speech::of(&campaign.report).unwrap_or_default();
+        print_diagnostics(
+            &Diagnostics(worth_printing),
+            speech.words().as_ref(),
+            verbosity,
+        );
     }
     Ok(campaign)
 }

@@ -3,6 +3,7 @@
 
 use super::Verbosity;
 use super::failure::print_diagnostics;
+use super::speech::Speech;
 use impact_campaign::campaign::check;
 use impact_campaign::campaign::diagnostic::{Diagnostic, Diagnostics};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
@@ -13,10 +14,15 @@ use impact_records::record::FlagCode;
 pub(super) fn print_premises(
     campaign: &ResolvedCampaign,
     observations: &[Observation],
+    speech: &Speech,
     verbosity: Verbosity,
 ) {
     if !verbosity.is_quiet() {
-        print_diagnostics(&premises(campaign, observations), verbosity);
+        print_diagnostics(
+            &premises(campaign, observations),
+            speech.words().as_ref(),
+            verbosity,
+        );
     }
 }
 

@@ -91,6 +91,11 @@ pub(super) fn paper_parser() -> impl TypedValueParser<Value = Paper> {
 }
 
 impl ReportArgs {
+    /// The language asked for.
+    pub(super) fn language(&self) -> Option<Language> {
+        self.language
+    }
+
     /// Override the options of campaign.toml.
     pub(super) fn apply(
         &self,

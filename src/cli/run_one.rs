@@ -62,7 +62,7 @@ impl RunOptions<'_> {
             print_verdict(answer, &speech, verbosity);
         }
         let done = done?;
-        print_premises(&resolved, &done.observations, verbosity);
+        print_premises(&resolved, &done.observations, &speech, verbosity);
         print_completed(&done, &speech, verbosity);
         print_report_paths((&resolved, out), &speech, verbosity);
         Ok(done)
@@ -83,7 +83,7 @@ pub(super) fn command_line(campaign: &Path, out: &Path, report: &ReportArgs) -> 
 pub(super) fn print_completed(done: &Completed, speech: &Speech, verbosity: Verbosity) {
     print_records(&done.observations, verbosity);
     print_fits(&done.identification, verbosity);
-    print_left_out(&done.observations, verbosity);
+    print_left_out(&done.observations, speech, verbosity);
     print_verdict(&done.identification, speech, verbosity);
 }
 

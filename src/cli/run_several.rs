@@ -7,14 +7,18 @@ use super::estimate_text::with_error;
 use super::patterns::expanded;
 use super::report_args::refuse_formats;
 use super::run_one::RunOptions;
+use super::speech::Speech;
 use super::{Exit, Failure, Verbosity, interrupt};
+use impact_campaign::campaign::sections::report::ReportSettings;
 use impact_campaign::campaign::{
     self,
     diagnostic::{Diagnostic, Diagnostics},
 };
 use impact_campaign::pipeline::summary::{Fault, Found, RunOutcome, RunSummary, SummaryRow};
-use impact_campaign::pipeline::{campaign_folders, layout, summary};
+use impact_campaign::pipeline::{campaign_folders, layout, store, summary};
 use impact_fit::VerdictKind;
+use impact_records::message::{Print, Value};
+use impact_records::message_table;
 
 /// The campaigns as typed, each once, patterns expanded.
 ///
@@ -68,12 +72,12 @@ pub(super) fn run(
     }
     let summary = RunSummary::of(rows);
     summary.write(out)?;
-    verbosity.info(&table(&summary));
-    verbosity.info(&format!(
-        "Summary: {} and {}",
-        out.join(summary::CSV).display(),
-        out.join(summary::JSON).display()
-    ));
+    let speech = speech(&summary, out);
+    let words = speech.words();
+    verbosity.info(&table(&summary, words.as_ref()));
+    let [csv, json] =
+        [summary::CSV, summary::JSON].map(|name| out.join(name).display().to_string());
+    verbosity.info(&words.print(&TableText::Written { csv, json }));
     Ok(worst)
 }
 
@@ -100,53 +104,123 @@ fn one(
     }
 }
 
+/// What the table says.
+#[derive(Debug, Clone, strum::EnumIter, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
+enum TableText {
+    /// Head of the column of campaigns.
+    Campaign,
+    /// Head of the column of records.
+    Records,
+    /// Head of the column of verdicts.
+    Verdict,
+    IsIdentified,
+    IsWeak,
+    IsNotIdentifiable,
+    IsUnfit,
+    /// Why a campaign failed.
+    Failed {
+        fault: String,
+    },
+    /// Why one failed, and how many faults it has beside.
+    FailedAndMore {
+        fault: String,
+        more: usize,
+    },
+    /// The files with the summary.
+    Written {
+        csv: String,
+        json: String,
+    },
+}
+
+message_table! { "several_campaigns": TableText;
+    Self::Failed { fault } => fault = Value::Name(fault);
+    Self::FailedAndMore { fault, more } => fault = Value::Name(fault), count = Value::Count(*more);
+    Self::Written { csv, json } => csv = Value::Name(csv), json = Value::Name(json);
+}
+
+/// The language of the reports, if all campaigns that have one have the same; else English.
+fn speech(summary: &RunSummary, out: &Path) -> Speech {
+    let folders = summary.campaigns.iter().map(|row| out.join(&row.folder));
+    let reports = folders.filter_map(|folder| Some(store::read_resolved(&folder).ok()?.report));
+    let reports: Vec<ReportSettings> = reports.collect();
+    let first = reports.first().filter(|first| {
+        let mut others = reports.iter();
+        others.all(|r| r.language == first.language && r.words == first.words)
+    });
+    let speech = first.map(Speech::of).and_then(Result::ok);
+    speech.unwrap_or_default()
+}
+
 /// The summary as the terminal shows it.
-fn table(summary: &RunSummary) -> String {
+fn table(summary: &RunSummary, words: &dyn Print) -> String {
+    let heads = [TableText::Campaign, TableText::Records, TableText::Verdict];
+    let [campaign, records, verdict] = heads.map(|head| words.print(&head));
     let folders = summary.campaigns.iter().map(|r| r.folder.chars().count());
-    let width = folders.max().unwrap_or(0).max("campaign".len());
+    let width = folders.max().unwrap_or(0).max(campaign.chars().count());
+    let records_width = RECORDS_WIDTH.max(records.chars().count());
     let mut text = format!(
-        "\n{:<width$} {:>9} {:>23} {:>23} {:>23}  verdict\n",
-        "campaign", "records", "R", "f0, Hz", "β"
+        "\n{campaign:<width$} {records:>records_width$} {:>23} {:>23} {:>23}  {verdict}\n",
+        "R", "f0, Hz", "β"
     );
     for row in &summary.campaigns {
         let line = match &row.outcome {
-            RunOutcome::Result(found) => found_line(found),
-            RunOutcome::Errors(faults) => failed_line(faults),
+            RunOutcome::Result(found) => found_line(found, records_width, words),
+            RunOutcome::Errors(faults) => failed_line(faults, words),
         };
         text += &format!("{:<width$} {line}\n", row.folder);
     }
     text
 }
 
-fn found_line(found: &Found) -> String {
+/// Width of the column of records in the narrowest table.
+const RECORDS_WIDTH: usize = 9;
+
+fn found_line(found: &Found, records_width: usize, words: &dyn Print) -> String {
     let joint = &found.joint;
     let estimates = [
         &joint.restitution,
         &joint.natural_frequency_hz,
         &joint.damping_ratio,
     ];
-    let cells = estimates.map(|e| format!("{:>23}", e.as_ref().map_or("–".into(), with_error)));
+    let cells = estimates.map(|e| {
+        let cell = e.as_ref().map(|e| with_error(e, words));
+        format!("{:>23}", cell.unwrap_or_else(|| "–".into()))
+    });
     let records = format!("{}/{}", found.usable_records, found.records);
     format!(
-        "{records:>9} {}  {}",
+        "{records:>records_width$} {}  {}",
         cells.join(" "),
-        verdict(found.verdict)
+        words.print(&verdict(found.verdict))
     )
 }
 
-fn verdict(kind: VerdictKind) -> &'static str {
+fn verdict(kind: VerdictKind) -> TableText {
     match kind {
-        VerdictKind::Identified => "identified",
-        VerdictKind::Weak => "weak",
-        VerdictKind::NotIdentifiable => "not identifiable",
-        VerdictKind::DoesNotFit => "the model does not fit",
+        VerdictKind::Identified => TableText::IsIdentified,
+        VerdictKind::Weak => TableText::IsWeak,
+        VerdictKind::NotIdentifiable => TableText::IsNotIdentifiable,
+        VerdictKind::DoesNotFit => TableText::IsUnfit,
     }
 }
 
-fn failed_line(faults: &[Fault]) -> String {
-    let first = faults.first().map_or("", |f| f.message.as_str());
-    match faults.len() {
-        0 | 1 => format!("failed: {first}"),
-        n => format!("failed: {first} (and {} more)", n - 1),
+fn failed_line(faults: &[Fault], words: &dyn Print) -> String {
+    let fault = faults.first().map_or(String::new(), |f| f.message.clone());
+    words.print(&match faults.len() {
+        0 | 1 => TableText::Failed { fault },
+        n => TableText::FailedAndMore { fault, more: n - 1 },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impact_records::message::{boxed, faults};
+
+    #[test]
+    fn the_table_has_its_texts() {
+        let all = boxed(<TableText as strum::IntoEnumIterator>::iter());
+        assert_eq!(faults(&all.collect::<Vec<_>>()), Vec::<String>::new());
     }
 }

@@ -3,6 +3,7 @@
 use std::io::{IsTerminal, Write};
 
 use super::failure::print_diagnostics;
+use super::speech::Speech;
 use super::{Failure, Verbosity};
 use impact_campaign::campaign::diagnostic::Diagnostics;
 
@@ -34,8 +35,8 @@ impl Screen {
     }
 
     /// Problems, which stay.
-    pub(super) fn problems(&mut self, all: &Diagnostics) {
-        self.above(|screen| print_diagnostics(all, screen.verbosity));
+    pub(super) fn problems(&mut self, all: &Diagnostics, speech: &Speech) {
+        self.above(|screen| print_diagnostics(all, speech.words().as_ref(), screen.verbosity));
     }
 
     /// What could not be done, which stays.

@@ -3,7 +3,8 @@
 use super::Failure;
 use impact_campaign::campaign::sections::report::ReportSettings;
 use impact_campaign::pipeline;
-use impact_records::message::{Message, Print, Value};
+use impact_records::language::Language;
+use impact_records::message::{Message, Print, Typed, Value};
 use impact_records::message_table;
 use impact_report::catalog::Catalog;
 use impact_report::locale::Locale;
@@ -27,6 +28,15 @@ impl Speech {
         })
     }
 
+    /// Those of a language.
+    pub(super) fn in_language(language: Language) -> Self {
+        let translated = language != Language::default();
+        Self {
+            catalog: translated.then(|| Catalog::of(language)),
+            decimal_comma: language.decimal_comma(),
+        }
+    }
+
     /// A message without markup.
     pub(super) fn say(&self, message: &dyn Message) -> String {
         said(message, self.locale())
@@ -38,7 +48,16 @@ impl Speech {
         each.join(" ")
     }
 
-    fn locale(&self) -> Locale<'_> {
+    /// How problems are printed: in English their numbers are as they are typed.
+    pub(super) fn words(&self) -> Box<dyn Print + '_> {
+        match self.catalog {
+            Some(_) => Box::new(Plain(self.locale())),
+            None => Box::new(Typed),
+        }
+    }
+
+    /// Language and decimal sign, as the report has them.
+    pub(super) fn locale(&self) -> Locale<'_> {
         Locale {
             decimal_comma: self.decimal_comma,
             catalog: self.catalog.as_ref(),
@@ -82,11 +101,33 @@ pub(super) enum Output {
     Written(String),
     /// A report: its format and its path.
     Report(&'static str, String),
+    /// A record that is left out: of how many, why, and what to do.
+    OneLeftOut(LeftOutRecords),
+    /// Several records.
+    SomeLeftOut(LeftOutRecords),
+}
+
+/// Records that are left out for one kind of fault.
+#[derive(Debug, Clone, Default)]
+pub(super) struct LeftOutRecords {
+    /// How many.
+    pub(super) count: usize,
+    /// Of how many.
+    pub(super) of: usize,
+    /// What is wrong with them.
+    pub(super) fault: String,
+    /// What to do.
+    pub(super) remedy: String,
 }
 
 message_table! { "output": Output;
     Self::Written(path) => path = Value::Name(path);
     Self::Report(format, path) => format = Value::Name(format), path = Value::Name(path);
+    Self::OneLeftOut(left) | Self::SomeLeftOut(left) =>
+        count = Value::Count(left.count),
+        of = Value::Count(left.of),
+        fault = Value::Name(&left.fault),
+        remedy = Value::Name(&left.remedy);
 }
 
 #[cfg(test)]
@@ -103,11 +144,7 @@ mod tests {
 
     #[test]
     fn a_verdict_is_said_in_the_language_of_the_report() {
-        let german = impact_records::language::Language::of_code("de").map(Catalog::of);
-        let german = Speech {
-            catalog: german,
-            decimal_comma: true,
-        };
+        let german = Speech::in_language(Language::of_code("de").expect("German"));
         let one = [Sentence::MethodsAgree];
         assert_eq!(Speech::default().say_all(&one), "The methods agree.");
         assert_ne!(german.say_all(&one), "The methods agree.");

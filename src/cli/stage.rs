@@ -178,10 +178,10 @@ impl Identify {
         let found = pipeline::identify::identify(&campaign, &observed, Some(bar.fits()))?;
         store::write_identified(&found, &folder)?;
         drop(bar);
-        print_premises(&campaign, &observed.observations, verbosity);
-        print_fits(&found.identification, verbosity);
-        print_left_out(&observed.observations, verbosity);
         let speech = Speech::of(&campaign.report)?;
+        print_premises(&campaign, &observed.observations, &speech, verbosity);
+        print_fits(&found.identification, verbosity);
+        print_left_out(&observed.observations, &speech, verbosity);
         print_verdict(&found.identification, &speech, verbosity);
         if self.json {
             print_json_file(&folder.join(pipeline::identify::FILE))?;

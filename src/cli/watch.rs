@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use strum::VariantArray;
 
+use super::live_text::{self, LiveText};
 use super::load::load_campaign;
 use super::premises::print_premises;
 use super::progress::Progress;
@@ -14,7 +15,7 @@ use super::report_args::{ReportArgs, print_report_paths};
 use super::run_one::{command_line, keep_from, print_completed};
 use super::screen::Screen;
 use super::speech::Speech;
-use super::{Exit, Failure, Verbosity, interrupt, live_text};
+use super::{Exit, Failure, Verbosity, interrupt};
 use impact_campaign::pipeline::watch::{
     News, NewsKind, Pace, Seen, WatchPatience, Watcher, write_live,
 };
@@ -119,28 +120,46 @@ impl Watch {
         let stop = interrupt::asked(self.out.clone());
         let _lock = Lock::take(&self.out)?;
         let mut screen = Screen::new(verbosity);
-        screen.say("Ctrl-C ends the watch with the results complete.");
+        let mut speech = self.speech(&watcher);
+        screen.say(&speech.words().print(&LiveText::Ends));
         let begin = Instant::now();
         let mut brackets = 0;
         while !stop.load(Ordering::SeqCst) {
             let seen = watcher.look(begin.elapsed());
-            tell(&seen, &mut screen);
+            speech = self.speech(&watcher);
+            tell(&seen, &speech, &mut screen);
             if seen.changed {
                 let outline = watcher.outline();
                 let has_closed = outline.brackets.len() > brackets;
                 brackets = outline.brackets.len();
-                screen.draw(&live_text::status(&watcher, &outline), has_closed);
+                screen.draw(&live_text::status(&watcher, &outline, &speech), has_closed);
             }
             if watcher.is_due(begin.elapsed()) {
-                screen.busy("fitting …");
+                screen.busy(&speech.words().print(&LiveText::Fitting));
                 self.fit(&mut watcher, &mut screen);
-                screen.draw(&live_text::status(&watcher, &watcher.outline()), true);
+                let status = live_text::status(&watcher, &watcher.outline(), &speech);
+                screen.draw(&status, true);
             }
             self.pace.wait(&stop);
         }
         screen.leave();
         let done = self.complete(&mut watcher, verbosity)?;
         Ok(Exit::of(done.identification.verdict.kind))
+    }
+
+    /// The language of the report; before the campaign is read, that which is asked for.
+    fn speech(&self, watcher: &Watcher) -> Speech {
+        let Some(report) = watcher.report() else {
+            return self
+                .options
+                .language()
+                .map(Speech::in_language)
+                .unwrap_or_default();
+        };
+        let mut report = report.clone();
+        let applied = self.options.apply(&mut report, Verbosity::Quiet);
+        let speech = applied.and_then(|()| Speech::of(&report));
+        speech.unwrap_or_default()
     }
 
     /// Fit, and replace the page and identification.json; what fails is reported, and the watch goes on.
@@ -171,21 +190,22 @@ impl Watch {
         let done = watcher.complete(&campaign, &destination, &|s, d, t| bar.step(s, d, t))?;
         drop(bar);
         let speech = Speech::of(&campaign.report)?;
-        print_premises(&campaign, &done.observations, verbosity);
+        print_premises(&campaign, &done.observations, &speech, verbosity);
         print_completed(&done, &speech, verbosity);
         print_report_paths((&campaign, &self.out), &speech, verbosity);
-        verbosity.info(&format!("Page: {}", self.out.join("report.html").display()));
+        let page = self.out.join("report.html").display().to_string();
+        verbosity.info(&speech.words().print(&LiveText::Page(page)));
         Ok(done)
     }
 }
 
 /// Tell what a look brought.
-pub(super) fn tell(seen: &Seen, screen: &mut Screen) {
+pub(super) fn tell(seen: &Seen, speech: &Speech, screen: &mut Screen) {
     if !seen.faults.0.is_empty() {
-        screen.problems(&seen.faults);
+        screen.problems(&seen.faults, speech);
     }
     for (name, paths) in grouped(&seen.news) {
-        screen.say(&live_text::news(name, &paths));
+        screen.say(&live_text::news(name, &paths, speech.words().as_ref()));
     }
 }
 

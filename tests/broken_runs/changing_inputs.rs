@@ -36,7 +36,7 @@ fn a_file_that_vanishes_leaves_out_its_record_alone() {
     assert!(!first.excluded() && second.excluded() && !third.excluded());
     let flag = second.flags.iter().find(|f| f.excludes).expect("a flag");
     assert_eq!(flag.code.name(), "unreadable");
-    assert!(!flag.message.is_empty() && !flag.remedy.is_empty());
+    assert!(!flag.message().is_empty() && !flag.remedy().is_empty());
 }
 
 #[test]

@@ -167,3 +167,35 @@ fn without_motion(text: &str) -> String {
     });
     lines.collect()
 }
+
+#[test]
+fn problems_of_records_are_stated_in_the_language_of_the_report() {
+    let lab = without_units();
+    let check = |more: &[&str]| lab.run(&[&["check", "campaign.toml"], more].concat());
+    let german = |said: &str| {
+        for channel in ["vx", "vy"] {
+            let found = format!("die Datei gibt für Kanal „{channel}“ keine Einheit an");
+            let line = format!("{found} (in 11 Aufzeichnungen: r1, r2, r3, r4, r5, r6, …)");
+            assert!(said.contains(&line), "{said}");
+            let remedy = format!(
+                "unit = \"…\" in [channels.velocity_{}] angeben",
+                &channel[1..]
+            );
+            assert!(said.contains(&remedy), "{said}");
+        }
+        assert_eq!(count(said, NO_UNIT), 0, "{said}");
+    };
+    let english = check(&[]);
+    assert_eq!(count(&english.said, NO_UNIT), 2, "{}", english.said);
+    let asked = check(&["--language", "de"]);
+    assert_eq!(asked.code, english.code);
+    german(&asked.said);
+    lab.edit("paper = \"a4\"", "paper = \"a4\"\nlanguage = \"de\"");
+    german(&check(&[]).said);
+    let ran = lab.run(&["ingest", "campaign.toml", "--out", "out"]);
+    german(&ran.said);
+    let back = check(&["--language", "en"]);
+    assert_eq!(count(&back.said, NO_UNIT), 2, "{}", back.said);
+    // what programs read is English
+    assert!(check(&["--json"]).said.contains(NO_UNIT));
+}

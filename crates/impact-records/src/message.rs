@@ -46,6 +46,8 @@ pub enum Value<'a> {
     Number(f64, usize),
     /// A number with as many decimals as it needs.
     Shortest(f64),
+    /// A number with digits as Rust writes them.
+    Digits(String),
     /// A share as a percentage with a count of decimals (0.01 is 1 %).
     Percent(f64, usize),
     /// A count.
@@ -96,6 +98,7 @@ pub trait Print {
                 format!("{} %", self.number(format!("{percent:.decimals$}")))
             }
             Value::Shortest(value) => self.number(value.to_string()),
+            Value::Digits(digits) => self.number(digits.clone()),
             Value::Count(count) => count.to_string(),
             Value::Name(name) => self.name(name),
             Value::Message(message) => self.print(*message),
@@ -167,13 +170,18 @@ pub fn with_minus(digits: &str) -> String {
     digits.replace('-', if is_zero { "" } else { "\u{2212}" })
 }
 
+/// The English template of a message, without markup.
+fn bare(message: &dyn Message) -> String {
+    let template = message.template(Language::default());
+    template.replace("$f_0$", "f0").replace('$', "")
+}
+
 /// English without markup.
 struct Plain;
 
 impl Print for Plain {
     fn template(&self, message: &dyn Message) -> String {
-        let template = message.template(Language::default());
-        template.replace("$f_0$", "f0").replace('$', "")
+        bare(message)
     }
 
     fn number(&self, digits: String) -> String {
@@ -183,6 +191,29 @@ impl Print for Plain {
     fn name(&self, name: &str) -> String {
         name.to_owned()
     }
+}
+
+/// English without markup, its numbers as they are typed.
+#[derive(Debug, Clone, Copy)]
+pub struct Typed;
+
+impl Print for Typed {
+    fn template(&self, message: &dyn Message) -> String {
+        bare(message)
+    }
+
+    fn number(&self, digits: String) -> String {
+        digits
+    }
+
+    fn name(&self, name: &str) -> String {
+        name.to_owned()
+    }
+}
+
+/// A message in English without markup, its numbers as they are typed: with a hyphen for minus.
+pub fn typed(message: &dyn Message) -> String {
+    Typed.print(message)
 }
 
 /// A message in English without markup.

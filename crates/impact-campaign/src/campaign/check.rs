@@ -13,7 +13,7 @@ use super::resolved::{RecordEntry, ResolvedCampaign};
 use impact_records::event::{DetectionSource, Impact};
 use impact_records::motion::{Observation, observe};
 use impact_records::record::calibrate;
-use impact_records::record::{Flag, FlagCode, Record, Role};
+use impact_records::record::{Flag, FlagCode, Problem, Record, Role};
 use labfiles::Source;
 
 /// What reading all records found.
@@ -169,19 +169,11 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
 fn contact_without_jump(record: &Record, (unsupported, supported): (usize, usize)) -> Option<Flag> {
     let channel = record.channel(Role::Contact)?;
     (unsupported >= 3 && unsupported > 2 * supported).then(|| {
-        let message = format!(
-            "the contact closes {unsupported} times without a jump of the velocity, {supported} times \
-             with one"
-        );
-        let remedy = "fix threshold or channel in [channels.contact], or check whether the \
-                      velocity channels belong to this record";
-        Flag::new(
-            FlagCode::ContactWithoutJump,
-            Some(&channel.name),
-            message,
-            remedy,
-        )
-        .excluding(false)
+        let problem = Problem::ContactsWithoutJump {
+            without: unsupported,
+            with: supported,
+        };
+        Flag::new(Some(&channel.name), problem).excluding(false)
     })
 }
 

@@ -8,7 +8,9 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use super::names::natural_key;
-use impact_records::record::{Flag, FlagCode};
+use super::statement::{Gathered, Members, Statement};
+use impact_records::message::{Print, typed};
+use impact_records::record::{Flag, FlagCode, Remedy};
 
 /// What a problem prevents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -88,7 +90,7 @@ impl fmt::Display for Place {
 }
 
 /// One problem: where, what, and what to do about it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Diagnostic {
     /// What kind of problem it is.
     pub code: Code,
@@ -100,6 +102,9 @@ pub struct Diagnostic {
     pub message: String,
     /// What the user can do.
     pub remedy: String,
+    /// What it states of records; `None` of another problem, whose text is English.
+    #[serde(skip)]
+    statement: Option<Box<Statement>>,
 }
 
 impl Place {
@@ -128,6 +133,29 @@ impl Diagnostic {
             place,
             message: message.into(),
             remedy: remedy.to_owned(),
+            statement: None,
+        }
+    }
+
+    /// What is stated of records.
+    pub(super) fn stating(kind: (Code, Severity), place: Place, statement: Statement) -> Self {
+        let remedy = typed(&Remedy(statement.problem().clone()));
+        Self {
+            statement: Some(Box::new(statement.clone())),
+            ..Self::new(kind, place, typed(&statement), &remedy)
+        }
+    }
+
+    /// The problem in the words of a language, as far as it has them.
+    #[must_use]
+    pub fn said(&self, words: &dyn Print) -> Self {
+        let Some(statement) = self.statement.as_deref() else {
+            return self.clone();
+        };
+        Self {
+            message: words.print(statement),
+            remedy: words.print(&Remedy(statement.problem().clone())),
+            ..self.clone()
         }
     }
 
@@ -147,8 +175,8 @@ impl Diagnostic {
             Severity::Note
         };
         let place = Place::of_record(file, record, flag.channel.as_deref().unwrap_or(""));
-        let code = Code::Flag(flag.code);
-        Self::new((code, severity), place, &flag.message, &flag.remedy)
+        let kind = (Code::Flag(flag.code), severity);
+        Self::stating(kind, place, Statement::OfOne(flag.problem.clone()))
     }
 }
 
@@ -159,13 +187,19 @@ impl fmt::Display for Diagnostic {
 }
 
 /// All problems found.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Diagnostics(pub Vec<Diagnostic>);
 
 impl Diagnostics {
     /// Number of problems of one severity.
     pub fn count(&self, severity: Severity) -> usize {
         self.0.iter().filter(|d| d.severity == severity).count()
+    }
+
+    /// The problems in the words of a language, as far as it has them.
+    #[must_use]
+    pub fn said(&self, words: &dyn Print) -> Self {
+        Self(self.0.iter().map(|one| one.said(words)).collect())
     }
 
     /// Problems that differ only in the record, the line and the numbers of their message, in the
@@ -224,17 +258,15 @@ pub(super) fn first_of(names: &[String]) -> String {
 }
 
 impl Group<'_> {
-    /// The group as one problem: ranges for the numbers that differ, the number of records (or
-    /// lines) and the first of them. `None` for an empty group.
-    pub fn summary(&self) -> Option<Diagnostic> {
+    /// The group as one problem in the words of a language: ranges for the numbers that differ, the number of records
+    /// (or lines) and the first of them. `None` for an empty group.
+    pub fn summary(&self, words: &dyn Print) -> Option<Diagnostic> {
         let (first, others) = self.0.split_first()?;
         let mut summary = (*first).clone();
         if others.is_empty() {
             return Some(summary);
         }
-        let (noun, names) = self.names();
-        let (count, named) = (names.len(), first_of(&names));
-        summary.message = format!("{} (in {count} {noun}: {named})", self.message());
+        summary.message = words.print(&self.gathered(words));
         summary.place = Place {
             file: self.common_path(),
             item: first.place.item.clone(),
@@ -244,26 +276,43 @@ impl Group<'_> {
     }
 
     /// The item and the message that all share, and the first of the records, lines or files.
-    pub fn headline(&self) -> String {
+    pub fn headline(&self, words: &dyn Print) -> String {
         let item = self.0.first().map_or("", |first| &first.place.item);
         let item = match item {
             "" => String::new(),
             item => format!("{item}: "),
         };
-        format!("{item}{} ({})", self.message(), first_of(&self.names().1))
+        let message = self.message(words);
+        format!("{item}{message} ({})", first_of(&self.names()))
     }
 
     /// What distinguishes the members: records, lines or files.
-    fn names(&self) -> (&'static str, Vec<String>) {
+    fn names(&self) -> Vec<String> {
+        self.places().1
+    }
+
+    /// What all share, and in how many records, lines or files it is.
+    fn gathered(&self, words: &dyn Print) -> Gathered {
+        let message = self.message(words);
+        let (of, names) = self.places();
+        of(Members {
+            message,
+            count: names.len(),
+            names: first_of(&names),
+        })
+    }
+
+    /// What the members are, and their names.
+    fn places(&self) -> (fn(Members) -> Gathered, Vec<String>) {
         let places = self.0.iter().map(|d| &d.place);
         let records: Option<Vec<String>> = places.clone().map(|p| p.record.clone()).collect();
         let line = |p: &Place| p.line.map(|l| l.to_string());
         let lines: Option<Vec<String>> = places.clone().map(line).collect();
         match (records, lines) {
-            (Some(records), _) => ("records", records),
-            (None, Some(lines)) => ("lines", lines),
+            (Some(records), _) => (Gathered::InRecords, records),
+            (None, Some(lines)) => (Gathered::InLines, lines),
             (None, None) => (
-                "files",
+                Gathered::InFiles,
                 places.map(|p| p.file.display().to_string()).collect(),
             ),
         }
@@ -280,27 +329,36 @@ impl Group<'_> {
     }
 
     /// The message that all share, with the range of each number that differs.
-    fn message(&self) -> String {
+    fn message(&self, words: &dyn Print) -> String {
         let messages = self.0.iter().map(|d| d.message.as_str());
         let first = messages.clone().next().unwrap_or_default();
         with_numbers(first, |i, _| {
-            let words = messages.clone().filter_map(|m| m.split(' ').nth(i));
-            range(&words.filter_map(number).collect::<Vec<_>>())
+            let each = messages.clone().filter_map(|m| m.split(' ').nth(i));
+            range(&each.filter_map(number).collect::<Vec<_>>(), words)
         })
     }
 }
 
 /// Numbers as one, or from the least to the greatest.
-fn range(numbers: &[&str]) -> String {
-    let value = |text: &&&str| text.parse::<f64>().unwrap_or(f64::NAN);
+fn range(numbers: &[&str], words: &dyn Print) -> String {
+    let value = |text: &&&str| parsed(text).unwrap_or(f64::NAN);
     let by_value = |a: &&&str, b: &&&str| value(a).total_cmp(&value(b));
     let least = numbers.iter().min_by(by_value);
     let greatest = numbers.iter().max_by(by_value);
     match (least, greatest) {
-        (Some(least), Some(greatest)) if least != greatest => format!("{least} to {greatest}"),
+        (Some(least), Some(greatest)) if least != greatest => words.print(&Gathered::Range {
+            least: (*least).to_owned(),
+            greatest: (*greatest).to_owned(),
+        }),
         (Some(one), _) => (*one).to_owned(),
         _ => String::new(),
     }
+}
+
+/// A number as a message has it: with a hyphen or a minus, and a decimal point or comma.
+fn parsed(digits: &str) -> Option<f64> {
+    let digits = digits.replace('\u{2212}', "-").replace(',', ".");
+    digits.parse().ok()
 }
 
 /// The number in a word of a message; `None` for names that contain digits.
@@ -309,9 +367,9 @@ fn number(word: &str) -> Option<&str> {
         .trim_start_matches('(')
         .trim_end_matches([',', '.', ';', ':', ')']);
     let digit = bare
-        .trim_start_matches('-')
+        .trim_start_matches(['-', '\u{2212}'])
         .starts_with(|c: char| c.is_ascii_digit());
-    (digit && bare.parse::<f64>().is_ok()).then_some(bare)
+    (digit && parsed(bare).is_some()).then_some(bare)
 }
 
 /// A message with `replace(index, number)` for each number in it.
@@ -384,6 +442,7 @@ impl FaultCollector {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impact_records::message::Typed;
 
     fn of_record(record: &str, item: &str, message: &str) -> Diagnostic {
         let file = format!("day1/{record}.csv");
@@ -399,7 +458,7 @@ mod tests {
         let all = Diagnostics(all.to_vec());
         let groups = all.groups();
         assert_eq!(groups.len(), 1);
-        let summary = groups[0].summary().unwrap();
+        let summary = groups[0].summary(&Typed).unwrap();
         assert_eq!(
             summary.to_string(),
             "day1: 31 to 34 samples, the usual record has 46 (in 3 records: r34, r31, r33). \
@@ -417,7 +476,7 @@ mod tests {
         let summaries: Vec<String> = all
             .groups()
             .iter()
-            .map(|g| g.summary().unwrap())
+            .map(|g| g.summary(&Typed).unwrap())
             .map(|d| format!("{}: {}", d.place, d.message))
             .collect();
         assert_eq!(
@@ -438,6 +497,15 @@ mod tests {
     }
 
     #[test]
+    fn numbers_may_have_a_minus_and_a_decimal_comma() {
+        let text = "bei (\u{2212}1,5) V, r1,2";
+        let pattern = with_numbers(text, |_, _| "#".to_owned());
+        assert_eq!(pattern, "bei (#) V, r1,2");
+        let both = range(&["1,5", "\u{2212}2,5"], &Typed);
+        assert_eq!(both, "\u{2212}2,5 to 1,5");
+    }
+
+    #[test]
     fn lines_of_a_table_are_named_where_there_is_no_record() {
         let mut faults = FaultCollector::new(Path::new("runs.csv"));
         for line in [3, 5] {
@@ -450,7 +518,7 @@ mod tests {
             );
         }
         let all = faults.into_diagnostics();
-        let summary = all.groups()[0].summary().unwrap();
+        let summary = all.groups()[0].summary(&Typed).unwrap();
         assert_eq!(
             format!("{}: {}", summary.place, summary.message),
             "runs.csv: sweep: 'x' is no word (in 2 lines: 3, 5)"
@@ -462,7 +530,7 @@ mod tests {
         fn prop_a_message_alone_is_its_own_summary(text in "\\PC{0,20}[a-z0-9 .'e+-]{0,40}") {
             let one = of_record("a", "", &text);
             let all = Diagnostics(vec![one.clone(), one]);
-            proptest::prop_assert_eq!(all.groups()[0].message(), text);
+            proptest::prop_assert_eq!(all.groups()[0].message(&Typed), text);
         }
     }
 }

@@ -11,9 +11,10 @@ use super::diagnostic::{Code, Diagnostic, FaultCollector, Place, Severity, first
 use super::names::natural_key;
 use super::run_table::{self, Row};
 use super::sources::Sources;
+use super::statement::Statement;
 use super::values::OneOrMany;
 use impact_records::record::calibrate::{self, ChannelKey, ChannelSetup};
-use impact_records::record::{Flag, FlagCode};
+use impact_records::record::{Flag, FlagCode, Problem};
 use labfiles::{DatasetInfo, ReadError, Source, StoredType};
 
 /// How a file is opened; [`labfiles::open`] but for tests.
@@ -186,12 +187,8 @@ fn left_out(path: &Path, sets: &[DatasetInfo], used: &[usize]) -> Option<Diagnos
 }
 
 fn empty_file(path: &Path) -> Flag {
-    Flag::new(
-        FlagCode::Empty,
-        None,
-        format!("{} holds no dataset", path.display()),
-        "remove the file, or record again",
-    )
+    let path = path.display().to_string();
+    Flag::new(None, Problem::NoDataset { path })
 }
 
 fn failed(path: &Path, row: Option<Row>, flag: Flag) -> Discovered {
@@ -321,26 +318,32 @@ fn bare(name: &str) -> &str {
 }
 
 fn no_dataset(row: &Row, sets: &[DatasetInfo]) -> Flag {
-    let some: Vec<&str> = sets.iter().take(8).map(|s| s.name.as_str()).collect();
-    Flag::new(
-        FlagCode::MissingDataset,
-        None,
-        format!(
-            "no dataset '{}' in it; it holds {}",
-            row.dataset.as_deref().unwrap_or(""),
-            some.join(", ")
-        ),
-        "fix the column dataset of the run table",
-    )
+    let problem = Problem::NoSuchDataset {
+        dataset: row.dataset.clone().unwrap_or_default(),
+        datasets: sets.iter().take(8).map(|s| s.name.clone()).collect(),
+    };
+    Flag::new(None, problem)
+}
+
+/// A flag that all records have, as one problem of the campaign.
+fn of_all(file: &Path, flag: &Flag, records: usize) -> Diagnostic {
+    let place = Place {
+        file: file.to_path_buf(),
+        item: flag.channel.as_deref().unwrap_or("records").to_owned(),
+        ..Place::default()
+    };
+    let problem = flag.problem.clone();
+    let kind = (Code::Flag(flag.code), Severity::Campaign);
+    Diagnostic::stating(kind, place, Statement::OfAll { records, problem })
 }
 
 /// Report the flags of the metadata: what every record has is one problem of the campaign.
 pub(super) fn note_flags(listed: &[Discovered], context: &mut ResolveContext<'_>) {
     let mut groups: Vec<(&Flag, Vec<&Discovered>)> = Vec::new();
-    let mut index: HashMap<(FlagCode, &str), usize> = HashMap::new();
+    let mut index: HashMap<(FlagCode, String), usize> = HashMap::new();
     for one in listed {
         for flag in &one.flags {
-            let key = (flag.code, flag.message.as_str());
+            let key = (flag.code, flag.message());
             let at = *index.entry(key).or_insert_with(|| {
                 groups.push((flag, Vec::new()));
                 groups.len() - 1
@@ -351,11 +354,8 @@ pub(super) fn note_flags(listed: &[Discovered], context: &mut ResolveContext<'_>
     for (flag, records) in groups {
         let all = records.len() == listed.len() && flag.excludes;
         if all && listed.len() > 1 {
-            let what = format!("in all {} records: {}", listed.len(), flag.message);
-            let key = flag.channel.as_deref().unwrap_or("records").to_owned();
-            context
-                .faults
-                .fault(Code::Flag(flag.code), None, &key, what, &flag.remedy);
+            let fault = of_all(context.faults.file(), flag, listed.len());
+            context.faults.extend([fault]);
             continue;
         }
         // a campaign of one record stops with it

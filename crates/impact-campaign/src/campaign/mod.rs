@@ -20,6 +20,7 @@ pub mod sections;
 mod settings;
 pub(crate) mod slashes;
 pub mod sources;
+mod statement;
 pub mod template;
 pub mod values;
 pub mod written;

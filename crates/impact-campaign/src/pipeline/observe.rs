@@ -10,7 +10,7 @@ use crate::pipeline::Progress;
 use crate::pipeline::block_cache::BlockCache;
 use impact_records::motion::{Observation, observe};
 use impact_records::record::calibrate::{calibrate, unreadable};
-use impact_records::record::{Flag, FlagCode, Record};
+use impact_records::record::{Flag, Problem, Record};
 use labfiles::Source;
 use labfiles::output::OutputError;
 
@@ -138,12 +138,8 @@ fn records_of<T: Send>(
 fn read(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Source) -> Record {
     let mut record = calibrate(source, &campaign.setup_of(entry));
     if entry.excluded {
-        record.flags.push(Flag::new(
-            FlagCode::Excluded,
-            None,
-            "campaign.toml excludes this record",
-            "remove it from `exclude` in [analysis] to use it",
-        ));
+        let flag = Flag::new(None, Problem::ExcludedByCampaign);
+        record.flags.push(flag);
     }
     record
 }

@@ -8,7 +8,7 @@ use crate::parameters::Coordinate;
 use crate::parameters::effect::{Effect, EffectKind};
 use impact_records::message::{Message, boxed};
 use impact_records::motion::Undetermined;
-use impact_records::record::{FlagCode, Role};
+use impact_records::record::{FlagCode, Problem, Remedy, Role, problem};
 use impact_records::signal::decay::DampingLaw;
 
 /// One message of each kind of an identification.
@@ -50,6 +50,8 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         .chain(boxed(beyond))
         .chain(boxed(Undetermined::iter()))
         .chain(boxed(FlagCode::ALL.into_iter()))
+        .chain(boxed(Problem::iter()))
+        .chain(boxed(Problem::iter().map(Remedy)))
         .chain(boxed(Sentence::iter()))
         .chain(boxed([PairAgreement::default()].into_iter()))
         .chain(boxed(Item::iter()))
@@ -57,14 +59,15 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         .collect()
 }
 
-/// One message of each name that a figure or a table prints: effects and kinds of effects, channels, and
-/// parameters without a symbol.
+/// One message of each name that a figure, a table or another message prints: effects and kinds of effects, channels,
+/// parameters without a symbol, and quantities and units.
 pub fn labels() -> Vec<Box<dyn Message>> {
     let named = Coordinate::all().filter(|c| c.symbol().is_none());
     boxed(Effect::ALL.iter().copied())
         .chain(boxed(EffectKind::ALL.iter().copied()))
         .chain(boxed(Role::ALL.iter().copied()))
         .chain(boxed(named))
+        .chain(problem::parts())
         .collect()
 }
 

@@ -2,15 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use impact_records::message::Message;
+use impact_records::message::{Message, plain};
 use impact_records::motion::{Motion, Observation, Undetermined};
-use impact_records::record::FlagCode;
+use impact_records::record::Problem;
 
 /// Why a record cannot be used.
 #[derive(Debug, Clone, PartialEq)]
 pub enum UnusableReason {
-    /// A flag, with its details in English.
-    Flag(FlagCode, String),
+    /// The problem of a flag.
+    Flag(Problem),
     /// Its motion is undetermined.
     Undetermined(Undetermined),
 }
@@ -19,8 +19,16 @@ impl UnusableReason {
     /// Name of the flag.
     fn name(&self) -> &'static str {
         match self {
-            Self::Flag(code, _) => code.name(),
+            Self::Flag(problem) => problem.code().name(),
             Self::Undetermined(_) => "motion undetermined",
+        }
+    }
+
+    /// What is stated of it in English.
+    fn stated(&self) -> String {
+        match self {
+            Self::Flag(problem) => plain(problem),
+            Self::Undetermined(reason) => plain(reason),
         }
     }
 }
@@ -56,7 +64,7 @@ pub(super) fn unusable(observations: &[Observation]) -> Vec<Unusable> {
                 records: Vec::new(),
                 differ: false,
             });
-            entry.differ |= entry.reason != reason;
+            entry.differ |= entry.reason.stated() != reason.stated();
             entry.records.push(o.record.clone());
         }
     }
@@ -68,16 +76,16 @@ struct Found<'a> {
     reason: UnusableReason,
     channel: Option<&'a str>,
     /// What is the same in reasons of one kind: a flag's remedy, why a motion is undetermined.
-    kind: &'a str,
+    kind: String,
 }
 
 /// Why a record cannot be used.
 fn reasons(o: &Observation) -> Vec<Found<'_>> {
     let excluding = o.flags.iter().filter(|f| f.excludes);
     let flags = excluding.map(|f| Found {
-        reason: UnusableReason::Flag(f.code, f.message.clone()),
+        reason: UnusableReason::Flag(f.problem.clone()),
         channel: f.channel.as_deref(),
-        kind: &f.remedy,
+        kind: f.remedy(),
     });
     let mut reasons: Vec<_> = flags.collect();
     if let Motion::Undetermined { reason } = &o.classification.motion
@@ -87,7 +95,7 @@ fn reasons(o: &Observation) -> Vec<Found<'_>> {
         reasons.push(Found {
             reason: UnusableReason::Undetermined(reason.clone()),
             channel: None,
-            kind: reason.kind(),
+            kind: reason.kind().to_owned(),
         });
     }
     reasons

@@ -4,7 +4,7 @@ use super::input::Input;
 use impact_fit::methods::boundaries::block::predicted_hz;
 use impact_fit::{Method, Reason};
 use impact_records::motion::{BoundaryKind, Bracket, Motion, Observation};
-use impact_records::record::{FlagCode, Sweep};
+use impact_records::record::{FlagCode, Problem, Sweep};
 use impact_records::signal::robust;
 
 /// Counts and ranges of what was measured.
@@ -73,8 +73,8 @@ pub struct RecordRow {
     pub flags: Vec<FlagCode>,
     /// The methods whose fit used the record.
     pub used_by: Vec<Method>,
-    /// Details of the flag that excludes it, if one does.
-    pub excluded: Option<String>,
+    /// What excludes it, if something does.
+    pub excluded: Option<Problem>,
     /// Why a fit left it out; `None` if none did.
     pub left_out: Option<Reason>,
 }
@@ -118,7 +118,7 @@ fn record(input: &Input<'_>, index: usize, reason: Option<&Reason>) -> RecordRow
         impacts: o.impacts.len(),
         flags: o.flags.iter().map(|f| f.code).collect(),
         used_by: input.identification.methods_using(index).collect(),
-        excluded: excluding.map(|f| f.message.clone()),
+        excluded: excluding.map(|f| f.problem.clone()),
         left_out: reason.cloned(),
     }
 }

@@ -6,6 +6,7 @@ use super::replays::{ReplayedRecord, comparison};
 use impact_fit::parameters::Parameters;
 use impact_records::message::Value;
 use impact_records::message_table;
+use impact_records::record::Problem;
 
 /// A record beside its simulation.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,15 +27,15 @@ pub enum WhyNot {
     Unknown,
     /// Its file cannot be read.
     Unreadable {
-        /// What its flag states.
-        message: String,
+        /// The problem of its first flag.
+        problem: Problem,
     },
     /// It has neither a drive nor a free decay that was found.
     NeitherDriveNorDecay,
 }
 
 message_table! { "why_not": WhyNot;
-    Self::Unreadable { message } => message = Value::Name(message);
+    Self::Unreadable { problem } => problem = Value::Message(problem);
 }
 
 /// A record by its index beside what the model with parameters does there.
@@ -46,9 +47,9 @@ pub fn beside(input: &Input<'_>, index: usize, parameters: &Parameters) -> Besid
         return BesideRecord::Nothing(WhyNot::Unknown);
     };
     if record.samples() == 0 {
-        let message = record.flags.first().map(|flag| flag.message.clone());
-        let message = message.unwrap_or_default();
-        return BesideRecord::Nothing(WhyNot::Unreadable { message });
+        let problem = record.flags.first().map(|flag| flag.problem.clone());
+        let problem = problem.unwrap_or_default();
+        return BesideRecord::Nothing(WhyNot::Unreadable { problem });
     }
     if let Some(decay) = free_decay(o, &record, None) {
         return BesideRecord::Decay(Box::new(decay));

@@ -5,7 +5,7 @@ use super::left_out::{UnusableReason, unusable};
 use impact_fit::{Finding, Method, Note, Status};
 use impact_records::event::{DetectSettings, DriveTone, RigKind};
 use impact_records::motion::{BoundaryKind, ClassifySettings, Motion, Undetermined, observe};
-use impact_records::record::{Flag, FlagCode};
+use impact_records::record::{Flag, Problem};
 
 #[test]
 fn the_fitted_model_replays_the_records_it_was_fitted_to() {
@@ -95,14 +95,15 @@ fn free_decays_are_shown_with_their_fit() {
 
 #[test]
 fn unusable_records_are_grouped_by_flag_and_channel() {
-    let observation = |id: &str, channel: &str, message: &str, excludes: bool| {
+    let clipped = |count| Problem::ClippedSpikes {
+        channel: "a".to_owned(),
+        count,
+        level: 5.0,
+        dimension: Default::default(),
+    };
+    let observation = |id: &str, channel: &str, count: usize, excludes: bool| {
         let mut record = decay(id, 0, 11.0);
-        let flag = Flag::new(
-            FlagCode::Clipped,
-            Some(channel),
-            message,
-            "use a wider range",
-        );
+        let flag = Flag::new(Some(channel), clipped(count));
         record.flags.push(flag.excluding(excludes));
         let detecting = DetectSettings::default();
         observe(
@@ -113,10 +114,10 @@ fn unusable_records_are_grouped_by_flag_and_channel() {
         )
     };
     let found = unusable(&[
-        observation("r1", "b", "at 5 V", true),
-        observation("r2", "a", "at 5 V", true),
-        observation("r3", "b", "at 4 V", true),
-        observation("r4", "b", "at 4 V", false),
+        observation("r1", "b", 5, true),
+        observation("r2", "a", 5, true),
+        observation("r3", "b", 4, true),
+        observation("r4", "b", 4, false),
     ]);
     assert_eq!(found.len(), 2);
     assert_eq!(
@@ -124,8 +125,8 @@ fn unusable_records_are_grouped_by_flag_and_channel() {
         (Some("a"), false)
     );
     assert_eq!(found[1].records, ["r1", "r3"]);
-    let clipped = UnusableReason::Flag(FlagCode::Clipped, "at 5 V".to_owned());
-    assert_eq!((&found[1].reason, found[1].differ), (&clipped, true));
+    let first = UnusableReason::Flag(clipped(5));
+    assert_eq!((&found[1].reason, found[1].differ), (&first, true));
 }
 
 #[test]

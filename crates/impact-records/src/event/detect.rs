@@ -11,7 +11,7 @@ use crate::event::kinematics::{Body, Kinematics, RigKind, Series};
 use crate::event::refine;
 use crate::event::touches::touches;
 use crate::event::{drift, free_flight, impact_speeds, integrated};
-use crate::record::{Flag, FlagCode, ListedTimes, Record, Role};
+use crate::record::{Flag, ListedTimes, Problem, Record, Role};
 use crate::signal::local_fit::LocalFit;
 use crate::signal::whole;
 use labfiles::units::Dimension;
@@ -253,12 +253,7 @@ fn listed(kinematics: Kinematics, times_s: &[f64], known: ListedTimes) -> Detect
 }
 
 fn no_impact() -> Flag {
-    Flag::new(
-        FlagCode::NoImpact,
-        None,
-        "no impact between two free flights was found",
-        "check that the record holds an impact, and the sign and unit of its channels",
-    )
+    Flag::new(None, Problem::NoImpactBetweenFlights)
 }
 
 /// Samples in a drive period in which impacts are looked for. More of them would show no further impact:
@@ -603,22 +598,18 @@ fn wrong_way(found: &Fused, record: &Record) -> Option<Flag> {
             .channel(Role::VelocityX)
             .or_else(|| record.channel(Role::DisplacementX))
             .map(|c| c.name.as_str());
-        Flag::new(
-            FlagCode::JumpsPointTheWrongWay,
-            channel,
-            format!(
-                "{} jumps of the approach velocity go up, {} down; an impact jumps down",
-                found.upward, found.downward
-            ),
-            "turn the `sign` of the velocity or displacement channels: positive is toward the other \
-             mass",
-        )
+        let problem = Problem::UpwardJumps {
+            up: found.upward,
+            down: found.downward,
+        };
+        Flag::new(channel, problem)
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::FlagCode;
 
     /// A velocity that climbs from −1 to 1 within 100 samples and falls back at 99.5, 199.5, …
     fn sawtooth(samples: usize) -> Vec<f64> {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::record::consistency::{ComparedChannels, mistaken};
-use crate::record::{Flag, FlagCode, Record, Role};
+use crate::record::{Flag, Problem, Record, Role};
 use crate::signal::tone;
 
 /// The drive as measured from its channel: amplitude · cos(2π f t + phase).
@@ -90,12 +90,7 @@ pub fn of_motion(record: &Record, motion: &[f64], rate_hz: f64) -> Option<DriveT
 }
 
 fn no_tone(channel: &str) -> Flag {
-    Flag::new(
-        FlagCode::DriveNotHarmonic,
-        Some(channel),
-        "the drive channel holds no single harmonic tone",
-        "check that the drive channel is named correctly and that the drive was on",
-    )
+    Flag::new(Some(channel), Problem::NoTone)
 }
 
 fn contradiction(
@@ -106,25 +101,29 @@ fn contradiction(
 ) -> Option<Flag> {
     let stated = record.setting.stated_frequency_hz?;
     let allowed = (tolerance * stated).max(3.0 * drive.frequency_error_hz);
-    ((drive.frequency_hz - stated).abs() > allowed).then(|| {
-        Flag::new(
-            FlagCode::DriveFrequencyContradicts,
-            Some(channel),
-            format!(
-                "the drive channel shows {:.4} Hz, the campaign states {stated:.4} Hz{}",
-                drive.frequency_hz,
-                mistaken(stated / drive.frequency_hz, ComparedChannels::Frequency)
-                    .map_or(String::new(), |m| format!(": the factor {m}"))
-            ),
-            "the measured frequency is used; correct the run table or the file's name",
-        )
-        .excluding(false)
-    })
+    if (drive.frequency_hz - stated).abs() <= allowed {
+        return None;
+    }
+    let (measured_hz, stated_hz) = (drive.frequency_hz, stated);
+    let units = mistaken(stated_hz / measured_hz, ComparedChannels::Frequency);
+    let problem = match units {
+        Some(units) => Problem::FrequencyInOtherUnits {
+            measured_hz,
+            stated_hz,
+            units,
+        },
+        None => Problem::FrequencyUnlikeStated {
+            measured_hz,
+            stated_hz,
+        },
+    };
+    Some(Flag::new(Some(channel), problem).excluding(false))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::FlagCode;
 
     fn tone(frequency_hz: f64, phase_rad: f64) -> impl Fn(usize) -> f64 {
         move |i| (std::f64::consts::TAU * frequency_hz * i as f64 / 2000.0 + phase_rad).cos()
@@ -156,14 +155,18 @@ mod tests {
         assert!(found.is_some());
         assert_eq!(flags[0].code, FlagCode::DriveFrequencyContradicts);
         assert!(
-            flags[0].message.contains("between Hz and rad/s"),
+            flags[0].message().contains("between Hz and rad/s"),
             "{}",
-            flags[0].message
+            flags[0].message()
         );
         assert!(!flags[0].excludes);
         stated.setting.stated_frequency_hz = Some(12.6 * std::f64::consts::SQRT_2);
         let (_, flags) = measure(&stated, 5e-3);
-        assert!(!flags[0].message.contains("factor"), "{}", flags[0].message);
+        assert!(
+            !flags[0].message().contains("factor"),
+            "{}",
+            flags[0].message()
+        );
         stated.setting.stated_frequency_hz = Some(12.62);
         assert!(measure(&stated, 5e-3).1.is_empty());
     }

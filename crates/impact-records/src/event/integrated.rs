@@ -92,7 +92,7 @@ pub(super) fn error_of_constants(
 #[cfg(test)]
 mod tests {
     use crate::event::{DetectSettings, Impact, RigKind, detect};
-    use crate::record::{Flag, FlagCode, Record, Role};
+    use crate::record::{Flag, Problem, Record, Role};
     use crate::signal::robust;
 
     const RATE_HZ: f64 = 2000.0;
@@ -129,10 +129,16 @@ mod tests {
     #[test]
     fn valid_speeds_of_an_accelerometer_do_not_rest_on_its_spikes() {
         // A spike adds up to (1 + R)·v·rate = 1800 m/s² in one sample; at 100 m/s² nearly nothing of it is left.
+        let spikes = Problem::ClippedSpikes {
+            channel: "a".to_owned(),
+            count: 10,
+            level: -100.0,
+            dimension: Default::default(),
+        };
         for (rail, clipped) in [(-2000.0, false), (-100.0, true)] {
             let mut record = accelerometer(rail);
             if clipped {
-                let flag = Flag::new(FlagCode::Clipped, None, "", "");
+                let flag = Flag::new(None, spikes.clone());
                 record.flags.push(flag.excluding(false));
             }
             let found = detect(&record, RigKind::Single, &DetectSettings::default());

@@ -197,7 +197,7 @@ fn doubled(one: &Motion, two: &Motion) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{Flag, FlagCode};
+    use crate::record::{Flag, Problem};
 
     fn periodic(impacts_p: u32, periods_n: u32) -> Motion {
         Motion::Periodic {
@@ -265,9 +265,7 @@ mod tests {
             (11.2, periodic(1, 2)),
             (11.3, Motion::Impactless),
         ]);
-        list[2]
-            .flags
-            .push(Flag::new(FlagCode::Clipped, None, "", ""));
+        list[2].flags.push(Flag::new(None, Problem::NoSamples));
         assert_eq!(found(&list), [(SaddleNode, 2, pair("a", "d"))]);
     }
 

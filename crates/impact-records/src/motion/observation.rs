@@ -14,7 +14,7 @@ use crate::motion::kind::Motion;
 use crate::motion::late_channel::LateChannel;
 use crate::motion::response::{Response, responses};
 use crate::motion::undetermined::Undetermined;
-use crate::record::{Excitation, Flag, FlagCode, Record, Role, Setting};
+use crate::record::{Excitation, Flag, FlagCode, Problem, Record, Role, Setting};
 use crate::signal::decay::{self, Decay, MotionSignal, Watched};
 use crate::signal::robust;
 use labfiles::units::Dimension;
@@ -252,14 +252,17 @@ fn beyond_stop(record: &Record, rig: RigKind) -> Option<Flag> {
     let (low, high) = robust::range(together)?;
     let reached_m = 0.5 * (high - low);
     (reached_m > BEYOND * clearance_m).then(|| {
-        let found = format!(
-            "the displacement goes {:.4} mm toward the {} without an impact, and the clearance is stated as {:.4} mm",
-            1e3 * reached_m,
-            if rig == RigKind::Single { "stop" } else { "other mass" },
-            1e3 * clearance_m
-        );
-        let remedy = "correct the stated clearance (of two masses half the gap), or unit and scale of the displacement";
-        Flag::new(FlagCode::BeyondStop, Some(&x.name), found, remedy).excluding(false)
+        let problem = match rig {
+            RigKind::Single => Problem::PathBeyondStop {
+                reached_m,
+                clearance_m,
+            },
+            RigKind::Double => Problem::PathBeyondMass {
+                reached_m,
+                clearance_m,
+            },
+        };
+        Flag::new(Some(&x.name), problem).excluding(false)
     })
 }
 
@@ -268,12 +271,8 @@ fn observe_decay(record: &Record) -> Observation {
     let mut observation = undriven(record);
     observation.decays = free_decays(record);
     if observation.decays.is_empty() {
-        observation.flags.push(Flag::new(
-            FlagCode::NoFreeDecay,
-            None,
-            "no free decay of one and a half periods or more was found",
-            "check that the record is a free decay and that its motion channel is named",
-        ));
+        let flag = Flag::new(None, Problem::NoDecayFound);
+        observation.flags.push(flag);
     }
     observation.flags = without_what_follows(record, observation.flags);
     observation
@@ -390,16 +389,12 @@ fn free_decays(record: &Record) -> Vec<Decay> {
 
 fn contact_flag(record: &Record, impacts: &[Impact], unsupported: usize) -> Option<Flag> {
     (unsupported > 2 && unsupported > impacts.len()).then(|| {
-        Flag::new(
-            FlagCode::ContactWithoutVelocityJump,
-            record.channel(Role::Contact).map(|c| c.name.as_str()),
-            format!(
-                "{unsupported} contact pulses show no jump of velocity, {} impacts do",
-                impacts.len()
-            ),
-            "check the contact's threshold and wiring, and that the velocity channel belongs \
-                 to this record",
-        )
+        let channel = record.channel(Role::Contact).map(|c| c.name.as_str());
+        let problem = Problem::PulsesWithoutJump {
+            pulses: unsupported,
+            impacts: impacts.len(),
+        };
+        Flag::new(channel, problem)
     })
 }
 
@@ -509,9 +504,9 @@ mod tests {
             assert_eq!(flag(1.05e-3, rig), None);
             let found = flag(1.5e-3, rig).unwrap();
             assert!(
-                found.message.contains("1.5000 mm toward the"),
+                found.message().contains("1.5000 mm toward the"),
                 "{}",
-                found.message
+                found.message()
             );
             assert!(!found.excludes);
         }
@@ -520,7 +515,10 @@ mod tests {
     #[test]
     fn what_follows_from_a_missing_channel_is_not_said_beside_it() {
         use FlagCode::{Clipped, MissingChannel, NoFreeDecay, NoImpact};
-        let flag = |code: FlagCode| Flag::new(code, None, "found", "remedy");
+        let flag = |code: FlagCode| {
+            let mut all = <Problem as strum::IntoEnumIterator>::iter();
+            Flag::new(None, all.find(|p| p.code() == code).unwrap())
+        };
         let said = |causes: &[FlagCode], all: &[FlagCode]| -> Vec<FlagCode> {
             let mut record = Record::of(1000.0, &[]);
             record.flags = causes.iter().map(|code| flag(*code)).collect();

@@ -4,7 +4,7 @@
 //! four nearest ones (a contact, which has two levels, stays at its nearest sample). Channels of unlike rate are
 //! refused by name.
 
-use super::{Channel, Flag, FlagCode, Record, Role};
+use super::{Channel, Flag, Problem, Record, Role};
 use crate::signal::whole;
 
 /// When the samples of a channel were taken.
@@ -115,17 +115,13 @@ fn unlike_rates(record: &Record, timings: &[Timing]) -> Option<Flag> {
         (timing.rate_hz / first.rate_hz - 1.0).abs() * channel.values.len() as f64 > 0.5
     };
     let (channel, timing) = others.iter().zip(rest).find(unlike)?;
-    let found = format!(
-        "channel '{}' has {} samples a second, '{}' {}",
-        channel.name, timing.rate_hz, known.name, first.rate_hz
-    );
-    let remedy = "record all channels at one rate, resample them before, or leave the channel out";
-    Some(Flag::new(
-        FlagCode::UnequalSampleRates,
-        Some(&channel.name),
-        found,
-        remedy,
-    ))
+    let problem = Problem::RatesOfTwoDiffer {
+        channel: channel.name.clone(),
+        rate_hz: timing.rate_hz,
+        other: known.name.clone(),
+        other_hz: first.rate_hz,
+    };
+    Some(Flag::new(Some(&channel.name), problem))
 }
 
 /// The channel that begins last.
@@ -138,18 +134,14 @@ fn latest<'a>(record: &'a Record, timings: &[Timing]) -> &'a str {
 
 fn channels_shifted(record: &Record, timings: &[Timing], by_s: f64) -> Flag {
     let name = latest(record, timings);
-    let found =
-        format!("channel '{name}' begins {by_s:.6} s after the first: all are put in place");
-    let remedy = "nothing, if the file's start times are right";
-    Flag::new(FlagCode::ChannelsShifted, Some(name), found, remedy).excluding(false)
+    let channel = name.to_owned();
+    Flag::new(Some(name), Problem::LaterChannel { channel, by_s }).excluding(false)
 }
 
 fn apart(record: &Record, timings: &[Timing], by_s: f64) -> Flag {
     let name = latest(record, timings);
-    let found =
-        format!("channel '{name}' begins {by_s:.6} s after the first, when others have ended");
-    let remedy = "record all channels at the same time, or correct the file's start times";
-    Flag::new(FlagCode::ChannelsApart, Some(name), found, remedy)
+    let channel = name.to_owned();
+    Flag::new(Some(name), Problem::TooLateChannel { channel, by_s })
 }
 
 fn start_missing(record: &Record, timings: &[Timing]) -> Flag {
@@ -157,11 +149,8 @@ fn start_missing(record: &Record, timings: &[Timing]) -> Flag {
     let name = all
         .find(|(_, t)| t.start_s.is_none())
         .map_or("", |(c, _)| c.name.as_str());
-    let found = format!(
-        "channel '{name}' does not state when it begins, others do: taken as the first of them"
-    );
-    let remedy = "state delay in its table if it begins later";
-    Flag::new(FlagCode::StartMissing, Some(name), found, remedy).excluding(false)
+    let channel = name.to_owned();
+    Flag::new(Some(name), Problem::StartNotStated { channel }).excluding(false)
 }
 
 #[cfg(test)]
@@ -169,6 +158,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::record::FlagCode;
 
     fn record(values: [&[f64]; 2]) -> Record {
         Record::of(
@@ -194,7 +184,7 @@ mod tests {
         assert_eq!(apart.channels[0].values.len(), 60);
         assert!(!apart.excluded());
         assert_eq!(
-            apart.flags[0].message,
+            apart.flags[0].message(),
             "channel 'velocity_y' begins 0.040000 s after the first: all are put in place"
         );
     }
@@ -208,7 +198,7 @@ mod tests {
             None
         );
         assert_eq!(
-            unlike.flags[0].message,
+            unlike.flags[0].message(),
             "channel 'velocity_y' has 500 samples a second, 'velocity_x' 1000"
         );
         let mut later = record([&count, &count]);

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ContactContent, Flag, FlagCode, LowPass, Role, Setting};
+use super::{ContactContent, Flag, LowPass, MeasuredQuantity, Problem, Role, Setting};
 use labfiles::units::{self, Dimension, Quantity, Scale, Unit};
 use labfiles::{ChannelInfo, DatasetInfo};
 
@@ -214,28 +214,19 @@ pub fn bind(setup: &ChannelSetup, dataset: &DatasetInfo) -> Result<BoundChannel,
     })
 }
 
-pub(super) fn flag(
-    setup: &ChannelSetup,
-    channel: &str,
-    code: FlagCode,
-    message: String,
-    remedy: &str,
-) -> Flag {
-    Flag::new(code, Some(channel), message, remedy).excluding(!setup.role.is_frame())
+pub(super) fn flag(setup: &ChannelSetup, channel: &str, problem: Problem) -> Flag {
+    Flag::new(Some(channel), problem).excluding(!setup.role.is_frame())
 }
 
 fn missing(setup: &ChannelSetup, dataset: &DatasetInfo) -> Flag {
-    let shown = dataset.channels.iter().take(16).map(|c| c.name.as_str());
-    let shown = shown.collect::<Vec<_>>().join(", ");
+    let shown = dataset.channels.iter().take(16).map(|c| c.name.clone());
     let key = setup.source.text();
-    let role = setup.role.name();
-    flag(
-        setup,
-        &key,
-        FlagCode::MissingChannel,
-        format!("no channel '{key}' for the role {role}; the channels are: {shown}"),
-        &format!("name one of them in [channels.{role}], or leave the record out"),
-    )
+    let problem = Problem::NoSuchChannel {
+        channel: key.clone(),
+        role: setup.role,
+        channels: shown.collect(),
+    };
+    flag(setup, &key, problem)
 }
 
 /// The unit of the numbers in the file: as stated there, or in the set-up.
@@ -262,106 +253,98 @@ fn same(a: Unit, b: Unit) -> bool {
 }
 
 fn contradicts(setup: &ChannelSetup, info: &ChannelInfo, ours: Unit) -> Flag {
-    let stated = info.unit.as_deref().unwrap_or_default().trim();
-    let ours = units::symbol_of(ours).unwrap_or("another unit");
-    flag(
-        setup,
-        &info.name,
-        FlagCode::WrongUnit,
-        format!(
-            "the file states the unit '{stated}' for channel '{}', campaign.toml '{ours}'",
-            info.name
-        ),
-        &format!(
-            "set unit = \"{stated}\" in [channels.{}], or ignore_file_unit = true if the file \
-             is wrong",
-            setup.role.name()
-        ),
-    )
+    let (channel, role) = (info.name.clone(), setup.role);
+    let stated = info.unit.as_deref().unwrap_or_default().trim().to_owned();
+    let problem = match units::symbol_of(ours) {
+        Some(ours) => Problem::UnitContradicts {
+            channel,
+            role,
+            stated,
+            ours: ours.to_owned(),
+        },
+        None => Problem::UnitContradictsOther {
+            channel,
+            role,
+            stated,
+        },
+    };
+    flag(setup, &info.name, problem)
 }
 
 fn without_unit(setup: &ChannelSetup, info: &ChannelInfo, stated: Option<&str>) -> Flag {
-    let found = match stated {
-        Some(symbol) => format!("the file states a unit '{symbol}' that is not known"),
-        None => "the file states no unit".to_owned(),
+    let (channel, role) = (info.name.clone(), setup.role);
+    let problem = match stated.map(str::to_owned) {
+        Some(unit) => Problem::UnknownUnit {
+            channel,
+            role,
+            unit,
+        },
+        None => Problem::NoUnit { channel, role },
     };
-    flag(
-        setup,
-        &info.name,
-        FlagCode::UnitMissing,
-        format!("{found} for channel '{}'", info.name),
-        &format!("write unit = \"…\" in [channels.{}]", setup.role.name()),
-    )
+    flag(setup, &info.name, problem)
 }
 
 fn unfit_scale(setup: &ChannelSetup, info: &ChannelInfo, unit: Unit) -> Flag {
-    let role = setup.role.name();
-    flag(
-        setup,
-        &info.name,
-        FlagCode::WrongUnit,
-        format!(
-            "the scale of channel '{}' does not start from its unit, a {}",
-            info.name,
-            unit.dimension.name()
-        ),
-        &format!(
-            "correct scale or unit in [channels.{role}]: scale = \"50 mm/s per V\", unit = \"V\""
-        ),
-    )
+    let problem = Problem::UnfitScale {
+        channel: info.name.clone(),
+        role: setup.role,
+        dimension: unit.dimension,
+    };
+    flag(setup, &info.name, problem)
 }
 
 fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -> Result<(), Flag> {
+    use MeasuredQuantity::{Accepted, Of, OfThreshold, Times};
     let role = setup.role;
-    let wrong = |expected: &str| {
-        let turning = turning(role, found);
-        let what = format!(
-            "channel '{}' of the role {} comes out as {}, not as {expected}",
-            info.name,
-            role.name(),
-            turning.map_or_else(|| found.with_article(), |(what, _)| what.to_owned())
-        );
-        let correct = || match (role.dimension(), found) {
-            (Some(wanted), Dimension::Voltage) => format!(
-                "correct unit and scale in [channels.{}], what one volt corresponds to: scale = \"0.05 {} per V\"",
-                role.name(),
-                wanted.si_symbol().replace('²', "2")
-            ),
-            _ => format!("correct unit and scale in [channels.{}]", role.name()),
-        };
-        let arm = |(_, scale): (&str, &str)| {
-            format!(
-                "state the arm at which the mass touches, or 1 m, in [channels.{}]: scale = \"{scale}\"",
-                role.name()
-            )
-        };
-        let remedy = turning.map_or_else(correct, arm);
-        Err(flag(setup, &info.name, FlagCode::WrongUnit, what, &remedy))
+    let wrong = |expected| {
+        let problem = wrong_quantity(&info.name, role, (found, expected));
+        Err(flag(setup, &info.name, problem))
     };
     let list = setup.content.is_list();
     match role.dimension() {
-        None if list && found != Dimension::Time => return wrong("a time, as of impacts"),
+        None if list && found != Dimension::Time => return wrong(Times),
         None if list => return Ok(()),
-        Some(expected) if found != expected => return wrong(&expected.with_article()),
-        None if !serves(role, found) => return wrong("a quantity that serves there"),
+        Some(expected) if found != expected => return wrong(Of(expected)),
+        None if !serves(role, found) => return wrong(Accepted),
         _ => {}
     }
     match setup.threshold {
-        Some(level) if level.dimension != found => wrong(&format!(
-            "{} as its threshold does",
-            level.dimension.with_article()
-        )),
+        Some(level) if level.dimension != found => wrong(OfThreshold(level.dimension)),
         _ => Ok(()),
     }
 }
 
-/// What a motion of turning is, and the scale that makes one along a path of it.
-fn turning(role: Role, found: Dimension) -> Option<(&'static str, &'static str)> {
-    match found {
-        _ if !role.is_motion() => None,
-        Dimension::Angle => Some(("an angle", "0.15 m per rad")),
-        Dimension::Frequency => Some(("an angular rate", "0.15 m/s per rad/s")),
-        _ => None,
+/// That a channel measures another quantity than expected, with the scale that its role needs where one is known.
+fn wrong_quantity(
+    channel: &str,
+    role: Role,
+    (found, expected): (Dimension, MeasuredQuantity),
+) -> Problem {
+    let channel = channel.to_owned();
+    let turning = |found, scale: &str| Problem::TurningMotion {
+        channel: channel.clone(),
+        role,
+        found,
+        expected,
+        scale: scale.to_owned(),
+    };
+    match (found, role.dimension()) {
+        (Dimension::Angle, Some(_)) => turning(MeasuredQuantity::Of(found), "0.15 m per rad"),
+        (Dimension::Frequency, Some(_)) => {
+            turning(MeasuredQuantity::AngularRate, "0.15 m/s per rad/s")
+        }
+        (Dimension::Voltage, Some(wanted)) => Problem::VoltageOfMotion {
+            channel,
+            role,
+            expected,
+            unit: wanted.si_symbol().replace('²', "2"),
+        },
+        _ => Problem::WrongQuantity {
+            channel,
+            role,
+            found: MeasuredQuantity::Of(found),
+            expected,
+        },
     }
 }
 
@@ -429,13 +412,13 @@ mod tests {
         let mut setup = ChannelSetup::plain(Role::VelocityX, ChannelKey::Name("gyro".into()));
         let flag = bind(&setup, &dataset).unwrap_err();
         assert_eq!(
-            flag.message,
+            flag.message(),
             "channel 'gyro' of the role velocity_x comes out as an angular rate, not as a velocity"
         );
         assert!(
-            flag.remedy.ends_with("scale = \"0.15 m/s per rad/s\""),
+            flag.remedy().ends_with("scale = \"0.15 m/s per rad/s\""),
             "{}",
-            flag.remedy
+            flag.remedy()
         );
         let volts = DatasetInfo {
             channels: vec![ChannelInfo {
@@ -447,15 +430,15 @@ mod tests {
         let wanted = ChannelSetup::plain(Role::AccelerationX, ChannelKey::Name("gyro".into()));
         let flag = bind(&wanted, &volts).unwrap_err();
         assert!(
-            flag.message
+            flag.message()
                 .ends_with("as a voltage, not as an acceleration"),
             "{}",
-            flag.message
+            flag.message()
         );
         assert!(
-            flag.remedy.ends_with("scale = \"0.05 m/s2 per V\""),
+            flag.remedy().ends_with("scale = \"0.05 m/s2 per V\""),
             "{}",
-            flag.remedy
+            flag.remedy()
         );
         setup.scale = units::parse_scale("0.15 m/s per rad/s").unwrap();
         let bound = bind(&setup, &dataset).unwrap();

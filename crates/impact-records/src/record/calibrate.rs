@@ -5,7 +5,7 @@ use super::bind::BoundRole;
 use super::bind::flag;
 pub use super::bind::{BoundChannel, ChannelKey, ChannelSetup, RecordSetup, bind};
 use super::times::Clocks;
-use super::{Channel, ContactContent, Flag, FlagCode, ListedTimes, Record, Role, Setting};
+use super::{Channel, ContactContent, Flag, ListedTimes, Problem, Record, Role, Setting};
 use super::{changes, condition, consistency, events, late};
 use crate::signal::whole;
 use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
@@ -19,16 +19,16 @@ pub fn unreadable(id: &str, setting: &Setting, error: &ReadError) -> Record {
 
 /// A reader's error as a flag of the record; the caller names the file.
 pub fn read_flag(error: &ReadError) -> Flag {
-    let place = match &error.channel {
-        Some(channel) => format!("channel '{channel}': "),
-        None => String::new(),
+    let (found, remedy) = (error.what(), error.remedy.clone());
+    let problem = match error.channel.clone() {
+        Some(channel) => Problem::FaultInChannel {
+            channel,
+            found,
+            remedy,
+        },
+        None => Problem::FaultInFile { found, remedy },
     };
-    Flag::new(
-        FlagCode::Unreadable,
-        error.channel.as_deref(),
-        format!("{place}{}", error.what()),
-        error.remedy.clone(),
-    )
+    Flag::new(error.channel.as_deref(), problem)
 }
 
 fn empty(id: &str, setting: &Setting) -> Record {
@@ -184,23 +184,22 @@ fn keep_closings(
     };
     channel.values = closings.times_s;
     let name = &dataset.channels[state].name;
-    let found = format!(
-        "the rows are changes of '{name}': the {} at which it goes to {} are the impacts",
-        channel.values.len(),
-        levels.closed
-    );
-    let remedy = "nothing, if the contact is closed while it is there";
-    record
-        .flags
-        .push(Flag::new(FlagCode::ContactChanges, Some(name), found, remedy).excluding(false));
+    let problem = Problem::ChangesOfLine {
+        channel: name.clone(),
+        count: channel.values.len(),
+        closed: levels.closed,
+    };
+    let flag = Flag::new(Some(name), problem);
+    record.flags.push(flag.excluding(false));
     closings.closed_s
 }
 
 fn two_lines([first, second]: [&str; 2]) -> Flag {
-    let found =
-        format!("the rows are changes of '{first}' and of '{second}': either may be the contact");
-    let remedy = "export the line of the contact alone beside its times";
-    Flag::new(FlagCode::ContactUnclear, Some(second), found, remedy)
+    let problem = Problem::EitherLine {
+        first: first.to_owned(),
+        second: second.to_owned(),
+    };
+    Flag::new(Some(second), problem)
 }
 
 /// What the channel of the contact contains.
@@ -210,16 +209,12 @@ fn content(setup: &RecordSetup<'_>) -> ContactContent {
 }
 
 fn no_dataset(source: &dyn Source, index: usize) -> Flag {
-    Flag::new(
-        FlagCode::Unreadable,
-        None,
-        format!(
-            "{} holds {} datasets, number {index} is asked for",
-            source.path().display(),
-            source.datasets().len()
-        ),
-        "the file has changed since it was listed: run again",
-    )
+    let problem = Problem::FewerDatasets {
+        path: source.path().display().to_string(),
+        datasets: source.datasets().len(),
+        index,
+    };
+    Flag::new(None, problem)
 }
 
 fn bind_all<'a>(
@@ -266,13 +261,9 @@ fn scaled(
     info: &ChannelInfo,
 ) -> Result<Channel, Flag> {
     let Samples::Real(mut values) = samples else {
-        return Err(flag(
-            setup,
-            &info.name,
-            FlagCode::NotNumbers,
-            format!("channel '{}' holds no real numbers", info.name),
-            "name the channel with the measured signal",
-        ));
+        let channel = info.name.clone();
+        let problem = Problem::NoRealNumbers { channel };
+        return Err(flag(setup, &info.name, problem));
     };
     for value in &mut values {
         *value = *value * bound.to_si.to_si - bound.offset_si;
@@ -303,17 +294,13 @@ fn skip(record: &mut Record, skip_s: f64) {
 }
 
 fn all_skipped(duration_s: f64, skip_s: f64) -> Flag {
-    Flag::new(
-        FlagCode::Empty,
-        None,
-        format!("the record lasts {duration_s} s, and {skip_s} s of it are skipped"),
-        "lower skip in [analysis]",
-    )
+    Flag::new(None, Problem::AllSkipped { duration_s, skip_s })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::FlagCode;
 
     /// A table of two columns, as a Record whose time axis is the first.
     fn record(times_s: impl Iterator<Item = f64>) -> Record {
@@ -387,7 +374,7 @@ mod tests {
         assert_eq!(flags[0].code, FlagCode::TimeNotUniform);
         assert!(
             flags[0]
-                .remedy
+                .remedy()
                 .contains("channel = \"Time\" and content = \"times\""),
             "{flags:?}"
         );
@@ -423,7 +410,7 @@ mod tests {
             "{flights:?}"
         );
         assert_eq!(
-            record.flags[0].message,
+            record.flags[0].message(),
             "the rows are changes of 'Channel 0': the 12 at which it goes to 1 are the impacts"
         );
         // somewhere in a contact of 2 ms

@@ -3,8 +3,7 @@
 
 use std::ops::Range;
 
-use super::{Channel, Flag, FlagCode, Record, Role};
-use crate::signal::digits::significant;
+use super::{Channel, Flag, Problem, Record, Role};
 use crate::signal::{columns, interpolation, robust, whole};
 
 /// Part of a channel's samples at the rail above which the record is left out.
@@ -37,14 +36,12 @@ pub(super) fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
     if let Some(times) = times {
         times.truncate(shortest);
     }
-    let mut found = Flag::new(
-        FlagCode::UnequalLengths,
+    let found = Flag::new(
         short.as_deref(),
-        format!("the channels differ in length, from {shortest} to {longest} samples"),
-        "record again, or export all channels with the same number of samples",
+        Problem::LengthsDiffer { shortest, longest },
     );
-    found.excludes = (longest - shortest) as f64 > LENGTH_DIFFERENCE * longest as f64;
-    record.flags.push(found);
+    let much = (longest - shortest) as f64 > LENGTH_DIFFERENCE * longest as f64;
+    record.flags.push(found.excluding(much));
 }
 
 /// Cut samples off both ends if a channel has no value there (exports often pad so).
@@ -94,22 +91,11 @@ fn never_whole(record: &Record) -> Flag {
         .iter()
         .max_by_key(|c| c.values.iter().filter(|v| !v.is_finite()).count())
         .map(|c| c.name.clone());
-    Flag::new(
-        FlagCode::NotANumber,
-        worst.as_deref(),
-        "at no sample do all channels have a value",
-        "leave the channel without values out of campaign.toml, or record again",
-    )
+    Flag::new(worst.as_deref(), Problem::NoCompleteSample)
 }
 
-fn trimmed(channel: Option<String>, cut: usize) -> Flag {
-    Flag::new(
-        FlagCode::Trimmed,
-        channel.as_deref(),
-        format!("{cut} samples without a value at the ends are cut off"),
-        "nothing, if the export pads its ends so",
-    )
-    .excluding(false)
+fn trimmed(channel: Option<String>, count: usize) -> Flag {
+    Flag::new(channel.as_deref(), Problem::EndsCutOff { count }).excluding(false)
 }
 
 fn keep(values: &mut Vec<f64>, first: usize, last: usize) {
@@ -178,16 +164,14 @@ fn without_frozen(channel: &mut Channel) -> Option<Flag> {
     let values = &mut channel.values;
     let replaced = frozen.iter().filter(|s| interpolate(values, &frozen, **s));
     let replaced = replaced.count();
-    let found = format!(
-        "channel '{}' stands still {} times in the midst of a motion and then jumps, the first time for {} samples \
-         from sample {first} on: its pictures were frozen ({replaced} of these are interpolated)",
-        channel.name,
-        frozen.len(),
-        length + 1
-    );
-    let remedy = "leave out those records, or record again with a camera that keeps its pace";
-    let flag = Flag::new(FlagCode::FrozenFrames, Some(&channel.name), found, remedy);
-    Some(flag.excluding(false))
+    let problem = Problem::FrozenPictures {
+        channel: channel.name.clone(),
+        count: frozen.len(),
+        samples: length + 1,
+        first,
+        interpolated: replaced,
+    };
+    Some(Flag::new(Some(&channel.name), problem).excluding(false))
 }
 
 /// Replace the repeated pictures of a stretch by Lagrange's polynomial through those around it; whether they could be.
@@ -240,17 +224,12 @@ fn frozen_stretches(values: &[f64]) -> Vec<(usize, usize)> {
 }
 
 fn no_samples(record: &Record) -> Flag {
-    let message = if record.channels.is_empty() {
-        "none of the channels that campaign.toml names can be used"
+    let problem = if record.channels.is_empty() {
+        Problem::NoUsableChannel
     } else {
-        "the record is empty: it holds no samples"
+        Problem::NoSamples
     };
-    Flag::new(
-        FlagCode::Empty,
-        None,
-        message.to_owned(),
-        "remove the file, or record again",
-    )
+    Flag::new(None, problem)
 }
 
 fn not_numbers(channel: &Channel) -> Option<Flag> {
@@ -259,16 +238,12 @@ fn not_numbers(channel: &Channel) -> Option<Flag> {
     }
     let count = channel.values.iter().filter(|v| !v.is_finite()).count();
     let first = channel.values.iter().position(|v| !v.is_finite())?;
-    Some(Flag::new(
-        FlagCode::NotANumber,
-        Some(&channel.name),
-        format!(
-            "channel '{}' has {count} values that are not numbers (NaN or infinite), the first \
-             at sample {first}",
-            channel.name
-        ),
-        "record again, or correct the export; the record is left out",
-    ))
+    let problem = Problem::MissingValues {
+        channel: channel.name.clone(),
+        count,
+        first,
+    };
+    Some(Flag::new(Some(&channel.name), problem))
 }
 
 /// Least and greatest value and the smallest step between neighbours that is not zero.
@@ -289,16 +264,6 @@ impl Span {
     }
 }
 
-/// A value of a channel with its unit.
-fn si(channel: &Channel, value: f64) -> String {
-    let text = format!(
-        "{} {}",
-        significant(value, 5),
-        channel.dimension.si_symbol()
-    );
-    text.trim_end().to_owned()
-}
-
 /// Samples of the shortest record in which a constant channel is told from one that was cut short.
 const FEWEST_SAMPLES: usize = 16;
 
@@ -310,13 +275,11 @@ fn too_short(record: &Record, driven: bool) -> Option<Flag> {
     if samples >= FEWEST_SAMPLES || !record.channels.iter().any(is_dead) {
         return None;
     }
-    let noun = if samples == 1 { "sample" } else { "samples" };
-    Some(Flag::new(
-        FlagCode::TooFewSamples,
-        None,
-        format!("the record is too short: {samples} {noun}"),
-        "look whether the file is whole; export the record again, or record longer",
-    ))
+    let problem = match samples {
+        1 => Problem::SingleSample,
+        samples => Problem::FewSamples { samples },
+    };
+    Some(Flag::new(None, problem))
 }
 
 /// A channel that shows nothing but one value or two neighbouring steps of the converter. A
@@ -329,16 +292,12 @@ fn dead(channel: &Channel, span: &Span, driven: bool) -> Option<Flag> {
     if high > low && high - low > 1.001 * step {
         return None;
     }
-    Some(Flag::new(
-        FlagCode::DeadChannel,
-        Some(&channel.name),
-        format!(
-            "channel '{}' is constant at {}",
-            channel.name,
-            si(channel, low)
-        ),
-        "check for a loose cable or a wrong channel in campaign.toml; the record is left out",
-    ))
+    let problem = Problem::ConstantChannel {
+        channel: channel.name.clone(),
+        level: low,
+        dimension: channel.dimension,
+    };
+    Some(Flag::new(Some(&channel.name), problem))
 }
 
 /// A channel that runs into the rails of its converter: at its greatest or least value it stays
@@ -361,21 +320,17 @@ fn clipped(channel: &Channel, span: &Span, (range, rate_hz): (Option<f64>, f64))
     if count == 0 {
         return clipped_spikes(channel, &spikes, end.is_some());
     }
-    let part = count as f64 / channel.values.len() as f64;
-    let mut found = Flag::new(
-        FlagCode::Clipped,
-        Some(&channel.name),
-        format!(
-            "channel '{}' is clipped: {count} samples ({:.1} %) at {} or {}",
-            channel.name,
-            100.0 * part,
-            si(channel, low),
-            si(channel, high)
-        ),
-        "record again with a larger range of the converter",
-    );
-    found.excludes = part > CLIPPED_PART && channel.role != Role::Drive;
-    Some(found)
+    let share = count as f64 / channel.values.len() as f64;
+    let problem = Problem::ClippedSamples {
+        channel: channel.name.clone(),
+        count,
+        share,
+        low,
+        high,
+        dimension: channel.dimension,
+    };
+    let excludes = share > CLIPPED_PART && channel.role != Role::Drive;
+    Some(Flag::new(Some(&channel.name), problem).excluding(excludes))
 }
 
 /// Time in which an acceleration rises from half a rail to it at an impact, and two samples at least, s.
@@ -415,19 +370,13 @@ fn spikes_at_rails(
 fn clipped_spikes(channel: &Channel, spikes: &[Range<usize>], stated: bool) -> Option<Flag> {
     let alike = spikes.len() >= 3 || spikes.iter().any(|s| s.len() > 1);
     let first = spikes.first().filter(|_| stated || alike)?;
-    let found = Flag::new(
-        FlagCode::Clipped,
-        Some(&channel.name),
-        format!(
-            "channel '{}' is clipped at {} impacts, at {}: what its spikes add up to is not the jump of \
-             the velocity",
-            channel.name,
-            spikes.len(),
-            si(channel, channel.values[first.start])
-        ),
-        "nothing: only the motion between the impacts is used",
-    );
-    Some(found.excluding(false))
+    let problem = Problem::ClippedSpikes {
+        channel: channel.name.clone(),
+        count: spikes.len(),
+        level: channel.values[first.start],
+        dimension: channel.dimension,
+    };
+    Some(Flag::new(Some(&channel.name), problem).excluding(false))
 }
 
 /// Number of samples at both rails. A mass that rests at its stop shows a plateau of displacement
@@ -514,17 +463,17 @@ fn held(record: &Record) -> Option<Flag> {
     if longest < 6 || all > longest * 8 {
         return None;
     }
-    Some(Flag::new(
-        FlagCode::DroppedSamples,
-        None,
-        format!("all channels hold their value for {longest} samples from sample {at} on"),
-        "record again with a larger buffer; the record is left out",
-    ))
+    let problem = Problem::HeldSamples {
+        samples: longest,
+        first: at,
+    };
+    Some(Flag::new(None, problem))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::FlagCode;
 
     fn sine(i: usize) -> f64 {
         (0.05 * i as f64).sin()
@@ -563,7 +512,7 @@ mod tests {
             assert_eq!(flags.len(), 1, "{ranges:?} {width}");
             assert!(!flags[0].excludes);
             assert_eq!(
-                flags[0].message,
+                flags[0].message(),
                 "channel 'velocity_x' is clipped at 10 impacts, at -500 m/s: what its spikes add up to is \
                  not the jump of the velocity"
             );
@@ -586,7 +535,7 @@ mod tests {
         let found: Vec<_> = record.flags.iter().map(|f| f.code).collect();
         assert_eq!(found, [FlagCode::TooFewSamples]);
         assert_eq!(
-            record.flags[0].message,
+            record.flags[0].message(),
             "the record is too short: 2 samples"
         );
         assert!(record.excluded());
@@ -656,9 +605,9 @@ mod tests {
         let flags = inspected(held, &[None, None]);
         assert_eq!(flags[0].code, FlagCode::DroppedSamples);
         assert!(
-            flags[0].message.contains("20 samples from sample 499"),
+            flags[0].message().contains("20 samples from sample 499"),
             "{}",
-            flags[0].message
+            flags[0].message()
         );
     }
 
@@ -702,7 +651,7 @@ mod tests {
         let mut record = Record::of(30.0, &[(Role::DisplacementX, &frozen)]);
         inspect(&mut record, &[None], false);
         assert_eq!(
-            record.flags[0].message,
+            record.flags[0].message(),
             "channel 'displacement_x' stands still 1 times in the midst of a motion and then jumps, the first \
              time for 4 samples from sample 100 on: its pictures were frozen (1 of these are interpolated)"
         );

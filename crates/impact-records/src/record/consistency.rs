@@ -2,7 +2,7 @@
 //! integral of the velocity of the same mass, that of a velocity the integral of the
 //! acceleration.
 
-use super::{Flag, FlagCode, Record, Role};
+use super::{Flag, MistakenUnits, Problem, Record, Role};
 use crate::signal::columns::dot;
 use crate::signal::robust;
 
@@ -27,24 +27,28 @@ pub enum ComparedChannels {
 const MOTIONS: &[ComparedChannels] = &[ComparedChannels::Displacement, ComparedChannels::Velocity];
 
 /// Factors between two units or conventions that are often mistaken for each other, and where they can be.
-const MISTAKEN: [(f64, &str, &[ComparedChannels]); 7] = [
-    (1000.0, "between m and mm", MOTIONS),
-    (1000.0, "between Hz and kHz", &[ComparedChannels::Frequency]),
+const MISTAKEN: [(f64, MistakenUnits, &[ComparedChannels]); 7] = [
+    (1000.0, MistakenUnits::MetresMillimetres, MOTIONS),
+    (
+        1000.0,
+        MistakenUnits::HertzKilohertz,
+        &[ComparedChannels::Frequency],
+    ),
     (
         std::f64::consts::TAU,
-        "between Hz and rad/s",
+        MistakenUnits::HertzRadians,
         &[ComparedChannels::Frequency],
     ),
     (
         labfiles::units::STANDARD_GRAVITY_M_S2,
-        "between g and m/s²",
+        MistakenUnits::GravityMetres,
         &[ComparedChannels::Velocity],
     ),
-    (std::f64::consts::SQRT_2, "between RMS and peak", MOTIONS),
-    (25.4, "between inch and mm", MOTIONS),
+    (std::f64::consts::SQRT_2, MistakenUnits::RmsPeak, MOTIONS),
+    (25.4, MistakenUnits::InchMillimetres, MOTIONS),
     (
         2.0 * std::f64::consts::SQRT_2,
-        "between RMS and peak to peak",
+        MistakenUnits::RmsPeakToPeak,
         MOTIONS,
     ),
 ];
@@ -53,7 +57,7 @@ const MISTAKEN: [(f64, &str, &[ComparedChannels]); 7] = [
 const MISTAKEN_WITHIN: f64 = 0.02;
 
 /// The units or conventions that a ratio of two numbers, or its reciprocal, suggests.
-pub fn mistaken(ratio: f64, compared: ComparedChannels) -> Option<&'static str> {
+pub fn mistaken(ratio: f64, compared: ComparedChannels) -> Option<MistakenUnits> {
     let near = |factor: f64| (ratio.abs() / factor - 1.0).abs() < MISTAKEN_WITHIN;
     MISTAKEN
         .iter()
@@ -160,15 +164,9 @@ impl Match {
     }
 }
 
-fn flag(
-    record: &Record,
-    role: Role,
-    code: FlagCode,
-    message: String,
-    remedy: impl Into<String>,
-) -> Flag {
+fn flag(record: &Record, role: Role, problem: Problem) -> Flag {
     let channel = record.channel(role).map(|c| c.name.as_str());
-    Flag::new(code, channel, message, remedy)
+    Flag::new(channel, problem)
 }
 
 /// Each displacement follows the velocity of the other mass better than that of its own.
@@ -183,16 +181,11 @@ fn swapped(
     let own = own_x > SAME - 0.1 || own_y > SAME - 0.1;
     let better = crossed_x - own_x > 0.05 && crossed_y - own_y > 0.05;
     (crossed && (better || !own)).then(|| {
-        flag(
-            record,
-            Role::VelocityX,
-            FlagCode::SwappedMasses,
-            format!(
-                "the displacement of x follows the velocity of y (correlation {crossed_x:.2}) \
-                 rather than that of x ({own_x:.2})"
-            ),
-            "swap [channels.velocity_x] and [channels.velocity_y], or the displacements",
-        )
+        let problem = Problem::FollowsOtherMass {
+            crossed: crossed_x,
+            own: own_x,
+        };
+        flag(record, Role::VelocityX, problem)
     })
 }
 
@@ -229,16 +222,8 @@ fn opposite_masses(record: &Record) -> Option<Flag> {
     let seen = at_contact(0) > 4.0 * usual(x) && at_contact(1) > 4.0 * usual(y);
     let product: f64 = jumps.iter().map(|j| j[0] * j[1]).sum::<f64>() / jumps.len() as f64;
     let correlation = product / (at_contact(0) * at_contact(1)).sqrt();
-    (seen && correlation < -SAME).then(|| {
-        flag(
-            record,
-            Role::VelocityY,
-            FlagCode::OppositeSign,
-            "at the contacts velocity_x and velocity_y jump in opposite directions".to_owned(),
-            "turn the sign in [channels.velocity_x] or in [channels.velocity_y] (sign = -1, or 1 \
-             if it is -1): both count toward the other mass",
-        )
-    })
+    let opposite = seen && correlation < -SAME;
+    opposite.then(|| flag(record, Role::VelocityY, Problem::OppositeJumps))
 }
 
 /// How far from 1 the scales of two channels may be together where only a sign is wrong.
@@ -247,58 +232,68 @@ const ONLY_SIGN: f64 = 0.1;
 /// A quantity that falls as the integral of its rate rises. Of a harmonic motion, so do a rate and the integral
 /// of its quantity: channels that are swapped look alike, but for their scales.
 fn opposite(record: &Record, gain: f64, d: Role, v: Role) -> Flag {
-    let [d_name, v_name] = [d, v].map(Role::name);
-    let (apart, swapped) = if (gain.abs() - 1.0).abs() < ONLY_SIGN {
-        (String::new(), String::new())
+    let (quantity, rate, factor) = (d, v, gain.abs());
+    let problem = if (factor - 1.0).abs() < ONLY_SIGN {
+        Problem::OppositeChannels { quantity, rate }
     } else {
-        (
-            format!(", and their scales differ by a factor of {:.3}", gain.abs()),
-            format!(
-                "swap [channels.{d_name}] and [channels.{v_name}] if each holds the other, or "
-            ),
-        )
+        Problem::OppositeUnlikeChannels {
+            quantity,
+            rate,
+            factor,
+        }
     };
-    flag(
-        record,
-        v,
-        FlagCode::OppositeSign,
-        format!("{d_name} and {v_name} have opposite signs{apart}"),
-        format!(
-            "{swapped}turn the sign in [channels.{v_name}] or in [channels.{d_name}] (sign = -1, or 1 \
-             if it is -1): both count toward the other mass"
-        ),
-    )
+    flag(record, v, problem)
 }
 
 fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag> {
     if found.correlation < -SAME {
         return Some(opposite(record, found.gain, d, v));
     }
-    let (compared, moves) = match d {
-        Role::DisplacementX | Role::DisplacementY => (ComparedChannels::Displacement, "moves"),
-        _ => (ComparedChannels::Velocity, "changes"),
+    let compared = match d {
+        Role::DisplacementX | Role::DisplacementY => ComparedChannels::Displacement,
+        _ => ComparedChannels::Velocity,
     };
     let suspected = mistaken(found.gain, compared);
     let off = found.gain > SCALE_RATIO || found.gain < 1.0 / SCALE_RATIO || suspected.is_some();
-    let factor = suspected.map_or(String::new(), |m| format!(": the factor {m}"));
-    (found.correlation > SAME && off).then(|| {
+    let contradicts = found.correlation > SAME && off;
+    contradicts.then(|| {
         flag(
             record,
             v,
-            FlagCode::ScalesContradict,
-            format!(
-                "{} {moves} {:.4} times as far as {} says{factor}",
-                d.name(),
-                found.gain,
-                v.name()
-            ),
-            format!(
-                "correct unit or scale in [channels.{}] or in [channels.{}]",
-                v.name(),
-                d.name()
-            ),
+            scales_contradict(compared, [d, v], (found.gain, suspected)),
         )
     })
+}
+
+fn scales_contradict(
+    compared: ComparedChannels,
+    [quantity, rate]: [Role; 2],
+    (ratio, units): (f64, Option<MistakenUnits>),
+) -> Problem {
+    match (compared, units) {
+        (ComparedChannels::Displacement, Some(units)) => Problem::PathsDifferByUnits {
+            quantity,
+            rate,
+            ratio,
+            units,
+        },
+        (ComparedChannels::Displacement, None) => Problem::PathsDiffer {
+            quantity,
+            rate,
+            ratio,
+        },
+        (_, Some(units)) => Problem::SpeedsDifferByUnits {
+            quantity,
+            rate,
+            ratio,
+            units,
+        },
+        (_, None) => Problem::SpeedsDiffer {
+            quantity,
+            rate,
+            ratio,
+        },
+    }
 }
 
 #[cfg(test)]
@@ -334,13 +329,16 @@ mod tests {
     #[test]
     fn factors_between_units_are_named() {
         use ComparedChannels::{Displacement, Frequency, Velocity};
+        use MistakenUnits::{
+            GravityMetres, HertzKilohertz, HertzRadians, MetresMillimetres, RmsPeak,
+        };
         for (ratio, compared, named) in [
-            (1000.0, Displacement, "between m and mm"),
-            (0.001, Velocity, "between m and mm"),
-            (1000.0, Frequency, "between Hz and kHz"),
-            (9.81, Velocity, "between g and m/s²"),
-            (-0.1592, Frequency, "between Hz and rad/s"),
-            (1.41, Displacement, "between RMS and peak"),
+            (1000.0, Displacement, MetresMillimetres),
+            (0.001, Velocity, MetresMillimetres),
+            (1000.0, Frequency, HertzKilohertz),
+            (9.81, Velocity, GravityMetres),
+            (-0.1592, Frequency, HertzRadians),
+            (1.41, Displacement, RmsPeak),
         ] {
             assert_eq!(mistaken(ratio, compared), Some(named), "{ratio}");
         }

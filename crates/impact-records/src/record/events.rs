@@ -2,7 +2,7 @@
 
 use super::changes::{Closings, Listing, Rises, listing};
 use super::content::ContactContent;
-use super::{Channel, Flag, FlagCode, ListedTimes, Record, Role};
+use super::{Channel, Flag, ListedTimes, Problem, Record, Role};
 use crate::signal::onsets;
 use labfiles::units::Dimension;
 
@@ -105,30 +105,17 @@ fn added_up(values: &[f64]) -> Vec<f64> {
 }
 
 fn too_few(channel: &Channel, found: usize, content: ContactContent) -> Flag {
-    let remedy = match content {
-        ContactContent::Sound => "record nearer to the impact, or with less noise",
-        _ => "let the mass bounce longer",
+    let (impacts, needed) = (found, FEWEST);
+    let problem = match content {
+        ContactContent::Sound => Problem::FewSounds { impacts, needed },
+        _ => Problem::FewTimes { impacts, needed },
     };
-    Flag::new(
-        FlagCode::NoImpact,
-        Some(&channel.name),
-        format!("{found} impacts, {FEWEST} or more are needed to compare flight times"),
-        remedy,
-    )
+    Flag::new(Some(&channel.name), problem)
 }
 
 fn alternating(channel: &Channel, impacts: usize, closed_s: f64) -> Flag {
-    Flag::new(
-        FlagCode::ContactChanges,
-        Some(&channel.name),
-        format!(
-            "the rows come in groups, {:.3} ms long: the contact closes and opens in each, and the {impacts} first \
-             rows of the groups are the impacts",
-            1e3 * closed_s
-        ),
-        "nothing, if the short intervals are those in which the contact is closed; else list the impacts alone",
-    )
-    .excluding(false)
+    let problem = Problem::GroupsOfRows { closed_s, impacts };
+    Flag::new(Some(&channel.name), problem).excluding(false)
 }
 
 fn unclear(channel: &Channel, rises: Rises) -> Flag {
@@ -137,30 +124,23 @@ fn unclear(channel: &Channel, rises: Rises) -> Flag {
         longer,
         row,
     } = rises;
-    Flag::new(
-        FlagCode::ContactUnclear,
-        Some(&channel.name),
-        format!(
-            "{longer} of {intervals} intervals are longer than the one before, the first of them the one that ends \
-             with row {row}: the rows are not the impacts of a mass that bounces, nor closed, open, closed … of a \
-             contact in turn"
-        ),
-        "list the times of the impacts alone, one a row, or the state of the contact in a column beside its changes",
-    )
+    let problem = Problem::GrowingIntervals {
+        intervals,
+        longer,
+        row,
+    };
+    Flag::new(Some(&channel.name), problem)
 }
 
-fn not_rising(channel: &Channel, row: usize) -> Flag {
-    Flag::new(
-        FlagCode::TimeBackward,
-        Some(&channel.name),
-        format!("the time of impact {row} is not after the one before"),
-        "name the column with the times of the impacts, or write content = \"intervals\"",
-    )
+fn not_rising(channel: &Channel, impact: usize) -> Flag {
+    let problem = Problem::ImpactsNotInOrder { impact };
+    Flag::new(Some(&channel.name), problem)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::FlagCode;
 
     fn record(values: &[f64]) -> Record {
         let mut record = Record::of(100.0, &[(Role::Contact, values)]);
@@ -184,7 +164,7 @@ mod tests {
         let mut back = record(&[1.0, 2.0, 1.5, 3.0]);
         settle(&mut back, ContactContent::Times, 0.0);
         assert!(
-            back.flags[0].message.contains("impact 3"),
+            back.flags[0].message().contains("impact 3"),
             "{:?}",
             back.flags
         );
@@ -199,7 +179,7 @@ mod tests {
         let mut gate = record(&[0.0, 0.12, 0.5, 0.62, 0.9, 1.02, 1.22, 1.34]);
         settle(&mut gate, ContactContent::Times, 0.0);
         assert_eq!(gate.flags[0].code, FlagCode::ContactUnclear);
-        let message = &gate.flags[0].message;
+        let message = gate.flags[0].message();
         let start = "3 of 7 intervals are longer than the one before, the first of them the one that ends with row 3";
         assert!(message.starts_with(start), "{message}");
     }

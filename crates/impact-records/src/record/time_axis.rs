@@ -1,7 +1,7 @@
 //! The time axis of a record: which channel holds it, its step, and what is wrong with it.
 
 use super::bind::ChannelKey;
-use super::{Flag, FlagCode};
+use super::{Flag, Problem};
 use crate::signal::whole;
 use labfiles::{ChannelInfo, DatasetInfo, StoredType, timing, units};
 
@@ -18,12 +18,8 @@ pub fn find(key: Option<&ChannelKey>, dataset: &DatasetInfo) -> Result<Option<us
     };
     let found = key.find(dataset);
     found.map(Some).ok_or_else(|| {
-        Flag::new(
-            FlagCode::MissingChannel,
-            None,
-            format!("no channel '{}' for the time axis", key.text()),
-            "correct time in [records], or remove it if a sample rate is stated",
-        )
+        let channel = key.text();
+        Flag::new(None, Problem::NoSuchTimeAxis { channel })
     })
 }
 
@@ -70,7 +66,7 @@ pub(super) fn usual_step(times: &[f64]) -> Option<f64> {
 pub fn inspect(times: &[f64], flags: &mut Vec<Flag>) -> Option<f64> {
     if times.len() < 2 || times.iter().any(|t| !t.is_finite()) {
         if !times.is_empty() {
-            flags.push(unreadable());
+            flags.push(Flag::new(None, Problem::NoTimes));
         }
         return None;
     }
@@ -97,41 +93,33 @@ pub fn inspect(times: &[f64], flags: &mut Vec<Flag>) -> Option<f64> {
         let line = match line {
             Ok(line) => line,
             Err(stamps) => {
-                flags.push(too_coarse(times.len(), stamps));
+                let samples = times.len();
+                flags.push(Flag::new(None, Problem::FewStamps { samples, stamps }));
                 return None;
             }
         };
         if strays(times, line) > 1.05 * rounding {
-            let what = match printed {
-                Some(printed) => format!(
-                    "samples share stamps of {printed:.3e} s, and do not follow each other evenly between them"
-                ),
-                None => format!("steps scatter by {spread:.3e} s about {mean:.3e} s"),
+            let problem = match printed {
+                Some(unit_s) => Problem::UnevenStamps { unit_s },
+                None => Problem::ScatteredSteps {
+                    spread_s: spread,
+                    mean_s: mean,
+                },
             };
-            flags.push(not_uniform(&what));
+            flags.push(Flag::new(None, problem));
         }
         return Some(1.0 / line);
     }
     regular(times, &in_order, quantile(0.5), flags)
 }
 
-fn unreadable() -> Flag {
-    Flag::new(
-        FlagCode::TimeUnreadable,
-        None,
-        "the time axis has a single sample or holds no numbers",
-        "name the right channel in time of [records], or give sample_rate",
-    )
-}
-
 fn backward_at(times: &[f64], at: usize) -> Flag {
-    let what = format!(
-        "the time runs backward after sample {at}: {} s, then {} s",
-        times[at],
-        times[at + 1]
-    );
-    let remedy = "sort or re-export the record; it is left out";
-    Flag::new(FlagCode::TimeBackward, None, what, remedy)
+    let problem = Problem::TimeFalls {
+        sample: at,
+        before_s: times[at],
+        after_s: times[at + 1],
+    };
+    Flag::new(None, problem)
 }
 
 /// The step of the straight line nearest to times by least squares, s.
@@ -216,28 +204,10 @@ fn shared_step(times: &[f64]) -> Result<f64, usize> {
     Ok(both / own)
 }
 
-fn too_coarse(samples: usize, stamps: usize) -> Flag {
-    let found = format!(
-        "the time is printed too coarsely: {samples} samples share {stamps} stamps, which do not tell the rate"
-    );
-    let remedy =
-        "export the time with more digits, or write sample_rate in [records], which then counts";
-    Flag::new(FlagCode::TimeCoarse, None, found, remedy)
-}
-
 /// How far times are at most from a straight line through the first, s.
 fn strays(times: &[f64], step: f64) -> f64 {
     let stray = |(i, t): (usize, &f64)| (t - times[0] - i as f64 * step).abs();
     times.iter().enumerate().map(stray).fold(0.0, f64::max)
-}
-
-fn not_uniform(what: &str) -> Flag {
-    Flag::new(
-        FlagCode::TimeNotUniform,
-        None,
-        format!("the time axis is not uniform: {what}"),
-        "resample the record to a uniform rate before, or export it with its true rate",
-    )
 }
 
 /// An axis of equal steps but for gaps and repetitions.
@@ -253,30 +223,25 @@ fn regular(times: &[f64], steps: &[f64], step: f64, flags: &mut Vec<Flag>) -> Op
         .map(|s| (s / step).round() - 1.0)
         .sum();
     if let Some(at) = steps.iter().position(|s| *s > 1.5 * step) {
-        flags.push(Flag::new(
-            FlagCode::DroppedSamples,
-            None,
-            format!(
-                "{lost} samples are missing in the time axis, the first after {} s",
-                times[at]
-            ),
-            "record again with a larger buffer (a camera: with more light or fewer pictures a second); the record is left out",
-        ));
+        let problem = Problem::LostSamples {
+            count: lost,
+            after_s: times[at],
+        };
+        flags.push(Flag::new(None, problem));
     }
     let repeated = steps.iter().filter(|s| **s < 0.5 * step).count();
     if repeated > 0 {
-        flags.push(Flag::new(
-            FlagCode::RepeatedSamples,
-            None,
-            format!("{repeated} time stamps are repeated"),
-            "remove the repetitions when exporting the record; it is left out",
-        ));
+        let problem = Problem::RepeatedStamps { count: repeated };
+        flags.push(Flag::new(None, problem));
     }
     let whole = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
     let strayed = strays(times, whole);
     if flags.len() == known && strayed > MOST_STRAY_STEPS * whole {
-        let what = format!("it strays by {strayed:.3e} s from equal steps of {whole:.3e} s");
-        flags.push(not_uniform(&what));
+        let problem = Problem::StrayingTimes {
+            stray_s: strayed,
+            step_s: whole,
+        };
+        flags.push(Flag::new(None, problem));
     }
     let good: Vec<f64> = steps
         .iter()
@@ -350,7 +315,7 @@ mod tests {
         t.drain(300..303);
         let axis = inspected(&t);
         assert_eq!(codes(&axis), ["dropped_samples"]);
-        assert!(axis.1[0].message.starts_with("3 samples"));
+        assert!(axis.1[0].message().starts_with("3 samples"));
         assert!((axis.0.unwrap() - 1000.0).abs() < 1e-6);
 
         let mut t = uniform(1000, 1e-3);

@@ -2,9 +2,10 @@
 
 use super::alignment::{self, Timing};
 use super::bind::{BoundRole, RecordSetup};
-use super::{Flag, FlagCode, Record, Role};
+use super::{Flag, FlagCode, Problem, Record, Role};
 use super::{changes, condition, time_axis};
 use labfiles::timing::AxisUnit;
+use labfiles::units::symbol_of;
 use labfiles::{Clock, DatasetInfo, Samples, StoredType};
 
 /// The clocks of a record's channels, from metadata alone.
@@ -157,18 +158,11 @@ fn advise_times(record: &mut Record, times: &[f64], axis: &str) {
         return;
     }
     record.flags.retain(|f| !uneven(f));
-    let found =
-        format!("the rows are the changes of '{name}', not samples: nothing is known between them");
-    let remedy = format!(
-        "name the times as the contact: channel = \"{axis}\" and content = \"times\" in [channels.contact], without \
-         threshold"
-    );
-    record.flags.push(Flag::new(
-        FlagCode::TimeNotUniform,
-        Some(&name),
-        found,
-        remedy,
-    ));
+    let problem = Problem::RowsAreChanges {
+        channel: name.clone(),
+        axis: axis.to_owned(),
+    };
+    record.flags.push(Flag::new(Some(&name), problem));
 }
 
 /// A time axis in s; `None` if it holds no real numbers, or in no unit that is known.
@@ -198,7 +192,8 @@ fn seconds(
                 None => match (stated_hz, time_axis::usual_step(&times)) {
                     (Some(rate_hz), Some(step)) => (rate_hz * step).recip(),
                     _ => {
-                        flags.push(unit_missing(&unit, &info.name));
+                        let problem = axis_problem(&unit, &info.name);
+                        flags.extend(problem.map(|p| Flag::new(Some(&info.name), p)));
                         return None;
                     }
                 },
@@ -219,36 +214,45 @@ fn unit_s(
     let own_s = unit.seconds();
     match (unit, own_s, stated_s) {
         (AxisUnit::Stated(_), Some(own), Some(stated)) if (own / stated - 1.0).abs() > 1e-9 => {
-            let found = format!(
-                "the time axis '{name}' has a unit of {own} s, campaign.toml states time_unit as {stated} s"
-            );
-            let remedy = "remove time_unit from [records], or correct it";
-            flags.push(Flag::new(
-                FlagCode::TimeUnitWrong,
-                Some(name),
-                found,
-                remedy,
-            ));
+            let problem = Problem::TimeUnitContradicts {
+                axis: name.to_owned(),
+                own_s: own,
+                stated_s: stated,
+            };
+            flags.push(Flag::new(Some(name), problem));
             Some(own)
         }
         (AxisUnit::Stated(_), own, _) => own,
         (_, _, Some(stated)) => Some(stated),
         (_, own, None) => {
-            let note = own.and_then(|_| unit.note(name));
-            flags.extend(note.map(|note| {
-                let remedy = "state time_unit in [records] if it is another";
-                Flag::new(FlagCode::TimeUnitAssumed, Some(name), note, remedy).excluding(false)
-            }));
+            let assumed = own.and_then(|_| axis_problem(unit, name));
+            flags.extend(assumed.map(|p| Flag::new(Some(name), p).excluding(false)));
             own
         }
     }
 }
 
-fn unit_missing(unit: &AxisUnit, name: &str) -> Flag {
-    let found = unit.note(name).unwrap_or_default();
-    let remedy = "write the unit of the time in [records]: time_unit = \"ms\" (or s, us, ns), or sample_rate = \
-                  \"…\" if it counts samples";
-    Flag::new(FlagCode::TimeUnitMissing, Some(name), found, remedy)
+/// What is assumed of the unit of a time axis, or why nothing is; `None` where it is stated.
+fn axis_problem(unit: &AxisUnit, name: &str) -> Option<Problem> {
+    let axis = name.to_owned();
+    Some(match unit {
+        AxisUnit::Stated(_) => return None,
+        AxisUnit::Epoch(unit) => Problem::TimeTakenSince1970 {
+            axis,
+            unit: symbol_of(*unit).unwrap_or("s").to_owned(),
+        },
+        AxisUnit::Seconds => Problem::TimeTakenAsSeconds { axis },
+        AxisUnit::Days => Problem::TimeTakenAsDays { axis },
+        AxisUnit::Undetermined { first, step } => Problem::TimeWithoutUnit {
+            axis,
+            first: *first,
+            step: *step,
+        },
+        AxisUnit::Other(unit) => Problem::TimeInOtherUnit {
+            axis,
+            unit: unit.clone(),
+        },
+    })
 }
 
 /// The sample rate: from the time axis, else as the file states, else as campaign.toml does.
@@ -289,12 +293,7 @@ fn no_rate(record: &mut Record) {
     if record.flags.iter().any(|f| why.contains(&f.code)) {
         return;
     }
-    record.flags.push(Flag::new(
-        FlagCode::NoSampleRate,
-        None,
-        "neither a time axis nor a sample rate states when the samples were taken",
-        "write sample_rate = \"2 kHz\" or time = \"…\" in [records]",
-    ));
+    record.flags.push(Flag::new(None, Problem::NoClock));
 }
 
 /// Relative difference of rates that rounding of a printed step does not explain.
@@ -310,13 +309,11 @@ fn contradicting_step(rate_hz: f64, dataset: &DatasetInfo, kept: &[usize]) -> Op
     if (step_s * rate_hz - 1.0).abs() < RATES_DIFFER {
         return None;
     }
-    let found = format!(
-        "the header states a step of {step_s} s (Delta_X), the time channel has {:.6} s: the channel is \
-         used",
-        1.0 / rate_hz
-    );
-    let remedy = "check which of the two is right; without the time channel the step would be used";
-    Some(Flag::new(FlagCode::RateContradicts, None, found, remedy).excluding(false))
+    let problem = Problem::StepContradicts {
+        stated_s: step_s,
+        measured_s: 1.0 / rate_hz,
+    };
+    Some(Flag::new(None, problem).excluding(false))
 }
 
 /// The rate that the file states for the channels; a flag if they differ.
@@ -329,12 +326,12 @@ fn stated_rate(record: &mut Record, dataset: &DatasetInfo, kept: &[usize]) -> Op
     for (rate, name) in rates {
         let known = *first.get_or_insert(rate);
         if (rate / known - 1.0).abs() > 1e-6 {
-            record.flags.push(Flag::new(
-                FlagCode::UnequalSampleRates,
-                Some(name),
-                format!("channel '{name}' has {rate} samples a second, others {known}"),
-                "record all channels at one rate, or leave the channel out",
-            ));
+            let problem = Problem::RateUnlikeOthers {
+                channel: name.clone(),
+                rate_hz: rate,
+                others_hz: known,
+            };
+            record.flags.push(Flag::new(Some(name), problem));
         }
     }
     first

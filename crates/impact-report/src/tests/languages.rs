@@ -18,7 +18,7 @@ use impact_identification::replay::{BracketRow, Correlation, Unusable, UnusableR
 use impact_records::language::Language;
 use impact_records::motion::{Motion, Undetermined};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup};
-use impact_records::record::{Role, Sweep};
+use impact_records::record::{Problem, Role, Sweep};
 
 fn german() -> catalog::Catalog {
     catalog::Catalog::of(Language::of_code("de").expect("German"))
@@ -102,7 +102,7 @@ fn unlucky() -> ReportContent {
         ];
     }
     compared.records[2].used_by.clear();
-    compared.records[2].excluded = Some("it is short".into());
+    compared.records[2].excluded = Some(Problem::SingleSample);
     for (bracket, off) in compared.brackets.iter_mut().zip([-1.0, 1.0]) {
         bracket.left_out = None;
         let middle = 0.5 * (bracket.frequency_low_hz + bracket.frequency_high_hz);

@@ -21,6 +21,7 @@ use impact_fit::parameters::Parameters;
 use impact_identification::identify::Identification;
 use impact_identification::replay::{self, Input, PlacedRecord};
 use impact_records::event::RigKind;
+use impact_records::message::typed;
 use impact_records::motion::Observation;
 use impact_records::record::Record;
 use impact_records::signal::robust;
@@ -277,6 +278,7 @@ impl OpenCampaign {
         let records: Vec<Value> = observations
             .zip(&self.placed.records)
             .map(|(o, row)| {
+                let excluded = row.excluded.as_ref().map(|problem| typed(problem));
                 json!({
                     "id": row.id,
                     "frequency_hz": row.frequency_hz,
@@ -287,7 +289,7 @@ impl OpenCampaign {
                     "confidence": row.confidence,
                     "impacts": row.impacts,
                     "used_by": row.used_by.iter().map(ToString::to_string).collect::<Vec<_>>(),
-                    "out": row.excluded.clone().or(row.left_out.as_ref().map(ToString::to_string)),
+                    "out": excluded.or(row.left_out.as_ref().map(ToString::to_string)),
                     "decay": !o.decays.is_empty(),
                 })
             })

@@ -108,7 +108,7 @@ fn evidence_of(campaign: &OpenCampaign, index: usize) -> Value {
     let flags = o
         .flags
         .iter()
-        .map(|f| json!({"message": f.message, "remedy": f.remedy, "excludes": f.excludes}));
+        .map(|f| json!({"message": f.message(), "remedy": f.remedy(), "excludes": f.excludes}));
     let used = campaign.identification.methods_using(index);
     let left_out = campaign.identification.left_out.iter();
     let left_out = left_out

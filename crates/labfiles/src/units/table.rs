@@ -4,7 +4,9 @@
 pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
 /// The physical dimension of a quantity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Default, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum Dimension {
     /// Length, SI unit m.
@@ -26,6 +28,7 @@ pub enum Dimension {
     /// Angle, SI unit rad.
     Angle,
     /// A plain number.
+    #[default]
     Number,
 }
 

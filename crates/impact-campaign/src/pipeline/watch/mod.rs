@@ -274,6 +274,11 @@ impl Watcher {
         }
     }
 
+    /// What the campaign states of its report; `None` before any record could be listed.
+    pub fn report(&self) -> Option<&ReportSettings> {
+        self.campaign.as_ref().map(|campaign| &campaign.report)
+    }
+
     /// Files that are there and not whole yet.
     pub fn waiting(&self) -> usize {
         self.ledger.waiting()

@@ -53,7 +53,7 @@ mod tests {
     use impact_fit::parameters::Coordinate;
     use impact_records::event::DriveTone;
     use impact_records::motion::Motion;
-    use impact_records::record::{Flag, Role};
+    use impact_records::record::{Flag, Problem, Role};
     use impact_records::signal::tone;
 
     fn observed(stated_hz: f64, frequency_hz: f64) -> Observation {
@@ -67,8 +67,11 @@ mod tests {
             residual_ratio: 0.0,
         });
         if stated_hz != frequency_hz {
-            let code = FlagCode::DriveFrequencyContradicts;
-            o.flags.push(Flag::new(code, None, "", ""));
+            let problem = Problem::FrequencyUnlikeStated {
+                measured_hz: frequency_hz,
+                stated_hz,
+            };
+            o.flags.push(Flag::new(None, problem));
         }
         o
     }

@@ -11,7 +11,7 @@ mod stretch;
 
 use crate::event::contact::Closed;
 use crate::event::kinematics::{Kinematics, RelativeSource, RigKind};
-use crate::record::{Flag, FlagCode};
+use crate::record::{Flag, Problem};
 
 pub(super) use search::FreeFlights;
 use search::Search;
@@ -35,10 +35,5 @@ pub(super) fn detect(kinematics: &Kinematics, rig: RigKind, closed: &[Closed]) -
 }
 
 fn one_mass_alone() -> Flag {
-    Flag::new(
-        FlagCode::OneMassAlone,
-        None,
-        "two masses fly freely, but the motion of one alone is measured",
-        "name a channel of motion of each mass, or set machine = \"single\" for a fixed stop",
-    )
+    Flag::new(None, Problem::OtherMassNotMeasured)
 }

@@ -2,7 +2,7 @@
 
 use crate::event::contact::Closed;
 use crate::event::kinematics::{Body, Kinematics, RigKind, Series};
-use crate::record::{Flag, FlagCode};
+use crate::record::{Flag, FlagCode, Problem};
 
 use super::search::{FreeFlights, Search};
 
@@ -45,29 +45,15 @@ fn is_separate(found: &FreeFlights) -> bool {
 }
 
 fn away(rig: RigKind) -> Flag {
-    let what = match rig {
-        RigKind::Single => "the velocity is positive away from the stop, as its impacts show",
-        RigKind::Double => {
-            "the velocities are positive away from the other mass, as the impact shows"
-        }
+    let problem = match rig {
+        RigKind::Single => Problem::AwayFromStop,
+        RigKind::Double => Problem::AwayFromMass,
     };
-    Flag::new(
-        FlagCode::MeasuredAway,
-        None,
-        format!("{what}: the record is turned around"),
-        "turn the sign in [channels.*] around (none is 1), if all records are so",
-    )
-    .excluding(false)
+    Flag::new(None, problem).excluding(false)
 }
 
 fn same_direction() -> Flag {
-    Flag::new(
-        FlagCode::OppositeSign,
-        None,
-        "both masses are measured along one axis, not toward each other: at the impact one speed \
-         rises and the other falls",
-        "turn the sign in the [channels.*] of one of the two masses around (none is 1)",
-    )
+    Flag::new(None, Problem::SpeedsAlongOneAxis)
 }
 
 fn turned(kinematics: &Kinematics, rig: RigKind, [x, y]: [f64; 2]) -> Kinematics {

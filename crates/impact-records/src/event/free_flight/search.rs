@@ -3,7 +3,7 @@
 use crate::event::contact::Closed;
 use crate::event::impact::{DetectionSource, Impact, MassSpeeds};
 use crate::event::kinematics::{Body, Kinematics, RigKind};
-use crate::record::{Flag, FlagCode};
+use crate::record::{Flag, Problem};
 use crate::signal::local_fit::crossing;
 use crate::signal::{robust, whole};
 
@@ -104,16 +104,8 @@ enum Found {
     Nothing,
 }
 
-fn separate_bodies(alone: usize, impacts: usize) -> Flag {
-    Flag::new(
-        FlagCode::SeparateBodies,
-        None,
-        format!(
-            "the two masses do not meet: {alone} times one of them changes its velocity and the other flies on, {impacts} \
-             times both do"
-        ),
-        "measure each by itself: machine = \"single\" with one motion channel, a campaign for each",
-    )
+fn separate_bodies(alone: usize, together: usize) -> Flag {
+    Flag::new(None, Problem::MassesDoNotMeet { alone, together })
 }
 
 impl<'a> Search<'a> {
@@ -490,57 +482,28 @@ fn typical_greatest(values: &[f64]) -> f64 {
 
 fn cut_flag(cut: &[(f64, usize)], rate_hz: f64) -> Option<Flag> {
     let (time_s, samples) = cut.first()?;
-    let seconds = *samples as f64 / rate_hz;
-    Some(
-        Flag::new(
-            FlagCode::ApproachCut,
-            None,
-            format!(
-                "the approach to the impact at {time_s:.3} s is used from where it is a free flight; the \
-                 {seconds:.3} s before that are left out, as of a push by hand"
-            ),
-            "nothing, if the mass was pushed or released there",
-        )
-        .excluding(false),
-    )
+    let problem = Problem::ApproachInPart {
+        time_s: *time_s,
+        cut_s: *samples as f64 / rate_hz,
+    };
+    Some(Flag::new(None, problem).excluding(false))
 }
 
 fn hidden_flag(hidden: &[(f64, Side)]) -> Option<Flag> {
-    let (time_s, side) = hidden.first()?;
-    let side = match side {
-        Side::Before => "before",
-        Side::After => "after",
+    let count = hidden.len();
+    let problem = match *hidden.first()? {
+        (time_s, Side::Before) => Problem::NoFlightBefore { count, time_s },
+        (time_s, Side::After) => Problem::NoFlightAfter { count, time_s },
     };
-    Some(
-        Flag::new(
-            FlagCode::NoFreeFlight,
-            None,
-            format!(
-                "falls of the velocity without a free flight on both sides, left out: {}, the first at \
-                 {time_s:.3} s, with none {side} it",
-                hidden.len()
-            ),
-            "let the mass move freely for a few samples before and after each impact",
-        )
-        .excluding(false),
-    )
+    Some(Flag::new(None, problem).excluding(false))
 }
 
 fn beyond_flag(beyond: &[f64]) -> Option<Flag> {
-    let time_s = beyond.first()?;
-    Some(
-        Flag::new(
-            FlagCode::SpeedNeverMeasured,
-            None,
-            format!(
-                "impacts whose approach speed would be above any that was measured, left out: {}, the \
-                 first at {time_s:.3} s",
-                beyond.len()
-            ),
-            "let the mass move freely for a few samples before the impact",
-        )
-        .excluding(false),
-    )
+    let problem = Problem::SpeedBeyondMeasured {
+        count: beyond.len(),
+        time_s: *beyond.first()?,
+    };
+    Some(Flag::new(None, problem).excluding(false))
 }
 
 #[cfg(test)]

@@ -152,9 +152,9 @@ fn source(source: UncertaintySource, locale: Locale<'_>) -> String {
     }
 }
 
-/// The name of a source of uncertainty in English.
-pub fn budget_source(of: UncertaintySource) -> String {
-    plain(&source(of, Locale::default()))
+/// The name of a source of uncertainty, without markup.
+pub fn budget_source(of: UncertaintySource, locale: Locale<'_>) -> String {
+    plain(&source(of, locale))
 }
 
 /// The standard uncertainty of a source in its own unit.

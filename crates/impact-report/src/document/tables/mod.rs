@@ -82,10 +82,10 @@ fn first_few(records: &[String]) -> String {
     }
 }
 
-/// Why records are unusable: the flag, then its details in English, or why the motion is undetermined.
+/// Why records are unusable: the flag, then its details, or why the motion is undetermined.
 fn unusable(unusable: &Unusable, locale: Locale<'_>) -> String {
     let (what, details) = match &unusable.reason {
-        UnusableReason::Flag(code, details) => (locale.message(code), details.clone()),
+        UnusableReason::Flag(problem) => (locale.message(&problem.code()), locale.message(problem)),
         UnusableReason::Undetermined(why) => {
             let what = locale.translate(Phrase::MotionUndetermined);
             (what, locale.message(why))

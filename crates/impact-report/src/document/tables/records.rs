@@ -191,7 +191,8 @@ fn short_remark(r: &RecordRow) -> String {
 fn long_remark(r: &RecordRow, locale: Locale<'_>) -> String {
     let used = if r.used_by.is_empty() {
         let reason = r.left_out.as_ref().map(|reason| locale.message(reason));
-        let why = r.excluded.clone().or(reason);
+        let excluded = r.excluded.as_ref().map(|problem| locale.message(problem));
+        let why = excluded.or(reason);
         why.map(|why| locale.translate_with(Phrase::NotUsedBecause, &[("why", &why)]))
     } else {
         Some(

@@ -1,5 +1,6 @@
 use super::*;
 use crate::event::free_flight::detect;
+use crate::record::FlagCode;
 use crate::record::{Record, Role};
 
 const RATE_HZ: f64 = 50.0;
