@@ -47,7 +47,7 @@ pub fn remove(out: &Path) {
 }
 
 /// Version of the layout of saved observations; another one is not loaded.
-const LAYOUT: u32 = 3;
+const LAYOUT: u32 = 4;
 
 /// A hash of everything that observations depend on.
 fn key(campaign: &ResolvedCampaign) -> String {
