@@ -85,6 +85,11 @@ pub enum Note {
         /// Damping ratio that is not exceeded, at 97.5 %.
         most: f64,
     },
+    /// An oscillation that does not decay has the frequency of the mains or a multiple of it.
+    MayBeHum {
+        /// The mains' frequency, Hz.
+        mains_hz: f64,
+    },
     /// Each specimen has parameters of its own.
     SeveralSpecimens,
     /// No damping ratio gives the published motions.
@@ -141,6 +146,7 @@ message_table! { "note": Note;
         periods = Value::Number(*periods, 1),
         equivalent = Value::Number(*equivalent, digits(*equivalent) + 1);
     Self::Undamped { most } => most = Value::Number(*most, digits(*most));
+    Self::MayBeHum { mains_hz } => mains = Value::Number(*mains_hz, 0);
     Self::NoStart { observations } => count = Value::Count(*observations);
 }
 

@@ -1,6 +1,7 @@
 //! Free decays: f0 and β of each, pooled, and records that are filed under the wrong name.
 
 mod dry_friction;
+mod mains;
 
 use std::collections::BTreeMap;
 
@@ -103,6 +104,9 @@ pub fn pooled(observations: &[Observation], effects: Effects) -> Option<MethodRe
     if let Some(periods) = too_short(&decays) {
         leave_weak(&mut result, Note::FewPeriods { periods });
     }
+    if let Some(mains_hz) = hums(&decays) {
+        leave_weak(&mut result, Note::MayBeHum { mains_hz });
+    }
     let fits = result.fits == Some(true);
     result.remarks.extend(beside(&decays, fits));
     Some(result)
@@ -150,6 +154,31 @@ fn too_short(decays: &[&Decay]) -> Option<f64> {
     let longest = decays.iter().map(|d| moving(d)).fold(0.0, f64::max);
     let short = |d: &&Decay| cut_off(d) || (sticks(d) && moving(d) < LEAST_TESTED);
     decays.iter().all(short).then_some(longest)
+}
+
+/// The mains' frequency, Hz, of which most of what is known of f0 may be a hum.
+fn hums(decays: &[&Decay]) -> Option<f64> {
+    let of_hum = |d: &Decay| mains::hum_of(d).is_some();
+    let all = decays.iter().find_map(|d| mains::hum_of(d));
+    all.filter(|_| are_most(decays, &of_hum, &Decay::relative_error))
+}
+
+/// Whether most of what decays tell of a quantity, by its errors, is told by some of them.
+fn are_most(
+    decays: &[&Decay],
+    some: &dyn Fn(&Decay) -> bool,
+    error: &dyn Fn(&Decay) -> f64,
+) -> bool {
+    let information = |d: &&&Decay| error(d).max(f64::MIN_POSITIVE.sqrt()).powi(-2);
+    let all: f64 = decays.iter().map(|d| information(&d)).sum();
+    let of_some = decays.iter().filter(|d| some(d));
+    2.0 * of_some.map(|d| information(&d)).sum::<f64>() > all
+}
+
+/// Whether an interval leaves a damping ratio more open than an identified one.
+fn is_open(value: f64, [low, high]: [f64; 2]) -> bool {
+    let error = 0.5 * (high - low) / NORMAL_975;
+    error > estimate::limits(Coordinate::Damping).0 * value
 }
 
 /// Make f0 and β weak for a reason, if they are no weaker.
@@ -262,6 +291,14 @@ fn judge_damping(result: &mut MethodResult, decays: &[&Decay], friction: bool) -
             *high = high.max(most + half);
         }
     }
+    // what changes along a decay widened it
+    let widened = estimate.value.zip(estimate.interval95);
+    let is_widened = changing.iter().any(|c| !explained(c.0));
+    let is_open = widened.is_some_and(|(value, interval)| is_open(value, interval));
+    if is_widened && is_open && estimate.status == Status::Identified {
+        estimate.status = Status::Weak;
+        estimate.note = Some(Note::DampingChanges);
+    }
     let telling: Vec<(&Decay, [f64; 2])> = changing.into_iter().filter(matters).collect();
     let width = |(d, [low, high]): &&(&Decay, [f64; 2])| (high - low) / d.damping_ratio.abs();
     let Some((worst, _)) = telling.iter().max_by(|a, b| width(a).total_cmp(&width(b))) else {
@@ -272,8 +309,12 @@ fn judge_damping(result: &mut MethodResult, decays: &[&Decay], friction: bool) -
         points: DampingPoint::of(&worst.course.parts),
         law: worst.course.law,
     });
-    let left = telling.iter().filter(|c| !explained(c.0)).count();
-    let most = 2 * left > decays.len();
+    let changes = |d: &Decay| {
+        telling
+            .iter()
+            .any(|c| std::ptr::eq(c.0, d) && !explained(d))
+    };
+    let most = are_most(decays, &changes, &|d| d.damping_ratio_error);
     if most {
         estimate.status = Status::Weak;
         estimate.note = Some(Note::DampingChanges);
@@ -304,7 +345,8 @@ fn judge_frequency(result: &mut MethodResult, decays: &[&Decay]) -> bool {
         last_hz: drift.last_hz,
         intervals: change(worst).abs() / half(worst).max(f64::MIN_POSITIVE),
     });
-    let most = 2 * drifting.len() > decays.len();
+    let drifts = |d: &Decay| drifting.iter().any(|own| std::ptr::eq(*own, d));
+    let most = are_most(decays, &drifts, &Decay::relative_error);
     if most && let Some(estimate) = &mut result.parameters.natural_frequency_hz {
         estimate.status = Status::Weak;
         estimate.note = Some(Note::Drifts);
@@ -408,3 +450,5 @@ pub fn misfiled(observations: &[Observation]) -> Vec<LeftOut> {
 
 #[cfg(test)]
 mod coverage;
+#[cfg(test)]
+mod statuses;

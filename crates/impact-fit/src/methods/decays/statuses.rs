@@ -1,0 +1,79 @@
+//! Statuses of f0 and β beside what is said of the decays.
+
+use impact_records::motion::{Motion, Observation};
+use impact_records::signal::decay::{self, Decay};
+use std::f64::consts::TAU;
+
+use super::pooled;
+use crate::estimate::Status;
+use crate::messages::{Note, Remark};
+use crate::parameters::effect::Effects;
+
+/// The decay of samples at 1 kHz.
+fn fitted(seconds: f64, value: impl Fn(f64) -> f64) -> Decay {
+    let count = impact_records::signal::whole::index(seconds * 1000.0);
+    // rounded, as a converter does
+    let rounded = |v: f64| (v * 2e3).round() / 2e3;
+    let samples: Vec<f64> = (0..count)
+        .map(|i| rounded(value(i as f64 / 1000.0)))
+        .collect();
+    decay::fit(&samples, 1000.0).unwrap()
+}
+
+fn observation(decays: Vec<Decay>) -> Observation {
+    let mut own = Observation::of("decay", decays[0].natural_frequency_hz, Motion::Impactless);
+    own.decays = decays;
+    own
+}
+
+#[test]
+fn a_tone_of_the_mains_gives_no_identified_f0_and_an_undamped_motion_does() {
+    for (hz, status) in [(50.013, Status::Weak), (47.3, Status::Identified)] {
+        let tone = fitted(6.0, |t| (TAU * hz * t).cos());
+        let found = pooled(&[observation(vec![tone])], Effects::none()).unwrap();
+        let f0 = found.parameters.natural_frequency_hz.unwrap();
+        assert_eq!(f0.status, status, "{f0:?}");
+        let is_hum = matches!(f0.note, Some(Note::MayBeHum { mains_hz }) if mains_hz == 50.0);
+        assert_eq!(is_hum, status == Status::Weak, "{f0:?}");
+        let beta = found.parameters.damping_ratio.unwrap();
+        assert_eq!(beta.status, Status::Weak);
+    }
+}
+
+#[test]
+fn a_long_decay_that_drifts_makes_f0_weak_beside_short_ones_that_do_not() {
+    let decay =
+        |rise: f64| move |t: f64| (-0.3 * t).exp() * (TAU * 8.0 * (t + rise * t * t / 20.0)).cos();
+    let mut decays = vec![fitted(10.0, decay(0.02))];
+    decays.extend([0.5, 0.45, 0.55].map(|seconds| fitted(seconds, decay(0.0))));
+    let found = pooled(&[observation(decays)], Effects::none()).unwrap();
+    assert!(
+        found
+            .remarks
+            .iter()
+            .any(|r| matches!(r, Remark::DecaysDrift { count: 1, .. })),
+        "{:?}",
+        found.remarks
+    );
+    let f0 = found.parameters.natural_frequency_hz.unwrap();
+    assert_eq!((f0.status, f0.note), (Status::Weak, Some(Note::Drifts)));
+}
+
+#[test]
+fn an_interval_that_what_changes_made_wide_is_weak_with_that_reason() {
+    // heavier from the middle on, beside a steady decay that tells more
+    let heavier = |t: f64| {
+        let lost = if t < 1.0 {
+            0.5 * t
+        } else {
+            0.5 + 0.9 * (t - 1.0)
+        };
+        f64::exp(-lost) * (TAU * 8.0 * t).cos()
+    };
+    let steady = |t: f64| (-0.5 * t).exp() * (TAU * 8.0 * t).cos();
+    let decays = vec![fitted(2.0, heavier), fitted(8.0, steady)];
+    let found = pooled(&[observation(decays)], Effects::none()).unwrap();
+    let beta = found.parameters.damping_ratio.unwrap();
+    assert_eq!(beta.status, Status::Weak, "{beta:?}");
+    assert_eq!(beta.note, Some(Note::DampingChanges), "{beta:?}");
+}
