@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::failure::print_diagnostics;
 use super::read_log::ReadLog;
 use super::report_args::language_parser;
-use super::speech::Speech;
+use super::speech::{Output, Speech};
 use super::stdout::print_json;
 use super::{Exit, Failure, Progress, Verbosity};
 use impact_campaign::campaign::check;
@@ -79,7 +79,7 @@ impl Check {
                 problems: &outcome.diagnostics.0,
             })?;
         }
-        print_counts(&outcome.diagnostics, usable, verbosity);
+        print_counts(&outcome.diagnostics, usable, &speech, verbosity);
         let all = outcome.diagnostics.0.len();
         Ok(if outcome.diagnostics.count(Severity::Note) == all {
             Exit::Done
@@ -111,18 +111,28 @@ impl Check {
     }
 }
 
-fn print_counts(all: &Diagnostics, usable: Option<(usize, u64)>, verbosity: Verbosity) {
+fn print_counts(
+    all: &Diagnostics,
+    usable: Option<(usize, u64)>,
+    speech: &Speech,
+    verbosity: Verbosity,
+) {
     if let Some((usable, records)) = usable {
-        verbosity.info(&format!("{usable} of {records} records can be used."));
+        let records = usize::try_from(records).unwrap_or(usize::MAX);
+        verbosity.info(&speech.say(&Output::Usable(usable, records)));
     }
-    let count = |severity, noun: &str| match all.count(severity) {
-        1 => format!("1 {noun}"),
-        n => format!("{n} {noun}s"),
+    let errors = match all.count(Severity::Campaign) {
+        1 => Output::OneError,
+        count => Output::Errors(count),
     };
-    verbosity.info(&format!(
-        "{}, {}, {}.",
-        count(Severity::Campaign, "error"),
-        count(Severity::Record, "warning"),
-        count(Severity::Note, "note")
-    ));
+    let warnings = match all.count(Severity::Record) {
+        1 => Output::OneWarning,
+        count => Output::Warnings(count),
+    };
+    let notes = match all.count(Severity::Note) {
+        1 => Output::OneNote,
+        count => Output::Notes(count),
+    };
+    let counts = [errors, warnings, notes].map(|count| speech.say(&count));
+    verbosity.info(&format!("{}.", counts.join(", ")));
 }

@@ -105,6 +105,20 @@ pub(super) enum Output {
     OneLeftOut(LeftOutRecords),
     /// Several records.
     SomeLeftOut(LeftOutRecords),
+    /// How many records can be used, and of how many.
+    Usable(usize, usize),
+    /// What stops the campaign.
+    OneError,
+    /// Several of these.
+    Errors(usize),
+    /// What leaves a record out.
+    OneWarning,
+    /// Several of these.
+    Warnings(usize),
+    /// What is worth knowing.
+    OneNote,
+    /// Several of these.
+    Notes(usize),
 }
 
 /// Records that are left out for one kind of fault.
@@ -128,6 +142,8 @@ message_table! { "output": Output;
         of = Value::Count(left.of),
         fault = Value::Name(&left.fault),
         remedy = Value::Name(&left.remedy);
+    Self::Usable(usable, records) => usable = Value::Count(*usable), records = Value::Count(*records);
+    Self::Errors(count) | Self::Warnings(count) | Self::Notes(count) => count = Value::Count(*count);
 }
 
 #[cfg(test)]
