@@ -121,18 +121,16 @@ fn print_counts(
         let records = usize::try_from(records).unwrap_or(usize::MAX);
         verbosity.info(&speech.say(&Output::Usable(usable, records)));
     }
-    let errors = match all.count(Severity::Campaign) {
-        1 => Output::OneError,
-        count => Output::Errors(count),
-    };
-    let warnings = match all.count(Severity::Record) {
-        1 => Output::OneWarning,
-        count => Output::Warnings(count),
-    };
-    let notes = match all.count(Severity::Note) {
-        1 => Output::OneNote,
-        count => Output::Notes(count),
-    };
-    let counts = [errors, warnings, notes].map(|count| speech.say(&count));
+    type Form = fn(usize) -> Output;
+    let forms: [(Severity, Form, Form); 3] = [
+        (Severity::Campaign, Output::OneError, Output::Errors),
+        (Severity::Record, Output::OneWarning, Output::Warnings),
+        (Severity::Note, Output::OneNote, Output::Notes),
+    ];
+    let counts = forms.map(|(severity, one, several)| {
+        let count = all.count(severity);
+        let form = if count == 1 { one } else { several };
+        speech.say(&form(count))
+    });
     verbosity.info(&format!("{}.", counts.join(", ")));
 }

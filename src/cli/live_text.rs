@@ -50,7 +50,7 @@ pub(super) enum LiveText {
     /// There is no bracket.
     NoBracket,
     /// There is one.
-    OneBracket(NewestBracket),
+    OneBracket(usize, NewestBracket),
     /// How many there are, and the newest of them.
     SomeBrackets(usize, NewestBracket),
     /// R is not determined.
@@ -83,14 +83,7 @@ message_table! { "live": LiveText;
     Self::OneRemoved(names) | Self::SomeRemoved(names) | Self::OneUnlisted(names) | Self::SomeUnlisted(names)
     | Self::OneReplaced(names) | Self::SomeReplaced(names) | Self::OneHalfWritten(names)
     | Self::SomeHalfWritten(names) => names = Value::Name(names);
-    Self::OneBracket(newest) =>
-        kind = Value::Name(newest.kind),
-        motion = Value::Name(&newest.motion),
-        clearance = Value::Number(newest.clearance_mm, 3),
-        low = Value::Number(newest.low_hz, 3),
-        high = Value::Number(newest.high_hz, 3),
-        sweep = Value::Message(&newest.sweep);
-    Self::SomeBrackets(count, newest) =>
+    Self::OneBracket(count, newest) | Self::SomeBrackets(count, newest) =>
         count = Value::Count(*count),
         kind = Value::Name(newest.kind),
         motion = Value::Name(&newest.motion),
@@ -289,7 +282,7 @@ fn letter(motion: &Motion) -> char {
 fn newest_bracket(brackets: &[Bracket], words: &dyn Print) -> String {
     let text = match brackets {
         [] => LiveText::NoBracket,
-        [one] => LiveText::OneBracket(NewestBracket::of(one)),
+        [one] => LiveText::OneBracket(1, NewestBracket::of(one)),
         [.., newest] => LiveText::SomeBrackets(brackets.len(), NewestBracket::of(newest)),
     };
     words.print(&text) + "\n"

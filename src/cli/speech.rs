@@ -108,15 +108,15 @@ pub(super) enum Output {
     /// How many records can be used, and of how many.
     Usable(usize, usize),
     /// What stops the campaign.
-    OneError,
+    OneError(usize),
     /// Several of these.
     Errors(usize),
     /// What leaves a record out.
-    OneWarning,
+    OneWarning(usize),
     /// Several of these.
     Warnings(usize),
     /// What is worth knowing.
-    OneNote,
+    OneNote(usize),
     /// Several of these.
     Notes(usize),
 }
@@ -143,7 +143,8 @@ message_table! { "output": Output;
         fault = Value::Name(&left.fault),
         remedy = Value::Name(&left.remedy);
     Self::Usable(usable, records) => usable = Value::Count(*usable), records = Value::Count(*records);
-    Self::Errors(count) | Self::Warnings(count) | Self::Notes(count) => count = Value::Count(*count);
+    Self::OneError(count) | Self::Errors(count) | Self::OneWarning(count) | Self::Warnings(count)
+    | Self::OneNote(count) | Self::Notes(count) => count = Value::Count(*count);
 }
 
 #[cfg(test)]

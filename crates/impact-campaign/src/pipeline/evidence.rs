@@ -8,12 +8,11 @@ use impact_fit::parameters::effect::Effects;
 use impact_fit::parameters::gain_index;
 use impact_records::motion::{Bracket, LateChannel, Observation};
 use impact_records::record::Role;
-use impact_records::record::calibrate::ChannelSetup;
 use impact_records::record::late::remainder_s;
 use impact_records::signal::robust;
 
-/// What the campaign states about its rig.
-fn nominal(campaign: &ResolvedCampaign) -> Nominal {
+/// What is stated, with what is left of the delays of channels whose whole samples were removed.
+fn nominal(campaign: &ResolvedCampaign, observations: &[Observation]) -> Nominal {
     Nominal {
         restitution: campaign.rig.restitution,
         natural_frequency_hz: campaign.rig.natural_frequency_hz,
@@ -29,7 +28,7 @@ fn nominal(campaign: &ResolvedCampaign) -> Nominal {
             None => Effects::all(),
         },
         flight: campaign.flight,
-        ..delays(&campaign.channels)
+        ..delays(campaign, observations)
     }
 }
 
@@ -40,42 +39,29 @@ fn mass_asymmetry(rig: &NominalValues) -> Option<[f64; 2]> {
     Some([(x / y).ln(), deviation])
 }
 
-/// The stated delays of the motion channels beside the drive's.
-fn delays(channels: &[ChannelSetup]) -> Nominal {
-    let mut nominal = Nominal::default();
-    let drive = channels.iter().find(|c| c.role == Role::Drive);
-    let of_drive_s = drive.map_or(0.0, |c| c.delay_s);
-    for channel in channels {
-        if let Some(i) = gain_index(channel.role) {
-            nominal.delays_s[i] = channel.delay_s - of_drive_s;
-            nominal.delay_uncertainties_s[i] = channel.delay_uncertainty_s;
-        }
-    }
-    nominal
-}
-
 /// Uncertainty of the delay of a low-pass whose corner and order jumps told, relative.
 const ROUGHLY: f64 = 0.5;
 
-/// What is stated, with what is left of the delays of channels whose whole samples were removed.
-fn nominal_of(campaign: &ResolvedCampaign, observations: &[Observation]) -> Nominal {
-    let mut nominal = nominal(campaign);
+/// What is left of the delays of the motion channels beside the drive's, and their uncertainties.
+fn delays(campaign: &ResolvedCampaign, observations: &[Observation]) -> Nominal {
+    let mut nominal = Nominal::default();
     let late = late(observations);
-    let campaign = campaign.with_late(late);
+    let channels = campaign.with_late(late).channels;
     let rates: Vec<f64> = observations.iter().map(|o| o.sample_rate_hz).collect();
-    if let Some(rate_hz) = robust::median(&rates) {
-        let drive = campaign.channels.iter().find(|c| c.role == Role::Drive);
-        let of_drive_s = drive.map_or(0.0, |setup| remainder_s(setup, rate_hz));
-        for setup in &campaign.channels {
-            if let Some(i) = gain_index(setup.role) {
-                nominal.delays_s[i] = remainder_s(setup, rate_hz) - of_drive_s;
-                let found = late.iter().find(|l| l.role == setup.role);
-                if let Some(filter) = found.and_then(|l| l.low_pass) {
-                    // its corner is known roughly, and with it its delay
-                    nominal.delay_uncertainties_s[i] = Some(ROUGHLY * filter.delay_s());
-                }
-            }
-        }
+    // without a rate nothing was removed
+    let rate_hz = robust::median(&rates).unwrap_or(0.0);
+    let drive = channels.iter().find(|c| c.role == Role::Drive);
+    let of_drive_s = drive.map_or(0.0, |setup| remainder_s(setup, rate_hz));
+    for setup in &channels {
+        let Some(i) = gain_index(setup.role) else {
+            continue;
+        };
+        nominal.delays_s[i] = remainder_s(setup, rate_hz) - of_drive_s;
+        let found = late.iter().find(|l| l.role == setup.role);
+        let filter = found.and_then(|l| l.low_pass);
+        // its corner is known roughly, and with it its delay
+        let of_filter_s = filter.map(|filter| ROUGHLY * filter.delay_s());
+        nominal.delay_uncertainties_s[i] = of_filter_s.or(setup.delay_uncertainty_s);
     }
     nominal
 }
@@ -95,7 +81,7 @@ pub(super) fn evidence<'a>(
         rig: campaign.machine,
         observations,
         brackets,
-        nominal: nominal_of(campaign, observations),
+        nominal: nominal(campaign, observations),
         uncertainty: UncertaintyOptions {
             intervals: campaign.analysis.uncertainty,
             replicas: campaign.analysis.replicas,

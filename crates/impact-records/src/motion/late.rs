@@ -57,15 +57,14 @@ pub fn late_channels(observations: &[Observation]) -> Vec<LateChannel> {
     let late = told.into_iter().filter_map(|t| {
         let late_s = t.lag_s - earliest_s;
         let noticed = late_s > UNNOTICED * t.uncertain_s;
+        let delay_s = match t.low_pass {
+            // without a contact nothing tells the delay of what all channels have passed
+            Some(filter) if by_contact => late_s - filter.delay_s(),
+            _ => late_s,
+        };
         (noticed || t.low_pass.is_some()).then(|| LateChannel {
-            role: t.role,
-            delay_s: match t.low_pass {
-                // without a contact nothing tells the delay of what all channels have passed
-                Some(filter) if by_contact => late_s - filter.delay_s(),
-                _ => late_s,
-            },
             low_pass: t.low_pass,
-            order_share: 1.0,
+            ..LateChannel::by(t.role, delay_s)
         })
     });
     late.collect()
@@ -152,12 +151,7 @@ mod tests {
     #[test]
     fn a_channel_is_late_against_the_earliest_of_all() {
         let late = |lags, contact| late_channels(&observed(lags, contact));
-        let x = |delay_s| LateChannel {
-            role: Role::VelocityX,
-            delay_s,
-            low_pass: None,
-            order_share: 1.0,
-        };
+        let x = |delay_s| LateChannel::by(Role::VelocityX, delay_s);
         assert_eq!(late([1.5, 0.1], true), [x(1.5e-3)]);
         // both behind the contact, within what the detection bears
         assert_eq!(late([0.5, 0.4], true), []);

@@ -175,9 +175,8 @@ fn are_most(
     2.0 * of_some.map(|d| information(&d)).sum::<f64>() > all
 }
 
-/// Whether an interval leaves a damping ratio more open than an identified one.
-fn is_open(value: f64, [low, high]: [f64; 2]) -> bool {
-    let error = 0.5 * (high - low) / NORMAL_975;
+/// Whether an error leaves a damping ratio more open than an identified one.
+fn is_open(value: f64, error: f64) -> bool {
     error > estimate::limits(Coordinate::Damping).0 * value
 }
 
@@ -208,7 +207,7 @@ fn damping_estimate(decays: &[&Decay]) -> Estimate {
     let half = spread.half95();
     let most = value + half;
     let undamped = value <= half;
-    let status = if undamped || spread.error > estimate::limits(Coordinate::Damping).0 * value {
+    let status = if undamped || is_open(value, spread.error) {
         Status::Weak
     } else {
         Status::Identified
@@ -294,7 +293,8 @@ fn judge_damping(result: &mut MethodResult, decays: &[&Decay], friction: bool) -
     // what changes along a decay widened it
     let widened = estimate.value.zip(estimate.interval95);
     let is_widened = changing.iter().any(|c| !explained(c.0));
-    let is_open = widened.is_some_and(|(value, interval)| is_open(value, interval));
+    let is_open =
+        widened.is_some_and(|(value, [low, high])| is_open(value, 0.5 * (high - low) / NORMAL_975));
     if is_widened && is_open && estimate.status == Status::Identified {
         estimate.status = Status::Weak;
         estimate.note = Some(Note::DampingChanges);

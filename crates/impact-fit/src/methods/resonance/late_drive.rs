@@ -4,7 +4,6 @@
 use crate::evidence::{Evidence, Nominal};
 use crate::methods::blocks::Blocks;
 use crate::methods::resonance::fit;
-use crate::methods::selection::Selection;
 use crate::solver::mean_squares;
 
 /// Greatest lag that is looked for, in periods of the fastest drive.
@@ -21,14 +20,13 @@ const LEFT: f64 = 0.1;
 /// By how much the drive's channel is later than all channels of the motion, s; `None` where impactless records do
 /// not show it to be later or earlier than is stated.
 pub fn late_drive(evidence: &Evidence<'_>) -> Option<f64> {
-    let blocks = Selection::new(evidence).blocks;
+    let blocks = Blocks::new(evidence);
     let points = &blocks.resonance.points;
     let fastest_hz = points.iter().map(|p| p.frequency_hz).fold(0.0, f64::max);
     if fastest_hz == 0.0 || points.iter().any(|p| p.phase_error_rad.is_none()) {
         return None;
     }
-    let nominal = evidence.nominal.ideal();
-    let misfit = |lag_s: f64| misfit(&blocks, &behind(&nominal, lag_s));
+    let misfit = |lag_s: f64| misfit(&blocks, &behind(&evidence.nominal, lag_s));
     let stated = evidence.nominal.delay_uncertainties_s.iter();
     let stated_s = stated.map(|own| own.unwrap_or(blocks.half_sample_s()));
     let unnoticed_s = SURE * stated_s.fold(0.0, f64::max);
