@@ -1,7 +1,9 @@
 """How often the 95 % intervals of f0 and β of free decays hold the truth.
 
 Decays are drawn at random: frequency, damping ratio, phase, offset, rate, and how many periods the record holds; beside
-each lies noise of one kind, and dry friction may take a part of the first cycle's loss. Each record is a specimen of its
+each lies noise of one kind, and dry friction may take a part of the first cycle's loss. `loud_hum` is a hum of 5 to 60 % of
+the first amplitude; `blow` and `stop` are white noise about a motion that a blow begins again before it is over, and that a
+hand ends within a period. Each record is a specimen of its
 own, so that `impactid` states f0 and β of each with an interval; one that is left open, or not found, counts for nothing.
 
     python3 decay_coverage.py --binary target/release/impactid --work FOLDER [--seed 1] [--records 200] [--kinds white,slow]
@@ -18,7 +20,7 @@ import subprocess
 
 import numpy
 
-KINDS = ["white", "coloured", "slow", "quantised", "hum"]
+KINDS = ["white", "coloured", "slow", "quantised", "hum", "loud_hum", "blow", "stop"]
 PERIODS = {"1.5-2": (1.5, 2.0), "2-5": (2.0, 5.0), "5-20": (5.0, 20.0), "20-200": (20.0, 200.0)}
 
 
@@ -72,7 +74,15 @@ def decay(rng, kind, periods, friction):
     rest = 0.5 * numpy.pi * damping * amplitude * friction / (1 - friction)
     values = rubbed(natural, damping, rest, amplitude, times + phase / omega)
     count = len(times)
-    if kind == "white":
+    if kind == "blow":
+        since = times - times[-1] * rng.uniform(0.3, 0.6)
+        again = numpy.exp(-damping * natural * since) * numpy.sin(omega * since)
+        values += numpy.where(since > 0, rng.uniform(0.3, 1.5) * amplitude * again, 0.0)
+    elif kind == "stop":
+        since = times - times[-1] * rng.uniform(0.4, 0.8)
+        takes = rng.uniform(0.05, 1.0) / f0
+        values *= numpy.clip(1.0 - since / takes, 0.0, 1.0)
+    if kind in ("white", "blow", "stop"):
         values += noise * rng.standard_normal(count)
     elif kind == "coloured":
         values += noise * autoregressive(rng, count, rng.uniform(0.3, 0.9))
@@ -80,6 +90,10 @@ def decay(rng, kind, periods, friction):
         # correlated over a good part of a period and up to several
         correlation = numpy.exp(-1.0 / (per_period * 10 ** rng.uniform(-1, 0.7)))
         values += noise * autoregressive(rng, count, correlation)
+    elif kind == "loud_hum":
+        hum = f0 * (rng.uniform(0.3, 0.75) if rng.random() < 0.5 else rng.uniform(1.3, 7.0))
+        values += noise * rng.standard_normal(count)
+        values += amplitude * 10 ** rng.uniform(-1.3, -0.2) * numpy.cos(2 * numpy.pi * hum * times + rng.uniform(0, 6.28))
     elif kind == "hum":
         hum = rng.choice([3.2, 5.0, 7.7]) * f0
         values += noise * rng.standard_normal(count)

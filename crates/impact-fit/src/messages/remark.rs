@@ -274,6 +274,13 @@ pub enum Remark {
         /// Its amplitude over that of the decay.
         ratio: f64,
     },
+    /// The motion was stopped, not by the rig's damping.
+    DecaysStopped {
+        /// Number of decays that were.
+        count: usize,
+        /// When the first was, s from its record's first sample.
+        seconds: f64,
+    },
     /// Another mode beside the decays, fitted with them.
     DecaysMode {
         /// Number of decays with one.
@@ -427,6 +434,9 @@ message_table! { "remark": Remark;
         count = Value::Count(*count),
         frequency = Value::Number(*frequency_hz, 1),
         share = Value::Percent(*ratio, 1);
+    Self::DecaysStopped { count, seconds } =>
+        count = Value::Count(*count),
+        seconds = Value::Number(*seconds, 2);
     Self::DecaysMode { count, frequency_hz, ratio } =>
         count = Value::Count(*count),
         frequency = Value::Number(*frequency_hz, 1),

@@ -53,7 +53,8 @@ mod tests {
             (51.0, 0.0, None),
             (3.0, 0.0, None),
         ] {
-            assert_eq!(hum_of(&tone(hz, beta)), mains, "{hz} {beta}");
+            let tone = tone(hz, beta);
+            assert_eq!(hum_of(&tone), mains, "{hz} {beta}: {tone:?}");
         }
     }
 }

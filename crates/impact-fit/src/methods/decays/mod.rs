@@ -108,6 +108,7 @@ pub fn pooled(observations: &[Observation], effects: Effects) -> Option<MethodRe
         leave_weak(&mut result, Note::MayBeHum { mains_hz });
     }
     let fits = result.fits == Some(true);
+    result.remarks.extend(stopped(&decays));
     result.remarks.extend(beside(&decays, fits));
     Some(result)
 }
@@ -173,6 +174,15 @@ fn are_most(
     let all: f64 = decays.iter().map(|d| information(&d)).sum();
     let of_some = decays.iter().filter(|d| some(d));
     2.0 * of_some.map(|d| information(&d)).sum::<f64>() > all
+}
+
+/// Decays that a hand ended.
+fn stopped(decays: &[&Decay]) -> Option<Remark> {
+    let all: Vec<f64> = decays.iter().filter_map(|d| d.stopped_s).collect();
+    Some(Remark::DecaysStopped {
+        count: all.len(),
+        seconds: *all.first()?,
+    })
 }
 
 /// Whether an error leaves a damping ratio more open than an identified one.

@@ -79,3 +79,16 @@ fn an_interval_that_what_changes_made_wide_is_weak_with_that_reason() {
     assert_eq!(beta.status, Status::Weak, "{beta:?}");
     assert_eq!(beta.note, Some(Note::DampingChanges), "{beta:?}");
 }
+
+#[test]
+fn a_stop_by_hand_is_named() {
+    let decay = |t: f64| (-0.4 * t).exp() * (TAU * 4.0 * t).cos();
+    let stopped = fitted(6.0, |t| if t < 3.0 { decay(t) } else { 0.0 });
+    let found = pooled(&[observation(vec![stopped])], Effects::all()).unwrap();
+    let named = found.remarks.iter().find_map(|r| match r {
+        Remark::DecaysStopped { count: 1, seconds } => Some(*seconds),
+        _ => None,
+    });
+    assert!((named.unwrap() - 3.0).abs() < 0.02, "{:?}", found.remarks);
+    assert_eq!(found.fits, Some(true));
+}

@@ -164,6 +164,7 @@ fn is_to_be_mended(remark: &Remark) -> bool {
             | Remark::ImpactsMissed { .. }
             | Remark::DecaysHum { .. }
             | Remark::DecaysMode { .. }
+            | Remark::DecaysStopped { .. }
             | Remark::DecaysBackground { .. }
             | Remark::DecaysSlowNoise { .. }
     )

@@ -180,7 +180,8 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_distr::{Distribution, StandardNormal};
 
-    use super::super::friction::MotionSignal;
+    use super::super::Watched;
+    use super::super::hum::Cleared;
     use super::super::prepared::Prepared;
     use super::*;
 
@@ -211,7 +212,7 @@ mod tests {
     fn prepared(ratio: f64) -> Vec<Prepared> {
         let mut rng = ChaCha8Rng::seed_from_u64(20_261_127);
         let all = (0..8).map(|_| two(&mut rng, ratio));
-        all.filter_map(|samples| Prepared::of(&samples, MotionSignal::Displacement))
+        all.filter_map(|samples| Prepared::of(&Cleared::plain(Watched::displacement(&samples))))
             .collect()
     }
 

@@ -65,6 +65,14 @@ pub(super) fn parts(samples: &[f64]) -> Vec<(usize, usize)> {
     out
 }
 
+/// The first sample of a motion that a blow may have begun.
+pub(super) fn moves(samples: &[f64]) -> Option<usize> {
+    let centre = robust::median(samples)?;
+    let size = |v: &f64| (v - centre).abs();
+    let greatest = samples.iter().map(size).fold(0.0, f64::max);
+    samples.iter().position(|v| size(v) > BLOW * greatest)
+}
+
 /// Where a motion begins: the first sample of a great excursion, and the first after which it is no longer
 /// as great.
 pub(super) fn begin(samples: &[f64]) -> Option<(usize, usize)> {

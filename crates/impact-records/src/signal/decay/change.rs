@@ -246,6 +246,7 @@ fn parts(series: &Series, best: &Point, count: usize, variance: f64) -> Vec<Part
         let own = Series {
             values: series.values[k * length..(k + 1) * length].to_vec(),
             degree: 0,
+            taken: Vec::new(),
             ..series.clone()
         };
         let middle = (k as f64 + 0.5) * length as f64;

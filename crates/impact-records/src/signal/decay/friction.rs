@@ -13,7 +13,6 @@
 use nalgebra::Complex;
 
 use super::least_squares::{Point, Series};
-use super::noise::Noise;
 use super::prepared::{Prepared, fitted};
 use super::shape::{Rates, Shape};
 use super::{GROWS, Natural, damping_slopes};
@@ -217,7 +216,9 @@ fn rests_at(series: &Series, viscous: &Point) -> Option<usize> {
     let first = whole::index(FIRST_PERIODS * std::f64::consts::TAU / viscous.rates[0]);
     let mut length = first.min(count);
     for _ in 0..MOST_FITS {
-        let point = part(series, length).descend(Shape::Rubbed, viscous.rates)?;
+        let point = series
+            .part(0..length)
+            .descend(Shape::Rubbed, viscous.rates)?;
         let end = last_turn(&point, series.quantity, count).unwrap_or(count);
         if end <= length || length == count {
             return Some(end.max(first)).filter(|e| *e < count);
@@ -227,25 +228,33 @@ fn rests_at(series: &Series, viscous: &Point) -> Option<usize> {
     None
 }
 
-/// The first values of a series, in white noise.
-fn part(series: &Series, length: usize) -> Series {
-    Series {
-        values: series.values[..length].to_vec(),
-        noise: Noise::default(),
-        ..series.clone()
-    }
+/// The squares that a motion up to a value and rest after it leave.
+fn squares_until(series: &Series, viscous: &Point, end: usize) -> Option<f64> {
+    let point = series.part(0..end).descend(Shape::Rubbed, viscous.rates)?;
+    let tail = &series.values[end..];
+    let centre = robust::mean(tail);
+    let rests: f64 = tail.iter().map(|v| (v - centre).powi(2)).sum();
+    Some((point.squares + rests).max(f64::MIN_POSITIVE))
+}
+
+/// Ends that a motion may have under friction: where it comes to rest, and that of the series.
+fn ends(series: &Series, viscous: &Point) -> impl Iterator<Item = usize> {
+    let all = [rests_at(series, viscous), Some(series.values.len())];
+    all.into_iter().flatten()
+}
+
+/// The least squares that a motion under viscous damping and friction leaves.
+pub(super) fn squares(series: &Series, viscous: &Point) -> Option<f64> {
+    let all = ends(series, viscous).filter_map(|end| squares_until(series, viscous, end));
+    all.min_by(f64::total_cmp)
 }
 
 /// Bayes' criterion of a motion up to a value and rest after it (Schwarz 1978).
 fn criterion(series: &Series, viscous: &Point, end: usize) -> Option<f64> {
     let count = series.values.len();
-    let point = part(series, end).descend(Shape::Rubbed, viscous.rates)?;
-    let tail = &series.values[end..];
-    let centre = robust::mean(tail);
-    let rests: f64 = tail.iter().map(|v| (v - centre).powi(2)).sum();
-    let squares = (point.squares + rests).max(f64::MIN_POSITIVE);
     // the end and the place
     let more = if end < count { 2.0 } else { 0.0 };
+    let squares = squares_until(series, viscous, end)?;
     Some(count as f64 * squares.ln() + more * (count as f64).ln())
 }
 
@@ -254,9 +263,7 @@ fn criterion(series: &Series, viscous: &Point, end: usize) -> Option<f64> {
 fn settled(prepared: &Prepared, viscous: &Point) -> Option<(Series, Point)> {
     let mut series = prepared.series.clone();
     let count = series.values.len();
-    let ends = [rests_at(&series, viscous), Some(count)];
-    let scored = ends.into_iter().flatten();
-    let scored = scored.filter_map(|e| Some((e, criterion(&series, viscous, e)?)));
+    let scored = ends(&series, viscous).filter_map(|e| Some((e, criterion(&series, viscous, e)?)));
     let (end, _) = scored.min_by(|a, b| a.1.total_cmp(&b.1))?;
     series.values.truncate(end);
     let mut point = series.descend(Shape::Rubbed, viscous.rates)?;

@@ -20,6 +20,8 @@ pub(super) struct Series {
     pub(super) quantity: MotionSignal,
     /// Samples that each value is the mean of.
     pub(super) factor: usize,
+    /// Rates, per value, of oscillations that were taken from the values: what their errors leave is fitted too.
+    pub(super) taken: Vec<[f64; 2]>,
 }
 
 /// A fit: the best linear part at given rates.
@@ -27,7 +29,7 @@ pub(super) struct Series {
 pub(super) struct Point {
     pub(super) shape: Shape,
     pub(super) rates: Rates,
-    /// Background, then friction where it has a column, then the factors of cosine and sine.
+    /// Background and what is left of oscillations that were taken, then friction where it has a column, then the factors of cosine and sine.
     linear: DVector<f64>,
     /// Whitened residuals and the sum of their squares.
     rest: Vec<f64>,
@@ -53,7 +55,32 @@ impl Series {
             noise: Noise::default(),
             quantity: MotionSignal::default(),
             factor: 1,
+            taken: Vec::new(),
         }
+    }
+
+    /// The first values, or others, in white noise.
+    pub(super) fn part(&self, values: std::ops::Range<usize>) -> Self {
+        Self {
+            quantity: self.quantity,
+            factor: self.factor,
+            ..Self::white(self.values[values].to_vec(), self.degree)
+        }
+    }
+
+    /// What errors of amplitude, phase, frequency and rate of decay of the oscillations that were taken leave.
+    fn left_of_taken(&self) -> Vec<Vec<f64>> {
+        let count = self.values.len();
+        let of = |[omega, sigma]: &[f64; 2]| {
+            let rates = [*omega, *sigma, 0.0, 0.0];
+            let both = self.oscillation(Shape::Viscous, &rates);
+            let rising = both.each_ref().map(|column| {
+                let scaled = column.iter().enumerate();
+                scaled.map(|(i, v)| v * i as f64 / count as f64).collect()
+            });
+            both.into_iter().chain(rising)
+        };
+        self.taken.iter().flat_map(of).collect()
     }
 
     /// Legendre's polynomials over the series, up to the third.
@@ -75,6 +102,7 @@ impl Series {
     /// Background, friction where it has a column, cosine and sine at given rates.
     pub(super) fn linear_columns(&self, shape: Shape, rates: &Rates) -> Vec<Vec<f64>> {
         let mut columns = self.background();
+        columns.extend(self.left_of_taken());
         if shape == Shape::Rubbed {
             columns.push(friction::column(self, *rates));
         }
@@ -309,16 +337,10 @@ impl Point {
         self.linear[0]
     }
 
-    /// Range of the background but for its constant part.
-    pub(super) fn drift(&self) -> f64 {
-        let beyond = self.linear.len() - 3 - usize::from(self.friction().is_some());
-        2.0 * self
-            .linear
-            .iter()
-            .skip(1)
-            .take(beyond)
-            .map(|c| c.abs())
-            .sum::<f64>()
+    /// Range of a background of a degree but for its constant part.
+    pub(super) fn drift(&self, degree: usize) -> f64 {
+        let powers = self.linear.iter().skip(1).take(degree);
+        2.0 * powers.map(|c| c.abs()).sum::<f64>()
     }
 
     /// The rates per sample of a fit to means of a number of samples.

@@ -7,15 +7,18 @@
 
 mod beat;
 mod blows;
+mod breaks;
 mod change;
 mod descent;
 mod friction;
+mod hum;
 mod least_squares;
 mod modes;
 mod noise;
 mod prepared;
 mod shape;
 
+use hum::Cleared;
 use nalgebra::DMatrix;
 use prepared::Prepared;
 use shape::{Rates, Shape};
@@ -72,6 +75,9 @@ pub struct Decay {
     pub first: usize,
     /// Number of fitted samples.
     pub samples: usize,
+    /// When the motion was stopped, s from the record's first sample, if it was.
+    #[serde(default)]
+    pub stopped_s: Option<f64>,
 }
 
 /// What was measured beside a decay.
@@ -103,6 +109,25 @@ impl Decay {
             self.offset + envelope * (omega * t + self.phase_rad).cos()
         };
         (0..self.samples).map(at).collect()
+    }
+
+    /// Count samples from an earlier one on.
+    fn shift(&mut self, by: usize, rate_hz: f64) {
+        self.first += by;
+        self.stopped_s = self.stopped_s.map(|s| s + by as f64 / rate_hz);
+    }
+
+    /// Whether it is a motion of the oscillator of an earlier decay: of its frequency, as far as that is known, and not damped
+    /// far more.
+    fn goes_on(&self, earlier: &Self) -> bool {
+        let error = self.natural_frequency_error_hz;
+        let error = error.hypot(earlier.natural_frequency_error_hz);
+        let apart = (self.natural_frequency_hz - earlier.natural_frequency_hz).abs();
+        let of_both = self.damping_ratio_error.hypot(earlier.damping_ratio_error);
+        let same = SAME * earlier.natural_frequency_hz;
+        self.natural_frequency_error_hz < same
+            && apart < same + GROWS * error
+            && self.damping_ratio < 2.0 * earlier.damping_ratio.abs() + GROWS * of_both
     }
 
     /// Standard error of f0 over f0.
@@ -177,16 +202,34 @@ pub fn fit_channels(channels: &[Watched<'_>], rate_hz: f64) -> Vec<Decay> {
 
 /// The decays of one channel, one after each blow.
 fn of_channel(channel: Watched<'_>, rate_hz: f64) -> Vec<Decay> {
+    let whole = Cleared::of(channel);
     let of_part = |(first, last): (usize, usize)| {
-        let values = &channel.values[first..last];
-        let mut decay = of_part(Watched { values, ..channel }, rate_hz)?;
-        decay.first += first;
-        Some(decay)
+        let mut decays = of_motions(&whole.between(first, last), rate_hz);
+        decays.iter_mut().for_each(|d| d.shift(first, rate_hz));
+        decays
     };
-    blows::parts(channel.values)
-        .into_iter()
-        .filter_map(of_part)
-        .collect()
+    let parts = blows::parts(&whole.cleared).into_iter();
+    parts.flat_map(of_part).collect()
+}
+
+/// The decays of a part of a record: one, or one before each moment at which the motion breaks off and the last one.
+fn of_motions(part: &Cleared<'_>, rate_hz: f64) -> Vec<Decay> {
+    let split = breaks::find(part).map(|end| {
+        let count = part.cleared.len();
+        let mut before = of_part(&part.between(0, end), rate_hz);
+        let mut after = of_motions(&part.between(end, count), rate_hz);
+        after.iter_mut().for_each(|d| d.shift(end, rate_hz));
+        if let Some(before) = &mut before {
+            // a hand on the mass is no damping of the rig
+            after.retain(|d| d.goes_on(before));
+            if after.is_empty() {
+                before.stopped_s = Some(end as f64 / rate_hz);
+            }
+        }
+        before.into_iter().chain(after).collect::<Vec<Decay>>()
+    });
+    let split = split.filter(|decays| !decays.is_empty());
+    split.unwrap_or_else(|| of_part(part, rate_hz).into_iter().collect())
 }
 
 /// Decay that must stand out of the noise, in standard errors of its amplitude.
@@ -195,6 +238,9 @@ const STANDS_OUT: f64 = 12.0;
 const MOST_LEFT: f64 = 1.0;
 /// Growth, in standard errors of the rate, that no decay has.
 const GROWS: f64 = 3.5;
+
+/// Relative difference of the frequencies of motions of one oscillator, at most.
+const SAME: f64 = 0.02;
 
 /// f0, per sample, and β of a fit, with their standard errors.
 struct Natural {
@@ -233,8 +279,8 @@ fn damping_slopes(rates: &Rates) -> [f64; 2] {
 }
 
 /// The decay of a part of a record with one blow or release.
-fn of_part(channel: Watched<'_>, rate_hz: f64) -> Option<Decay> {
-    let prepared = Prepared::of(channel.values, channel.quantity)?;
+fn of_part(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {
+    let prepared = Prepared::of(part)?;
     let series = &prepared.series;
     let viscous = series.descend(Shape::Viscous, prepared.free.rates)?;
     let rms = (viscous.squares / prepared.degrees(&viscous)?).sqrt();
@@ -272,6 +318,7 @@ fn of_part(channel: Watched<'_>, rate_hz: f64) -> Option<Decay> {
         periods: whole.samples as f64 * natural.frequency / prepared.factor as f64,
         first: prepared.first,
         samples: whole.samples,
+        stopped_s: None,
     })
 }
 

@@ -1,7 +1,7 @@
 //! What oscillates at other frequencies than a decay: hum, other modes.
 
 use super::friction::MotionSignal;
-use super::least_squares::Series;
+use super::least_squares::{Point, Series};
 use super::prepared::{factor, free, means, peak, rough};
 use super::shape::{Rates, Shape};
 use crate::signal::columns;
@@ -20,17 +20,16 @@ const ROUNDS: usize = 3;
 /// A tone or a decay of another frequency.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Mode {
-    /// Frequency per sample.
-    pub(super) frequency: f64,
+    /// `ω_d` and σ per sample.
+    pub(super) rates: [f64; 2],
     pub(super) amplitude: f64,
     pub(super) steady: bool,
 }
 
 /// A mode with its rates and its values at every sample.
-struct Fitted {
-    rates: [f64; 2],
-    values: Vec<f64>,
-    mode: Mode,
+pub(super) struct Fitted {
+    pub(super) values: Vec<f64>,
+    pub(super) mode: Mode,
 }
 
 /// The decay that is fitted.
@@ -41,19 +40,22 @@ struct Own {
     quantity: MotionSignal,
 }
 
-/// Take what oscillates at other frequencies than the decay of given rates from samples, beginning with a
-/// known mode.
+/// Take what oscillates at other frequencies than the decay of given rates from samples, beginning with known
+/// ones.
 pub(super) fn remove(
     (samples, quantity): (&mut [f64], MotionSignal),
     [omega, sigma, ..]: Rates,
-    known: Option<[f64; 2]>,
+    known: &[[f64; 2]],
 ) -> Vec<Mode> {
     let own = Own {
         rates: [omega, sigma],
         quantity,
     };
     let mut modes: Vec<Fitted> = Vec::new();
-    modes.extend(known.and_then(|rates| fitted(samples, rates)));
+    for rates in known {
+        // its own rates: a fit may run off to the decay
+        modes.extend(at(&less(samples, &modes), *rates));
+    }
     for _ in 0..MOST {
         for _ in 0..if modes.is_empty() { 0 } else { ROUNDS } {
             again(samples, own, &mut modes);
@@ -78,7 +80,7 @@ pub(super) fn subtract(samples: &mut [f64], rates: [f64; 2]) {
 }
 
 /// Samples less modes.
-fn less(samples: &[f64], modes: &[Fitted]) -> Vec<f64> {
+pub(super) fn less(samples: &[f64], modes: &[Fitted]) -> Vec<f64> {
     let mut rest = samples.to_vec();
     for mode in modes {
         columns::subtract(&mut rest, 1.0, &mode.values);
@@ -95,7 +97,7 @@ fn again(samples: &[f64], own: Own, modes: &mut [Fitted]) {
         for (value, back) in rest.iter_mut().zip(&modes[k].values) {
             *value += back;
         }
-        if let Some(found) = fitted(&rest, modes[k].rates) {
+        if let Some(found) = fitted(&rest, modes[k].mode.rates) {
             modes[k] = found;
         }
     }
@@ -131,36 +133,49 @@ fn strongest(rest: &[f64], own: Own) -> Option<Fitted> {
         return None;
     }
     let found = fitted(rest, rates)?;
-    let sigma = found.rates[1];
+    let sigma = found.mode.rates[1];
     let lasts = count.min(1.0 / sigma.abs().max(f64::MIN_POSITIVE));
     let explained = columns::dot(&found.values, &found.values);
     let stands_out = explained > STANDS_OUT * columns::dot(rest, rest);
-    let turns = lasts * found.rates[0] / std::f64::consts::TAU;
+    let turns = lasts * found.mode.rates[0] / std::f64::consts::TAU;
     (stands_out && sigma * count > -STEADY && turns > LEAST_TURNS).then_some(found)
 }
 
 /// The oscillation of about given rates in samples.
-fn fitted(samples: &[f64], [omega, sigma]: [f64; 2]) -> Option<Fitted> {
+pub(super) fn fitted(samples: &[f64], [omega, sigma]: [f64; 2]) -> Option<Fitted> {
     let factor = factor(omega);
     let rates = [omega, sigma, 0.0, 0.0].map(|r| r * factor as f64);
     let point = free(&Series::plain(means(samples, factor)), rates)?;
     let whole = Series::plain(samples.to_vec());
     let point = whole.project(point.shape, point.per_sample(factor))?;
-    let [a, b] = point.amplitudes();
-    let [omega, sigma, ..] = point.rates;
-    Some(Fitted {
-        rates: [omega, sigma],
-        values: point.values(samples.len()),
-        mode: Mode {
-            frequency: omega / std::f64::consts::TAU,
-            amplitude: a.hypot(b),
-            steady: sigma * (samples.len() as f64) < STEADY,
-        },
-    })
+    Some(Fitted::of(&point, samples.len()))
+}
+
+/// The oscillation of given rates in samples.
+fn at(samples: &[f64], [omega, sigma]: [f64; 2]) -> Option<Fitted> {
+    let series = Series::plain(samples.to_vec());
+    let point = series.project(Shape::Viscous, [omega, sigma, 0.0, 0.0])?;
+    Some(Fitted::of(&point, samples.len()))
+}
+
+impl Fitted {
+    /// A fit to a number of samples.
+    fn of(point: &Point, count: usize) -> Self {
+        let [a, b] = point.amplitudes();
+        let [omega, sigma, ..] = point.rates;
+        Self {
+            values: point.values(count),
+            mode: Mode {
+                rates: [omega, sigma],
+                amplitude: a.hypot(b),
+                steady: sigma * (count as f64) < STEADY,
+            },
+        }
+    }
 }
 
 /// Difference of frequency within which a decay over a number of samples is not told from others, rad per
 /// sample: three lines of the spectrum, three half widths of its resonance.
-fn width(rates: [f64; 2], count: f64) -> f64 {
+pub(super) fn width(rates: [f64; 2], count: f64) -> f64 {
     (3.0 * std::f64::consts::TAU / count).max(3.0 * rates[1])
 }

@@ -1,6 +1,6 @@
 //! A decay made ready for its fit: where it begins and ends, what lies under it, the noise about it.
 
-use super::friction::MotionSignal;
+use super::hum::Cleared;
 use super::least_squares::{Point, Series};
 use super::modes::{self, Mode, STEADY};
 use super::noise::{Noise, structured};
@@ -77,45 +77,49 @@ impl Prepared {
     /// The decay of a part of a record with one blow or release. Where its first motion and all of it have
     /// unlike frequencies, as after a hammer's blow that excites a higher mode too, the one that lasts, if it
     /// decays at all.
-    pub(super) fn of(samples: &[f64], quantity: MotionSignal) -> Option<Self> {
-        let begun = blows::begin(samples)?;
-        let tail = &samples[begun.1..];
+    pub(super) fn of(part: &Cleared<'_>) -> Option<Self> {
+        let begun = blows::begin(&part.cleared)?;
+        let tail = &part.cleared[begun.1..];
         let first_motion = |part: &[f64]| rough(part, peak(part)?);
         let begins = first_motion(blows::lasting(tail)).or_else(|| first_motion(tail))?;
         let lost = whole::index((OVER / begins.rates[1].max(1e-9)).min(1e9));
         let lasts = tail.get(lost..).and_then(|after| {
             let found = rough(after, peak(after)?)?;
+            if part.is_tone(found.rates, after.len()) {
+                return None;
+            }
             let slower = found.rates[1] < SLOWER * begins.rates[1];
             let decays = found.rates[1] * after.len() as f64 > STEADY;
             let slower = slower && found.rates[1] < LIGHT * found.rates[0];
             (slower && decays && found.explains > EXPLAINS).then_some(found)
         });
-        let channel = (samples, quantity);
         let Some(lasts) = lasts else {
-            return Self::about(channel, begun, begins.rates, None);
+            return Self::about(part, begun, begins.rates, None);
         };
         if begins.rates[0] < ANOTHER_MODE * lasts.rates[0] {
-            return Self::about(channel, begun, lasts.rates, None);
+            return Self::about(part, begun, lasts.rates, None);
         }
         if begins.rates[1] > LIGHT * begins.rates[0] {
-            return Self::about(channel, begun, begins.rates, None);
+            return Self::about(part, begun, begins.rates, None);
         }
         let start = begun.1 + lost / 3;
-        Self::about(channel, (start, start), lasts.rates, Some(begins.rates))
+        Self::about(part, (start, start), lasts.rates, Some(begins.rates))
     }
 
     /// The decay of about given rates in a part of a record whose motion has begun, beside the one of a known
     /// mode.
     fn about(
-        (samples, quantity): (&[f64], MotionSignal),
+        part: &Cleared<'_>,
         begun: (usize, usize),
         rates: [f64; 2],
-        known: Option<[f64; 2]>,
+        mode: Option<[f64; 2]>,
     ) -> Option<Self> {
-        let mut cleared = samples.to_vec();
-        if let Some(known) = known {
-            modes::subtract(&mut cleared[begun.1..], known);
+        let mut cleared = part.cleared.clone();
+        if let Some(mode) = mode {
+            modes::subtract(&mut cleared[begun.1..], mode);
         }
+        let known: Vec<[f64; 2]> = part.tones.iter().copied().chain(mode).collect();
+        let quantity = part.channel.quantity;
         let start = if begun.0 < begun.1 {
             blows::earliest(begun, std::f64::consts::TAU / rates[0])
         } else {
@@ -123,8 +127,9 @@ impl Prepared {
         };
         let (first, found) = begin(&cleared, start, rates)?;
         let factor = found.factor;
-        let mut own = samples[first..].to_vec();
-        let beside = modes::remove((&mut own, quantity), found.point.per_sample(factor), known);
+        let mut own = part.channel.values[first..].to_vec();
+        let rates_found = found.point.per_sample(factor);
+        let beside = modes::remove((&mut own, quantity), rates_found, &known);
         let point = if beside.is_empty() {
             found.point
         } else {
@@ -136,6 +141,7 @@ impl Prepared {
             factor,
             ..Series::plain(means(&own, factor))
         };
+        series.taken = overlapping(&beside, point.rates, &series);
         let free = settle(&mut series, &point)?;
         Some(Self {
             first,
@@ -175,7 +181,12 @@ impl Prepared {
         let strongest = |steady: bool| {
             let of_kind = self.beside.iter().filter(|m| m.steady == steady);
             let found = of_kind.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
-            found.map(|m| [m.frequency * rate_hz, m.amplitude / amplitude])
+            found.map(|m| {
+                [
+                    m.rates[0] / std::f64::consts::TAU * rate_hz,
+                    m.amplitude / amplitude,
+                ]
+            })
         };
         let beat = beat::find(&self.series, &self.free).map(|found| {
             let hz = rate_hz / self.factor as f64 / std::f64::consts::TAU;
@@ -186,7 +197,7 @@ impl Prepared {
             hum: strongest(true),
             mode: strongest(false),
             beat,
-            drift_ratio: self.free.drift() / amplitude,
+            drift_ratio: self.free.drift(self.series.degree) / amplitude,
             slow_noise: self.series.noise.slow(self.free.rates[0]),
         }
     }
@@ -212,6 +223,23 @@ impl Prepared {
             samples: series.values.len(),
         })
     }
+}
+
+/// Lines of the spectrum, and half widths of the resonance, from which two oscillations do not move each other: they
+/// share less than a thousandth of their energy.
+const APART: f64 = 10.0;
+
+/// The rates, per value of a series, of modes whose errors move a decay.
+fn overlapping(modes: &[Mode], [omega, sigma, ..]: Rates, series: &Series) -> Vec<[f64; 2]> {
+    let line = std::f64::consts::TAU / series.values.len() as f64;
+    let rates = modes
+        .iter()
+        .map(|m| m.rates.map(|r| r * series.factor as f64));
+    let near = |own: &[f64; 2]| {
+        let widest = line.max(sigma.abs()).max(own[1].abs());
+        (own[0] - omega).abs() < APART * widest
+    };
+    rates.filter(near).collect()
 }
 
 /// Means over a number of samples each.
@@ -259,9 +287,15 @@ pub(super) fn rough(samples: &[f64], peak: f64) -> Option<Rough> {
         .min_by(|a, b| a.squares.total_cmp(&b.squares))?;
     let centre = robust::mean(&series.values);
     let all: f64 = series.values.iter().map(|v| (v - centre).powi(2)).sum();
+    let [a, b] = found.amplitudes();
+    let count = series.values.len();
+    let free = count.saturating_sub(found.parameters()).max(1) as f64;
     Some(Rough {
         rates: [found.rates[0], found.rates[1]].map(|r| r / factor as f64),
+        amplitude: a.hypot(b),
         explains: 1.0 - found.squares / all.max(f64::MIN_POSITIVE),
+        gain: (all - found.squares) * free / found.squares.max(f64::MIN_POSITIVE),
+        count,
     })
 }
 
@@ -270,8 +304,13 @@ pub(super) fn rough(samples: &[f64], peak: f64) -> Option<Rough> {
 pub(super) struct Rough {
     /// `ω_d` and σ per sample.
     pub(super) rates: [f64; 2],
+    /// Amplitude at the first sample.
+    pub(super) amplitude: f64,
     /// Share of the samples' variance that it explains.
     explains: f64,
+    /// Squares that it takes, in variances of what it leaves, of a number of values.
+    pub(super) gain: f64,
+    pub(super) count: usize,
 }
 
 /// A fit whose rates are free to change, of a decay that is long enough to tell; else the viscous one.
@@ -366,7 +405,7 @@ fn end(samples: &[f64], factor: usize, point: &Point) -> usize {
 }
 
 /// The least step between unlike values.
-fn digit(samples: &[f64]) -> f64 {
+pub(super) fn digit(samples: &[f64]) -> f64 {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);
     let least = 1e-12 * sorted.last().map_or(0.0, |l| l - sorted[0]);
