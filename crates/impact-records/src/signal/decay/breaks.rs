@@ -6,10 +6,10 @@
 //! leave.
 
 use super::descent::equations;
+use super::fits::{digit, factor, free, means, peak, rough};
 use super::hum::Cleared;
 use super::least_squares::{Point, Series};
 use super::noise::Noise;
-use super::prepared::{digit, factor, means, peak, rough};
 use super::shape::Shape;
 use super::{blows, friction};
 use crate::signal::{columns, robust, whole};
@@ -123,7 +123,7 @@ fn breaks(series: &Series, omega: f64, at: usize) -> bool {
 /// The squares that one decay leaves, or one under dry friction.
 fn one(series: &Series, omega: f64) -> Option<f64> {
     let viscous = viscous(series, omega)?;
-    let bent = super::prepared::free(series, viscous.rates);
+    let bent = free(series, viscous.rates);
     let rubbed = friction::squares(series, &viscous);
     let squares = bent.map(|p| p.squares).into_iter().chain(rubbed);
     Some(squares.fold(viscous.squares, f64::min))

@@ -3,8 +3,9 @@
 use crate::message_table;
 use serde::{Deserialize, Serialize};
 
+use super::fits::laws;
 use super::least_squares::{Point, Series};
-use super::prepared::{Prepared, laws};
+use super::prepared::Prepared;
 use super::shape::Shape;
 use crate::signal::whole;
 

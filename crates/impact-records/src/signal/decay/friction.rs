@@ -10,25 +10,14 @@
 //! β, and by their difference ρ with an error that is not correlated with that of v: least squares at a fixed value
 //! of a parameter are not correlated with the estimate of that parameter.
 
-use nalgebra::Complex;
-
+use super::fits::fitted;
 use super::least_squares::{Point, Series};
-use super::prepared::{Prepared, fitted};
-use super::shape::{Rates, Shape};
-use super::{GROWS, Natural, damping_slopes};
+use super::natural::{GROWS, Natural, damping_slopes};
+use super::prepared::Prepared;
+use super::response::{Response, rate};
+use super::shape::Shape;
+use super::watched::MotionSignal;
 use crate::signal::{robust, whole};
-
-/// What of a motion a channel shows.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum MotionSignal {
-    /// Displacement, or what is proportional to it.
-    #[default]
-    Displacement,
-    /// Velocity.
-    Velocity,
-    /// Acceleration.
-    Acceleration,
-}
 
 /// A decay by viscous damping and dry friction of any amount.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -55,146 +44,12 @@ pub struct BesideFriction {
     pub sticks: bool,
 }
 
-/// Rate λ = −σ + i`ω_d` of a fit.
-fn rate(rates: &Rates) -> Complex<f64> {
-    Complex::new(-rates[1], rates[0])
-}
-
-/// Complex amplitude at the first sample of the displacement whose derivative a fit describes.
-fn displacement(point: &Point, quantity: MotionSignal) -> Complex<f64> {
-    let [a, b] = point.amplitudes();
-    Complex::new(a, -b) * rate(&point.rates).powi(-(quantity as i32))
-}
-
-/// Time of a turning point near the first sample, after which the velocity is negative.
-pub(super) fn turning(point: &Point, quantity: MotionSignal) -> f64 {
-    let velocity = displacement(point, quantity) * rate(&point.rates);
-    let phase = std::f64::consts::FRAC_PI_2 - velocity.arg();
-    let turn = std::f64::consts::TAU;
-    (phase - turn * (phase / turn).round()) / point.rates[0]
-}
-
-/// The response q to friction of the displacement one, at rest at its turning points.
-pub(super) struct Response {
-    rates: Rates,
-    quantity: MotionSignal,
-    /// Displacement at turning points; the one at the time that the rates name has the number `named`.
-    turns: Vec<f64>,
-    named: usize,
-}
-
-impl Response {
-    /// From a sample before the first one to a last time, in samples.
-    pub(super) fn of(rates: Rates, quantity: MotionSignal, last: f64) -> Self {
-        let [omega, sigma, _, begin] = rates;
-        let half = std::f64::consts::PI / omega;
-        let left = (-sigma * half).exp();
-        let named = whole::index(((1.0 + begin) / half).ceil().max(0.0));
-        let later = whole::index(((last - begin) / half).ceil().max(0.0));
-        let mut own = Self {
-            rates,
-            quantity,
-            turns: vec![0.0; named + later + 1],
-            named,
-        };
-        for k in (0..named).rev() {
-            let about = own.about(k);
-            own.turns[k] = about + (about - own.turns[k + 1]) / left;
-        }
-        for k in named..named + later {
-            let about = own.about(k);
-            own.turns[k + 1] = about - (own.turns[k] - about) * left;
-        }
-        own
-    }
-
-    /// Equilibrium of a swing: against a velocity that is negative after the named turning point.
-    fn about(&self, swing: usize) -> f64 {
-        if swing.abs_diff(self.named).is_multiple_of(2) {
-            1.0
-        } else {
-            -1.0
-        }
-    }
-
-    /// Time of a turning point, in samples.
-    fn turn(&self, swing: usize) -> f64 {
-        let [omega, _, _, begin] = self.rates;
-        begin + (swing as f64 - self.named as f64) * std::f64::consts::PI / omega
-    }
-
-    /// The swing to which a time belongs.
-    fn swing(&self, t: f64) -> usize {
-        let [omega, _, _, begin] = self.rates;
-        let number = (t - begin) * omega / std::f64::consts::PI + self.named as f64;
-        whole::index(number.floor().max(0.0)).min(self.turns.len() - 1)
-    }
-
-    /// At a time of a swing, in samples.
-    fn at(&self, t: f64, swing: usize) -> f64 {
-        let [omega, sigma, ..] = self.rates;
-        let about = self.about(swing);
-        let own = t - self.turn(swing);
-        let swung = (self.turns[swing] - about) * (-sigma * own).exp();
-        let (sin, cos) = (omega * own).sin_cos();
-        let squared = omega * omega + sigma * sigma;
-        match self.quantity {
-            MotionSignal::Displacement => about + swung * (cos + sigma / omega * sin),
-            MotionSignal::Velocity => -swung * squared / omega * sin,
-            MotionSignal::Acceleration => -swung * squared * (cos - sigma / omega * sin),
-        }
-    }
-
-    /// Means over as many samples as those of a series, whose swings are those of a response of near rates.
-    fn means(&self, swings: &Self, series: &Series) -> Vec<f64> {
-        let parts = series.factor.clamp(1, MOST_PARTS);
-        let middle = 0.5 * (parts as f64 - 1.0);
-        let mean = |i: usize| {
-            let of = |k: usize| {
-                let t = i as f64 + (k as f64 - middle) / parts as f64;
-                self.at(t, swings.swing(t))
-            };
-            (0..parts).map(of).sum::<f64>() / parts as f64
-        };
-        (0..series.values.len()).map(mean).collect()
-    }
-}
-
-/// Most points of a mean: a step of q is then where it is within a twentieth of a mean.
-const MOST_PARTS: usize = 20;
-
-/// Step of a difference over a rate, relative.
-const STEP: f64 = 1e-6;
-
-/// q at the samples of a series.
-pub(super) fn column(series: &Series, rates: Rates) -> Vec<f64> {
-    let response = Response::of(rates, series.quantity, series.values.len() as f64);
-    response.means(&response, series)
-}
-
-/// Slopes of q over `ω_d` and σ at the samples of a series, the named turning point where it is.
-pub(super) fn slopes(series: &Series, rates: Rates) -> [Vec<f64>; 2] {
-    let last = series.values.len() as f64;
-    let here = Response::of(rates, series.quantity, last);
-    let step = STEP * rates[0];
-    [0, 1].map(|k| {
-        let moved = |by: f64| {
-            let mut rates = rates;
-            rates[k] += by;
-            Response::of(rates, series.quantity, last + 1.0).means(&here, series)
-        };
-        let (after, before) = (moved(step), moved(-step));
-        let pairs = after.iter().zip(&before);
-        pairs.map(|(a, b)| (a - b) / (2.0 * step)).collect()
-    })
-}
-
 /// The first turning point, in samples, from which no more than a swing is left: the displacement falls by 2 r from
 /// one to the next and sticks within r.
 fn last_turn(point: &Point, quantity: MotionSignal, count: usize) -> Option<usize> {
     let rest = point.friction().filter(|r| *r > 0.0)?;
     let response = Response::of(point.rates, MotionSignal::Displacement, count as f64);
-    let own = displacement(point, quantity);
+    let own = point.displacement(quantity);
     let rate = rate(&point.rates);
     let sticks = |k: &usize| {
         let there = (own * (rate * response.turn(*k)).exp()).re + rest * response.turns[*k];
@@ -297,66 +152,8 @@ pub(super) fn beside(prepared: &Prepared, viscous: &Point, hz: f64) -> Option<Be
         added: sigma / omega.hypot(sigma) - natural.damping_ratio,
         added_error,
         freedom: series.freedom(&point),
-        rest_ratio: point.friction()? / displacement(&point, series.quantity).norm(),
+        rest_ratio: point.friction()? / point.displacement(series.quantity).norm(),
         periods: series.values.len() as f64 * natural.frequency,
         sticks: series.values.len() < prepared.series.values.len(),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::tests::released;
-    use super::super::{Watched, fit_channels};
-    use super::*;
-
-    /// Differences of a series, at the same times.
-    fn differentiated(values: &[f64], rate_hz: f64) -> Vec<f64> {
-        let inner = values.windows(3).map(|w| 0.5 * (w[2] - w[0]) * rate_hz);
-        inner.collect()
-    }
-
-    #[test]
-    fn valid_f0_beta_and_friction_are_recovered_from_motions_under_both() {
-        for (damping_ratio, rest, periods) in [
-            (0.05, 0.02, 2.0),
-            (0.05, 0.02, 6.0),
-            (0.08, 0.03, 3.0),
-            (0.01, 4e-3, 10.0),
-            (0.002, 1e-3, 40.0),
-        ] {
-            let samples = released(3.0, damping_ratio, rest, (180.0, periods));
-            let channel = Watched::displacement(&samples);
-            let found = fit_channels(&[channel], 180.0)[0].beside_friction.unwrap();
-            assert!(
-                (found.natural_frequency_hz / 3.0 - 1.0).abs() < 1e-5,
-                "{found:?}"
-            );
-            assert!(
-                (found.damping_ratio / damping_ratio - 1.0).abs() < 1e-3,
-                "{found:?}"
-            );
-        }
-    }
-
-    #[test]
-    fn valid_velocities_and_accelerations_tell_the_friction_too() {
-        let fine = released(3.0, 0.02, 8e-3, (18_000.0, 4.0));
-        let velocity = differentiated(&fine, 18_000.0);
-        let acceleration = differentiated(&velocity, 18_000.0);
-        for (quantity, values) in [
-            (MotionSignal::Velocity, velocity),
-            (MotionSignal::Acceleration, acceleration),
-        ] {
-            let values: Vec<f64> = values.into_iter().step_by(100).collect();
-            let channel = Watched {
-                values: &values,
-                quantity,
-            };
-            let found = fit_channels(&[channel], 180.0)[0].beside_friction.unwrap();
-            assert!(
-                (found.damping_ratio / 0.02 - 1.0).abs() < 0.01,
-                "{quantity:?} {found:?}"
-            );
-        }
-    }
 }

@@ -1,8 +1,9 @@
 //! Steady tones under a decay: a hum outlasts the decay, so that over the whole record it may be stronger.
 
+use super::blows;
+use super::fits::{Rough, peak, rough};
 use super::modes::{self, Fitted, Mode, STEADY};
-use super::prepared::{Rough, peak, rough};
-use super::{Watched, blows};
+use super::watched::Watched;
 use crate::signal::{columns, robust, whole};
 
 /// Most oscillations that are looked for.

@@ -1,12 +1,13 @@
 //! Separable least squares of a free decay in noise that need not be white: the rates of the decay, a
 //! background and two amplitudes.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use super::descent::{self, Projected, equations};
-use super::friction::{self, MotionSignal};
 use super::noise::Noise;
+use super::response::{self, Means};
 use super::shape::{Rates, Shape};
+use super::watched::MotionSignal;
 use crate::signal::columns::dot;
 
 /// Samples of a decay with what is known of them beside it.
@@ -59,6 +60,15 @@ impl Series {
         }
     }
 
+    /// What its values are.
+    fn means(&self) -> Means {
+        Means {
+            count: self.values.len(),
+            factor: self.factor,
+            quantity: self.quantity,
+        }
+    }
+
     /// The first values, or others, in white noise.
     pub(super) fn part(&self, values: std::ops::Range<usize>) -> Self {
         Self {
@@ -104,7 +114,7 @@ impl Series {
         let mut columns = self.background();
         columns.extend(self.left_of_taken());
         if shape == Shape::Rubbed {
-            columns.push(friction::column(self, *rates));
+            columns.push(response::column(&self.means(), *rates));
         }
         columns.extend(self.oscillation(shape, rates));
         columns
@@ -153,7 +163,7 @@ impl Series {
         let first = columns.len();
         columns.extend(self.slopes(point.shape, &point.rates, point.amplitudes()));
         if let Some(rest) = point.friction() {
-            let of_response = friction::slopes(self, point.rates);
+            let of_response = response::slopes(&self.means(), point.rates);
             for (column, slopes) in columns[first..].iter_mut().zip(&of_response) {
                 crate::signal::columns::subtract(column, -rest, slopes);
             }
@@ -260,7 +270,7 @@ impl Series {
         let mut point = self.project(Shape::Viscous, rates)?;
         for _ in 0..TURNS {
             let [omega, sigma, _, before] = point.rates;
-            let turn = friction::turning(&point, self.quantity);
+            let turn = response::turning(point.amplitudes(), &point.rates, self.quantity);
             let settled = point.shape == shape && (turn - before).abs() * omega < TURNED;
             if settled {
                 break;
@@ -321,6 +331,11 @@ fn phase(rates: &Rates, t: f64) -> f64 {
 }
 
 impl Point {
+    /// Complex amplitude at the first sample of the displacement whose derivative a fit describes.
+    pub(super) fn displacement(&self, quantity: MotionSignal) -> Complex<f64> {
+        response::displacement(self.amplitudes(), &self.rates, quantity)
+    }
+
     /// Factors of cosine and sine at the first sample.
     pub(super) fn amplitudes(&self) -> [f64; 2] {
         let count = self.linear.len();

@@ -10,21 +10,27 @@ mod blows;
 mod breaks;
 mod change;
 mod descent;
+mod fits;
 mod friction;
 mod hum;
 mod least_squares;
 mod modes;
+mod natural;
 mod noise;
 mod prepared;
+mod response;
 mod shape;
+mod watched;
 
 use hum::Cleared;
-use nalgebra::DMatrix;
-use prepared::Prepared;
-use shape::{Rates, Shape};
+use natural::{GROWS, Natural};
+use prepared::{LEAST_PERIODS, Prepared};
+use shape::Shape;
 
 pub use change::{Course, DampingLaw, Drift, LEAST_TESTED, PartOfDecay, RESOLVED};
-pub use friction::{BesideFriction, MotionSignal};
+pub use friction::BesideFriction;
+pub use prepared::Beside;
+pub use watched::{MotionSignal, Watched};
 
 /// A fitted free decay.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -80,23 +86,6 @@ pub struct Decay {
     pub stopped_s: Option<f64>,
 }
 
-/// What was measured beside a decay.
-#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Beside {
-    /// The strongest steady tone: frequency, Hz, and amplitude over that of the decay.
-    pub hum: Option<[f64; 2]>,
-    /// The strongest decay of another frequency, likewise.
-    pub mode: Option<[f64; 2]>,
-    /// Two decays that beat, which one does not explain: both frequencies, Hz, the stronger first, and the amplitude
-    /// of the weaker over that of the stronger. They are not fitted with it.
-    #[serde(default)]
-    pub beat: Option<[f64; 3]>,
-    /// Range of the polynomial under the decay over the decay's first amplitude; zero of an offset alone.
-    pub drift_ratio: f64,
-    /// How many times as wide noise at the decay's frequency makes the intervals as that at high frequencies.
-    pub slow_noise: f64,
-}
-
 impl Decay {
     /// The fitted decay at each of its samples, from the first fitted one on.
     pub fn values(&self, rate_hz: f64) -> Vec<f64> {
@@ -136,10 +125,6 @@ impl Decay {
     }
 }
 
-/// Fewest periods that a fit needs, until a mass sticks under dry friction too: one and a half, as far as they are known
-/// beforehand.
-const LEAST_PERIODS: f64 = 1.4;
-
 /// Fit the first free decay of the samples of one channel.
 ///
 /// ```
@@ -158,25 +143,6 @@ pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Decay> {
     fit_channels(&[Watched::displacement(samples)], rate_hz)
         .into_iter()
         .next()
-}
-
-/// The samples of a channel and what of the motion they are.
-#[derive(Debug, Clone, Copy)]
-pub struct Watched<'a> {
-    /// Samples.
-    pub values: &'a [f64],
-    /// What they are.
-    pub quantity: MotionSignal,
-}
-
-impl<'a> Watched<'a> {
-    /// Samples of a displacement, or of what is proportional to it.
-    pub fn displacement(values: &'a [f64]) -> Self {
-        Self {
-            values,
-            quantity: MotionSignal::Displacement,
-        }
-    }
 }
 
 /// Fit the free decays that several channels of equal length show, one after each blow or release: those of
@@ -232,51 +198,10 @@ fn of_motions(part: &Cleared<'_>, rate_hz: f64) -> Vec<Decay> {
     split.unwrap_or_else(|| of_part(part, rate_hz).into_iter().collect())
 }
 
-/// Decay that must stand out of the noise, in standard errors of its amplitude.
-const STANDS_OUT: f64 = 12.0;
 /// What a decay leaves, over itself, at most.
 const MOST_LEFT: f64 = 1.0;
-/// Growth, in standard errors of the rate, that no decay has.
-const GROWS: f64 = 3.5;
-
 /// Relative difference of the frequencies of motions of one oscillator, at most.
 const SAME: f64 = 0.02;
-
-/// f0, per sample, and β of a fit, with their standard errors.
-struct Natural {
-    frequency: f64,
-    frequency_error: f64,
-    damping_ratio: f64,
-    damping_ratio_error: f64,
-}
-
-impl Natural {
-    /// Of rates with their covariance.
-    fn of(rates: &Rates, covariance: &DMatrix<f64>) -> Self {
-        let [omega, sigma, ..] = *rates;
-        let natural = omega.hypot(sigma);
-        let error = |to: [f64; 2]| {
-            let variance = to[0] * to[0] * covariance[(0, 0)]
-                + 2.0 * to[0] * to[1] * covariance[(0, 1)]
-                + to[1] * to[1] * covariance[(1, 1)];
-            variance.max(0.0).sqrt()
-        };
-        let turn = std::f64::consts::TAU;
-        Self {
-            frequency: natural / turn,
-            frequency_error: error([omega / natural, sigma / natural]) / turn,
-            damping_ratio: sigma / natural,
-            damping_ratio_error: error(damping_slopes(rates)),
-        }
-    }
-}
-
-/// Slopes of β = σ/√(σ² + `ω_d²`) over `ω_d` and σ.
-fn damping_slopes(rates: &Rates) -> [f64; 2] {
-    let [omega, sigma, ..] = *rates;
-    let cubed = omega.hypot(sigma).powi(3);
-    [-sigma * omega / cubed, omega * omega / cubed]
-}
 
 /// The decay of a part of a record with one blow or release.
 fn of_part(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {

@@ -1,9 +1,9 @@
 //! What oscillates at other frequencies than a decay: hum, other modes.
 
-use super::friction::MotionSignal;
+use super::fits::{factor, free, means, peak, rough};
 use super::least_squares::{Point, Series};
-use super::prepared::{factor, free, means, peak, rough};
 use super::shape::{Rates, Shape};
+use super::watched::MotionSignal;
 use crate::signal::columns;
 
 /// Most oscillations of other frequencies that are taken from a record.

@@ -1,16 +1,14 @@
 //! A decay made ready for its fit: where it begins and ends, what lies under it, the noise about it.
 
+use super::fits::{digit, factor, fitted, free, laws, means, peak, rough};
 use super::hum::Cleared;
 use super::least_squares::{Point, Series};
 use super::modes::{self, Mode, STEADY};
 use super::noise::{Noise, structured};
 use super::shape::{Rates, Shape};
-use super::{LEAST_PERIODS, STANDS_OUT};
 use super::{beat, blows};
-use crate::signal::{robust, spectrum, whole};
+use crate::signal::{robust, whole};
 
-/// Means that a period is fitted by, at least, where it has as many samples.
-const PER_PERIOD: f64 = 40.0;
 /// Most means that are fitted.
 const MOST: usize = 20_000;
 /// Time constants of the decay after which it is lost.
@@ -25,10 +23,6 @@ const NO_NOISE: f64 = 3.0;
 const EXPLAINED: f64 = 0.8;
 /// How much more than the least may be left where a fit begins.
 const AS_LITTLE: f64 = 1.5;
-/// Periods and time constants from which a changing rate is told from a steady one.
-const TELLS: f64 = 1.8;
-/// Relative change of the frequency along a decay that is none of one.
-const OFF: f64 = 0.1;
 
 /// Time constants of the first motion after which another that lasts is looked for; its fit begins after one.
 const OVER: f64 = 3.0;
@@ -45,6 +39,29 @@ const EXPLAINS: f64 = 0.5;
 const LEAST_FREEDOM: usize = 8;
 /// Amplitude at the first sample over the greatest excursion, at most.
 const MOST_EXTRAPOLATED: f64 = 3.0;
+
+/// Fewest periods that a fit needs, until a mass sticks under dry friction too: one and a half, as far as they are known
+/// beforehand.
+pub(super) const LEAST_PERIODS: f64 = 1.4;
+/// Decay that must stand out of the noise, in standard errors of its amplitude.
+const STANDS_OUT: f64 = 12.0;
+
+/// What was measured beside a decay.
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Beside {
+    /// The strongest steady tone: frequency, Hz, and amplitude over that of the decay.
+    pub hum: Option<[f64; 2]>,
+    /// The strongest decay of another frequency, likewise.
+    pub mode: Option<[f64; 2]>,
+    /// Two decays that beat, which one does not explain: both frequencies, Hz, the stronger first, and the amplitude
+    /// of the weaker over that of the stronger. They are not fitted with it.
+    #[serde(default)]
+    pub beat: Option<[f64; 3]>,
+    /// Range of the polynomial under the decay over the decay's first amplitude; zero of an offset alone.
+    pub drift_ratio: f64,
+    /// How many times as wide noise at the decay's frequency makes the intervals as that at high frequencies.
+    pub slow_noise: f64,
+}
 
 /// A decay ready for its fit.
 pub(super) struct Prepared {
@@ -177,7 +194,7 @@ impl Prepared {
     }
 
     /// What lies beside a decay of an amplitude.
-    pub(super) fn beside(&self, amplitude: f64, rate_hz: f64) -> super::Beside {
+    pub(super) fn beside(&self, amplitude: f64, rate_hz: f64) -> Beside {
         let strongest = |steady: bool| {
             let of_kind = self.beside.iter().filter(|m| m.steady == steady);
             let found = of_kind.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
@@ -193,7 +210,7 @@ impl Prepared {
             let [strong, weak] = found.frequencies.map(|f| f * hz);
             [strong, weak, found.ratio]
         });
-        super::Beside {
+        Beside {
             hum: strongest(true),
             mode: strongest(false),
             beat,
@@ -240,92 +257,6 @@ fn overlapping(modes: &[Mode], [omega, sigma, ..]: Rates, series: &Series) -> Ve
         (own[0] - omega).abs() < APART * widest
     };
     rates.filter(near).collect()
-}
-
-/// Means over a number of samples each.
-pub(super) fn means(samples: &[f64], factor: usize) -> Vec<f64> {
-    samples.chunks_exact(factor).map(robust::mean).collect()
-}
-
-/// Samples of a mean for a frequency, rad per sample, so that no more than are fitted follow.
-pub(super) fn factor(omega: f64) -> usize {
-    let period = std::f64::consts::TAU / omega;
-    whole::index((period / PER_PERIOD).floor()).max(1)
-}
-
-/// The strongest frequency, rad per sample.
-pub(super) fn peak(samples: &[f64]) -> Option<f64> {
-    Some(spectrum::peak_frequency(samples)? * std::f64::consts::TAU)
-}
-
-/// `ω_d` and σ per sample by a search about a peak of the spectrum.
-pub(super) fn rough(samples: &[f64], peak: f64) -> Option<Rough> {
-    let periods = samples.len() as f64 * peak / std::f64::consts::TAU;
-    let factor = whole::index((std::f64::consts::TAU / peak / 16.0).floor()).max(1);
-    let series = Series::plain(means(samples, factor));
-    let wide: &[f64] = if periods > 8.0 {
-        &[1.0]
-    } else {
-        &[0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0]
-    };
-    let scaled = |omega: f64, beta: f64| -> Rates {
-        let per_mean = omega * factor as f64;
-        [per_mean, beta * per_mean, 0.0, 0.0]
-    };
-    let starts = wide.iter().flat_map(|w| {
-        let betas = [0.0, 0.003, 0.02, 0.06, 0.13, 0.25, 0.4, 0.55];
-        betas.map(|b| scaled(w * peak, b))
-    });
-    let mut points: Vec<Point> = starts
-        .filter_map(|rates| series.project(Shape::Viscous, rates))
-        .collect();
-    points.sort_by(|a, b| a.squares.total_cmp(&b.squares));
-    let found = points
-        .iter()
-        .take(3)
-        .filter_map(|p| series.descend(Shape::Viscous, p.rates))
-        .min_by(|a, b| a.squares.total_cmp(&b.squares))?;
-    let centre = robust::mean(&series.values);
-    let all: f64 = series.values.iter().map(|v| (v - centre).powi(2)).sum();
-    let [a, b] = found.amplitudes();
-    let count = series.values.len();
-    let free = count.saturating_sub(found.parameters()).max(1) as f64;
-    Some(Rough {
-        rates: [found.rates[0], found.rates[1]].map(|r| r / factor as f64),
-        amplitude: a.hypot(b),
-        explains: 1.0 - found.squares / all.max(f64::MIN_POSITIVE),
-        gain: (all - found.squares) * free / found.squares.max(f64::MIN_POSITIVE),
-        count,
-    })
-}
-
-/// A first estimate of a decay.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Rough {
-    /// `ω_d` and σ per sample.
-    pub(super) rates: [f64; 2],
-    /// Amplitude at the first sample.
-    pub(super) amplitude: f64,
-    /// Share of the samples' variance that it explains.
-    explains: f64,
-    /// Squares that it takes, in variances of what it leaves, of a number of values.
-    pub(super) gain: f64,
-    pub(super) count: usize,
-}
-
-/// A fit whose rates are free to change, of a decay that is long enough to tell; else the viscous one.
-pub(super) fn free(series: &Series, start: Rates) -> Option<Point> {
-    let viscous = series.descend(Shape::Viscous, start)?;
-    let [omega, sigma, ..] = viscous.rates;
-    let length = (series.values.len() as f64).min(2.0 / sigma.abs().max(f64::MIN_POSITIVE));
-    if length * omega / std::f64::consts::TAU <= TELLS {
-        return Some(viscous);
-    }
-    let bent = series.descend(Shape::Bent, viscous.rates).filter(|bent| {
-        let change = 0.5 * bent.rates[2] * length;
-        (bent.rates[0] / omega - 1.0).abs() < OFF && (change / omega).abs() < OFF
-    });
-    Some(bent.unwrap_or(viscous))
 }
 
 /// First sample and the first fit: later than the start by parts of a period while the first quarter of a
@@ -404,18 +335,6 @@ fn end(samples: &[f64], factor: usize, point: &Point) -> usize {
     samples.len().min(means * factor)
 }
 
-/// The least step between unlike values.
-pub(super) fn digit(samples: &[f64]) -> f64 {
-    let mut sorted = samples.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let least = 1e-12 * sorted.last().map_or(0.0, |l| l - sorted[0]);
-    let steps = sorted.windows(2).map(|w| w[1] - w[0]);
-    let least = steps.filter(|s| *s > least).fold(f64::INFINITY, f64::min);
-    if least.is_finite() { least } else { 0.0 }
-}
-
-/// Rounds in which the noise and the fit follow from each other.
-const ROUNDS: usize = 2;
 /// Highest degree of a background.
 const HIGHEST_DEGREE: usize = 3;
 
@@ -466,30 +385,4 @@ fn better(series: &mut Series, criterion: f64, bent: Point) -> Point {
     }
     *series = best.1;
     best.2
-}
-
-/// Fits of the laws of damping beside the viscous one.
-pub(super) fn laws(series: &Series, bent: &Point) -> Vec<Point> {
-    let [omega, sigma, ..] = bent.rates;
-    let fitted = |shape: Shape| {
-        let starts = [0.5, 0.05].map(|s| [omega, (1.0 - s) * sigma, 0.0, s * sigma]);
-        let fits = starts
-            .into_iter()
-            .filter_map(|rates| series.descend(shape, rates));
-        fits.min_by(|a, b| a.squares.total_cmp(&b.squares))
-    };
-    let laws = [Shape::Friction, Shape::Drag].into_iter();
-    laws.filter_map(fitted).collect()
-}
-
-/// The fit of a shape in the noise that is beside it.
-pub(super) fn fitted(series: &mut Series, shape: Shape, start: &Point) -> Option<Point> {
-    let mut point = series.descend(shape, start.rates)?;
-    for _ in 0..ROUNDS {
-        let residuals = series.residuals(&point);
-        let columns = series.columns(&point);
-        series.noise = Noise::fitted(&residuals, &columns);
-        point = series.descend(shape, point.rates)?;
-    }
-    Some(point)
 }

@@ -1,3 +1,8 @@
+//! Free decays, alone and beside what disturbs them.
+
+mod beat;
+mod friction;
+
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
