@@ -156,6 +156,39 @@ fn valid_contacts_of_two_milliseconds_are_impacts_and_those_of_ten_give_no_r() {
 }
 
 #[test]
+fn valid_a_gain_that_is_far_off_is_named_and_bends_nothing_else() {
+    let simulated = Simulated::of("realistic");
+    let truth = json(&simulated.path().join("rig/truth.json"));
+    for (scale, deviation) in [("0.24 m/s/V", 0.2), ("0.17 m/s/V", -0.15)] {
+        let found = simulated.found_with("campaign.toml", |text| {
+            let (before, x) = text.split_once("[channels.velocity_x]").expect("x");
+            let x = x.replacen("0.2 m/s/V", scale, 1);
+            format!("{before}[channels.velocity_x]{x}")
+        });
+        let suspicion = &found["suspicions"][0];
+        assert_eq!(first_suspicion(&found), "wrong_gain", "{found}");
+        assert_eq!(suspicion["channel"], "velocity_x");
+        let told = suspicion["deviation"].as_f64().expect("a deviation");
+        assert!((told - deviation).abs() < 0.01, "{told} of {deviation}");
+        let kinds = found["suspicions"].as_array().expect("a list").iter();
+        let kinds: Vec<&Value> = kinds.map(|s| &s["kind"]).collect();
+        assert!(!kinds.contains(&&Value::from("sides_unlike")), "{kinds:?}");
+        assert!(
+            !kinds.contains(&&Value::from("wrong_clearance")),
+            "{kinds:?}"
+        );
+        for parameter in ["restitution", "static_deflection_m"] {
+            let estimate = &found["joint"][parameter];
+            let (value, half) = (&estimate["value"], &estimate["interval95"]);
+            let off =
+                value.as_f64().expect("a value") - truth[parameter].as_f64().expect("a truth");
+            let width = half[1].as_f64().expect("an end") - half[0].as_f64().expect("an end");
+            assert!(off.abs() < 0.75 * width, "{parameter}: {estimate}");
+        }
+    }
+}
+
+#[test]
 fn valid_a_drive_that_is_later_than_stated_is_named_and_moved_back() {
     let simulated = Simulated::of("realistic");
     // the drive's samples are taken for later than they are: moved back by that, they are early

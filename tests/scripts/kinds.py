@@ -85,11 +85,16 @@ KINDS = {
     "single_acceleration": replace(
         ONE_MASS, about="one mass, acceleration without contact", roles=("drive", "acceleration_x"), bits=16
     ),
+    "single_gain": replace(
+        ONE_MASS, about="one mass against a stop, its gain off by 10 %", roles=("drive", "contact", "velocity_x"), gain_x=1.1
+    ),
     "clock_1": Kind("clock off by 50 ppm", clock=5e-5),
     "clock_10": Kind("clock off by 500 ppm", clock=5e-4),
     "clock_20": Kind("clock off by 0.1 %", clock=1e-3),
     "gain_1": Kind("a gain off by 0.5 %", gain_x=1.005),
     "gain_10": Kind("a gain off by 5 %", gain_x=1.05),
+    "gain_40": Kind("a gain off by 20 %", gain_x=1.2),
+    "gain_half": Kind("a gain off by half", gain_x=0.5),
     "gap_1": Kind("one clearance off by 0.01 mm", gap_off_m=1e-5),
     "gap_10": Kind("one clearance off by 0.1 mm", gap_off_m=1e-4),
     "late_1": Kind("velocity x late by half a sample", late_s=(("velocity_x", 2.5e-4),)),

@@ -34,7 +34,7 @@ impl Observed {
         let kept = BlockCache::none();
         let whole = campaign.records.len();
         let observations = observe::observe_in_chunks(campaign, &kept, whole, progress)?;
-        Self::from_observations(campaign, aligned(campaign, observations, progress)?)
+        Self::from_observations(campaign, observations, progress)
     }
 
     /// Observe all records of a campaign with checkpoints in `out`; with `resume` those of an
@@ -50,7 +50,7 @@ impl Observed {
         let kept = checkpoint::open(campaign, out, resume)?;
         let chunk = checkpoint::chunk_of(campaign.records.len());
         let observations = observe::observe_in_chunks(campaign, &kept, chunk, progress)?;
-        Self::from_observations(campaign, aligned(campaign, observations, progress)?)
+        Self::from_observations(campaign, observations, progress)
     }
 
     /// The channels that were found late, and whose samples were moved back.
@@ -70,14 +70,17 @@ impl Observed {
         }
     }
 
-    /// What was observed of a campaign's records, in their order, with the brackets in it.
+    /// What was observed of a campaign's records, in their order, with the brackets in it; observed again where
+    /// channels are late.
     ///
     /// # Errors
     /// [`PipelineError::NothingUsable`] where no record can be used.
     pub(super) fn from_observations(
         campaign: &ResolvedCampaign,
-        mut observations: Vec<Observation>,
+        observations: Vec<Observation>,
+        progress: Progress<'_>,
     ) -> Result<Self, PipelineError> {
+        let mut observations = aligned(campaign, observations, progress)?;
         scale_drives(&mut observations);
         if observations.iter().all(Observation::excluded) {
             let refused = observations.into_iter().zip(&campaign.records);

@@ -28,6 +28,9 @@ pub struct Nominal {
     pub static_deflection_m: Option<f64>,
     /// Standard uncertainty of the channels' gains, relative.
     pub gain_uncertainty: f64,
+    /// Gains that are left to the data, as all that is stated contradicts them, by their index: the logarithm of each over
+    /// the stated one, as far as it is known.
+    pub open_gains: [Option<f64>; CHANNELS],
     /// Standard uncertainty of the corners of the channels' high-pass, relative.
     pub corner_uncertainty: f64,
     /// Standard uncertainty of the sampler's clock, relative.

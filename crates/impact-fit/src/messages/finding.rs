@@ -38,6 +38,15 @@ pub enum Finding {
         /// How sure.
         z_score: f64,
     },
+    /// The gain of the only channel of motion is far off the stated one, or all clearances are.
+    GainOrClearances {
+        /// The channel.
+        channel: Role,
+        /// Relative deviation, positive where the channel reads too high.
+        deviation: f64,
+        /// How sure.
+        z_score: f64,
+    },
     /// One of the gains of two channels is off, the data do not tell which.
     GainsApart {
         /// The channels, the one that reads more first.
@@ -295,6 +304,7 @@ impl Finding {
             }
             Self::WrongClearance { .. }
             | Self::WrongGain { .. }
+            | Self::GainOrClearances { .. }
             | Self::GainsApart { .. }
             | Self::LateChannel { .. }
             | Self::UndeclaredLowPass { .. }
@@ -313,7 +323,7 @@ message_table! { "finding": Finding, key = template_key;
     Self::WrongClearance { stated_m, fitting_m, .. } =>
         stated_mm = millimetres(*stated_m),
         fitting_mm = millimetres(*fitting_m);
-    Self::WrongGain { channel, deviation, .. } =>
+    Self::WrongGain { channel, deviation, .. } | Self::GainOrClearances { channel, deviation, .. } =>
         channel = Value::Message(channel),
         key = Value::Name(channel.name()),
         share = Value::Percent(deviation.abs(), 1),

@@ -253,7 +253,7 @@ impl Blocks {
     }
 
     /// Gains of which any channel is measured.
-    fn gains(&self) -> impl Iterator<Item = Coordinate> {
+    pub fn gains(&self) -> impl Iterator<Item = Coordinate> {
         (0..CHANNELS)
             .filter(|i| self.sees(*i) || self.flight.has_gain(*i))
             .map(Coordinate::Gain)
@@ -277,10 +277,15 @@ impl Blocks {
         (free, priors): (&mut Vec<Coordinate>, &mut Vec<Prior>),
     ) {
         let touched = |c: &Coordinate| fitted.iter().any(|(block, _)| block.touches(*c));
-        let gain = nominal.gain_uncertainty.max(1e-6);
+        let gain = |coordinate: Coordinate| {
+            let open = coordinate.gain().and_then(|i| nominal.open_gains[i]);
+            let stated = [0.0, nominal.gain_uncertainty.max(1e-6)];
+            let [centre, deviation] = open.map_or(stated, |value| [value, value.abs()]);
+            Prior::new(coordinate, centre, deviation)
+        };
         let corner = nominal.corner_uncertainty.max(1e-6);
         let effects = nominal.effects.iter();
-        let all = (self.gains().map(|c| Prior::new(c, 0.0, gain)))
+        let all = (self.gains().map(gain))
             .chain(self.corners().map(|c| Prior::new(c, 0.0, corner)))
             .chain(self.delays(nominal))
             .chain(self.asymmetries(nominal))

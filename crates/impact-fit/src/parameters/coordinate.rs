@@ -128,6 +128,14 @@ impl Coordinate {
             .chain((0..MOST_GAPS).map(Self::Gap))
     }
 
+    /// The index of the channel whose gain it is.
+    pub fn gain(self) -> Option<usize> {
+        match self {
+            Self::Gain(index) => Some(index),
+            _ => None,
+        }
+    }
+
     /// Whether it is about what the laboratory states of its rig and instruments, if only as usual.
     pub fn is_stated(self) -> bool {
         match self {

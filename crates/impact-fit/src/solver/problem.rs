@@ -90,6 +90,8 @@ impl Precision {
 const FAR: f64 = 3.0;
 /// Share of its deviation to which such a prior is narrowed then.
 const NARROW: f64 = 0.1;
+/// Deviation of a prior that says next to nothing: of a logarithm a factor of e, of a clearance a millimetre.
+const OPEN: f64 = 1.0;
 /// Least orthogonal share of a column of slopes: differences do not resolve less.
 const LEAST_SHARE: f64 = 1e-8;
 
@@ -188,6 +190,24 @@ impl<'a> Problem<'a> {
             progress: self.progress.clone(),
             ..Self::default()
         })
+    }
+
+    /// The same with next to nothing known of a coordinate beforehand.
+    #[must_use]
+    pub fn without(&self, coordinate: Coordinate) -> Self {
+        let mut open = self.again(self.precision);
+        for prior in &mut open.priors {
+            if prior.coordinate == coordinate {
+                prior.deviation = OPEN;
+            }
+        }
+        open
+    }
+
+    /// The same problem, to be fitted again with a precision.
+    #[must_use]
+    pub fn again(&self, precision: Precision) -> Self {
+        self.over(self.free.clone()).with_precision(precision)
     }
 
     /// Whether what is stated of the rig and its instruments is far off at given parameters.

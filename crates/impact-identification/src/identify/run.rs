@@ -11,6 +11,7 @@ use crate::identify::diagnostics::clock;
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::doubt::{self, Suspicion};
 use crate::identify::diagnostics::late_channel;
+use crate::identify::diagnostics::refuted_gains::{self, OpenGains};
 use crate::identify::diagnostics::settling;
 use crate::identify::diagnostics::stated_clearances;
 use crate::identify::diagnostics::stated_frequencies;
@@ -62,28 +63,86 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
 /// The same where all filters are known.
 fn identify_as_stated(evidence: &Evidence<'_>) -> Identification {
     let begin = begun(evidence);
-    let curve = begin.1.as_ref().and_then(|r| r.as_ref().ok());
-    let curve = curve.map(|f| &f.fit.parameters);
-    if let Some(contradicted) = curve.and_then(|f| stated_clearances::contradicted(evidence, f)) {
-        return without_clearances(evidence, contradicted);
+    if let Some(contradicted) = contradicted_clearances(evidence, &begin) {
+        return match reconciled(evidence, &begin, &contradicted) {
+            Some(open) => with_open_gains(evidence, open),
+            None => without_clearances(evidence, contradicted),
+        };
     }
     let run = IdentificationRun::of(evidence, begin, evidence.nominal);
+    match run.refuted_gains() {
+        Some(open) => with_open_gains(evidence, open),
+        None => completed(run),
+    }
+}
+
+/// Identify with gains that are left to the data.
+fn with_open_gains(evidence: &Evidence<'_>, open: OpenGains) -> Identification {
+    let evidence = with_gains(evidence, open);
+    let run = IdentificationRun::of(&evidence, begun(&evidence), evidence.nominal);
+    completed(run)
+}
+
+fn with_gains<'a>(evidence: &Evidence<'a>, open_gains: OpenGains) -> Evidence<'a> {
+    let nominal = Nominal {
+        open_gains,
+        ..evidence.nominal
+    };
+    Evidence {
+        nominal,
+        ..*evidence
+    }
+}
+
+/// What the records of impacts contradict alike of the clearances, by the fit of the resonance curve.
+fn contradicted_clearances(evidence: &Evidence<'_>, begin: &Begin<'_>) -> Option<Finding> {
+    let (selection, curve) = begin;
+    let fitted = &curve.as_ref()?.as_ref().ok()?.fit.parameters;
+    let gains = refuted_gains::of_sides(&selection.blocks, fitted);
+    stated_clearances::contradicted(evidence, fitted, gains)
+}
+
+/// The one gain with which the clearances are contradicted no more.
+fn reconciled(
+    evidence: &Evidence<'_>,
+    (selection, curve): &Begin<'_>,
+    contradicted: &Finding,
+) -> Option<OpenGains> {
+    let curve = &curve.as_ref()?.as_ref().ok()?.fit.parameters;
+    let tried = refuted_gains::in_place_of(contradicted, &selection.blocks, curve);
+    let reconciles = |open: &OpenGains| {
+        let evidence = with_gains(evidence, *open);
+        let begin = begun(&evidence);
+        matches!(begin.1, Some(Ok(_))) && contradicted_clearances(&evidence, &begin).is_none()
+    };
+    let mut reconciling = tried.into_iter().filter(reconciles);
+    reconciling.next().filter(|_| reconciling.next().is_none())
+}
+
+/// The identification by all fits, with masses that are not as stated left to the data.
+fn completed(mut run: IdentificationRun<'_>) -> Identification {
+    run.without_contradictions();
     let Some(masses) = run.other_masses() else {
         return run.identification();
     };
     let nominal = Nominal {
         mass_asymmetry: Some(masses),
-        ..evidence.nominal
+        ..run.evidence.nominal
     };
     let other = Evidence {
         nominal,
-        ..*evidence
+        ..*run.evidence
     };
-    IdentificationRun::of(&other, begun(&other), evidence.nominal).identification()
+    let mut again = IdentificationRun::of(&other, begun(&other), run.stated);
+    again.without_contradictions();
+    again.identification()
 }
 
+/// What an identification begins with: everything that may be used, and the fit of the resonance curve.
+type Begin<'a> = (Selection<'a>, Option<FitResult>);
+
 /// Everything that may be used, with the fit of the resonance curve, from which all others start.
-fn begun<'a>(evidence: &'a Evidence<'a>) -> (Selection<'a>, Option<FitResult>) {
+fn begun<'a>(evidence: &'a Evidence<'a>) -> Begin<'a> {
     let mut selection = Selection::new(evidence);
     let resonance = selection.fit_resonance();
     (selection, resonance)
@@ -146,12 +205,8 @@ struct IdentificationRun<'a> {
 }
 
 impl<'a> IdentificationRun<'a> {
-    /// All fits, without what contradicts the others.
-    fn of(
-        evidence: &'a Evidence<'a>,
-        (selection, resonance): (Selection<'a>, Option<FitResult>),
-        stated: Nominal,
-    ) -> Self {
+    /// All fits.
+    fn of(evidence: &'a Evidence<'a>, (selection, resonance): Begin<'a>, stated: Nominal) -> Self {
         let mut run = Self {
             evidence,
             stated,
@@ -160,11 +215,21 @@ impl<'a> IdentificationRun<'a> {
             odd_gaps: Vec::new(),
         };
         run.fit();
-        run.without_odd_gaps();
-        run.with_contacts_over_speed();
-        run.without_straining();
-        run.without_influential();
         run
+    }
+
+    /// Fit again without what contradicts the others.
+    fn without_contradictions(&mut self) {
+        self.without_odd_gaps();
+        self.with_contacts_over_speed();
+        self.without_straining();
+        self.without_influential();
+    }
+
+    /// The gains that all data refute; `None` where another statement of the rig is wrong, or none is.
+    fn refuted_gains(&self) -> Option<OpenGains> {
+        let joint = self.found.together()?;
+        refuted_gains::refuted(&self.problem(self.found.start())?, joint)
     }
 
     /// The difference of the masses, with its standard uncertainty, where it is so far off what is stated or assumed
@@ -541,7 +606,8 @@ impl<'a> IdentificationRun<'a> {
         let stated = self.selection.blocks.asymmetries(&self.stated);
         found.extend(suspicion::sides(&joint.fit, &Vec::from_iter(stated)));
         let mut found: Vec<Suspicion> = found.into_iter().map(Suspicion::from).collect();
-        found.extend(wrong_gains::wrong_gain(joint, nominal.gain_uncertainty));
+        found.extend(wrong_gains::open(joint, nominal));
+        found.extend(wrong_gains::wrong_gain(joint, nominal));
         found
     }
 

@@ -35,7 +35,8 @@ struct Told {
 }
 
 /// The channels that are later than the earliest of all, of which the contact is one, by more than the
-/// detection of impacts bears, or whose jumps take longer than the contact is closed.
+/// detection of impacts bears, or whose jumps take longer than the contact is closed; and one that is earlier than the
+/// contact and another, which agree.
 pub fn late_channels(observations: &[Observation]) -> Vec<LateChannel> {
     let usable = observations.iter().filter(|o| !o.excluded());
     let all: Vec<(&Observation, &ChannelLag)> = usable
@@ -52,11 +53,14 @@ pub fn late_channels(observations: &[Observation]) -> Vec<LateChannel> {
         told(role, &same.collect::<Vec<_>>())
     };
     let told: Vec<Told> = roles.into_iter().filter_map(of).collect();
-    let of_contact = if by_contact { 0.0 } else { f64::INFINITY };
-    let earliest_s = told.iter().map(|t| t.lag_s).fold(of_contact, f64::min);
+    let reference_s = if by_contact {
+        beside_contact(&told)
+    } else {
+        earliest(&told)
+    };
     let late = told.into_iter().filter_map(|t| {
-        let late_s = t.lag_s - earliest_s;
-        let noticed = late_s > UNNOTICED * t.uncertain_s;
+        let late_s = t.lag_s - reference_s;
+        let noticed = late_s.abs() > UNNOTICED * t.uncertain_s;
         let delay_s = match t.low_pass {
             // without a contact nothing tells the delay of what all channels have passed
             Some(filter) if by_contact => late_s - filter.delay_s(),
@@ -68,6 +72,22 @@ pub fn late_channels(observations: &[Observation]) -> Vec<LateChannel> {
         })
     });
     late.collect()
+}
+
+/// The lag of the earliest channel.
+fn earliest(told: &[Told]) -> f64 {
+    told.iter().map(|t| t.lag_s).fold(f64::INFINITY, f64::min)
+}
+
+/// The lag that channels on time have behind the contact: none, unless all that are told are earlier, so that the contact is
+/// the late one.
+fn beside_contact(told: &[Told]) -> f64 {
+    let on_time = |t: &Told| t.lag_s.abs() <= UNNOTICED * t.uncertain_s;
+    if told.iter().any(on_time) {
+        0.0
+    } else {
+        earliest(told).min(0.0)
+    }
 }
 
 /// The corner of a low-pass of one pole, Hz, behind which jumps take as long as behind one of more poles whose corner
@@ -157,6 +177,8 @@ mod tests {
         assert_eq!(late([0.5, 0.4], true), []);
         // the contact is the late one
         assert_eq!(late([-2.0, -2.0], true), []);
+        // x is early: the contact and y agree
+        assert_eq!(late([-3.0, 0.1], true), [x(-3e-3)]);
         // without a contact: y behind x
         let [y] = late([0.0, 1.5], false)[..] else {
             panic!("one channel is late");

@@ -306,7 +306,8 @@ impl Watcher {
         };
         adjust(&mut campaign.report)?;
         let observations = self.kept.observations(&campaign);
-        let Ok(observed) = Observed::from_observations(&campaign, observations) else {
+        let unseen: Progress<'_> = &|_, _, _| ();
+        let Ok(observed) = Observed::from_observations(&campaign, observations, unseen) else {
             return Ok(None);
         };
         let (live, identified) = Live::of(campaign, observed, self.meter)?;
@@ -330,7 +331,8 @@ impl Watcher {
         progress: Progress<'_>,
     ) -> Result<Completed, PipelineError> {
         self.kept.observe(campaign, Stamp::of);
-        let observed = Observed::from_observations(campaign, self.kept.observations(campaign))?;
+        let observations = self.kept.observations(campaign);
+        let observed = Observed::from_observations(campaign, observations, progress)?;
         let found = self.last.take();
         let found = found.filter(|live| live.is_of(campaign, &observed));
         let found = match found {

@@ -10,6 +10,7 @@ pub mod contradicting_gap;
 pub mod doubt;
 pub mod late_channel;
 pub mod missing;
+pub mod refuted_gains;
 pub mod settling;
 pub mod stated_clearances;
 pub mod stated_frequencies;

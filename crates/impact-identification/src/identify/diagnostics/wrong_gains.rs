@@ -9,6 +9,7 @@
 use nalgebra::DMatrix;
 
 use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
+use impact_fit::evidence::Nominal;
 use impact_fit::messages::{Finding, Note};
 use impact_fit::method_fit::MethodFit;
 use impact_fit::parameters::{Coordinate, GAIN_ROLES};
@@ -42,10 +43,61 @@ impl Candidate {
     }
 }
 
-/// The gain that is off, of standard uncertainty `stated`, with what it leaves open.
-pub fn wrong_gain(found: &MethodFit, stated: f64) -> Option<Suspicion> {
+/// The gains that are left to the data, with what they leave open: without another channel of motion, a gain and the
+/// clearances are two lengths of which the data tell the ratio alone.
+pub fn open(found: &MethodFit, nominal: &Nominal) -> Option<Suspicion> {
+    let gains = found.fit.free.iter();
+    let gains: Vec<usize> = gains.filter_map(|c| c.gain()).collect();
+    let mut open: Vec<(Role, f64)> = gains
+        .iter()
+        .filter(|index| nominal.open_gains[**index].is_some())
+        .map(|index| {
+            (
+                GAIN_ROLES[*index],
+                found.fit.parameters.coordinate(Coordinate::Gain(*index)),
+            )
+        })
+        .collect();
+    open.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let z_score = |off: f64| off / nominal.gain_uncertainty.max(f64::MIN_POSITIVE);
+    let [(channel, off)] = open[..] else {
+        let (high, low) = (open.first()?, open.last()?);
+        let apart = high.1 - low.1;
+        return Some(Suspicion::from(Finding::GainsApart {
+            channels: [high.0, low.0],
+            deviation: apart.exp_m1(),
+            z_score: z_score(apart),
+        }));
+    };
+    let (deviation, z_score) = (off.exp_m1(), z_score(off));
+    if gains.len() > 1 {
+        return Some(Suspicion::from(Finding::WrongGain {
+            channel,
+            deviation,
+            z_score,
+        }));
+    }
+    let doubt = Doubt::material(
+        found,
+        Coordinate::Deflection,
+        off.abs(),
+        Note::InstrumentOff,
+    );
+    Some(Suspicion {
+        finding: Finding::GainOrClearances {
+            channel,
+            deviation,
+            z_score,
+        },
+        doubts: Vec::from_iter(doubt),
+    })
+}
+
+/// The gain that is off of those that are as stated but for their uncertainty, with what it leaves open.
+pub fn wrong_gain(found: &MethodFit, nominal: &Nominal) -> Option<Suspicion> {
+    let stated = nominal.gain_uncertainty;
     let covariance = &found.fit.covariance * found.factor;
-    let mut candidates: Vec<Candidate> = candidates(found, &covariance, stated);
+    let mut candidates: Vec<Candidate> = candidates(found, &covariance, nominal);
     candidates.sort_by(|a, b| b.z_score.abs().total_cmp(&a.z_score.abs()));
     let worst = *candidates.first().filter(|c| c.z_score.abs() > SURE)?;
     let also = candidates.get(1).copied();
@@ -87,12 +139,14 @@ fn apart(pair: [Candidate; 2], stated: f64) -> Finding {
     }
 }
 
-fn candidates(found: &MethodFit, covariance: &DMatrix<f64>, stated: f64) -> Vec<Candidate> {
+fn candidates(found: &MethodFit, covariance: &DMatrix<f64>, nominal: &Nominal) -> Vec<Candidate> {
+    let stated = nominal.gain_uncertainty;
     let places = found.fit.free.iter().enumerate();
     let of = |(place, coordinate): (usize, &Coordinate)| {
-        let Coordinate::Gain(index) = *coordinate else {
+        let index = coordinate.gain()?;
+        if nominal.open_gains[index].is_some() {
             return None;
-        };
+        }
         let told = stated.powi(2) - covariance[(place, place)];
         if told < INFORMED * stated.powi(2) {
             return None;
@@ -118,6 +172,13 @@ mod tests {
     use impact_fit::statistics::scatter::Scatter;
 
     const STATED: f64 = 5e-3;
+
+    fn stated() -> Nominal {
+        Nominal {
+            gain_uncertainty: STATED,
+            ..Nominal::default()
+        }
+    }
 
     /// A fit of `x_st` and gains that are off by `true_errors`, of which the data know each one's sum with
     /// ln `x_st` within 1e-4, and `x_st` itself not at all.
@@ -162,7 +223,7 @@ mod tests {
 
     #[test]
     fn of_two_gains_the_data_do_not_tell_which_is_off() {
-        let suspicion = wrong_gain(&found(&[0.05, 0.0]), STATED).expect("a suspicion");
+        let suspicion = wrong_gain(&found(&[0.05, 0.0]), &stated()).expect("a suspicion");
         let Finding::GainsApart {
             channels,
             deviation,
@@ -183,7 +244,7 @@ mod tests {
 
     #[test]
     fn of_three_gains_the_one_that_is_off_is_named() {
-        let suspicion = wrong_gain(&found(&[0.0, -0.05, 0.0]), STATED).expect("a suspicion");
+        let suspicion = wrong_gain(&found(&[0.0, -0.05, 0.0]), &stated()).expect("a suspicion");
         let Finding::WrongGain {
             channel, deviation, ..
         } = suspicion.finding
@@ -196,8 +257,8 @@ mod tests {
 
     #[test]
     fn gains_within_what_is_stated_and_what_all_have_in_common_are_not_named() {
-        assert!(wrong_gain(&found(&[0.005, 0.0]), STATED).is_none());
-        assert!(wrong_gain(&found(&[0.008, -0.006, 0.003]), STATED).is_none());
-        assert!(wrong_gain(&found(&[0.05, 0.05]), STATED).is_none());
+        assert!(wrong_gain(&found(&[0.005, 0.0]), &stated()).is_none());
+        assert!(wrong_gain(&found(&[0.008, -0.006, 0.003]), &stated()).is_none());
+        assert!(wrong_gain(&found(&[0.05, 0.05]), &stated()).is_none());
     }
 }

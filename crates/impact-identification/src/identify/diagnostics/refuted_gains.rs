@@ -1,0 +1,117 @@
+//! A gain so far off its stated value that everything else stated of the rig would bend to it.
+//!
+//! A wrong gain of one channel looks like unlike masses, springs and drives, and like clearances that are off, each of which
+//! has a prior: a fit that keeps all of them spreads the error over all. Which single statement is wrong is decided by
+//! leaving each of them in turn to the data: the one without which the least squares fall most is, if they fall beyond chance and
+//! no other does as well.
+
+use impact_fit::messages::Finding;
+use impact_fit::method_fit::MethodFit;
+use impact_fit::methods::blocks::Blocks;
+use impact_fit::parameters::{CHANNELS, Coordinate, GAIN_ROLES, Parameters, gain_index};
+use impact_fit::solver::{Precision, Problem};
+use impact_records::record::Role;
+
+/// Gains that are left to the data, by their index: the logarithm of each over the stated one, as far as it is known.
+pub type OpenGains = [Option<f64>; CHANNELS];
+
+/// Fall of the squares, in variances, from which a statement is refuted: five standard deviations, of some twenty statements.
+const REFUTED: f64 = 25.0;
+/// Difference of the squares below which the data do not tell which statement is wrong: three standard deviations.
+const TOLD: f64 = 9.0;
+
+/// Difference of the responses of both sides, as a logarithm, that is none of sides that were made alike: four times the
+/// 5 % that their drives may differ by.
+const UNLIKE: f64 = 0.2;
+
+/// A fit without one of the statements.
+struct Without {
+    coordinate: Coordinate,
+    /// Its value in that fit.
+    value: f64,
+    /// The least squares.
+    squares: f64,
+}
+
+/// The gains that all data refute, by the joint fit with all statements; `None` where another statement is wrong, or none is.
+pub fn refuted(problem: &Problem<'_>, found: &MethodFit) -> Option<OpenGains> {
+    let at = found.fit.parameters;
+    if !problem.strained(&at) {
+        return None;
+    }
+    let with_all = fitted(problem, at)?.0;
+    let stated = problem.priors.iter().map(|p| p.coordinate);
+    let mut each: Vec<Without> = stated
+        .filter(|coordinate| coordinate.is_stated())
+        .filter_map(|coordinate| {
+            let (squares, parameters) = fitted(&problem.without(coordinate), at)?;
+            Some(Without {
+                coordinate,
+                value: parameters.coordinate(coordinate),
+                squares,
+            })
+        })
+        .collect();
+    each.sort_by(|a, b| a.squares.total_cmp(&b.squares));
+    let best = each.first()?.squares;
+    let variance = found.factor.max(1.0);
+    if with_all - best < REFUTED * variance {
+        return None;
+    }
+    let mut open = OpenGains::default();
+    for without in each.iter().filter(|w| w.squares - best < TOLD * variance) {
+        match without.coordinate {
+            Coordinate::Gain(index) => open[index] = Some(without.value),
+            // one clearance alone is a length as a gain is: what reads both is not told
+            Coordinate::Gap(_) | Coordinate::ScrewZero => (),
+            _ => return None,
+        }
+    }
+    open.iter().any(Option::is_some).then_some(open)
+}
+
+/// Each gain that by itself may explain that all clearances seem to be off alike: of several the one of a side whose responses
+/// differ from those of the other more than sides do that were made alike, or the only one.
+pub fn in_place_of(clearances: &Finding, blocks: &Blocks, curve: &Parameters) -> Vec<OpenGains> {
+    let gains: Vec<usize> = blocks.gains().filter_map(Coordinate::gain).collect();
+    let open = |index: usize, value: f64| {
+        let mut open = OpenGains::default();
+        open[index] = Some(value);
+        open
+    };
+    match (&gains[..], clearances) {
+        // speeds and clearances are read alike
+        ([only], Finding::ClearancesOffAlike { ratio, .. }) => vec![open(*only, ratio.ln())],
+        (_, _) if curve.drive_asymmetry.abs() < UNLIKE => Vec::new(),
+        (several, _) => {
+            let of_x = |index: usize| SIDES[0].contains(&GAIN_ROLES[index]);
+            let sign = |index: usize| if of_x(index) { 1.0 } else { -1.0 };
+            let each = several.iter();
+            each.map(|i| open(*i, sign(*i) * curve.drive_asymmetry))
+                .collect()
+        }
+    }
+}
+
+/// The channels of the motion of each mass, those first by which the speeds at impacts are known best.
+const SIDES: [[Role; 3]; 2] = [
+    [Role::VelocityX, Role::DisplacementX, Role::AccelerationX],
+    [Role::VelocityY, Role::DisplacementY, Role::AccelerationY],
+];
+
+/// The gains over the stated ones by which the speeds of both masses at impacts are read.
+pub fn of_sides(blocks: &Blocks, fitted: &Parameters) -> [f64; 2] {
+    let present: Vec<usize> = blocks.gains().filter_map(Coordinate::gain).collect();
+    SIDES.map(|roles| {
+        let mut channels = roles.into_iter().filter_map(gain_index);
+        let channel = channels.find(|index| present.contains(index));
+        channel.map_or(1.0, |index| fitted.gains[index])
+    })
+}
+
+/// The least squares of a problem near parameters, and where they are.
+fn fitted(problem: &Problem<'_>, near: Parameters) -> Option<(f64, Parameters)> {
+    let rough = problem.again(Precision::Start);
+    let found = rough.fit_from_both_ends(near).ok()?;
+    Some((found.cost, found.parameters))
+}
