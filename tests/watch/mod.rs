@@ -111,6 +111,41 @@ fn run_instead(lab: &Lab, options: &[&str]) -> (i32, BTreeMap<String, Vec<u8>>) 
     (ran.code, files(&lab.path("out")))
 }
 
+/// End a watch, and compare what it leaves with what a run does; gives what it said.
+fn end_as_a_run(lab: &Lab, watch: Child, options: &[&str]) -> String {
+    let (code, said) = end(watch);
+    let found = files(&lab.path("out"));
+    let (expected_code, expected) = run_instead(lab, options);
+    assert_eq!(code, Some(expected_code), "{said}");
+    let names = |files: &BTreeMap<String, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&found), names(&expected));
+    for (name, bytes) in &found {
+        assert!(bytes == &expected[name], "{name} differs");
+    }
+    said
+}
+
+#[test]
+fn a_late_channel_is_moved_back_while_records_arrive_as_by_a_run() {
+    let arriving = Arriving::new(12);
+    let lab = &arriving.lab;
+    let text = lab.read("campaign.toml");
+    let x = "[channels.velocity_x]\n";
+    let late = text.replace(x, &format!("{x}delay = \"-3 ms\"\n"));
+    assert_ne!(late, text);
+    lab.write("campaign.toml", &late);
+    (0..12).for_each(|record| arriving.arrive(record));
+    let formats = ["--format", "html"];
+    let watch = arriving.start(&formats);
+    let identified = lab.path("out/identification.json");
+    wait_until("a fit is written", || identified.exists());
+    let live = lab.read("out/identification.json");
+    assert!(live.contains("\"late_channel\""), "{live}");
+    end_as_a_run(lab, watch, &formats);
+    let completed = lab.read("out/identification.json");
+    assert!(completed.contains("\"late_channel\""), "{completed}");
+}
+
 #[test]
 fn records_one_by_one_end_in_the_bytes_of_a_run() {
     let arriving = Arriving::new(12);
@@ -138,15 +173,7 @@ fn records_one_by_one_end_in_the_bytes_of_a_run() {
     arriving.list(11);
     std::thread::sleep(Duration::from_millis(500));
 
-    let (code, said) = end(watch);
-    let found = files(&lab.path("out"));
-    let (expected_code, expected) = run_instead(lab, &formats);
-    assert_eq!(code, Some(expected_code), "{said}");
-    let names = |files: &BTreeMap<String, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
-    assert_eq!(names(&found), names(&expected));
-    for (name, bytes) in &found {
-        assert!(bytes == &expected[name], "{name} differs");
-    }
+    let said = end_as_a_run(lab, watch, &formats);
     assert!(said.contains("most of R's uncertainty: "), "{said}");
     assert!(said.contains("measure next: "), "{said}");
     assert!(

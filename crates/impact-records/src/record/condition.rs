@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::{Channel, Flag, Problem, Record, Role};
+use super::{Channel, Excitation, Flag, Problem, Record, Role};
 use crate::signal::{columns, interpolation, robust, whole};
 
 /// Part of a channel's samples at the rail above which the record is left out.
@@ -117,11 +117,12 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
     }
     let mut flags = Vec::new();
     let rate_hz = record.sample_rate_hz;
+    let crests = Crests::of(record.setting.excitation);
     for (channel, range) in record.channels.iter().zip(ranges) {
         let span = Span::of(&channel.values);
         let found = not_numbers(channel)
             .or_else(|| dead(channel, &span, driven))
-            .or_else(|| clipped(channel, &span, (*range, rate_hz)));
+            .or_else(|| clipped(channel, (&span, crests), (*range, rate_hz)));
         // What is wrong with a frame's channel leaves no record out.
         flags.extend(found.map(|flag| Flag {
             excludes: flag.excludes && !channel.role.is_frame(),
@@ -302,7 +303,11 @@ fn dead(channel: &Channel, span: &Span, driven: bool) -> Option<Flag> {
 
 /// A channel that runs into the rails of its converter: at its greatest or least value it stays
 /// for three samples or more and got there by a step that no quantised crest makes.
-fn clipped(channel: &Channel, span: &Span, (range, rate_hz): (Option<f64>, f64)) -> Option<Flag> {
+fn clipped(
+    channel: &Channel,
+    (span, crests): (&Span, Crests),
+    (range, rate_hz): (Option<f64>, f64),
+) -> Option<Flag> {
     if channel.role == Role::Contact {
         return None;
     }
@@ -313,7 +318,7 @@ fn clipped(channel: &Channel, span: &Span, (range, rate_hz): (Option<f64>, f64))
     let spikes = spikes_at_rails(channel, (span, end), rate_hz);
     let all: usize = match end {
         Some(end) => channel.values.iter().filter(|v| v.abs() >= end).count(),
-        None => at_rails(channel, low, high, step),
+        None => at_rails(channel, span, crests),
     };
     let counted = spikes.iter().filter(|s| end.is_some() || s.len() >= 3);
     let count = all - counted.map(Range::len).sum::<usize>().min(all);
@@ -381,39 +386,54 @@ fn clipped_spikes(channel: &Channel, spikes: &[Range<usize>], stated: bool) -> O
 
 /// Number of samples at both rails. A mass that rests at its stop shows a plateau of displacement
 /// at one side, which is no rail, unless it leaves it as fast as it came.
-fn at_rails(channel: &Channel, low: f64, high: f64, step: f64) -> usize {
-    let rails = [low, high].map(|rail| at_rail(&channel.values, rail, step));
+fn at_rails(channel: &Channel, span: &Span, crests: Crests) -> usize {
+    let ends = [span.low, span.high];
+    let rails = ends.map(|rail| at_rail(&channel.values, rail, span.step));
     let displacement = matches!(channel.role, Role::DisplacementX | Role::DisplacementY);
-    if displacement && rails.contains(&0) && ![low, high].iter().any(|r| is_cut(channel, *r)) {
+    let is_cut = |rail: &f64| crests.are_cut(&channel.values, *rail);
+    if displacement && rails.contains(&0) && !ends.iter().any(is_cut) {
         0
     } else {
         rails[0] + rails[1]
     }
 }
 
-/// Number of samples in runs at a rail that were entered and left in motion, by more than a crest's
-/// steps. A body at rest is no rail: at zero, or before or after its motion.
-/// Crests from which an end of a range is seen.
-const CRESTS: usize = 3;
-/// Relative difference of the speeds before and after it.
-const SAME_SPEED: f64 = 0.05;
-
-/// Whether several crests are cut off at a value: the motion leaves it as fast as it came, which from a stop it does
-/// not.
-fn is_cut(channel: &Channel, rail: f64) -> bool {
-    let values = &channel.values;
-    let inner = runs(values, |v| v == rail)
-        .filter(|run| run.len() >= 3 && run.start >= 2 && run.end + 1 < values.len());
-    let ratio = |run: Range<usize>| {
-        let before = values[run.start - 1] - values[run.start - 2];
-        let after = values[run.end] - values[run.end + 1];
-        after / before
-    };
-    let ratios: Vec<f64> = inner.map(ratio).collect();
-    let enough = ratios.len() >= CRESTS;
-    enough && robust::median(&ratios).is_some_and(|ratio| (ratio - 1.0).abs() < SAME_SPEED)
+/// What shows that crests of a displacement are cut off at a value: the motion leaves it as fast as it came, which from a
+/// stop it does not.
+#[derive(Debug, Clone, Copy)]
+struct Crests {
+    fewest: usize,
+    /// Relative difference of the speeds before and after one.
+    alike: f64,
 }
 
+impl Crests {
+    /// Of a motion: in a free decay, where no stop is, one crest is enough, before which the mass was not held.
+    fn of(excitation: Excitation) -> Self {
+        let (fewest, alike) = match excitation {
+            Excitation::FreeDecay => (1, 0.5),
+            Excitation::Harmonic => (3, 0.05),
+        };
+        Self { fewest, alike }
+    }
+
+    /// Whether crests are cut off at a value.
+    fn are_cut(self, values: &[f64], rail: f64) -> bool {
+        let inner = runs(values, |v| v == rail)
+            .filter(|run| run.len() >= 3 && run.start >= 2 && run.end + 1 < values.len());
+        let ratio = |run: Range<usize>| {
+            let before = values[run.start - 1] - values[run.start - 2];
+            let after = values[run.end] - values[run.end + 1];
+            after / before
+        };
+        let ratios: Vec<f64> = inner.map(ratio).collect();
+        let same = |ratio: f64| (ratio - 1.0).abs() < self.alike;
+        ratios.len() >= self.fewest && robust::median(&ratios).is_some_and(same)
+    }
+}
+
+/// Number of samples in runs at a rail that were entered and left in motion, by more than a crest's
+/// steps. A body at rest is no rail: at zero, or before or after its motion.
 fn at_rail(values: &[f64], rail: f64, step: f64) -> usize {
     if rail == 0.0 {
         return 0;
@@ -630,6 +650,22 @@ mod tests {
         let mut record = Record::of(100.0, &[(Role::DisplacementX, &stop)]);
         inspect(&mut record, &[None], false);
         assert!(record.flags.iter().all(|f| f.code != FlagCode::Clipped));
+    }
+
+    #[test]
+    fn one_crest_of_a_free_decay_that_is_cut_off_is_named_and_a_mass_that_was_held_is_not() {
+        let flags = |values: Vec<f64>| {
+            let mut record = Record::of(100.0, &[(Role::DisplacementX, &values)]);
+            record.setting.excitation = Excitation::FreeDecay;
+            inspect(&mut record, &[None], false);
+            record.flags
+        };
+        let decay = |i: usize| (0.1 * i as f64).cos() * (-0.015 * i as f64).exp();
+        let cut = flags((0..1000).map(|i| decay(i).max(-0.5)).collect());
+        assert_eq!(cut[0].code, FlagCode::Clipped);
+        assert!(cut[0].excludes);
+        let held = |i: usize| decay(i.saturating_sub(200));
+        assert_eq!(flags((0..1000).map(held).collect()), []);
     }
 
     #[test]
