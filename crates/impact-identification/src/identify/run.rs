@@ -11,7 +11,7 @@ use crate::identify::diagnostics::clock;
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::doubt::{self, Suspicion};
 use crate::identify::diagnostics::late_channel;
-use crate::identify::diagnostics::refuted_gains::{self, OpenGains};
+use crate::identify::diagnostics::refuted_gains::{self, Opened};
 use crate::identify::diagnostics::settling;
 use crate::identify::diagnostics::stated_clearances;
 use crate::identify::diagnostics::stated_frequencies;
@@ -65,41 +65,21 @@ fn identify_as_stated(evidence: &Evidence<'_>) -> Identification {
     let begin = begun(evidence);
     if let Some(contradicted) = contradicted_clearances(evidence, &begin) {
         return match reconciled(evidence, &begin, &contradicted) {
-            Some(open) => with_open_gains(evidence, open),
+            Some(opened) => with_open_gains(&opened.evidence(evidence)),
             None => without_clearances(evidence, contradicted),
         };
     }
     let run = IdentificationRun::of(evidence, begin, evidence.nominal);
     match run.refuted_gains() {
-        Some(open) => with_open_gains(evidence, open),
+        Some(opened) => with_open_gains(&opened.evidence(evidence)),
         None => completed(run),
-    }
-}
-
-/// Identify with gains that are left to the data.
-fn with_open_gains(evidence: &Evidence<'_>, open: OpenGains) -> Identification {
-    let evidence = with_gains(evidence, open);
-    let run = IdentificationRun::of(&evidence, begun(&evidence), evidence.nominal);
-    completed(run)
-}
-
-fn with_gains<'a>(evidence: &Evidence<'a>, open_gains: OpenGains) -> Evidence<'a> {
-    let nominal = Nominal {
-        open_gains,
-        ..evidence.nominal
-    };
-    Evidence {
-        nominal,
-        ..*evidence
     }
 }
 
 /// What the records of impacts contradict alike of the clearances, by the fit of the resonance curve.
 fn contradicted_clearances(evidence: &Evidence<'_>, begin: &Begin<'_>) -> Option<Finding> {
-    let (selection, curve) = begin;
-    let fitted = &curve.as_ref()?.as_ref().ok()?.fit.parameters;
-    let gains = refuted_gains::of_sides(&selection.blocks, fitted);
-    stated_clearances::contradicted(evidence, fitted, gains)
+    let curve = begin.1.as_ref()?.as_ref().ok()?;
+    stated_clearances::contradicted(evidence, &curve.fit.parameters)
 }
 
 /// The one gain with which the clearances are contradicted no more.
@@ -107,16 +87,27 @@ fn reconciled(
     evidence: &Evidence<'_>,
     (selection, curve): &Begin<'_>,
     contradicted: &Finding,
-) -> Option<OpenGains> {
+) -> Option<Opened> {
     let curve = &curve.as_ref()?.as_ref().ok()?.fit.parameters;
-    let tried = refuted_gains::in_place_of(contradicted, &selection.blocks, curve);
-    let reconciles = |open: &OpenGains| {
-        let evidence = with_gains(evidence, *open);
+    let blocks = &selection.blocks;
+    let tried = refuted_gains::in_place_of(contradicted, blocks, curve).into_iter();
+    let reconciles = |opened: &Opened| {
+        let evidence = opened.evidence(evidence);
         let begin = begun(&evidence);
         matches!(begin.1, Some(Ok(_))) && contradicted_clearances(&evidence, &begin).is_none()
     };
-    let mut reconciling = tried.into_iter().filter(reconciles);
+    let opened = tried.map(|gains| Opened::of(evidence, blocks, gains));
+    let mut reconciling = opened.filter(reconciles);
     reconciling.next().filter(|_| reconciling.next().is_none())
+}
+
+/// The identification with gains that are left to the data.
+fn with_open_gains(evidence: &Evidence<'_>) -> Identification {
+    completed(IdentificationRun::of(
+        evidence,
+        begun(evidence),
+        evidence.nominal,
+    ))
 }
 
 /// The identification by all fits, with masses that are not as stated left to the data.
@@ -227,9 +218,10 @@ impl<'a> IdentificationRun<'a> {
     }
 
     /// The gains that all data refute; `None` where another statement of the rig is wrong, or none is.
-    fn refuted_gains(&self) -> Option<OpenGains> {
+    fn refuted_gains(&self) -> Option<Opened> {
         let joint = self.found.together()?;
-        refuted_gains::refuted(&self.problem(self.found.start())?, joint)
+        let gains = refuted_gains::refuted(&self.problem(self.found.start())?, joint)?;
+        Some(Opened::of(self.evidence, &self.selection.blocks, gains))
     }
 
     /// The difference of the masses, with its standard uncertainty, where it is so far off what is stated or assumed

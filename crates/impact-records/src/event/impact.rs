@@ -111,7 +111,57 @@ pub struct Lag {
     pub accelerations_m_s2: [f64; 2],
 }
 
+impl MassSpeeds {
+    fn over(self, gain: f64) -> Self {
+        Self {
+            before_m_s: self.before_m_s / gain,
+            after_m_s: self.after_m_s / gain,
+        }
+    }
+}
+
 impl Impact {
+    /// The same where the channels of both masses read so many times what they should.
+    ///
+    /// ```
+    /// # use impact_records::event::{DetectionSource, Impact, MassSpeeds};
+    /// # let of = |before_m_s, after_m_s| Some(MassSpeeds { before_m_s, after_m_s });
+    /// # let json = r#"{"time_s":0,"time_error_s":0,"dead_zone_s":0,"seen":"both"}"#;
+    /// # let impact: Impact = serde_json::from_str(json)?;
+    /// let read = Impact {
+    ///     approach_speed_before_m_s: Some(0.5),
+    ///     x: of(0.4, -0.2),
+    ///     y: of(0.1, -0.1),
+    ///     ..impact
+    /// };
+    /// // x reads twice its speed: it is 0.2 m/s
+    /// let right = read.over([2.0, 1.0]);
+    /// assert!((right.approach_speed_before_m_s.unwrap() - 0.3).abs() < 1e-12);
+    /// # Ok::<(), serde_json::Error>(())
+    /// ```
+    #[must_use]
+    pub fn over(&self, gains: [f64; 2]) -> Self {
+        let both = |speed: Option<f64>, of: fn(&MassSpeeds) -> f64| match (self.x, self.y) {
+            (Some(x), Some(y)) => {
+                let off = [of(&x), of(&y)]
+                    .into_iter()
+                    .zip(gains)
+                    .map(|(v, g)| v / g - v);
+                Some(speed? + off.sum::<f64>())
+            }
+            (Some(_), None) => Some(speed? / gains[0]),
+            (None, Some(_)) => Some(speed? / gains[1]),
+            (None, None) => speed,
+        };
+        Self {
+            approach_speed_before_m_s: both(self.approach_speed_before_m_s, |m| m.before_m_s),
+            approach_speed_after_m_s: both(self.approach_speed_after_m_s, |m| m.after_m_s),
+            x: self.x.map(|x| x.over(gains[0])),
+            y: self.y.map(|y| y.over(gains[1])),
+            ..self.clone()
+        }
+    }
+
     /// An impact of which nothing is known but its time and the standard error of that.
     pub(super) fn timed(time_s: f64, time_error_s: f64) -> Self {
         Self {

@@ -5,11 +5,13 @@
 //! leaving each of them in turn to the data: the one without which the least squares fall most is, if they fall beyond chance and
 //! no other does as well.
 
+use impact_fit::evidence::{Evidence, Nominal};
 use impact_fit::messages::Finding;
 use impact_fit::method_fit::MethodFit;
 use impact_fit::methods::blocks::Blocks;
 use impact_fit::parameters::{CHANNELS, Coordinate, GAIN_ROLES, Parameters, gain_index};
 use impact_fit::solver::{Precision, Problem};
+use impact_records::motion::Observation;
 use impact_records::record::Role;
 
 /// Gains that are left to the data, by their index: the logarithm of each over the stated one, as far as it is known.
@@ -99,14 +101,43 @@ const SIDES: [[Role; 3]; 2] = [
     [Role::VelocityY, Role::DisplacementY, Role::AccelerationY],
 ];
 
-/// The gains over the stated ones by which the speeds of both masses at impacts are read.
-pub fn of_sides(blocks: &Blocks, fitted: &Parameters) -> [f64; 2] {
-    let present: Vec<usize> = blocks.gains().filter_map(Coordinate::gain).collect();
-    SIDES.map(|roles| {
-        let mut channels = roles.into_iter().filter_map(gain_index);
-        let channel = channels.find(|index| present.contains(index));
-        channel.map_or(1.0, |index| fitted.gains[index])
-    })
+/// Observations whose speeds at impacts are read by gains that are left to the data.
+pub struct Opened {
+    observations: Vec<Observation>,
+    gains: OpenGains,
+}
+
+impl Opened {
+    /// The observations of some blocks as gains read them.
+    pub fn of(evidence: &Evidence<'_>, blocks: &Blocks, gains: OpenGains) -> Self {
+        let present: Vec<usize> = blocks.gains().filter_map(Coordinate::gain).collect();
+        let of_sides = SIDES.map(|roles| {
+            let mut channels = roles.into_iter().filter_map(gain_index);
+            let channel = channels.find(|index| present.contains(index));
+            channel.and_then(|index| gains[index]).map_or(1.0, f64::exp)
+        });
+        let mut observations = evidence.observations.to_vec();
+        for impact in observations.iter_mut().flat_map(|o| &mut o.impacts) {
+            *impact = impact.over(of_sides);
+        }
+        Self {
+            observations,
+            gains,
+        }
+    }
+
+    /// The same evidence with these, and the gains left to the data.
+    pub fn evidence<'a>(&'a self, of: &Evidence<'a>) -> Evidence<'a> {
+        let nominal = Nominal {
+            open_gains: self.gains,
+            ..of.nominal
+        };
+        Evidence {
+            observations: &self.observations,
+            nominal,
+            ..*of
+        }
+    }
 }
 
 /// The least squares of a problem near parameters, and where they are.

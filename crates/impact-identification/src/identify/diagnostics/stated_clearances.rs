@@ -30,14 +30,9 @@ const MOST: f64 = 0.8;
 /// Ratio of a clearance to a whole gap, and what contacts add to it at most.
 const HALF: [f64; 2] = [0.45, 0.65];
 
-/// That the stated clearances are all off alike, by fitted f0, β and `x_st`, and the gains by which the speeds of both masses
-/// are read.
-pub fn contradicted(
-    evidence: &Evidence<'_>,
-    fitted: &Parameters,
-    gains: [f64; 2],
-) -> Option<Finding> {
-    let flown_m = |o: &Observation| flown_m((evidence.rig, gains), o, fitted);
+/// That the stated clearances are all off alike, by fitted f0, β and `x_st`.
+pub fn contradicted(evidence: &Evidence<'_>, fitted: &Parameters) -> Option<Finding> {
+    let flown_m = |o: &Observation| flown_m(evidence.rig, o, fitted);
     let of = |o: &Observation| Some([o.setting.clearance_m?, flown_m(o)?]);
     let pairs: Vec<[f64; 2]> = evidence.observations.iter().filter_map(of).collect();
     Some(match (evidence.rig, found(&pairs)?) {
@@ -79,7 +74,7 @@ fn found(pairs: &[[f64; 2]]) -> Option<Finding> {
 }
 
 /// The clearance, m, as the flights of a record tell it.
-fn flown_m(read: (RigKind, [f64; 2]), o: &Observation, fitted: &Parameters) -> Option<f64> {
+fn flown_m(rig: RigKind, o: &Observation, fitted: &Parameters) -> Option<f64> {
     let drive = o.drive?;
     if o.excluded() || o.impacts.iter().any(|i| i.dead_zone_s > 0.0) {
         return None;
@@ -88,7 +83,7 @@ fn flown_m(read: (RigKind, [f64; 2]), o: &Observation, fitted: &Parameters) -> O
     let flights = o.impacts.windows(2);
     let clearances: Vec<f64> = flights
         .filter_map(|pair| {
-            let flight = Flight::between(read, &pair[0], &pair[1])?;
+            let flight = Flight::between(rig, &pair[0], &pair[1])?;
             flight.clearance(fitted, drive.frequency_hz, length_m)
         })
         .collect();
@@ -105,23 +100,15 @@ struct Flight {
 }
 
 impl Flight {
-    fn between((rig, gains): (RigKind, [f64; 2]), from: &Impact, to: &Impact) -> Option<Self> {
+    fn between(rig: RigKind, from: &Impact, to: &Impact) -> Option<Self> {
         let masses = match rig {
             RigKind::Double => 2.0,
             RigKind::Single => 1.0,
         };
-        let read = from.approach_speed_after_m_s?;
-        let each = [&from.x, &from.y].map(|mass| mass.as_ref().map(|m| m.after_m_s));
-        let together = match each {
-            [Some(x), Some(y)] => x / gains[0] + y / gains[1],
-            [Some(_), None] => read / gains[0],
-            [None, Some(_)] => read / gains[1],
-            [None, None] => read,
-        };
         Some(Self {
             duration_s: to.time_s - from.time_s,
             phase_rad: from.drive_phase_rad?,
-            speed_m_s: together / masses,
+            speed_m_s: from.approach_speed_after_m_s? / masses,
         })
     }
 

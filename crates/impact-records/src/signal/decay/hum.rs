@@ -168,7 +168,7 @@ fn is_apart(tone: &Mode, (other, amplitude): ([f64; 2], f64), count: usize) -> b
     let near =
         |k: f64| (tone.rates[0] - k * other[0]).abs() <= modes::width(tone.rates, count as f64);
     let most = 4.0 * amplitude / (std::f64::consts::PI * number * (number * number - 1.0));
-    !near(1.0) && !(near(number) && tone.amplitude <= most)
+    !(near(1.0) || near(number) && tone.amplitude <= most)
 }
 
 /// Whether a decay of a greater amplitude than that of tones is among samples.
