@@ -15,6 +15,9 @@ use crate::solver::FitProgress;
 use impact_records::event::{FlightKind, RigKind};
 use impact_records::motion::{Bracket, Observation};
 
+/// Gains that are left to the data, by their index: the logarithm of each over the stated one, as far as it is known.
+pub type OpenGains = [Option<f64>; CHANNELS];
+
 /// What the laboratory states about its rig.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Nominal {
@@ -28,9 +31,8 @@ pub struct Nominal {
     pub static_deflection_m: Option<f64>,
     /// Standard uncertainty of the channels' gains, relative.
     pub gain_uncertainty: f64,
-    /// Gains that are left to the data, as all that is stated contradicts them, by their index: the logarithm of each over
-    /// the stated one, as far as it is known.
-    pub open_gains: [Option<f64>; CHANNELS],
+    /// Gains that are left to the data, as all that is stated contradicts them.
+    pub open_gains: OpenGains,
     /// Standard uncertainty of the corners of the channels' high-pass, relative.
     pub corner_uncertainty: f64,
     /// Standard uncertainty of the sampler's clock, relative.

@@ -183,31 +183,31 @@ impl<'a> Problem<'a> {
                 *p
             }
         };
-        Some(Self {
-            blocks: self.blocks.clone(),
-            priors: self.priors.iter().map(narrowed).collect(),
-            free: self.free.clone(),
-            progress: self.progress.clone(),
-            ..Self::default()
-        })
+        Some(self.with_priors(narrowed))
     }
 
     /// The same with next to nothing known of a coordinate beforehand.
     #[must_use]
     pub fn without(&self, coordinate: Coordinate) -> Self {
-        let mut open = self.again(self.precision);
-        for prior in &mut open.priors {
-            if prior.coordinate == coordinate {
-                prior.deviation = OPEN;
+        self.with_priors(|p| {
+            if p.coordinate == coordinate {
+                Prior::new(coordinate, p.centre, OPEN)
+            } else {
+                *p
             }
-        }
-        open
+        })
     }
 
-    /// The same problem, to be fitted again with a precision.
-    #[must_use]
-    pub fn again(&self, precision: Precision) -> Self {
-        self.over(self.free.clone()).with_precision(precision)
+    /// The same with each prior changed.
+    fn with_priors(&self, changed: impl Fn(&Prior) -> Prior) -> Self {
+        Self {
+            blocks: self.blocks.clone(),
+            priors: self.priors.iter().map(changed).collect(),
+            free: self.free.clone(),
+            progress: self.progress.clone(),
+            precision: self.precision,
+            ..Self::default()
+        }
     }
 
     /// Whether what is stated of the rig and its instruments is far off at given parameters.

@@ -220,7 +220,7 @@ impl<'a> IdentificationRun<'a> {
     /// The gains that all data refute; `None` where another statement of the rig is wrong, or none is.
     fn refuted_gains(&self) -> Option<Opened> {
         let joint = self.found.together()?;
-        let gains = refuted_gains::refuted(&self.problem(self.found.start())?, joint)?;
+        let gains = refuted_gains::refuted(self.problem(self.found.start())?, joint)?;
         Some(Opened::of(self.evidence, &self.selection.blocks, gains))
     }
 

@@ -50,8 +50,7 @@ fn roughness(impacts: &[Impact]) -> f64 {
         .iter()
         .filter_map(|i| i.approach_speed_before_m_s)
         .collect();
-    let mean = crate::signal::robust::mean(&speeds);
-    let variance: f64 = speeds.iter().map(|v| (v - mean).powi(2)).sum();
+    let variance = crate::signal::robust::squares_about_mean(&speeds);
     let steps: f64 = speeds.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
     if variance > 0.0 {
         steps / variance

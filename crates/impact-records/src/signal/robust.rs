@@ -83,6 +83,12 @@ pub fn mean(values: &[f64]) -> f64 {
     sum(values) / values.len() as f64
 }
 
+/// Sum of the squares about the mean.
+pub fn squares_about_mean(values: &[f64]) -> f64 {
+    let centre = mean(values);
+    values.iter().map(|v| (v - centre).powi(2)).sum()
+}
+
 /// Root mean square; zero for an empty slice.
 pub fn rms(values: &[f64]) -> f64 {
     if values.is_empty() {

@@ -307,8 +307,10 @@ impl Watcher {
         adjust(&mut campaign.report)?;
         let observations = self.kept.observations(&campaign);
         let unseen: Progress<'_> = &|_, _, _| ();
-        let Ok(observed) = Observed::from_observations(&campaign, observations, unseen) else {
-            return Ok(None);
+        let observed = match Observed::from_observations(&campaign, observations, unseen) {
+            Ok(observed) => observed,
+            Err(PipelineError::NothingUsable(_)) => return Ok(None),
+            Err(error) => return Err(error.into()),
         };
         let (live, identified) = Live::of(campaign, observed, self.meter)?;
         then(&live)?;

@@ -5,17 +5,14 @@
 //! leaving each of them in turn to the data: the one without which the least squares fall most is, if they fall beyond chance and
 //! no other does as well.
 
-use impact_fit::evidence::{Evidence, Nominal};
+use impact_fit::evidence::{Evidence, Nominal, OpenGains};
 use impact_fit::messages::Finding;
 use impact_fit::method_fit::MethodFit;
 use impact_fit::methods::blocks::Blocks;
-use impact_fit::parameters::{CHANNELS, Coordinate, GAIN_ROLES, Parameters, gain_index};
+use impact_fit::parameters::{Coordinate, GAIN_ROLES, Parameters, gain_index};
 use impact_fit::solver::{Precision, Problem};
 use impact_records::motion::Observation;
 use impact_records::record::Role;
-
-/// Gains that are left to the data, by their index: the logarithm of each over the stated one, as far as it is known.
-pub type OpenGains = [Option<f64>; CHANNELS];
 
 /// Fall of the squares, in variances, from which a statement is refuted: five standard deviations, of some twenty statements.
 const REFUTED: f64 = 25.0;
@@ -36,21 +33,22 @@ struct Without {
 }
 
 /// The gains that all data refute, by the joint fit with all statements; `None` where another statement is wrong, or none is.
-pub fn refuted(problem: &Problem<'_>, found: &MethodFit) -> Option<OpenGains> {
+pub fn refuted(problem: Problem<'_>, found: &MethodFit) -> Option<OpenGains> {
     let at = found.fit.parameters;
     if !problem.strained(&at) {
         return None;
     }
-    let with_all = fitted(problem, at)?.0;
+    let problem = problem.with_precision(Precision::Start);
+    let with_all = problem.fit(at).ok()?.cost;
     let stated = problem.priors.iter().map(|p| p.coordinate);
     let mut each: Vec<Without> = stated
         .filter(|coordinate| coordinate.is_stated())
         .filter_map(|coordinate| {
-            let (squares, parameters) = fitted(&problem.without(coordinate), at)?;
+            let fit = problem.without(coordinate).fit(at).ok()?;
             Some(Without {
                 coordinate,
-                value: parameters.coordinate(coordinate),
-                squares,
+                value: fit.parameters.coordinate(coordinate),
+                squares: fit.cost,
             })
         })
         .collect();
@@ -86,11 +84,15 @@ pub fn in_place_of(clearances: &Finding, blocks: &Blocks, curve: &Parameters) ->
         ([only], Finding::ClearancesOffAlike { ratio, .. }) => vec![open(*only, ratio.ln())],
         (_, _) if curve.drive_asymmetry.abs() < UNLIKE => Vec::new(),
         (several, _) => {
-            let of_x = |index: usize| SIDES[0].contains(&GAIN_ROLES[index]);
-            let sign = |index: usize| if of_x(index) { 1.0 } else { -1.0 };
-            let each = several.iter();
-            each.map(|i| open(*i, sign(*i) * curve.drive_asymmetry))
-                .collect()
+            let apart = curve.drive_asymmetry;
+            let value = |i: usize| {
+                if GAIN_ROLES[i].is_of_y() {
+                    -apart
+                } else {
+                    apart
+                }
+            };
+            several.iter().map(|i| open(*i, value(*i))).collect()
         }
     }
 }
@@ -138,11 +140,4 @@ impl Opened {
             ..*of
         }
     }
-}
-
-/// The least squares of a problem near parameters, and where they are.
-fn fitted(problem: &Problem<'_>, near: Parameters) -> Option<(f64, Parameters)> {
-    let rough = problem.again(Precision::Start);
-    let found = rough.fit_from_both_ends(near).ok()?;
-    Some((found.cost, found.parameters))
 }

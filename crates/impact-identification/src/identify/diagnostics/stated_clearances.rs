@@ -35,17 +35,11 @@ pub fn contradicted(evidence: &Evidence<'_>, fitted: &Parameters) -> Option<Find
     let flown_m = |o: &Observation| flown_m(evidence.rig, o, fitted);
     let of = |o: &Observation| Some([o.setting.clearance_m?, flown_m(o)?]);
     let pairs: Vec<[f64; 2]> = evidence.observations.iter().filter_map(of).collect();
-    Some(match (evidence.rig, found(&pairs)?) {
-        // a mass and a stop have one gap
-        (RigKind::Single, Finding::WholeGapsStated { ratio, records }) => {
-            Finding::ClearancesOffAlike { ratio, records }
-        }
-        (_, found) => found,
-    })
+    found(evidence.rig, &pairs)
 }
 
 /// What pairs of stated and flown clearances, m, have in common where it is not that they are alike.
-fn found(pairs: &[[f64; 2]]) -> Option<Finding> {
+fn found(rig: RigKind, pairs: &[[f64; 2]]) -> Option<Finding> {
     let records = pairs.len();
     let median = |value: fn(&[f64; 2]) -> f64| {
         robust::median(&pairs.iter().map(value).collect::<Vec<f64>>())
@@ -66,7 +60,7 @@ fn found(pairs: &[[f64; 2]]) -> Option<Finding> {
     }
     Some(if shifted > multiplied {
         Finding::ClearancesShifted { added_m, records }
-    } else if (HALF[0]..HALF[1]).contains(&ratio) {
+    } else if rig == RigKind::Double && (HALF[0]..HALF[1]).contains(&ratio) {
         Finding::WholeGapsStated { ratio, records }
     } else {
         Finding::ClearancesOffAlike { ratio, records }
@@ -147,18 +141,28 @@ mod tests {
 
     #[test]
     fn what_clearances_have_in_common_is_told_apart() {
-        assert_eq!(found(&pairs(|s| 1.1 * s)), None);
+        assert_eq!(found(RigKind::Double, &pairs(|s| 1.1 * s)), None);
         // one of eight is off
         assert_eq!(
-            found(&pairs(|s| if s > 3.9e-3 { 2.0 * s } else { s })),
+            found(
+                RigKind::Double,
+                &pairs(|s| if s > 3.9e-3 { 2.0 * s } else { s })
+            ),
             None
         );
         let halves = Finding::WholeGapsStated {
             ratio: 0.5,
             records: 8,
         };
-        assert_eq!(found(&pairs(|s| 0.5 * s)), Some(halves));
-        let Some(Finding::ClearancesOffAlike { ratio, records: 8 }) = found(&pairs(|s| 1e3 * s))
+        assert_eq!(found(RigKind::Double, &pairs(|s| 0.5 * s)), Some(halves));
+        // a mass and a stop have one gap
+        let alike = Finding::ClearancesOffAlike {
+            ratio: 0.5,
+            records: 8,
+        };
+        assert_eq!(found(RigKind::Single, &pairs(|s| 0.5 * s)), Some(alike));
+        let Some(Finding::ClearancesOffAlike { ratio, records: 8 }) =
+            found(RigKind::Double, &pairs(|s| 1e3 * s))
         else {
             panic!("another unit is not found");
         };
@@ -166,14 +170,17 @@ mod tests {
         let Some(Finding::ClearancesShifted {
             added_m,
             records: 8,
-        }) = found(&pairs(|s| s + 3e-3))
+        }) = found(RigKind::Double, &pairs(|s| s + 3e-3))
         else {
             panic!("another zero is not found");
         };
         assert!((added_m - 3e-3).abs() < 1e-12);
         // nothing in common
         assert_eq!(
-            found(&pairs(|s| if s < 2.2e-3 { 0.3 * s } else { 4.0 * s })),
+            found(
+                RigKind::Double,
+                &pairs(|s| if s < 2.2e-3 { 0.3 * s } else { 4.0 * s })
+            ),
             None
         );
     }

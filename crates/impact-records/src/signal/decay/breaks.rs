@@ -113,8 +113,7 @@ fn breaks(series: &Series, omega: f64, at: usize) -> bool {
     let of_two: f64 = rest.iter().map(|v| v * v).sum();
     let independent = count as f64 / Noise::fitted(&rest, &[]).density(omega).max(1.0);
     let of_one = one(series, omega).unwrap_or(f64::INFINITY);
-    let centre = robust::mean(&series.values);
-    let all: f64 = series.values.iter().map(|v| (v - centre).powi(2)).sum();
+    let all = robust::squares_about_mean(&series.values);
     let least = (EXACT * EXACT * all).max(f64::MIN_POSITIVE);
     let gain = independent * (of_one.max(least) / of_two.max(least)).ln();
     gain > TOLD + (OF_TWO - OF_ONE) * independent.ln()

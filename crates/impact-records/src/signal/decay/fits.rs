@@ -57,8 +57,7 @@ pub(super) fn rough(samples: &[f64], peak: f64) -> Option<Rough> {
         .take(3)
         .filter_map(|p| series.descend(Shape::Viscous, p.rates))
         .min_by(|a, b| a.squares.total_cmp(&b.squares))?;
-    let centre = robust::mean(&series.values);
-    let all: f64 = series.values.iter().map(|v| (v - centre).powi(2)).sum();
+    let all = robust::squares_about_mean(&series.values);
     let [a, b] = found.amplitudes();
     let count = series.values.len();
     let free = count.saturating_sub(found.parameters()).max(1) as f64;

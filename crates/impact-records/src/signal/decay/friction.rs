@@ -86,9 +86,7 @@ fn rests_at(series: &Series, viscous: &Point) -> Option<usize> {
 /// The squares that a motion up to a value and rest after it leave.
 fn squares_until(series: &Series, viscous: &Point, end: usize) -> Option<f64> {
     let point = series.part(0..end).descend(Shape::Rubbed, viscous.rates)?;
-    let tail = &series.values[end..];
-    let centre = robust::mean(tail);
-    let rests: f64 = tail.iter().map(|v| (v - centre).powi(2)).sum();
+    let rests = robust::squares_about_mean(&series.values[end..]);
     Some((point.squares + rests).max(f64::MIN_POSITIVE))
 }
 

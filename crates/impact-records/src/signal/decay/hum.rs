@@ -100,32 +100,18 @@ fn all(samples: &[f64]) -> Vec<Fitted> {
         };
         let rates = next.mode.rates;
         // what is left of one that was found is none
-        let again = |f: &Fitted| {
-            let width = modes::width(f.mode.rates, count).max(modes::width(rates, count));
-            (f.mode.rates[0] - rates[0]).abs() <= width
-        };
-        if found.iter().any(again) {
+        if found
+            .iter()
+            .any(|f| modes::are_one(f.mode.rates, rates, count))
+        {
             break;
         }
         found.push(next);
-        if found.len() > 1 {
-            fit_again(samples, &mut found);
+        for _ in 0..if found.len() > 1 { ROUNDS } else { 0 } {
+            modes::fit_again(&mut found, |found| Some(modes::less(samples, found)));
         }
     }
     found
-}
-
-/// Fit each oscillation to what the others leave.
-fn fit_again(samples: &[f64], found: &mut [Fitted]) {
-    for _ in 0..ROUNDS {
-        for k in 0..found.len() {
-            let mut rest = modes::less(samples, found);
-            columns::subtract(&mut rest, -1.0, &found[k].values);
-            if let Some(again) = modes::fitted(&rest, found[k].mode.rates) {
-                found[k] = again;
-            }
-        }
-    }
 }
 
 impl Rough {
@@ -141,17 +127,14 @@ impl Rough {
 fn is_throughout(samples: &[f64], tone: &Fitted) -> bool {
     let turn = std::f64::consts::TAU / tone.mode.rates[0];
     let length = whole::index((LEAST_TURNS * turn).ceil()).max(samples.len() / PARTS);
-    let variance = |values: &[f64]| {
-        let mean = robust::mean(values);
-        values.iter().map(|v| (v - mean).powi(2)).sum::<f64>()
-    };
+    let energy = robust::squares_about_mean;
     let parts = samples.chunks_exact(length.min(samples.len()));
     let parts = parts.zip(tone.values.chunks_exact(length.min(samples.len())));
-    let quietest = parts.min_by(|a, b| variance(a.0).total_cmp(&variance(b.0)));
+    let quietest = parts.min_by(|a, b| energy(a.0).total_cmp(&energy(b.0)));
     quietest.is_some_and(|(own, values)| {
         let mut rest = own.to_vec();
         columns::subtract(&mut rest, 1.0, values);
-        variance(&rest) < variance(own)
+        energy(&rest) < energy(own)
     })
 }
 

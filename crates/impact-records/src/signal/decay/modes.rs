@@ -58,7 +58,9 @@ pub(super) fn remove(
     }
     for _ in 0..MOST {
         for _ in 0..if modes.is_empty() { 0 } else { ROUNDS } {
-            again(samples, own, &mut modes);
+            fit_again(&mut modes, |modes| {
+                without_decay(&less(samples, modes), own)
+            });
         }
         let found =
             without_decay(&less(samples, &modes), own).and_then(|rest| strongest(&rest, own));
@@ -88,15 +90,13 @@ pub(super) fn less(samples: &[f64], modes: &[Fitted]) -> Vec<f64> {
     rest
 }
 
-/// Fit each mode to what the decay and the other modes leave.
-fn again(samples: &[f64], own: Own, modes: &mut [Fitted]) {
+/// Fit each mode to what is left without it: `rest` gives what all of them leave.
+pub(super) fn fit_again(modes: &mut [Fitted], rest: impl Fn(&[Fitted]) -> Option<Vec<f64>>) {
     for k in 0..modes.len() {
-        let Some(mut rest) = without_decay(&less(samples, modes), own) else {
+        let Some(mut rest) = rest(modes) else {
             return;
         };
-        for (value, back) in rest.iter_mut().zip(&modes[k].values) {
-            *value += back;
-        }
+        columns::subtract(&mut rest, -1.0, &modes[k].values);
         if let Some(found) = fitted(&rest, modes[k].mode.rates) {
             modes[k] = found;
         }
@@ -129,7 +129,7 @@ fn without_decay(samples: &[f64], own: Own) -> Option<Vec<f64>> {
 fn strongest(rest: &[f64], own: Own) -> Option<Fitted> {
     let rates = rough(rest, peak(rest)?)?.rates;
     let count = rest.len() as f64;
-    if (rates[0] - own.rates[0]).abs() <= width(own.rates, count).max(width(rates, count)) {
+    if are_one(own.rates, rates, count) {
         return None;
     }
     let found = fitted(rest, rates)?;
@@ -172,6 +172,11 @@ impl Fitted {
             },
         }
     }
+}
+
+/// Whether two oscillations in a number of samples are not told apart.
+pub(super) fn are_one(a: [f64; 2], b: [f64; 2], count: f64) -> bool {
+    (a[0] - b[0]).abs() <= width(a, count).max(width(b, count))
 }
 
 /// Difference of frequency within which a decay over a number of samples is not told from others, rad per
