@@ -118,16 +118,18 @@ class Bench:
         return motion, strobes
 
     def label(self, motion, strobes):
-        """(p, n) of the motion and whether the record shows it from its beginning on; None: no period."""
+        """(p, n) of the motion that the rig settles to and whether the record shows it from its beginning on; None:
+        no period. What closes after several periods alone may be a disturbance that dies slowly."""
         found = self.period(motion.at(strobes), strobes, motion.impacts)
-        if found:
+        if found and found[1] == 1:
             return found, True
         kept = self.state.copy(), self.stuck
         period = 2.0 * math.pi / self.p[rig.OMEGA]
         strobes = period * (300.123 + np.arange(25))
         states, impacts = self.run(0.0, strobes[-1] + 1e-9, strobes)
         self.state, self.stuck = kept
-        return self.period(states, strobes, impacts), False
+        last = self.period(states, strobes, impacts)
+        return last, found is not None and found == last
 
     def period(self, states, strobes, impacts):
         """(p, n) if the states at the strobes repeat, else None."""
