@@ -83,7 +83,7 @@ fn text_of(document: &document::model::Document) -> String {
         for block in &section.blocks {
             match block {
                 Block::Paragraph { text } => lines.push(text.plain()),
-                Block::Figures { figures } => lines.extend(
+                Block::Figures { figures, .. } => lines.extend(
                     figures
                         .iter()
                         .map(|f| format!("[figure {}] {}", f.name, f.caption.plain())),

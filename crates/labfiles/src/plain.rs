@@ -17,7 +17,7 @@ use encoding_rs::Encoding;
 /// assert_eq!(labfiles::read_text(&path)?, "a=1");
 /// std::fs::write(&path, b"# f\xFCr")?;
 /// let refused = labfiles::read_text(&path).unwrap_err();
-/// assert!(refused.to_string().contains("save it as UTF-8"));
+/// assert!(refused.to_string().contains("not in UTF-8"));
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub fn read_text(path: &Path) -> io::Result<String> {
@@ -25,7 +25,7 @@ pub fn read_text(path: &Path) -> io::Result<String> {
     let (encoding, mark) = Encoding::for_bom(&bytes).unwrap_or((encoding_rs::UTF_8, 0));
     let text = encoding.decode_without_bom_handling_and_without_replacement(&bytes[mark..]);
     text.map(std::borrow::Cow::into_owned).ok_or_else(|| {
-        let what = "the text is not in UTF-8: save it as UTF-8";
+        let what = "the text is not in UTF-8";
         io::Error::new(io::ErrorKind::InvalidData, what)
     })
 }

@@ -317,10 +317,16 @@ fn bare(name: &str) -> &str {
     name.trim_start_matches('/')
 }
 
+/// Datasets of a file that a flag names.
+const NAMED: usize = 8;
+
 fn no_dataset(row: &Row, sets: &[DatasetInfo]) -> Flag {
+    let more = (sets.len() > NAMED).then(|| "…".to_owned());
+    let names = sets.iter().take(NAMED).map(|s| s.name.clone());
     let problem = Problem::NoSuchDataset {
         dataset: row.dataset.clone().unwrap_or_default(),
-        datasets: sets.iter().take(8).map(|s| s.name.clone()).collect(),
+        line: row.line,
+        datasets: names.chain(more).collect(),
     };
     Flag::new(None, problem)
 }

@@ -144,7 +144,8 @@ impl PipelineError {
             }
             Self::NothingUsable(_) => "fix what is wrong with the records, as listed".to_owned(),
             Self::ReportFile { .. } => {
-                "check path and content of the template, the words and the logo, or leave them out"
+                "check path and content of the template, the words and the logo, save texts as UTF-8, or leave them \
+                 out"
                     .to_owned()
             }
             Self::Hdf5(error) => error.remedy().to_owned(),

@@ -17,12 +17,22 @@ type Captioned = (String, String);
 
 /// Groups of figures; narrow ones of one group are side by side.
 pub(super) fn method_figures(content: &ReportContent, locale: Locale<'_>) -> Vec<Vec<Captioned>> {
-    let mut groups = vec![narrow(content, locale)];
+    let boundary_fit = (
+        "boundary_fit".into(),
+        locale.translate(Phrase::CaptionBoundaryFit),
+    );
+    let mut groups = vec![vec![boundary_fit]];
+    // of the four parameters alone it is narrow
+    let wide = has_others(content).then(|| correlation(content, locale));
+    if wide.is_none() {
+        groups[0].push(correlation(content, locale));
+    }
+    groups.push(vec![profiles(locale)]);
     let alone = |captioned: Vec<Captioned>| captioned.into_iter().map(|c| vec![c]);
     groups.extend(alone(impacts(content, locale)));
     groups.extend(alone(resonance(content, locale)));
     groups.extend(alone(free_decays(content, locale)));
-    groups.push(vec![profiles(locale)]);
+    groups.extend(alone(wide.into_iter().collect()));
     groups.extend(alone(residuals(content, locale)));
     groups
 }
@@ -74,25 +84,19 @@ fn note(measured: &Motion, simulated: Option<&Motion>) -> Option<Phrase> {
     matches!(measured, Motion::Chaotic | Motion::Beat).then_some(Phrase::CaptionAlikeInKind)
 }
 
-fn narrow(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
-    let boundary = Phrase::CaptionBoundaryFit;
-    let correlation = Phrase::CaptionCorrelation;
-    let others = Phrase::CaptionCorrelationOthers;
+fn correlation(content: &ReportContent, locale: Locale<'_>) -> Captioned {
+    let mut text = locale.translate(Phrase::CaptionCorrelation);
+    if has_others(content) {
+        text.push(' ');
+        text.push_str(&locale.translate(Phrase::CaptionCorrelationOthers));
+    }
+    ("correlation".into(), text)
+}
+
+/// Whether the figure of the correlation shows others than the four parameters.
+fn has_others(content: &ReportContent) -> bool {
     let shown = content.compared.correlation.as_ref();
-    let beside = shown.is_some_and(|c| c.parameters.iter().any(|p| parameter(*p).is_none()));
-    let correlation = if beside {
-        format!(
-            "{} {}",
-            locale.translate(correlation),
-            locale.translate(others)
-        )
-    } else {
-        locale.translate(correlation)
-    };
-    vec![
-        ("boundary_fit".into(), locale.translate(boundary)),
-        ("correlation".into(), correlation),
-    ]
+    shown.is_some_and(|c| c.parameters.iter().any(|p| parameter(*p).is_none()))
 }
 
 /// A caption with the remarks on its method.

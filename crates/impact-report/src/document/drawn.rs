@@ -1,6 +1,6 @@
 //! The figures as drawn, to be referred to by name.
 
-use super::model::{Block, FigureRef, Rich};
+use super::model::{Block, FigureRef, Placement, Rich};
 use crate::kit::{Figure, richtext};
 use crate::locale::Locale;
 use crate::phrase::Phrase;
@@ -36,12 +36,17 @@ impl Drawn<'_> {
         })
     }
 
-    /// A block of those of the named figures that were drawn.
+    /// A block of those of the named figures that were drawn, where the text has them.
     pub(super) fn figures_block(&self, named: &[(&str, &str)]) -> Option<Block> {
+        self.placed(named, Placement::InText)
+    }
+
+    /// A block of those of the named figures that were drawn.
+    pub(super) fn placed(&self, named: &[(&str, &str)], placement: Placement) -> Option<Block> {
         let figures: Vec<FigureRef> = named
             .iter()
             .filter_map(|(name, caption)| self.figure(name, caption))
             .collect();
-        (!figures.is_empty()).then_some(Block::Figures { figures })
+        (!figures.is_empty()).then_some(Block::Figures { figures, placement })
     }
 }

@@ -70,7 +70,7 @@ impl Document {
     pub(crate) fn with_numbers(mut self) -> Self {
         let blocks = self.sections.iter_mut().flat_map(|s| &mut s.blocks);
         let figures = blocks.flat_map(|block| match block {
-            Block::Figures { figures } => figures.as_mut_slice(),
+            Block::Figures { figures, .. } => figures.as_mut_slice(),
             _ => &mut [],
         });
         let captioned = figures.filter(|f| f.caption != Rich::default());
@@ -182,6 +182,8 @@ pub(crate) enum Block {
     Figures {
         /// The figures.
         figures: Vec<FigureRef>,
+        /// Where on the page.
+        placement: Placement,
     },
     /// A table.
     Table(Table),
@@ -197,6 +199,16 @@ pub(crate) enum Block {
         /// The entries.
         entries: Vec<Definition>,
     },
+}
+
+/// Where figures are placed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Placement {
+    /// Where the text has them.
+    InText,
+    /// At the top or the bottom of the next page with room, so that the text that follows fills the page.
+    Floating,
 }
 
 /// A convention: a formula and its meaning.

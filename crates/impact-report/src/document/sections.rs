@@ -1,7 +1,7 @@
 //! The sections after the first page, each only where there is something to show.
 
 use super::drawn::Drawn;
-use super::model::{Block, Rich, Section};
+use super::model::{Block, Placement, Rich, Section};
 use super::settings::settings;
 use super::tables;
 use super::{captions, conventions};
@@ -196,12 +196,16 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
         });
     blocks.extend(remarks);
     blocks.extend(tables::further(content, drawn.locale).map(|t| t.block("further")));
-    for group in captions::method_figures(content, drawn.locale) {
+    // the figures of the methods follow each other: those after the first let the text go on
+    let placements =
+        std::iter::once(Placement::InText).chain(std::iter::repeat(Placement::Floating));
+    let groups = captions::method_figures(content, drawn.locale);
+    for (group, placement) in groups.into_iter().zip(placements) {
         let named: Vec<(&str, &str)> = group
             .iter()
             .map(|(n, c)| (n.as_str(), c.as_str()))
             .collect();
-        blocks.extend(drawn.figures_block(&named));
+        blocks.extend(drawn.placed(&named, placement));
     }
     // Three comparisons fill a page; below one or two there is room. Pages that begin anew are set beside
     // each other.

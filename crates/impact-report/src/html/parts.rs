@@ -96,7 +96,7 @@ impl<'a> Parts<'a> {
     fn block(&self, block: &Block) -> Result<String, ReportError> {
         Ok(match block {
             Block::Paragraph { text } => format!("<p>{}</p>\n", rich(text)),
-            Block::Figures { figures } => self.figures(figures)?,
+            Block::Figures { figures, .. } => self.figures(figures)?,
             Block::Table(table) => self::table(table),
             Block::Verbatim { text, .. } => format!("<pre>{}</pre>\n", escape(text)),
             Block::Definitions { entries } => pairs(

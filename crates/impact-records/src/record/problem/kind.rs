@@ -75,7 +75,9 @@ problems! {
     MissingDataset: NoSuchDataset {
         /// The dataset as the run table names it.
         dataset: String,
-        /// Datasets of the file.
+        /// Line of the run table, from 1.
+        line: usize,
+        /// Datasets of the file, the first of them where there are many.
         datasets: Vec<String>,
     };
     /// File and campaign.toml state different units.

@@ -69,8 +69,9 @@ message_table! { "problem": Problem;
         role = in_campaign(*role),
         channels = names(channels);
     Self::NoSuchTimeAxis { channel } => channel = Value::Name(channel);
-    Self::NoSuchDataset { dataset, datasets } =>
+    Self::NoSuchDataset { dataset, line, datasets } =>
         dataset = Value::Name(dataset),
+        line = Value::Count(*line),
         datasets = names(datasets);
     Self::UnitContradicts { channel, stated, ours, .. } =>
         channel = Value::Name(channel),
