@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use crate::text::number;
 use crate::units::{Dimension, parse_split_unit, split_unit};
 
 /// Attribute names that give samples per second, lower case.
-const RATE_KEYS: [&str; 16] = [
+const RATE_KEYS: &[&str] = &[
     "sample_rate_hz",
     "sample_rate",
     "samplerate",
@@ -22,9 +23,11 @@ const RATE_KEYS: [&str; 16] = [
     "capture_rate",
     "acquisition_rate",
     "abtastrate",
+    "abtastfrequenz",
+    "scan_rate",
 ];
 /// Attribute names that give the time between two samples, lower case.
-const STEP_KEYS: [&str; 15] = [
+const STEP_KEYS: &[&str] = &[
     "dt",
     "dt_s",
     "delta_t",
@@ -40,6 +43,8 @@ const STEP_KEYS: [&str; 15] = [
     "xincrement",
     "sample_period",
     "sampling_period",
+    "time_interval",
+    "abtastintervall",
 ];
 /// Attribute names that give the start of the acquisition, lower case.
 const START_KEYS: [&str; 7] = [
@@ -66,16 +71,30 @@ const START_KEYS: [&str; 7] = [
 /// assert_eq!(stated(&[("operator", "A")]), None);
 /// ```
 pub fn sample_rate_hz(attributes: &BTreeMap<String, String>) -> Option<f64> {
-    let rate = RATE_KEYS
-        .iter()
-        .find_map(|k| quantity(attributes, k, Dimension::Frequency));
-    let step = || {
-        STEP_KEYS
+    sample_rate_beside(attributes, None)
+}
+
+/// The same beside numbers whose decimal mark is known: `2,000 Hz` beside decimal points is 2 kHz. Where it is not known,
+/// such a rate is none.
+pub(crate) fn sample_rate_beside(
+    attributes: &BTreeMap<String, String>,
+    decimal: Option<u8>,
+) -> Option<f64> {
+    let of = |keys: &[&str], wanted: Dimension| {
+        let mut found = keys
             .iter()
-            .find_map(|k| quantity(attributes, k, Dimension::Time))
+            .map(|k| quantity(attributes, k, wanted, decimal));
+        found.find_map(|number| number)
     };
-    rate.or_else(|| step().map(|s| 1.0 / s))
-        .filter(|r| r.is_finite() && *r > 0.0)
+    let step = || of(STEP_KEYS, Dimension::Time).map(f64::recip);
+    let rate = of(RATE_KEYS, Dimension::Frequency).or_else(step);
+    rate.filter(|r| r.is_finite() && *r > 0.0)
+}
+
+/// Whether an attribute of this name states a rate or a time step.
+pub(crate) fn states_rate(name: &str) -> bool {
+    let mut keys = RATE_KEYS.iter().chain(STEP_KEYS);
+    keys.any(|key| same_key(name, key) || unit_in_name(name, key).is_some())
 }
 
 /// Attribute names that give the time of a channel's first sample, lower case.
@@ -113,7 +132,7 @@ pub fn start_s(attributes: &BTreeMap<String, String>) -> Option<f64> {
     let numbers = OFFSET_KEYS.iter().chain(&["start_time", "start"]);
     let offset = numbers
         .copied()
-        .find_map(|k| quantity(attributes, k, Dimension::Time));
+        .find_map(|k| quantity(attributes, k, Dimension::Time, None));
     match (stamp, offset) {
         (None, None) => None,
         (stamp, offset) => Some(stamp.unwrap_or(0.0) + offset.unwrap_or(0.0)),
@@ -135,7 +154,7 @@ fn lookup<'a>(
     attributes.iter().find(|(k, _)| same_key(k, key))
 }
 
-/// Whether two attribute names differ only in case, blanks and hyphens.
+/// Whether two attribute names differ only in case, blanks, hyphens and a colon at the end.
 fn same_key(a: &str, b: &str) -> bool {
     let plain = |c: char| {
         if matches!(c, ' ' | '-') {
@@ -144,7 +163,8 @@ fn same_key(a: &str, b: &str) -> bool {
             c.to_ascii_lowercase()
         }
     };
-    a.trim().chars().map(plain).eq(b.chars())
+    let a = a.trim_end_matches([' ', ':']).trim_start();
+    a.chars().map(plain).eq(b.chars())
 }
 
 /// The unit after a key in an attribute's name: `dt_ms`, `Sample Interval [ms]`.
@@ -154,11 +174,16 @@ fn unit_in_name<'a>(name: &'a str, key: &str) -> Option<&'a str> {
 }
 
 /// A number of a dimension in SI (frequencies in Hz): a bare number is SI already.
-fn quantity(attributes: &BTreeMap<String, String>, key: &str, wanted: Dimension) -> Option<f64> {
+fn quantity(
+    attributes: &BTreeMap<String, String>,
+    key: &str,
+    wanted: Dimension,
+    decimal: Option<u8>,
+) -> Option<f64> {
     let has_unit = |name: &str| unit_in_name(name, key).is_some();
     let by_name = || attributes.iter().find(|(name, _)| has_unit(name));
     let (name, text) = lookup(attributes, key).or_else(by_name)?;
-    let (number, beside) = number_and_unit(text)?;
+    let (number, beside) = number_and_unit(text, decimal)?;
     let companion = ["unit", "units"]
         .iter()
         .find_map(|s| attributes.get(&format!("{name}_{s}")).map(String::as_str));
@@ -169,19 +194,35 @@ fn quantity(attributes: &BTreeMap<String, String>, key: &str, wanted: Dimension)
     match unit {
         None => Some(number),
         Some(symbol) => {
-            let rate = samples_per_second(symbol).filter(|_| wanted == Dimension::Frequency);
-            let unit = || {
-                let known = parse_split_unit(symbol).filter(|u| u.dimension == wanted)?;
-                Some(known.to_si)
-            };
-            Some(number * rate.or_else(unit)?)
+            // a sentence may follow: `8000 Hz. Sample values on linear scale.`
+            let first = symbol.split_whitespace().next().unwrap_or(symbol);
+            let first = first.trim_end_matches(['.', ',', ';']);
+            let mut factors = [symbol, first].into_iter().map(|s| factor(s, wanted));
+            Some(number * factors.find_map(|f| f)?)
         }
     }
 }
 
+/// The factor to SI of a unit of a dimension.
+fn factor(symbol: &str, wanted: Dimension) -> Option<f64> {
+    let rate = samples_per_second(symbol).filter(|_| wanted == Dimension::Frequency);
+    let unit = || parse_split_unit(symbol).filter(|u| u.dimension == wanted);
+    rate.or_else(|| unit().map(|u| u.to_si))
+}
+
 /// Samples per second in a unit of rates as oscilloscopes print it: `kSa/s`, `MS/s`, `samples/s`.
 fn samples_per_second(symbol: &str) -> Option<f64> {
-    const RATES: [&str; 7] = ["Sa/s", "S/s", "samples/s", "Samples/s", "sps", "SPS", "1/s"];
+    const RATES: [&str; 9] = [
+        "Sa/s",
+        "S/s",
+        "samples/s",
+        "Samples/s",
+        "scans/s",
+        "Scans/s",
+        "sps",
+        "SPS",
+        "1/s",
+    ];
     let of = |text: &str| RATES.contains(&text.trim());
     [("", 1.0), ("k", 1e3), ("K", 1e3), ("M", 1e6), ("G", 1e9)]
         .iter()
@@ -189,12 +230,30 @@ fn samples_per_second(symbol: &str) -> Option<f64> {
         .map(|(_, factor)| *factor)
 }
 
-/// `2000 Hz` as a number and a unit (empty where none is written).
-fn number_and_unit(text: &str) -> Option<(f64, &str)> {
+/// `2000 Hz` as a number and a unit (empty where none is written). A mark before groups of three digits separates
+/// thousands where it is not the decimal mark of the numbers beside it; where that mark is not known, a comma there may be
+/// either.
+fn number_and_unit(text: &str, decimal: Option<u8>) -> Option<(f64, &str)> {
     let text = text.trim();
-    let (number, taken) = crate::text::number::parse_prefix(text.as_bytes(), b'.')
+    let is_number = |c: char| c.is_ascii_digit() || number::GROUP_MARKS.contains(&c);
+    let (written, unit) = text.split_at(text.find(|c| !is_number(c)).unwrap_or(text.len()));
+    let grouped = |mark: u8| {
+        let plain = !unit.starts_with(['e', 'E']);
+        plain.then(|| number::parse_grouped(written.trim().as_bytes(), mark))?
+    };
+    let both = [b'.', b',']
+        .into_iter()
+        .filter_map(grouped)
+        .find(|(_, both)| *both);
+    if let Some((number, _)) = both.or_else(|| grouped(decimal?)) {
+        return Some((number, unit));
+    }
+    if decimal.is_none() && grouped(b'.').is_some() {
+        return None;
+    }
+    let (number, taken) = number::parse_prefix(text.as_bytes(), b'.')
         .filter(|&(_, n)| text.as_bytes().get(n) != Some(&b','))
-        .or_else(|| crate::text::number::parse_prefix(text.as_bytes(), b','))?;
+        .or_else(|| number::parse_prefix(text.as_bytes(), b','))?;
     Some((number, text[taken..].trim()))
 }
 
@@ -242,11 +301,45 @@ mod tests {
             (&[("dt_ms", "0.4")], Some(2500.0)),
             (&[("fs_kHz", "2.5")], Some(2500.0)),
             (&[("increment_mm", "0.4")], None),
+            (&[("Sampling rate", "0.002 MHz")], Some(2000.0)),
+            (&[("sample_rate_MHz", "0.002")], Some(2000.0)),
+            (&[("sample_rate_mhz", "0.002")], None),
+            (
+                &[("sample_rate", "0.002"), ("sample_rate_unit", "MHz")],
+                Some(2000.0),
+            ),
+            (&[("Sample rate", "2,000 Hz")], None),
+            (&[("Sample rate", "2,000.00 Hz")], Some(2000.0)),
+            (&[("Sample rate", "0,500 kHz")], Some(500.0)),
+            (&[("Scan rate", "2000 scans/s")], Some(2000.0)),
+            (&[("Time interval :", "0.50000mS")], Some(2000.0)),
+            (
+                &[("Sample Rate", "8000 Hz. Sample values on linear scale.")],
+                Some(8000.0),
+            ),
             (&[("fs", "0")], None),
             (&[("rate", "2000 mm")], None),
             (&[("clearance_m", "1")], None),
         ] {
             assert_eq!(sample_rate_hz(&map(pairs)), rate, "{pairs:?}");
+        }
+    }
+
+    #[test]
+    fn thousands_of_a_rate_are_separated_as_the_numbers_beside_it_are_written() {
+        for (text, decimal, rate) in [
+            ("2,000 Hz", b'.', 2000.0),
+            ("2.000 Hz", b',', 2000.0),
+            ("2,000 Hz", b',', 2.0),
+            ("2.000 Hz", b'.', 2.0),
+            ("51 200 Hz", b'.', 51_200.0),
+            ("2'000", b'.', 2000.0),
+            ("2.000,0 Hz", b',', 2000.0),
+            ("0,500 kHz", b'.', 500.0),
+        ] {
+            let attributes = map(&[("Sample rate", text)]);
+            let found = sample_rate_beside(&attributes, Some(decimal));
+            assert_eq!(found, Some(rate), "{text}");
         }
     }
 

@@ -289,7 +289,8 @@ fn last_row(
 }
 
 fn dataset(header: Header, layout: &Layout, rows: u64, axis: Option<&TimeAxis>) -> DatasetInfo {
-    let stated = crate::attribute::sample_rate_hz(&header.attributes);
+    let decimal = Some(layout.notation.decimal);
+    let stated = crate::attribute::sample_rate_beside(&header.attributes, decimal);
     let rate = axis.and_then(|a| a.rate_hz).or(stated);
     let start = axis
         .and_then(|a| a.start.clone())

@@ -5,9 +5,8 @@ use super::bind::BoundRole;
 use super::bind::flag;
 pub use super::bind::{BoundChannel, ChannelKey, ChannelSetup, RecordSetup, bind};
 use super::times::Clocks;
-use super::{Channel, ContactContent, Flag, ListedTimes, Problem, Record, Role, Setting};
+use super::{Channel, ContactContent, Flag, FlagCode, ListedTimes, Problem, Record, Role, Setting};
 use super::{changes, condition, consistency, events, late};
-use crate::signal::whole;
 use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 
 /// A record without channels, for a file that cannot be read.
@@ -122,13 +121,15 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
         stated(&mut record.listed, dataset);
         return record;
     }
+    if record.flags.iter().any(|f| f.code == FlagCode::Empty) {
+        return record;
+    }
     condition::inspect(&mut record, &ranges, setup.driven);
     if !record.excluded() {
         let flags = consistency::inspect(&record);
         record.flags.extend(flags);
     }
     late::align(&mut record, setup.channels);
-    skip(&mut record, setup.skip_s);
     record
 }
 
@@ -279,37 +280,21 @@ fn scaled(
     })
 }
 
-/// Leave out the start of the record.
-fn skip(record: &mut Record, skip_s: f64) {
-    let count = whole::index((skip_s * record.sample_rate_hz).round());
-    if count == 0 || record.samples() == 0 {
-        return;
-    }
-    if count >= record.samples() {
-        record.flags.push(all_skipped(record.duration_s(), skip_s));
-    }
-    for channel in &mut record.channels {
-        channel.values.drain(..count.min(channel.values.len()));
-    }
-}
-
-fn all_skipped(duration_s: f64, skip_s: f64) -> Flag {
-    Flag::new(None, Problem::AllSkipped { duration_s, skip_s })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::FlagCode;
 
     /// A table of two columns, as a Record whose time axis is the first.
     fn record(times_s: impl Iterator<Item = f64>) -> Record {
+        let rows = times_s.enumerate();
+        let rows = rows.map(|(i, t)| format!("{t},{}\n", [1.0, -2.0][i % 2]));
+        of_rows(&rows.collect::<String>(), 0.0)
+    }
+
+    /// The record of rows of a time and a value, without its first seconds.
+    fn of_rows(rows: &str, skip_s: f64) -> Record {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("run.csv");
-        let rows = times_s.enumerate();
-        let rows: String = rows
-            .map(|(i, t)| format!("{t},{}\n", [1.0, -2.0][i % 2]))
-            .collect();
         std::fs::write(&path, format!("time [s],x\n{rows}")).unwrap();
         let source = labfiles::open(&path).unwrap();
         let channels = [ChannelSetup::plain(
@@ -325,7 +310,7 @@ mod tests {
             sample_rate_hz: None,
             setting: &Setting::default(),
             driven: false,
-            skip_s: 0.0,
+            skip_s,
         };
         calibrate(source.as_ref(), &setup)
     }
@@ -429,5 +414,23 @@ mod tests {
         let even = record((0..200).map(|i| f64::from(i) / 4000.0));
         assert!((even.sample_rate_hz - 4000.0).abs() < 1e-6 && !uneven(&even));
         assert!(uneven(&record((0..200).map(|i| f64::from(i * i) / 4000.0))));
+    }
+    #[test]
+    fn what_is_wrong_with_the_skipped_start_does_not_count() {
+        // an amplifier that is overloaded, and rows that are lost
+        let value = |i: usize| match i {
+            20..90 => "inf".to_owned(),
+            _ => format!("{}", [1.0, -2.0][i % 2]),
+        };
+        let rows = (0..400).filter(|i| !(100..130).contains(i));
+        let rows: String = rows
+            .map(|i| format!("{},{}\n", i as f64 / 1000.0, value(i)))
+            .collect();
+        assert!(of_rows(&rows, 0.0).excluded());
+        assert!(of_rows(&rows, 0.05).excluded());
+        let clean = of_rows(&rows, 0.2);
+        assert_eq!(clean.flags, []);
+        assert_eq!(clean.samples(), 200);
+        assert!((clean.sample_rate_hz - 1000.0).abs() < 1e-6);
     }
 }

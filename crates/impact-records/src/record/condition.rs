@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::{Channel, Excitation, Flag, Problem, Record, Role};
+use super::{Channel, Excitation, Flag, Problem, Record, Role, time_axis};
 use crate::signal::{columns, interpolation, robust, whole};
 
 /// Part of a channel's samples at the rail above which the record is left out.
@@ -74,6 +74,38 @@ pub(super) fn trim_missing(record: &mut Record, times: Option<&mut Vec<f64>>) {
         keep(times, first, last);
     }
     record.flags.push(trimmed(name, cut));
+}
+
+/// Leave out the start of a record: what is wrong with it and with its time axis there does not count.
+pub(super) fn skip(record: &mut Record, times: Option<&mut Vec<f64>>, skip_s: f64) {
+    if skip_s <= 0.0 {
+        return;
+    }
+    let step = times
+        .as_deref()
+        .and_then(|times| time_axis::usual_step(times));
+    let step_s = step.unwrap_or(record.sample_rate_hz.recip());
+    let count = match &times {
+        Some(times) => {
+            let before = |t: &&f64| **t - times[0] < skip_s - 0.5 * step_s;
+            times.iter().take_while(before).count()
+        }
+        None => whole::index((skip_s / step_s).round()),
+    };
+    if count == 0 || record.samples() == 0 {
+        return;
+    }
+    if count >= record.samples() {
+        let duration_s = record.samples() as f64 * step_s;
+        let problem = Problem::AllSkipped { duration_s, skip_s };
+        record.flags.push(Flag::new(None, problem));
+    }
+    for channel in &mut record.channels {
+        channel.values.drain(..count.min(channel.values.len()));
+    }
+    if let Some(times) = times {
+        times.drain(..count.min(times.len()));
+    }
 }
 
 /// The range of a channel's samples without those that have no value at its ends; all where none has one.
@@ -199,29 +231,54 @@ fn interpolate(
     true
 }
 
-/// Where samples stand still although the motion goes on: the first sample and the number of steps.
+/// Chance that noise alone makes as many samples stand still.
+const BY_CHANCE: f64 = 1e-3;
+
+/// Where samples stand still although the motion goes on: the first sample and the number of steps. Noise of many steps of
+/// the converter makes a sample repeat the one before by chance, but a short way as often as none: of the steps up to half
+/// of the motion's, one in as many as there are digits in that is none.
 fn frozen_stretches(values: &[f64]) -> Vec<(usize, usize)> {
     let step = |i: usize| values[i + 1] - values[i];
     let (low, high) = columns::extremes(values);
-    let moving = STEPS_A_SAMPLE * columns::least_step(values, 1e-12 * (high - low));
-    let mut found = Vec::new();
+    let digit = columns::least_step(values, 1e-12 * (high - low));
+    let (mut found, mut expected) = (Vec::new(), 0.0);
     let mut i = 1;
     while i + 1 < values.len() {
-        let length = (i..values.len() - 1)
+        let still = (i..values.len() - 1)
             .take_while(|k| step(*k) == 0.0)
             .count();
+        // a short step is looked at as one that might have been none
+        let length = still.max(1);
         let after = i + length;
-        if length > 0 && after + 2 < values.len() {
+        if after + 2 < values.len() {
             let (before, jump, next) = (step(i - 1), step(after), step(after + 1));
-            let unseen = UNSEEN_PART * (length + 1) as f64 * before.abs().min(next.abs());
-            let fast = before.abs().min(next.abs()) >= moving;
-            if fast && before * next > 0.0 && before * jump > 0.0 && jump.abs() >= unseen {
-                found.push((i, length));
+            let way = before.abs().min(next.abs());
+            let unseen = UNSEEN_PART * (length + 1) as f64 * way;
+            let fast = way >= STEPS_A_SAMPLE * digit && before * next > 0.0;
+            let short = step(i).abs() <= 0.5 * way;
+            if fast && short && before * jump > 0.0 && jump.abs() >= unseen {
+                expected += (digit / way).powi(i32::try_from(length).unwrap_or(i32::MAX));
+                if still > 0 {
+                    found.push((i, still));
+                }
             }
         }
-        i = after + 1;
+        i += still + 1;
+    }
+    if at_least(found.len(), expected) > BY_CHANCE {
+        found.clear();
     }
     found
+}
+
+/// Chance of so many events or more where a number is expected (Poisson's distribution).
+fn at_least(count: usize, expected: f64) -> f64 {
+    let terms = std::iter::successors(Some((0usize, (-expected).exp())), |(k, chance)| {
+        Some((k + 1, chance * expected / (k + 1) as f64))
+    });
+    // what follows these is negligible
+    let last = count + 50 + whole::index(4.0 * expected);
+    terms.take(last).skip(count).map(|(_, chance)| chance).sum()
 }
 
 fn no_samples(record: &Record) -> Flag {
@@ -492,6 +549,9 @@ fn held(record: &Record) -> Option<Flag> {
 
 #[cfg(test)]
 mod tests {
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, Normal};
+
     use super::*;
     use crate::record::FlagCode;
 
@@ -679,6 +739,13 @@ mod tests {
         // a coarse converter rests at each of its steps
         let coarse: Vec<f64> = (0..300).map(|i| (sine(i) / 0.2).round() * 0.2).collect();
         assert_eq!(frozen_stretches(&coarse), []);
+        // noise of some printed digits makes neighbours equal by chance
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(3);
+        let noise = Normal::new(0.0, 8.0).expect("a deviation");
+        let printed: Vec<f64> = (0..20_000)
+            .map(|i| (1e4 * (5e-3 * f64::from(i)).sin() + noise.sample(&mut random)).round())
+            .collect();
+        assert_eq!(frozen_stretches(&printed), []);
         // a ball at rest before it is let go
         let let_go: Vec<f64> = (0..100)
             .map(|i| f64::from((i - 50).max(0)).powi(2))

@@ -96,12 +96,19 @@ impl Clocks {
             .collect();
         if self.apart {
             self.align(record, setup, dataset, (kept, &times));
+            condition::skip(record, None, setup.skip_s);
             return;
         }
         let mut times = times.first_mut().and_then(Option::take);
         condition::equal_lengths(record, times.as_mut());
         condition::trim_missing(record, times.as_mut());
+        if times.is_some() {
+            condition::skip(record, times.as_mut(), setup.skip_s);
+        }
         settle_rate(record, setup, dataset, (kept, times.as_deref()));
+        if times.is_none() {
+            condition::skip(record, None, setup.skip_s);
+        }
         if let (Some(times), Some(&axis)) = (times, self.axes.first()) {
             advise_times(record, &times, &dataset.channels[axis].name);
         }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::attribute;
 use crate::csv::dialect::{COMMENTS, Dialect, is_value};
 use crate::text::cells::{Cells, Separator, decode_cell};
 use crate::text::{decode, number};
@@ -338,7 +339,13 @@ fn commented_names(comments: &[&[u8]], dialect: &Dialect) -> Option<Vec<String>>
 
 fn remark(text: &str, attributes: &mut BTreeMap<String, String>) {
     let text = text.trim();
-    let Some((key, value)) = text.split_once('=').or_else(|| text.split_once(':')) else {
+    let pair = text.split_once('=').or_else(|| text.split_once(':'));
+    // of a table of one column, in which no mark separates cells
+    let cells = || {
+        let cells = text.split_once([',', ';', '\t']);
+        cells.filter(|(key, _)| attribute::states_rate(key))
+    };
+    let Some((key, value)) = pair.or_else(cells) else {
         return;
     };
     let (key, value) = (key.trim(), value.trim());

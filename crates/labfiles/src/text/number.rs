@@ -131,7 +131,7 @@ fn slow(bytes: &[u8], decimal: u8) -> Option<f64> {
 }
 
 /// Marks between groups of three digits.
-const GROUP_MARKS: [char; 8] = [
+pub(crate) const GROUP_MARKS: [char; 8] = [
     '.', ',', ' ', '\u{a0}', '\u{202f}', '\u{2009}', '\'', '\u{2019}',
 ];
 

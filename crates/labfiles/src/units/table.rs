@@ -114,6 +114,8 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("Hz", Dimension::Frequency, 1.0),
     ("mHz", Dimension::Frequency, 1e-3),
     ("kHz", Dimension::Frequency, 1e3),
+    ("MHz", Dimension::Frequency, 1e6),
+    ("GHz", Dimension::Frequency, 1e9),
     ("rad/s", Dimension::Frequency, 1.0 / std::f64::consts::TAU),
     ("deg/s", Dimension::Frequency, 1.0 / 360.0),
     ("°/s", Dimension::Frequency, 1.0 / 360.0),
@@ -219,12 +221,14 @@ pub fn unit_of(stated: Option<&str>, name: &str) -> Option<Unit> {
     stated.and_then(parse_unit).or_else(of_name)
 }
 
-/// The unit after an underscore: letters without case, `m_s` for m/s.
+/// The unit after an underscore: letters without case, `m_s` for m/s; none where the case decides, as of `mhz`.
 fn suffix_unit(suffix: &str) -> Option<Unit> {
     let slashed = suffix.to_lowercase().replace('_', "/");
-    UNITS
+    let mut found = UNITS
         .iter()
         .filter(|(_, dimension, _)| *dimension != Dimension::Number)
-        .find(|(symbol, _, _)| symbol.to_lowercase() == slashed)
-        .map(|&(_, dimension, to_si)| Unit { dimension, to_si })
+        .filter(|(symbol, _, _)| symbol.to_lowercase() == slashed)
+        .map(|&(_, dimension, to_si)| Unit { dimension, to_si });
+    let first = found.next()?;
+    found.all(|other| other == first).then_some(first)
 }

@@ -16,7 +16,7 @@ keys! {
         /// records to leave out, by name; `*` and `?` are wildcards
         exclude: Placed<Vec<String>>, default "none",
             init r#"# exclude = ["record_12"]    # records to leave out, by name; * and ? are wildcards"#;
-        /// part of each record that is skipped at its start
+        /// part of each record that is skipped at its start; what is wrong there does not count
         skip: Placed<WrittenQuantity>, default "0 s",
             init r#"# skip = "0.1 s"             # part of each record to leave out at its start"#;
         /// longest period n of a motion z = p/n that is searched

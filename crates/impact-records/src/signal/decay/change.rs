@@ -217,9 +217,13 @@ pub(super) fn course(prepared: &Prepared, viscous: &Point, rate_hz: f64) -> Cour
     }
 }
 
-/// The line of the frequency over the time, by the best shape.
+/// The line of the frequency over the time, by the best shape; none where viscous damping and dry friction, which do not
+/// change the frequency, leave less.
 fn drift(shapes: &Shapes<'_>, count: usize, rate_hz: f64) -> Option<Drift> {
     let point = &shapes.best().0;
+    if shapes.rubbed + TOLD * shapes.variance < point.squares {
+        return None;
+    }
     let inverse = shapes.series.inverse(point)?;
     let hz = rate_hz / std::f64::consts::TAU;
     let at = |share: f64| {

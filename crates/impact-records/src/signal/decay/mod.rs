@@ -27,6 +27,8 @@ use natural::{GROWS, Natural};
 use prepared::{LEAST_PERIODS, Prepared};
 use shape::Shape;
 
+use crate::signal::whole;
+
 pub use change::{Course, DampingLaw, Drift, LEAST_TESTED, PartOfDecay, RESOLVED};
 pub use friction::BesideFriction;
 pub use prepared::Beside;
@@ -52,7 +54,7 @@ pub struct Decay {
     pub phase_rad: f64,
     /// Constant part, the samples' unit.
     pub offset: f64,
-    /// Root mean square of the residual over that of the decay.
+    /// Root mean square of the residual over that of the decay, beside dry friction where the damping follows it.
     pub residual_ratio: f64,
     /// The part of it that neighbouring samples share, so that it is no noise: another mode, damping that
     /// is not viscous.
@@ -166,9 +168,44 @@ pub fn fit_channels(channels: &[Watched<'_>], rate_hz: f64) -> Vec<Decay> {
         .unwrap_or_default()
 }
 
+/// How many times as much the decays may leave with steady tones taken away as without: more is left where the tones
+/// are what a record in which the mass is first held has in common with an oscillation.
+const MORE_LEFT: f64 = 2.0;
+
 /// The decays of one channel, one after each blow.
 fn of_channel(channel: Watched<'_>, rate_hz: f64) -> Vec<Decay> {
-    let whole = Cleared::of(channel);
+    let cleared = Cleared::of(channel);
+    let decays = of_blows(&cleared, rate_hz);
+    if cleared.tones.is_empty() {
+        return decays;
+    }
+    let plain = of_blows(&Cleared::plain(channel), rate_hz);
+    if left(&decays, rate_hz) > MORE_LEFT * left(&plain, rate_hz) {
+        plain
+    } else {
+        decays
+    }
+}
+
+/// Root mean square of what decays leave of the samples that they are fitted to; infinite without a decay.
+fn left(decays: &[Decay], rate_hz: f64) -> f64 {
+    let squares = |d: &Decay| {
+        let own = d
+            .values(rate_hz)
+            .iter()
+            .map(|v| (v - d.offset).powi(2))
+            .sum::<f64>();
+        d.residual_ratio.powi(2) * own
+    };
+    let samples: usize = decays.iter().map(|d| d.samples).sum();
+    if samples == 0 {
+        return f64::INFINITY;
+    }
+    (decays.iter().map(squares).sum::<f64>() / samples as f64).sqrt()
+}
+
+/// The decays of a channel, one after each blow.
+fn of_blows(whole: &Cleared<'_>, rate_hz: f64) -> Vec<Decay> {
     let of_part = |(first, last): (usize, usize)| {
         let mut decays = of_motions(&whole.between(first, last), rate_hz);
         decays.iter_mut().for_each(|d| d.shift(first, rate_hz));
@@ -203,8 +240,27 @@ const MOST_LEFT: f64 = 1.0;
 /// Relative difference of the frequencies of motions of one oscillator, at most.
 const SAME: f64 = 0.02;
 
-/// The decay of a part of a record with one blow or release.
+/// The decay of a part of a record with one blow or release, up to where dry friction holds the mass, if it does: the rest
+/// that follows is no part of the motion.
 fn of_part(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {
+    let decay = fitted(part, rate_hz)?;
+    let moving = decay
+        .beside_friction
+        .filter(|b| b.sticks && b.periods >= LEAST_TESTED);
+    let until_rest = moving.and_then(|b| {
+        let samples = b.periods / b.natural_frequency_hz * rate_hz;
+        let end = decay.first + whole::index(samples.ceil());
+        let end = Some(end).filter(|e| *e < part.cleared.len())?;
+        let mut cut = fitted(&part.between(0, end), rate_hz)?;
+        let friction = cut.beside_friction.as_mut()?;
+        friction.sticks = true;
+        Some(cut)
+    });
+    Some(until_rest.unwrap_or(decay))
+}
+
+/// The decay of a part of a record with one blow or release.
+fn fitted(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {
     let prepared = Prepared::of(part)?;
     let series = &prepared.series;
     let viscous = series.descend(Shape::Viscous, prepared.free.rates)?;
@@ -220,6 +276,10 @@ fn of_part(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {
     if !(whole.residual_ratio < MOST_LEFT) {
         return None;
     }
+    // where dry friction is what the damping follows, what it leaves beside friction is what is not explained
+    let explained = Some(&prepared.free).filter(|free| free.shape == Shape::Rubbed);
+    let explained = explained.and_then(|free| prepared.at_every_sample(free));
+    let explained = explained.as_ref().unwrap_or(&whole);
     let beside_friction = friction::beside(&prepared, &viscous, hz);
     if beside_friction.is_some_and(|b| b.sticks && b.periods < LEAST_PERIODS) {
         return None;
@@ -233,9 +293,9 @@ fn of_part(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {
         amplitude: whole.amplitude,
         phase_rad: whole.phase_rad,
         offset: whole.offset,
-        residual_ratio: whole.residual_ratio,
-        structured_ratio: whole.structured_ratio,
-        fading: whole.fading,
+        residual_ratio: explained.residual_ratio,
+        structured_ratio: explained.structured_ratio,
+        fading: explained.fading,
         beside: prepared.beside(whole.amplitude, rate_hz),
         beside_friction,
         course: change::course(&prepared, &viscous, rate_hz),
