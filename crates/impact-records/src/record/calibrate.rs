@@ -295,7 +295,7 @@ mod tests {
     fn of_rows(rows: &str, skip_s: f64) -> Record {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("run.csv");
-        std::fs::write(&path, format!("time [s],x\n{rows}")).unwrap();
+        std::fs::write(&path, format!("time [s],x [V]\n{rows}")).unwrap();
         let source = labfiles::open(&path).unwrap();
         let channels = [ChannelSetup::plain(
             Role::Drive,

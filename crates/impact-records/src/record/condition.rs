@@ -240,8 +240,8 @@ const BY_CHANCE: f64 = 1e-3;
 fn frozen_stretches(values: &[f64]) -> Vec<(usize, usize)> {
     let step = |i: usize| values[i + 1] - values[i];
     let (low, high) = columns::extremes(values);
-    let digit = columns::least_step(values, 1e-12 * (high - low));
-    let (mut found, mut expected) = (Vec::new(), 0.0);
+    let moving = STEPS_A_SAMPLE * columns::least_step(values, 1e-12 * (high - low));
+    let (mut found, mut short_ways) = (Vec::new(), Vec::new());
     let mut i = 1;
     while i + 1 < values.len() {
         let still = (i..values.len() - 1)
@@ -254,10 +254,10 @@ fn frozen_stretches(values: &[f64]) -> Vec<(usize, usize)> {
             let (before, jump, next) = (step(i - 1), step(after), step(after + 1));
             let way = before.abs().min(next.abs());
             let unseen = UNSEEN_PART * (length + 1) as f64 * way;
-            let fast = way >= STEPS_A_SAMPLE * digit && before * next > 0.0;
+            let fast = way >= moving && before * next > 0.0;
             let short = step(i).abs() <= 0.5 * way;
             if fast && short && before * jump > 0.0 && jump.abs() >= unseen {
-                expected += (digit / way).powi(i32::try_from(length).unwrap_or(i32::MAX));
+                short_ways.push((way, length));
                 if still > 0 {
                     found.push((i, still));
                 }
@@ -265,6 +265,15 @@ fn frozen_stretches(values: &[f64]) -> Vec<(usize, usize)> {
         }
         i += still + 1;
     }
+    if found.is_empty() {
+        return found;
+    }
+    let digit = columns::digit(values);
+    let chance = |(way, length): (f64, usize)| {
+        let each = (digit / way).min(1.0);
+        each.powi(i32::try_from(length).unwrap_or(i32::MAX))
+    };
+    let expected = short_ways.into_iter().map(chance).sum();
     if at_least(found.len(), expected) > BY_CHANCE {
         found.clear();
     }

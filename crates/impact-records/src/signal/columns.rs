@@ -153,6 +153,17 @@ fn lesser(value: f64, least: f64) -> f64 {
     if value < least { value } else { least }
 }
 
+/// The least difference of unlike values, wherever they are: a digit as printed, a step of a converter; zero where all are
+/// equal.
+pub(crate) fn digit(samples: &[f64]) -> f64 {
+    let mut sorted = samples.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let least = 1e-12 * sorted.last().map_or(0.0, |l| l - sorted[0]);
+    let steps = sorted.windows(2).map(|w| w[1] - w[0]);
+    let least = steps.filter(|s| *s > least).fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
+}
+
 #[cfg(test)]
 mod tests {
     use rand::{Rng, SeedableRng};

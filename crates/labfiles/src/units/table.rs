@@ -197,11 +197,16 @@ pub fn split_unit(name: &str) -> (&str, Option<&str>) {
     }
     let suffix = name
         .match_indices('_')
-        .find(|(at, _)| *at > 0 && suffix_unit(&name[at + 1..]).is_some());
+        .find(|(at, _)| *at > 0 && has_dimension(&name[at + 1..]));
     match suffix {
         Some((at, _)) => (&name[..at], Some(&name[at + 1..])),
         None => (name, None),
     }
+}
+
+/// Whether a suffix is a unit of more than numbers.
+fn has_dimension(suffix: &str) -> bool {
+    parse_split_unit(suffix).is_some_and(|unit| unit.dimension != Dimension::Number)
 }
 
 /// The unit of a symbol that [`split_unit`] gives.

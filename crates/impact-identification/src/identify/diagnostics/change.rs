@@ -533,9 +533,9 @@ mod tests {
             let value = |k: usize| scatter[k % 6] + if k >= 17 { step } else { 0.0 };
             (0..40).map(|k| (k, value(k))).collect()
         };
-        assert_eq!(furthest(&mut values(3.0), 1.0), Some(17));
-        assert_eq!(furthest(&mut values(-3.0), 1.0), Some(17));
-        assert_eq!(furthest(&mut values(0.0), 1.0), None);
+        assert_eq!(furthest(&mut values(3.0), (1.0, 0.0)), Some(17));
+        assert_eq!(furthest(&mut values(-3.0), (1.0, 0.0)), Some(17));
+        assert_eq!(furthest(&mut values(0.0), (1.0, 0.0)), None);
     }
 
     #[test]

@@ -6,7 +6,7 @@
 //! leave.
 
 use super::descent::equations;
-use super::fits::{digit, factor, free, means, peak, rough};
+use super::fits::{factor, free, means, peak, rough};
 use super::hum::Cleared;
 use super::least_squares::{Point, Series};
 use super::noise::Noise;
@@ -57,7 +57,7 @@ fn acts(samples: &[f64], omega: f64) -> Option<usize> {
     let windows = rest.len().checked_sub(half)?;
     let within = |k: usize| squares[k + half] - squares[k];
     // values that are rounded to steps
-    let least = half as f64 * digit(samples).powi(2) / 6.0;
+    let least = half as f64 * columns::digit(samples).powi(2) / 6.0;
     let quiet = |k: usize| {
         let after = (1..=OVER).map(|j| k + j * half).filter(|k| *k < windows);
         let after = after.map(within).fold(f64::INFINITY, f64::min);

@@ -99,16 +99,6 @@ pub(super) fn free(series: &Series, start: Rates) -> Option<Point> {
     Some(bent.unwrap_or(viscous))
 }
 
-/// The least step between unlike values.
-pub(super) fn digit(samples: &[f64]) -> f64 {
-    let mut sorted = samples.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let least = 1e-12 * sorted.last().map_or(0.0, |l| l - sorted[0]);
-    let steps = sorted.windows(2).map(|w| w[1] - w[0]);
-    let least = steps.filter(|s| *s > least).fold(f64::INFINITY, f64::min);
-    if least.is_finite() { least } else { 0.0 }
-}
-
 /// Fits of the laws of damping beside the viscous one.
 pub(super) fn laws(series: &Series, bent: &Point) -> Vec<Point> {
     let [omega, sigma, ..] = bent.rates;

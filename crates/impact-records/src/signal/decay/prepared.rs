@@ -1,13 +1,13 @@
 //! A decay made ready for its fit: where it begins and ends, what lies under it, the noise about it.
 
-use super::fits::{digit, factor, fitted, free, laws, means, peak, rough};
+use super::fits::{factor, fitted, free, laws, means, peak, rough};
 use super::hum::Cleared;
 use super::least_squares::{Point, Series};
 use super::modes::{self, Mode, STEADY};
 use super::noise::{Noise, structured};
 use super::shape::{Rates, Shape};
 use super::{beat, blows};
-use crate::signal::{robust, whole};
+use crate::signal::{columns, robust, whole};
 
 /// Most means that are fitted.
 const MOST: usize = 20_000;
@@ -321,7 +321,7 @@ fn first_fit(tail: &[f64], rough: [f64; 2]) -> Option<FirstFit> {
 fn end(samples: &[f64], factor: usize, point: &Point) -> usize {
     let [a, b] = point.amplitudes();
     let amplitude = a.hypot(b);
-    let step = digit(samples);
+    let step = columns::digit(samples);
     let sigma = point.rates[1].max(f64::MIN_POSITIVE);
     let lost = (LOST / sigma).min(1e9);
     let counted = if step > 0.0 && amplitude > 4.0 * step {
