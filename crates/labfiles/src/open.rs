@@ -252,17 +252,12 @@ mod tests {
     }
 
     #[test]
-    fn every_format_has_a_golden_that_is_read_under_a_name_of_its_own() {
-        let mut names = BTreeSet::new();
-        for path in own_files() {
-            let format = format_of(&path);
-            let source = format.and_then(|format| (format.open)(&path).ok());
-            names.extend(format.zip(source).map(|(f, s)| (f.title, s.format())));
-        }
-        let titles: Vec<&str> = names.iter().map(|(title, _)| *title).collect();
-        let own: BTreeSet<&str> = names.iter().map(|(_, name)| *name).collect();
-        let mut all = format_titles();
-        all.sort_unstable();
-        assert_eq!((titles, own.len()), (all, FORMATS.len()), "{names:?}");
+    fn every_format_has_a_golden_that_is_read() {
+        let read = |path: PathBuf| {
+            let format = format_of(&path)?;
+            (format.open)(&path).is_ok().then_some(format.title)
+        };
+        let titles: BTreeSet<&str> = own_files().filter_map(read).collect();
+        assert_eq!(titles, format_titles().into_iter().collect());
     }
 }
