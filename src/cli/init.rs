@@ -67,9 +67,11 @@ fn name_of(folder: &Path) -> String {
     )
 }
 
-/// What to do where no reader says it.
-const NAME_RECORDS: &str =
-    "name the folder that holds HDF5, CSV, Excel, LVM, TDMS, UFF, MATLAB, WAV or Parquet files";
+/// What to do where no reader states it.
+fn name_records() -> String {
+    let titles = labfiles::format_titles().join(", ");
+    format!("name the folder that holds files of {titles} or other text tables")
+}
 
 /// No record: each file with the reason, and the remedy of the first reader that refused one.
 fn none_found(folder: &Path, found: &FolderContents) -> Failure {
@@ -85,10 +87,10 @@ fn none_found(folder: &Path, found: &FolderContents) -> Failure {
     if let Some(more) = all.checked_sub(NAMED).filter(|n| *n > 0) {
         faults += &format!("; {}", counted(more, "more file"));
     }
-    let remedy = found.refused.first().map(|r| r.remedy.as_str());
+    let remedy = found.refused.first().map(|r| r.remedy.clone());
     Failure::new(
         format!("no record found in {}{faults}", folder.display()),
-        remedy.unwrap_or(NAME_RECORDS),
+        remedy.unwrap_or_else(name_records),
     )
 }
 
@@ -169,6 +171,6 @@ mod tests {
             message.ends_with("t5.mat: it holds a table T; 2 more files"),
             "{message}"
         );
-        assert_eq!(only(&FolderContents::default()).1, NAME_RECORDS);
+        assert_eq!(only(&FolderContents::default()).1, name_records());
     }
 }

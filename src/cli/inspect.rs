@@ -18,7 +18,7 @@ use labfiles::{DatasetInfo, ReadError, Samples, Source};
 
 /// Arguments of `impactid inspect`.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLE)]
+#[command(after_help = example())]
 pub(super) struct Inspect {
     /// Record files of any supported format
     #[arg(value_name = "FILE", required = true)]
@@ -37,14 +37,18 @@ pub(super) struct Inspect {
     all: bool,
 }
 
-const EXAMPLE: &str = "\
+fn example() -> String {
+    let titles = labfiles::format_titles().join(", ");
+    format!(
+        "\
 Example:
   impactid inspect record.lvm --plot
   impactid inspect campaign.h5 --dataset run0001 --json
 
-Formats: HDF5, CSV and other text tables, Excel, LVM, TDMS, UFF 58, MATLAB 4 to 7.3, WAV, \
-Parquet.
-Exit codes: 0 success; 2 a file could not be read.";
+Formats: {titles} and other text tables.
+Exit codes: 0 success; 2 a file could not be read."
+    )
+}
 
 /// A file of more datasets is listed with one line per dataset.
 const FEW: usize = 4;

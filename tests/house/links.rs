@@ -1,10 +1,12 @@
 //! What the documents point to is there: the file and the heading of a link, the module or the item
-//! of a path like `model::orbit`.
+//! of a path like `model::orbit`, the file of a path; and they list every format and every language.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::sources::packages;
+use impact_records::language::Language;
+
+use super::sources::{packages, root};
 
 fn documents() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -182,4 +184,77 @@ fn modules_that_the_documents_name_exist() {
     }
     assert!(seen > 20, "{seen} paths only");
     assert!(!is_in_source("model::nothing_of_the_kind"));
+}
+
+/// Paths of all files and folders of the repository below one, from the root and with `/`.
+fn all_paths(folder: &Path, found: &mut Vec<String>) {
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let entry = entry.expect("an entry");
+        let name = entry.file_name();
+        if name == "target" || name.to_string_lossy().starts_with('.') {
+            continue;
+        }
+        let path = entry.path();
+        if path.is_dir() {
+            all_paths(&path, found);
+        }
+        let below = path.strip_prefix(root()).expect("below the root");
+        let parts = below.iter().map(|part| part.to_string_lossy());
+        found.push(parts.collect::<Vec<_>>().join("/"));
+    }
+}
+
+/// Whether a text between backticks is the path of a file or a folder of the repository, or the end of one; with a
+/// word in capitals it is that of a file to be written.
+fn is_path(quoted: &str) -> bool {
+    let plain = |c: char| c.is_alphanumeric() || "_-./".contains(c);
+    let stem = quoted.rsplit('/').next().and_then(|n| n.split('.').next());
+    let to_be_written = stem.is_some_and(|s| s.len() > 1 && s.chars().all(char::is_uppercase));
+    let ends = [".rs", ".toml", ".md", ".py", ".yml"];
+    let is_file = ends.iter().any(|end| quoted.ends_with(end));
+    quoted.chars().all(plain)
+        && (quoted.contains('/') || is_file)
+        && !quoted.starts_with(['.', '/'])
+        && !quoted.starts_with("target/")
+        && !to_be_written
+}
+
+#[test]
+fn every_path_that_the_pages_for_contributors_name_exists() {
+    let mut all = Vec::new();
+    all_paths(root(), &mut all);
+    let exists = |path: &str| {
+        let end = format!("/{path}");
+        all.iter()
+            .any(|known| known == path || known.ends_with(&end))
+    };
+    let mut seen = 0;
+    for page in ["CONTRIBUTING.md", "ARCHITECTURE.md"] {
+        let text = fs::read_to_string(root().join(page)).expect("a page");
+        let quoted = prose(&text).flat_map(|line| line.split('`').skip(1).step_by(2));
+        for path in quoted.filter(|q| is_path(q)) {
+            seen += 1;
+            assert!(exists(path), "{path} in {page}");
+        }
+    }
+    assert!(seen > 40, "{seen} paths only");
+    assert!(is_path("parameters/none.rs") && !exists("parameters/none.rs"));
+    assert!(!is_path("src/NAME.rs") && !is_path("z = p/n") && !is_path("../shared/data"));
+}
+
+#[test]
+fn pages_name_every_format_that_is_read_and_every_language_with_texts() {
+    let read = |page: &str| fs::read_to_string(root().join(page)).expect("a page");
+    for page in ["README.md", "docs/formats.md", "crates/labfiles/README.md"] {
+        let text = read(page);
+        for title in labfiles::format_titles() {
+            assert!(text.contains(title), "{title} is not in {page}");
+        }
+    }
+    let codes: Vec<&str> = Language::all().map(Language::code).collect();
+    let option = format!("`--language {}`", codes.join("|"));
+    assert!(
+        read("README.md").contains(&option),
+        "{option} is not in README.md"
+    );
 }

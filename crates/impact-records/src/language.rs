@@ -2,7 +2,7 @@
 //!
 //! A file contains the templates of all messages and phrases, by table and key, and what else depends
 //! on the language: the decimal sign, and the words of run tables. A new language is a new file and its
-//! line in [`FILES`]; tests compare its tables, keys and names in braces with those of English.
+//! line in `embedded!`; tests compare its tables, keys and names in braces with those of English.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -18,19 +18,22 @@ struct Embedded {
     texts: LazyLock<Texts>,
 }
 
-/// A file of the folder `texts`.
+/// The static with all files of the folder `texts`, by code and name.
 macro_rules! embedded {
-    ($code:literal, $name:literal) => {
-        Embedded {
+    ($($code:literal = $name:literal;)+) => {
+        /// All languages; what a file lacks is taken from the first.
+        static FILES: [Embedded; [$($code),+].len()] = [$(Embedded {
             code: $code,
             name: $name,
             texts: LazyLock::new(|| read(include_str!(concat!("../texts/", $code, ".toml")))),
-        }
+        }),+];
     };
 }
 
-/// All languages; what a file lacks is taken from the first.
-static FILES: [Embedded; 2] = [embedded!("en", "English"), embedded!("de", "German")];
+embedded! {
+    "en" = "English";
+    "de" = "German";
+}
 
 /// What a file contains.
 #[derive(Debug, Default, Deserialize)]
@@ -155,6 +158,47 @@ mod tests {
                     assert_eq!(names(text).collect::<BTreeSet<_>>(), wanted, "{place}");
                     assert_eq!(text.matches('$').count() % 2, 0, "{place}");
                     assert!(!text.is_empty() && text.trim_end() == text, "{place}");
+                }
+            }
+        }
+    }
+
+    /// The words of a table of run tables, by language.
+    fn of_all(of: Of) -> impl Iterator<Item = (Language, &'static BTreeMap<String, Vec<String>>)> {
+        Language::all().map(move |language| (language, of(language.run_table())))
+    }
+
+    type Of = fn(&'static RunTableWords) -> &'static BTreeMap<String, Vec<String>>;
+
+    /// Columns, and words of cells.
+    const TABLES: [Of; 2] = [|table| &table.columns, |table| &table.words];
+
+    #[test]
+    fn every_language_has_words_for_the_same_columns_and_cells() {
+        for of in TABLES {
+            let english: Vec<&String> = of(Language::default().run_table()).keys().collect();
+            assert!(english.len() >= 5);
+            for (language, table) in of_all(of) {
+                let own: Vec<&String> = table.keys().collect();
+                assert_eq!(own, english, "{}", language.name());
+                assert!(table.values().all(|words| !words.is_empty()));
+            }
+        }
+    }
+
+    #[test]
+    fn no_word_of_run_tables_has_two_meanings() {
+        for of in TABLES {
+            let mut meanings = BTreeMap::new();
+            for (language, table) in of_all(of) {
+                let named = table.iter().flat_map(|(name, words)| {
+                    let own = words.iter().chain([name]);
+                    own.map(move |word| (word, name))
+                });
+                for (word, name) in named {
+                    assert_eq!(*word, word.trim().to_lowercase(), "{}", language.name());
+                    let other = *meanings.entry(word).or_insert(name);
+                    assert_eq!(other, name, "{word} in {}", language.name());
                 }
             }
         }

@@ -344,15 +344,17 @@ pub(crate) fn mutate_text(random: &mut Random, bytes: &mut Vec<u8>) {
     *bytes = lines.join(&b'\n');
 }
 
+/// The goldens, and the other files of formats of the repository.
+pub(crate) fn own_files() -> impl Iterator<Item = PathBuf> {
+    let folders = ["formats", "goldens"].into_iter();
+    folders.flat_map(|folder| files(&own_folder(folder)))
+}
+
 /// Files of the repository's own folders with this ending, as seeds of mutations.
 pub(crate) fn own_seeds(ending: &str) -> Vec<Vec<u8>> {
-    let folders = ["formats", "goldens"].map(own_folder);
-    let paths = folders.iter().flat_map(|folder| files(folder));
     let fits = |p: &PathBuf| p.extension().is_some_and(|e| e == ending);
-    paths
-        .filter(fits)
-        .map(|p| std::fs::read(p).unwrap())
-        .collect()
+    let fitting = own_files().filter(fits);
+    fitting.map(|p| std::fs::read(p).unwrap()).collect()
 }
 
 /// The files of a folder in order of their names.

@@ -74,7 +74,7 @@ pub mod units;
 mod wav;
 
 pub use excel::workbook_tables;
-pub use open::open;
+pub use open::{format_titles, open};
 pub use parquet::guard::is_caught as panic_is_caught;
 pub use plain::read_text;
 pub use source::{ChannelInfo, Clock, DatasetInfo, ReadError, Samples, Source, StoredType};

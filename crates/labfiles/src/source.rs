@@ -82,8 +82,7 @@ pub struct ReadError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Source: Send + Sync {
-    /// Short name of the format (`hdf5`, `csv`, `lvm`, `tdms`, `uff`, `mat`, `wav`, `parquet`,
-    /// `excel`).
+    /// Short name of the format, such as `hdf5` or `csv`.
     fn format(&self) -> &'static str;
 
     /// The file's path.

@@ -577,6 +577,24 @@ mod tests {
     }
 
     #[test]
+    fn words_of_every_language_name_a_column_or_what_a_cell_states() {
+        for table in Language::all().map(Language::run_table) {
+            for (name, headings) in &table.columns {
+                let column = COLUMNS.iter().position(|c| c == name);
+                assert!(column.is_some(), "{name} is no column");
+                for heading in headings {
+                    assert_eq!(column_of(units::split_unit(heading).0), column, "{heading}");
+                }
+            }
+            for (name, words) in &table.words {
+                let known = name.parse::<Sweep>().is_ok() || name.parse::<Excitation>().is_ok();
+                assert!(known, "{name}");
+                assert!(words.iter().all(|word| in_english(word) == *name), "{name}");
+            }
+        }
+    }
+
+    #[test]
     fn decimal_commas_are_read_where_no_comma_separates() {
         for text in [
             "file;clearance [m]\na;8,82\nb;9\nc;\n",

@@ -105,7 +105,7 @@ impl Parameters {
     /// A contact that lasts a time acts outside of it like an impact where both flights meet.
     pub fn own(&self, at: &Circumstances) -> (Self, f64) {
         let drift = |effect| self.effect(effect) * at.place;
-        let bend = self.effect(Effect::FrequencyBend) * bend(at.place);
+        let bending = self.effect(Effect::FrequencyBend) * bend(at.place);
         let eta = self.eta(at);
         let [lean, _] = self.lean(eta);
         let [viscous, _] = self.equivalent_damping(eta);
@@ -119,7 +119,7 @@ impl Parameters {
         let own = Self {
             restitution: restitution.clamp(0.0, 1.0),
             natural_frequency_hz: self.natural_frequency_hz
-                * (drift(Effect::FrequencyDrift) + bend).exp(),
+                * (drift(Effect::FrequencyDrift) + bending).exp(),
             damping_ratio: self.damping_ratio * viscous * drift(Effect::DampingDrift).exp(),
             static_deflection_m: self.static_deflection_m
                 * lean.max(0.01)
@@ -213,7 +213,17 @@ impl Parameters {
                         * (contact.press * at.press_per_s + DRAG_OF_LAW * contact.drag * decay),
                 ),
                 Effect::ContactReach => clearance(contact_s * speed * contact.reach * pressed),
-                _ => None,
+                // of the values of an orbit, or at the channel
+                Effect::SecondHarmonicCos
+                | Effect::SecondHarmonicSin
+                | Effect::ThirdHarmonicCos
+                | Effect::ThirdHarmonicSin
+                | Effect::Hardening
+                | Effect::Friction
+                | Effect::Drag
+                | Effect::SpringAsymmetry
+                | Effect::PickupX
+                | Effect::PickupY => None,
             },
             _ => None,
         }

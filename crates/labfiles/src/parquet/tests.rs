@@ -77,24 +77,6 @@ fn valid_files_cut_off_are_refused() {
 }
 
 #[test]
-fn prop_mutated_files_are_read_or_refused() {
-    use crate::conformance::{Random, mutate, own_seeds, survive_within};
-    // The footer is at the end of the file: half of the mutations go there.
-    let change = |random: &mut Random, bytes: &mut Vec<u8>| {
-        if random.below(2) == 0 {
-            bytes.reverse();
-            mutate(random, bytes);
-            bytes.reverse();
-        } else {
-            mutate(random, bytes);
-        }
-    };
-    // A panic of the library that is caught may print a trace, for which the debugging
-    // information of the program is loaded.
-    survive_within(&own_seeds("parquet"), open, change, [1200, 256 << 20]);
-}
-
-#[test]
 fn channels_of_a_tidy_table_may_have_times_of_their_own() {
     use crate::convert::{Options, Target, convert};
     let dir = tempfile::tempdir().unwrap();

@@ -45,12 +45,14 @@ impl<'a> Iterator for Cells<'a> {
 
     fn next(&mut self) -> Option<&'a [u8]> {
         let rest = self.rest?;
-        let skipped = rest.len() - rest.trim_ascii_start().len();
         let is_separator = |b: u8| match self.separator {
             Separator::Byte(s) => b == s,
             Separator::Blanks => b == b' ' || b == b'\t',
         };
-        if rest.get(skipped) == Some(&b'"') && !rest[..skipped].iter().any(|&b| is_separator(b)) {
+        // a run of tabs that separate empty cells is not looked through again for each of them
+        let is_blank = |b: &&u8| b.is_ascii_whitespace() && !is_separator(**b);
+        let skipped = rest.iter().take_while(is_blank).count();
+        if rest.get(skipped) == Some(&b'"') {
             let close = closing_quote(&rest[skipped + 1..]).map_or(rest.len(), |i| skipped + 2 + i);
             let after = rest[close..].iter().position(|&b| is_separator(b));
             let cell = self.cut(rest, after.map_or(rest.len(), |i| close + i));
@@ -142,4 +144,21 @@ pub(crate) fn is_row(line: &[u8], comments: &[u8]) -> bool {
     line.iter()
         .find(|b| !matches!(b, b' ' | b'\t' | b'\r'))
         .is_some_and(|first| !comments.contains(first))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blanks_before_a_quote_belong_to_its_cell_unless_they_separate() {
+        let cells = |line: &'static str, separator: u8| -> Vec<&'static str> {
+            let cells = Cells::new(line.as_bytes(), Separator::Byte(separator));
+            cells.map(|c| std::str::from_utf8(c).unwrap()).collect()
+        };
+        let tabs = cells(" \"a\tb\" \t\t\t\"c\"", b'\t');
+        assert_eq!(tabs, ["a\tb", "", "", "c"]);
+        let commas = cells("1, \"a, b\",\t\"c\"", b',');
+        assert_eq!(commas, ["1", "a, b", "c"]);
+    }
 }

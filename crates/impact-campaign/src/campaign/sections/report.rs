@@ -93,7 +93,13 @@ impl ReportSettings {
 }
 
 /// What to do about a language without texts.
-const WITHOUT_TEXTS: &str = "write \"en\" or \"de\", or name a table of your own as words; `impactid report --list-words` prints one to translate";
+fn with_texts() -> String {
+    let codes = Language::all().map(|language| format!("\"{}\"", language.code()));
+    let codes = codes.collect::<Vec<_>>().join(" or ");
+    format!(
+        "write {codes}, or name a table of your own as words; `impactid report --list-words` prints one to translate"
+    )
+}
 
 /// What the report of a campaign refers to.
 pub(crate) struct Around<'a> {
@@ -143,7 +149,7 @@ pub(crate) fn resolve(
         logo: beside(&table.logo, "report.logo", folder, context),
     };
     if let (Some(placed), Some(what)) = (&table.language, settings.without_texts()) {
-        context.note(placed, "report.language", what, WITHOUT_TEXTS);
+        context.note(placed, "report.language", what, &with_texts());
     }
     settings
 }
@@ -186,4 +192,28 @@ fn beside(
         context.fault(Code::UnreadableFile, placed, key, what, remedy);
     }
     Some(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A row of keys has literals alone, so that its texts are written by hand.
+    #[test]
+    fn the_row_of_the_language_names_every_language_with_texts() {
+        let row = ReportTable::KEYS.iter().find(|key| key.name == "language");
+        let row = row.expect("a row");
+        let (meaning, init) = (row.meaning.concat(), row.init.expect("a line"));
+        let (_, comment) = init.split_once('#').expect("a comment");
+        for code in Language::all().map(Language::code) {
+            assert!(
+                meaning.contains(&format!("`\"{code}\"`")),
+                "{code}: {meaning}"
+            );
+            assert!(
+                comment.split(' ').any(|word| word == code),
+                "{code}: {comment}"
+            );
+        }
+    }
 }

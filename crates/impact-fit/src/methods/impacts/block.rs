@@ -1,7 +1,7 @@
 //! R from the speeds after over before each impact.
 
 use crate::evidence::pickup::Pickups;
-use crate::parameters::effect::Effect;
+use crate::parameters::effect::{Effect, EffectKind};
 use crate::parameters::own::log_speed;
 use crate::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
 use crate::solver::Block;
@@ -452,8 +452,19 @@ impl Block for ImpactBlock {
     fn touches(&self, coordinate: Coordinate) -> bool {
         match coordinate {
             Coordinate::Corner(index) => self.has_corner(index),
-            Coordinate::Effect(Effect::RestitutionSpeed) => !self.free,
-            Coordinate::Effect(effect) => self.picks_up(effect),
+            Coordinate::Effect(effect) => match effect.kind() {
+                EffectKind::RestitutionSpeed => !self.free,
+                EffectKind::Pickup => self.picks_up(effect),
+                EffectKind::Harmonics
+                | EffectKind::ForceFrequency
+                | EffectKind::Hardening
+                | EffectKind::Friction
+                | EffectKind::Drift
+                | EffectKind::ContactDuration
+                | EffectKind::Drag
+                | EffectKind::SpringAsymmetry
+                | EffectKind::HystereticDamping => false,
+            },
             _ => coordinate == Coordinate::Restitution,
         }
     }

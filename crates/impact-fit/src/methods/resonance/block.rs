@@ -690,16 +690,19 @@ impl Block for ResonanceBlock {
             | Coordinate::ScrewZero
             | Coordinate::Gap(_)
             | Coordinate::Effect(Effect::ClearanceDrift) => false,
-            Coordinate::Effect(effect @ (Effect::PickupX | Effect::PickupY)) => {
-                self.pickups.has(effect)
-            }
-            Coordinate::Effect(effect) => !matches!(
-                effect.kind(),
+            Coordinate::Effect(effect) => match effect.kind() {
                 EffectKind::Harmonics
-                    | EffectKind::ContactDuration
-                    | EffectKind::RestitutionSpeed
-                    | EffectKind::SpringAsymmetry
-            ),
+                | EffectKind::ContactDuration
+                | EffectKind::RestitutionSpeed
+                | EffectKind::SpringAsymmetry => false,
+                EffectKind::ForceFrequency
+                | EffectKind::Hardening
+                | EffectKind::Friction
+                | EffectKind::Drift
+                | EffectKind::Drag
+                | EffectKind::HystereticDamping => true,
+                EffectKind::Pickup => self.pickups.has(effect),
+            },
             _ => true,
         }
     }

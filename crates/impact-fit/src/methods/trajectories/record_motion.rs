@@ -583,17 +583,9 @@ pub(super) mod tests {
 
     /// Everything in effect that is not a perturbation.
     pub(in crate::methods) fn parameters() -> Parameters {
+        let own = Effect::ALL.iter().filter(|e| !e.is_perturbation());
         let mut effects = [0.0; Effect::COUNT];
-        effects[Effect::ForceSlope.place()] = 0.02;
-        effects[Effect::ForceCurve.place()] = -0.01;
-        effects[Effect::FrequencyDrift.place()] = 2e-3;
-        effects[Effect::ContactDuration.place()] = 0.3;
-        effects[Effect::ContactLaw.place()] = 0.1;
-        effects[Effect::ContactReach.place()] = 0.05;
-        effects[Effect::ContactSpeed.place()] = 0.1;
-        effects[Effect::RestitutionSpeed.place()] = -0.02;
-        effects[Effect::HystereticDamping.place()] = 0.1;
-        effects[Effect::ClearanceDrift.place()] = 0.02;
+        own.for_each(|e| effects[e.place()] = 0.5 * e.accepted());
         Parameters {
             drive_asymmetry: 0.02,
             stiffness_asymmetry: -0.03,

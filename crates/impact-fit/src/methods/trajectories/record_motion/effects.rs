@@ -175,7 +175,23 @@ impl RecordMotion<'_> {
                 let share = oscillator.stiffness_per_mass() * length_m / reach_m;
                 states.iter().map(|s| -share * s[0].powi(2)).collect()
             }
-            _ => vec![0.0; states.len()],
+            // at the channel
+            Effect::PickupX
+            | Effect::PickupY
+            // of the record's own parameters
+            | Effect::ForceSlope
+            | Effect::ForceCurve
+            | Effect::FrequencyDrift
+            | Effect::FrequencyBend
+            | Effect::DampingDrift
+            | Effect::DeflectionDrift
+            | Effect::ContactDuration
+            | Effect::ContactLaw
+            | Effect::ContactReach
+            | Effect::ContactSpeed
+            | Effect::RestitutionSpeed
+            | Effect::HystereticDamping
+            | Effect::ClearanceDrift => vec![0.0; states.len()],
         }
     }
 }
