@@ -73,14 +73,21 @@ fn name_records() -> String {
     format!("name the folder that holds files of {titles} or other text tables")
 }
 
+/// What a table of heights is.
+const HEIGHTS: &str = "contains heights: R is the square root of the height after an impact over that before it, and is \
+                       not computed from a table of heights by this program";
+
 /// No record: each file with the reason, and the remedy of the first reader that refused one.
 fn none_found(folder: &Path, found: &FolderContents) -> Failure {
     let refused = found.refused.iter();
     let refused = refused.map(|r| format!("; {}: {}", r.file, r.reason));
     let others = found.others.iter().map(|file| {
-        format!(
-            "; {file} was read, but is neither a series of 16 samples or more nor a list of times"
-        )
+        let what = if found.heights.contains(file) {
+            HEIGHTS
+        } else {
+            "was read, but is neither a series of 16 samples or more nor a list of times"
+        };
+        format!("; {file} {what}")
     });
     let mut faults: String = refused.chain(others).take(NAMED).collect();
     let all = found.refused.len() + found.others.len();
@@ -151,7 +158,8 @@ mod tests {
         };
         let mut found = FolderContents {
             refused: (1..=2).map(refused).collect(),
-            others: vec!["a.csv".to_owned()],
+            others: ["a.csv", "h.csv"].map(str::to_owned).to_vec(),
+            heights: vec!["h.csv".to_owned()],
             ..FolderContents::default()
         };
         let only = |found: &FolderContents| {
@@ -162,13 +170,14 @@ mod tests {
         assert_eq!(
             message,
             "no record found in r; t1.mat: it holds a table T; t2.mat: it holds a table T; a.csv was read, but \
-             is neither a series of 16 samples or more nor a list of times"
+             is neither a series of 16 samples or more nor a list of times; h.csv contains heights: R is the square root of \
+             the height after an impact over that before it, and is not computed from a table of heights by this program"
         );
         assert_eq!(remedy, "save table2struct(T) of 1");
         found.refused = (1..=6).map(refused).collect();
         let (message, _) = only(&found);
         assert!(
-            message.ends_with("t5.mat: it holds a table T; 2 more files"),
+            message.ends_with("t5.mat: it holds a table T; 3 more files"),
             "{message}"
         );
         assert_eq!(only(&FolderContents::default()).1, name_records());

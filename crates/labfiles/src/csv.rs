@@ -7,7 +7,7 @@ mod columns;
 mod dialect;
 mod front;
 pub(crate) mod header;
-mod parts;
+pub(crate) mod parts;
 mod time_axis;
 
 use std::path::Path;

@@ -73,6 +73,7 @@ mod uff;
 pub mod units;
 mod wav;
 
+pub use csv::parts::without_run;
 pub use excel::workbook_tables;
 pub use open::{format_titles, open};
 pub use parquet::guard::is_caught as panic_is_caught;

@@ -167,6 +167,25 @@ pub fn is_time_name(name: &str) -> bool {
         || name.trim().eq_ignore_ascii_case("x_value")
 }
 
+/// Words that name a column of the numbers of rows.
+const NUMBERED: [&str; 15] = [
+    "n", "nr", "no", "i", "k", "index", "row", "zeile", "bounce", "hit", "impact", "event",
+    "number", "aufprall", "rebond",
+];
+
+/// Whether a name is that of a column that numbers the rows: `n`, `#`, `bounce no.` ….
+///
+/// ```
+/// use labfiles::timing::numbers_rows;
+/// assert!(["#", "No.", "bounce no.", "Aufprall Nr."].iter().all(|name| numbers_rows(name)));
+/// assert!(!["noise", "impact time", ""].iter().any(|name| numbers_rows(name)));
+/// ```
+pub fn numbers_rows(name: &str) -> bool {
+    let words = whole_words(name);
+    let numbered = words.iter().all(|w| NUMBERED.contains(&w.as_str()));
+    name.trim() == "#" || (!words.is_empty() && numbered)
+}
+
 /// `timems`, `tms`: a word of time and a unit below a second in one.
 fn glued(word: &str) -> Option<Unit> {
     let unit = ["timestamp", "time", "zeit", "t"]

@@ -12,6 +12,7 @@ mod table;
 
 pub use quantity::{Quantity, QuantityError, parse_quantity, parse_quantity_of};
 pub use scale::{Scale, parse_scale};
+pub(crate) use table::split_at_comma;
 pub use table::{
     Dimension, STANDARD_GRAVITY_M_S2, Unit, parse_split_unit, parse_unit, split_unit, symbol_of,
     symbols_of, unit_of,
@@ -104,6 +105,9 @@ mod tests {
         assert_eq!(split_unit("clearance_mm"), ("clearance", Some("mm")));
         assert_eq!(split_unit("clearance in mm"), ("clearance", Some("mm")));
         assert_eq!(split_unit("laser in use"), ("laser in use", None));
+        assert_eq!(split_unit("Load, lbf"), ("Load", Some("lbf")));
+        assert_eq!(split_unit("Sensor, 1"), ("Sensor, 1", None));
+        assert_eq!(split_unit("Position, Ch 1"), ("Position, Ch 1", None));
         assert_eq!(
             split_unit("drive_frequency_hz"),
             ("drive_frequency", Some("hz"))

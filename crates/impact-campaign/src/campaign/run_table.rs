@@ -205,6 +205,33 @@ pub(super) fn is_run_table(head: &[u8]) -> bool {
     names.is_ok_and(|names| names.iter().any(|name| column_of(name) == Some(0)))
 }
 
+/// Whether headings contain that of the drive frequency.
+pub(super) fn has_frequencies<'a>(mut headings: impl Iterator<Item = &'a str>) -> bool {
+    headings.any(is_frequency)
+}
+
+fn is_frequency(heading: &str) -> bool {
+    let column = column_of(heading).or_else(|| column_of(units::split_unit(heading).0));
+    column.is_some_and(|c| COLUMNS[c] == "drive_frequency")
+}
+
+/// Whether the front of a run table states drive frequencies, and no free decays.
+pub(super) fn states_drive(head: &[u8]) -> bool {
+    let text = decode(head);
+    let mut reader = reader(&text, separator(&text));
+    let headings = reader.headers().cloned().unwrap_or_default();
+    let Some(column) = headings.iter().position(is_frequency) else {
+        return false;
+    };
+    let rows: Vec<csv::StringRecord> = reader.records().filter_map(Result::ok).collect();
+    let decays = |row: &csv::StringRecord| row.iter().any(|cell| in_english(cell) == "free_decay");
+    let stated = |row: &csv::StringRecord| {
+        let cell = row.get(column).unwrap_or("");
+        cell.chars().any(|c| ('1'..='9').contains(&c))
+    };
+    rows.iter().any(stated) && !rows.iter().any(decays)
+}
+
 fn reader(text: &str, separator: u8) -> csv::Reader<&[u8]> {
     csv::ReaderBuilder::new()
         .delimiter(separator)

@@ -11,6 +11,7 @@ use super::sections::report::ReportTable;
 use super::sections::rig::RigTable;
 use impact_records::message::counted;
 use impact_records::record::{ContactContent, Role};
+use labfiles::timing::AxisUnit;
 use labfiles::units::{self, Dimension};
 
 /// The text of campaign.toml for what was found in a folder named so.
@@ -235,6 +236,14 @@ fn unit_line(
             writeln!(text, "unit = \"{symbol}\"                 # from its name")?;
         }
         (None, None, _) if found.experiment == Experiment::Events(ContactContent::Sound) => {}
+        (None, None, _) if channel.counted_in.is_some() => unit_of_times(text, channel)?,
+        (None, None, _) if role == Role::Drive && channel.unit.is_some() => {
+            let stated = channel.unit.as_deref().unwrap_or_default();
+            writeln!(
+                text,
+                "unit = \"1\"                  # the file states {stated}: of a drive its frequency and phase count"
+            )?;
+        }
         (None, None, Some(usual)) if turns.is_some() || found.experiment != Experiment::Driven => {
             let usual = usual.replace('²', "2");
             let stated = channel.unit.as_deref().unwrap_or("none");
@@ -254,6 +263,23 @@ fn unit_line(
         }
     }
     Ok(unit)
+}
+
+/// The line of the unit of times that the file does not state.
+fn unit_of_times(text: &mut String, channel: &InferredChannel) -> std::fmt::Result {
+    let (unit, why) = match &channel.counted_in {
+        Some(AxisUnit::Stated(unit)) => (units::symbol_of(*unit), "# from its name"),
+        Some(AxisUnit::Epoch(unit)) => (units::symbol_of(*unit), "# CHECK: counted since 1970"),
+        Some(AxisUnit::Seconds) => (Some("s"), "# CHECK: the file states none"),
+        _ => (None, ""),
+    };
+    match unit {
+        Some(unit) => writeln!(text, "unit = {:<21}{why}", quoted(unit)),
+        None => writeln!(
+            text,
+            "# unit = \"ms\"              # FILL IN: the file states none"
+        ),
+    }
 }
 
 fn table(

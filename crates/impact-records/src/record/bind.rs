@@ -44,6 +44,7 @@ fn find_name(name: &str, dataset: &DatasetInfo) -> Option<usize> {
         .or_else(|| only_one(dataset, |c| c.name.rsplit(": ").next() == Some(name)))
         .or_else(|| only_one(dataset, bare))
         .or_else(|| find_headed(name, dataset))
+        .or_else(|| find_without_run(name, dataset))
         .or_else(|| find_numbered(name, dataset))
 }
 
@@ -77,6 +78,20 @@ fn find_headed(name: &str, dataset: &DatasetInfo) -> Option<usize> {
         (named || label) && (unit.is_none() || c.unit == unit)
     };
     only_one(dataset, is)
+}
+
+/// The only channel that is called so but for its run, as in one of several files, each of a run: `Position Run #2`;
+/// or the only one of a dataset that is called after its run.
+fn find_without_run(name: &str, dataset: &DatasetInfo) -> Option<usize> {
+    let (headed, unit) = without_unit_inside(name);
+    let is = |c: &ChannelInfo| {
+        let bare = labfiles::without_run(&c.name).map(|(bare, _)| bare);
+        bare.is_some_and(|bare| !bare.is_empty() && bare == headed)
+            && (unit.is_none() || c.unit == unit)
+    };
+    let run = dataset.name.rsplit('/').next().unwrap_or_default();
+    let alone = dataset.channels.len() == 1 && !run.is_empty() && run == name;
+    only_one(dataset, is).or(alone.then_some(0))
 }
 
 /// A heading without the unit in its brackets, and the unit: the last brackets count.
@@ -494,6 +509,24 @@ mod tests {
                 "{heading}"
             );
         }
+        // one file for each run
+        for (heading, found) in [
+            ("Position", Some(1)),
+            ("Position (m)", Some(1)),
+            ("Position (mm)", None),
+            ("Velocity", None),
+            ("", None),
+        ] {
+            let key = ChannelKey::Name(heading.into());
+            assert_eq!(key.find(&single), found, "{heading}");
+        }
+        let list = DatasetInfo {
+            name: "Throw 2".into(),
+            channels: vec![channel("time", "ms")],
+            ..DatasetInfo::default()
+        };
+        let of_list = |name: &str| ChannelKey::Name(name.into()).find(&list);
+        assert_eq!((of_list("Throw 2"), of_list("Throw 1")), (Some(0), None));
         let mut labelled = channel("scope.signals(1).values", "m/s");
         labelled
             .properties

@@ -7,7 +7,7 @@ use crate::csv::dialect::{COMMENTS, Dialect, is_value};
 use crate::text::cells::{Cells, Separator, decode_cell};
 use crate::text::{decode, number};
 use crate::timing::{is_time_name, is_unit_of_time};
-use crate::units::parse_unit;
+use crate::units::{parse_unit, split_at_comma};
 
 /// What the lines before the first row state.
 #[derive(Debug, Default, PartialEq)]
@@ -370,7 +370,7 @@ fn unwrapped(text: &str) -> &str {
         .trim()
 }
 
-/// A heading such as `velocity_x [mm/s]`, `Position (m) Run 1`, `x / mm` or `Zeit in s` as name and unit.
+/// A heading such as `velocity_x [mm/s]`, `Position (m) Run 1`, `x / mm`, `Zeit in s` or `Load, lbf` as name and unit.
 ///
 /// Empty brackets at its end state that there is no unit: `mass (kg) []`.
 pub(crate) fn name_and_unit(heading: &str) -> (String, Option<String>) {
@@ -396,6 +396,9 @@ pub(crate) fn name_and_unit(heading: &str) -> (String, Option<String>) {
         if let Some((name, unit)) = parts.filter(|(_, unit)| is_unit(unit)) {
             return (name.trim().to_owned(), Some(unit.trim().to_owned()));
         }
+    }
+    if let Some((name, unit)) = split_at_comma(heading) {
+        return (name.to_owned(), Some(unit.to_owned()));
     }
     (heading.to_owned(), None)
 }

@@ -4,7 +4,7 @@ use crate::csv::columns::HeadRows;
 use crate::csv::header::Header;
 use crate::csv::time_axis::heads_pair;
 use crate::text::table::Kind;
-use crate::timing::is_time_name;
+use crate::timing::{is_time_name, is_unit_of_time, numbers_rows};
 
 /// A table beside others, or the only one.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -62,6 +62,9 @@ pub(crate) fn find(
     let used: Vec<usize> = (0..kinds.len())
         .filter(|&i| filled(i) || header.names[i] != format!("column_{}", i + 1))
         .collect();
+    if let Some(parts) = lists_of_times(header, kinds, &used) {
+        return Makeup::Runs(parts);
+    }
     let blocks = blocks(&used, times, header);
     if blocks.len() < 2 {
         return shared_time(header, kinds, &used, times).map_or(Makeup::One, Makeup::Runs);
@@ -132,7 +135,13 @@ const CHANNELS: [&str; 9] = [
 ];
 
 /// A name without what tells its run, and that: `Time Run #2` is `Time` of `Run #2`.
-fn without_run(name: &str) -> Option<(String, String)> {
+///
+/// ```
+/// use labfiles::without_run;
+/// assert_eq!(without_run("Position Run #2"), Some(("Position".into(), "Run #2".into())));
+/// assert_eq!(without_run("Position"), None);
+/// ```
+pub fn without_run(name: &str) -> Option<(String, String)> {
     let lower = name.to_lowercase();
     if lower.len() != name.len() {
         return None;
@@ -249,6 +258,38 @@ fn parts_of(
         .iter()
         .all(|p| p.names.iter().all(|name| !name.is_empty()));
     named.then_some(parts)
+}
+
+/// What the only column of a list of times is called whose heading names its run alone.
+const TIMES: &str = "time";
+
+/// Lists of times that are called after runs alone (`Throw 1 (ms)`, `Throw 2 (ms)`), with no other column but such that
+/// count the rows: one time axis for all would be wrong.
+fn lists_of_times(header: &Header, kinds: &[Kind], used: &[usize]) -> Option<Vec<Part>> {
+    let numbers = |c: &usize| kinds[*c] == Kind::Number;
+    if !used.iter().all(numbers) {
+        return None;
+    }
+    let lists = used.iter().copied().filter(|c| !counts(header, *c));
+    let list = |column: usize| {
+        let (bare, run) = without_run(&header.names[column])?;
+        let unit = header.units[column].as_deref()?;
+        let part = || Part {
+            name: run,
+            columns: vec![column],
+            names: vec![TIMES.to_owned()],
+        };
+        (bare.is_empty() && is_unit_of_time(unit)).then(part)
+    };
+    let parts: Vec<Part> = lists.map(list).collect::<Option<_>>()?;
+    let known = |(k, part): (usize, &Part)| parts[..k].iter().any(|p| p.name == part.name);
+    let repeated = parts.iter().enumerate().any(known);
+    (parts.len() > 1 && !repeated).then_some(parts)
+}
+
+/// Whether a column counts the rows, by its heading.
+fn counts(header: &Header, column: usize) -> bool {
+    header.units[column].is_none() && numbers_rows(&header.names[column])
 }
 
 /// Runs that share one time: every other column is named for one of several.

@@ -37,6 +37,49 @@ fn plain_table_with_units_in_the_header() {
 }
 
 #[test]
+fn lists_of_times_called_after_throws_are_records() {
+    let s = source(b"bounce no.,Throw 1 (ms),Throw 2 (ms)\n1,0.1,0.2\n2,500.0,510.0\n3,900.0,930.0\n4,1220.0,\n");
+    let sets: Vec<(&str, u64)> = s
+        .datasets()
+        .iter()
+        .map(|d| (d.name.as_str(), d.channels[0].samples))
+        .collect();
+    assert_eq!(sets, [("Throw 1", 4), ("Throw 2", 3)]);
+    for set in s.datasets() {
+        assert_eq!(
+            (set.channels.len(), set.channels[0].name.as_str()),
+            (1, "time")
+        );
+        assert_eq!(set.channels[0].unit.as_deref(), Some("ms"));
+    }
+    let second = s.read(1, &[0]).unwrap().remove(0).into_real().unwrap();
+    assert_eq!(second, [0.2, 510.0, 930.0]);
+    // another quantity, and names that are not of runs
+    for heading in ["no,Throw 1 (ms),height (m)", "no,Ball 1 (ms),Ball 2 (ms)"] {
+        let text = format!("{heading}\n1,0.1,0.2\n2,500.0,510.0\n3,900.0,930.0\n");
+        assert_eq!(source(text.as_bytes()).datasets().len(), 1, "{heading}");
+    }
+}
+
+#[test]
+fn a_unit_after_a_comma_is_that_of_the_heading() {
+    let s = source(b"\"Time, ms\",\"Displacement, in\",\"Sensor, 1\"\n0,1.5,1\n4,1.4,2\n8,1.2,3\n");
+    let named: Vec<_> = s.datasets()[0]
+        .channels
+        .iter()
+        .map(|c| (c.name.as_str(), c.unit.as_deref()))
+        .collect();
+    assert_eq!(
+        named,
+        [
+            ("Time", Some("ms")),
+            ("Displacement", Some("in")),
+            ("Sensor, 1", None)
+        ]
+    );
+}
+
+#[test]
 fn decimal_comma_with_units_in_a_second_line_and_a_mark() {
     let text = "\u{feff}# clearance_m: 0,001\nčas;rychlost\nms;mm/s\n0;1,25\n0,5;-2,5e1\n1;3\n";
     let s = source(text.as_bytes());

@@ -519,8 +519,8 @@ impl<'t> Builder<'t> {
         Some(label.trim().to_owned()).filter(|label| !label.is_empty())
     }
 
-    /// The unit of an array, where a text beside it states one: `x_unit`, `x_units`, or the
-    /// field `x` of a struct `Units` beside it.
+    /// The unit of an array, where a text beside it states one: `x_unit`, `x_units`, the field `x` of a struct `Units`
+    /// beside it, or `unit` beside the only signal of its struct.
     fn unit(&self, name: &str) -> Option<String> {
         let (parent, last) = name.rsplit_once('.').unwrap_or(("", name));
         let beside = |units: &str| match parent {
@@ -539,6 +539,20 @@ impl<'t> Builder<'t> {
             .map(|unit| unit.trim())
             .find(|unit| !unit.is_empty())
             .map(str::to_owned)
+            .or_else(|| self.unit_of_struct(parent, name))
+    }
+
+    /// The unit that a struct states for all in it, if it contains one signal and no other but its times.
+    fn unit_of_struct(&self, parent: &str, name: &str) -> Option<String> {
+        let beside = |word: &str| self.texts.get(format!("{parent}.{word}").as_str());
+        let unit = beside("unit").or_else(|| beside("units"))?.trim();
+        let signal = |leaf: &&Leaf| {
+            let (within, last) = leaf.name.rsplit_once('.').unwrap_or(("", &leaf.name));
+            within == parent && leaf.is_numeric() && leaf.count() > 1 && !is_time_name(last)
+        };
+        let mut signals = self.tree.leaves.iter().filter(signal);
+        let only = signals.next().is_some_and(|leaf| leaf.name == name) && signals.next().is_none();
+        (only && !unit.is_empty() && !timing::is_unit_of_time(unit)).then(|| unit.to_owned())
     }
 
     /// The channels of an array: suffix of the name, samples and slice of each.

@@ -15,7 +15,8 @@
 //!   time vector beside the array is added to each record that has its length.
 //! - Single numbers and short texts are channels and also attributes of the dataset, so that
 //!   clearance or frequency are attributes of the record; one called `fs`, `sample_rate` or `dt`
-//!   gives the sample rate. A unit is read from a text `x_unit` or `Units.x` beside `x`.
+//!   gives the sample rate. A unit is read from a text `x_unit` or `Units.x` beside `x`, or from `unit` beside the only
+//!   signal of a struct.
 //! - Sparse matrices and opaque objects are left out by name; a file that holds nothing else is
 //!   refused.
 

@@ -365,6 +365,26 @@ fn a_blank_unit_is_none() {
 }
 
 #[test]
+fn the_unit_of_a_struct_is_that_of_its_only_signal() {
+    let trial = |unit: &str, signals: &[&str]| {
+        let vectors = [0.0, 1.0].map(|k| matrix("", 3, 1, &[k, k + 0.1, k + 0.2]));
+        let values = vectors.into_iter().take(signals.len());
+        let fields: Vec<Vec<u8>> = values.chain([string("", unit)]).collect();
+        let names: Vec<&str> = signals.iter().copied().chain(["unit"]).collect();
+        structure("trial", &[1, 1], &names, &fields)
+    };
+    let unit_of_last = |array: Vec<u8>, signals: usize| {
+        let source = opened(&file(&[array], false)).unwrap();
+        source.datasets()[0].channels[signals - 1].unit.clone()
+    };
+    let unit = |unit, signals: &[&str]| unit_of_last(trial(unit, signals), signals.len());
+    assert_eq!(unit("mm/s", &["velocity"]).as_deref(), Some("mm/s"));
+    assert_eq!(unit("mm/s", &["t", "velocity"]).as_deref(), Some("mm/s"));
+    assert_eq!(unit("mm/s", &["velocity", "force"]), None);
+    assert_eq!(unit("s", &["velocity"]), None);
+}
+
+#[test]
 fn cell_of_matrices_gives_datasets() {
     let record = |k: f64| matrix("", 3, 2, &[k, k, k, 2.0 * k, 2.0 * k, 2.0 * k]);
     let bytes = file(

@@ -173,8 +173,8 @@ pub fn symbols_of(dimension: Dimension) -> Vec<&'static str> {
         .collect()
 }
 
-/// Split the unit off a column's or attribute's name: `clearance [mm]`, `clearance (mm)`, `clearance in mm`
-/// or `clearance_mm` (after an underscore `m_s` means m/s, `m_s2` m/s²). Gives the bare name and
+/// Split the unit off a column's or attribute's name: `clearance [mm]`, `clearance (mm)`, `clearance in mm`,
+/// `clearance, mm` or `clearance_mm` (after an underscore `m_s` means m/s, `m_s2` m/s²). Gives the bare name and
 /// the unit's symbol as written; no symbol if the name has none.
 ///
 /// ```
@@ -195,6 +195,9 @@ pub fn split_unit(name: &str) -> (&str, Option<&str>) {
     {
         return (bare.trim(), Some(symbol.trim()));
     }
+    if let Some((bare, symbol)) = split_at_comma(name) {
+        return (bare, Some(symbol));
+    }
     let suffix = name
         .match_indices('_')
         .find(|(at, _)| *at > 0 && has_dimension(&name[at + 1..]));
@@ -207,6 +210,14 @@ pub fn split_unit(name: &str) -> (&str, Option<&str>) {
 /// Whether a suffix is a unit of more than numbers.
 fn has_dimension(suffix: &str) -> bool {
     parse_split_unit(suffix).is_some_and(|unit| unit.dimension != Dimension::Number)
+}
+
+/// A name and the unit after its last comma: `Displacement, in`. A plain number there counts channels: `Sensor, 1`.
+pub(crate) fn split_at_comma(name: &str) -> Option<(&str, &str)> {
+    let (bare, symbol) = name.rsplit_once(", ")?;
+    let unit = parse_unit(symbol)?;
+    let measured = unit.dimension != Dimension::Number && !bare.trim().is_empty();
+    measured.then_some((bare.trim(), symbol.trim()))
 }
 
 /// The unit of a symbol that [`split_unit`] gives.

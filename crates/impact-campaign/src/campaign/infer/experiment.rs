@@ -2,18 +2,20 @@
 
 use super::found::{Experiment, FolderContents, InferredChannel};
 use super::place::{Place, spread};
-use impact_records::event::{DetectSettings, Detection, FlightKind, RigKind, detect};
+use super::{drive, lists};
+use impact_records::event::{
+    DetectSettings, Detection, FlightKind, Impact, MassSpeeds, RigKind, detect,
+};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
-use impact_records::record::{ContactContent, FlagCode, Record, Role, Setting, changes};
-use impact_records::signal::columns::{self, dot};
-use impact_records::signal::{decay, onsets, robust};
-use labfiles::DatasetInfo;
+use impact_records::record::{ContactContent, FlagCode, Record, Role, Setting};
+use impact_records::signal::columns::dot;
+use impact_records::signal::decay::{self, Decay, MotionSignal, Watched};
+use impact_records::signal::{onsets, robust};
+use labfiles::timing::AxisUnit;
 use labfiles::units::{self, Dimension};
 
 /// Records that are looked at.
 const MOST_RECORDS: usize = 6;
-/// Most rows of a list of events.
-const MOST_EVENTS: u64 = 400;
 /// Part of a signal that a decay's fit may leave.
 const DECAY_LEAVES: f64 = 0.45;
 /// Fewest periods of a decay.
@@ -24,119 +26,136 @@ const CLEAR_PERIODS: f64 = 1.5;
 /// Fewest sounds that are bounces.
 const FEWEST_SOUNDS: usize = 4;
 
-/// Whether a dataset is a list of events: few rows, and nothing but times in it.
-pub(super) fn is_event_list(set: &DatasetInfo) -> bool {
-    let of_time = |c: &labfiles::ChannelInfo| {
-        let unit = units::unit_of(c.unit.as_deref(), &c.name);
-        unit.is_some_and(|u| u.dimension == Dimension::Time)
-    };
-    let rows = set.channels.iter().map(|c| c.samples).max().unwrap_or(0);
-    let timed = set.channels.iter().filter(|c| of_time(c)).count();
-    let numbers = |c: &&labfiles::ChannelInfo| !of_time(c) && numbers_rows(c);
-    let counted = set.channels.iter().filter(numbers).count();
-    (3..=MOST_EVENTS).contains(&rows) && timed > 0 && timed + counted == set.channels.len()
-}
-
-/// Words that name a column of the numbers of events.
-const NUMBERED: [&str; 15] = [
-    "n", "nr", "no", "i", "k", "index", "row", "zeile", "bounce", "hit", "impact", "event",
-    "number", "aufprall", "rebond",
-];
-
-/// Whether a column without a unit is called as one that numbers the rows.
-fn numbers_rows(channel: &labfiles::ChannelInfo) -> bool {
-    let name = channel.name.to_lowercase();
-    let bare = name.trim_matches(|c: char| !c.is_alphanumeric());
-    channel.unit.is_none() && (name.trim() == "#" || NUMBERED.contains(&bare))
-}
-
-/// The column of times of a list of changes.
-pub(super) fn changes_at(place: Place<'_>) -> Option<usize> {
-    let set = place.set();
-    let time = set.time_axis?;
-    let times = place.numbers(time);
-    let states = changes::candidates(set, time).map(|state| place.numbers(state));
-    // an analyser lists the rows of all its lines, those too that never change
-    let lines: Vec<Vec<f64>> = states.filter(|s| s.len() == times.len()).collect();
-    let mut levels = lines.iter().map(|line| changes::line_levels(&times, line));
-    let found = changes::all_change(&lines) && levels.any(|found| found.is_some());
-    // a square wave that is sampled at even times changes with each row too
-    let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-    let (least, greatest) = columns::extremes(&steps);
-    (found && greatest > 2.0 * least).then_some(time)
-}
-
 /// Find out what was measured, and set roles and signs for it.
 pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
     let Some(first) = places.first() else { return };
-    if first.source.datasets().iter().any(is_event_list) {
+    if lists::is_list(*first) || lists::changes_at(*first).is_some() {
         found.experiment = Experiment::Events(events(*first, &mut found.channels));
         return;
     }
-    if let Some(time) = changes_at(*first) {
-        found.experiment = Experiment::Events(ContactContent::Times);
-        found.channels.iter_mut().for_each(|c| c.role = None);
-        found.channels[time].role = Some(Role::Contact);
-        return;
-    }
     let some = spread(places, MOST_RECORDS);
+    drive::settle(&some, &mut found.channels);
     let moving = |c: &InferredChannel| c.role.is_some_and(Role::is_motion);
     if !found.channels.iter().any(moving) {
-        if let Some(index) = microphone(&some, &found.channels) {
-            found.experiment = Experiment::Events(ContactContent::Sound);
-            found.channels[index].role = Some(Role::Contact);
-        } else if let Some(index) = unnamed_decay(&some, &found.channels) {
-            found.experiment = Experiment::FreeDecay;
-            found.channels[index].role = Some(Role::VelocityX);
-        }
-        return;
+        without_motion(&some, found);
+    } else if !found.states_drive {
+        of_motions(&some, found);
     }
-    if found.channels.iter().any(|c| c.role == Some(Role::Drive)) {
+}
+
+/// What records without a known channel of motion show.
+fn without_motion(some: &[Place<'_>], found: &mut FolderContents) {
+    let (index, experiment, role) = if let Some(index) = microphone(some, &found.channels) {
+        let sound = Experiment::Events(ContactContent::Sound);
+        (index, sound, Role::Contact)
+    } else if let Some(index) = unnamed_decay(some, &found.channels) {
+        (index, Experiment::FreeDecay, Role::VelocityX)
+    } else {
         return;
-    }
+    };
+    found.experiment = experiment;
+    found.channels[index].role = Some(role);
+}
+
+/// What records of motions show: a drive, free decays or free flights.
+fn of_motions(some: &[Place<'_>], found: &mut FolderContents) {
     let records: Vec<Record> = some
         .iter()
         .map(|place| read(*place, &found.channels))
         .collect();
-    let two = found
-        .channels
-        .iter()
-        .any(|c| c.role.is_some_and(Role::is_of_y));
+    let decaying = records.iter().filter(|r| decays(r)).count();
+    let mostly_decays = 2 * decaying > records.len();
+    if mostly_decays {
+        drive::without_idle(some, &mut found.channels);
+    }
+    if found.channels.iter().any(|c| c.role == Some(Role::Drive)) {
+        return;
+    }
+    let of_y = |c: &InferredChannel| c.role.is_some_and(Role::is_of_y);
+    let two = found.channels.iter().any(of_y);
     let rig = if two {
         RigKind::Double
     } else {
         RigKind::Single
     };
-    if 2 * records.iter().filter(|r| decays(r)).count() > records.len() {
-        found.experiment = Experiment::FreeDecay;
-        if two && records.iter().all(is_one_body) {
-            keep_one_mass(&mut found.channels);
-        }
+    let detected = Detected::of(&records, rig);
+    if mostly_decays && !(two && detected.most(strikes)) {
+        free_decays(&records, found);
         return;
     }
-    let settings = DetectSettings {
-        flight: FlightKind::ConstantForce,
-        ..DetectSettings::default()
-    };
-    let sampled = records.iter().filter(|r| r.sample_rate_hz > 0.0);
-    let detected: Vec<Detection> = sampled.map(|r| detect(r, rig, &settings)).collect();
-    let most = |is: &dyn Fn(&Detection) -> bool| {
-        2 * detected.iter().filter(|d| is(d)).count() > records.len()
-    };
-    let flies = |d: &Detection| !d.impacts.is_empty();
-    let notes = |d: &Detection, code| d.flags.iter().any(|f| f.code == code);
-    if two && most(&|d| notes(d, FlagCode::SeparateBodies)) {
+    if two && detected.most(|d| notes(d, FlagCode::SeparateBodies)) {
         // balls thrown side by side: each is a rig of its own
         keep_one_mass(&mut found.channels);
-        return infer(places, found);
+        return of_motions(some, found);
     }
+    let flies = |d: &Detection| !d.impacts.is_empty();
     let along = |d: &Detection| notes(d, FlagCode::OppositeSign);
-    if most(&|d| flies(d) || along(d)) {
+    if detected.most(|d| flies(d) || along(d)) {
         found.experiment = Experiment::FreeFlight(rig);
-        let away = most(&|d| flies(d) && notes(d, FlagCode::MeasuredAway));
-        orient(away, most(&along), &mut found.channels);
+        let away = detected.most(|d| flies(d) && notes(d, FlagCode::MeasuredAway));
+        orient(away, detected.most(along), &mut found.channels);
         without_acceleration(&mut found.channels);
+    } else if decaying > 0 && 2 * decaying >= records.len() {
+        free_decays(&records, found);
     }
+}
+
+/// The records are free decays, of one body where all sensors see one motion.
+fn free_decays(records: &[Record], found: &mut FolderContents) {
+    found.experiment = Experiment::FreeDecay;
+    if records.iter().all(is_one_body) {
+        keep_one_mass(&mut found.channels);
+    }
+}
+
+/// What the detection under a constant force finds in some records.
+struct Detected {
+    each: Vec<Detection>,
+    /// All records, those too that have no rate.
+    records: usize,
+}
+
+impl Detected {
+    fn of(records: &[Record], rig: RigKind) -> Self {
+        let settings = DetectSettings {
+            flight: FlightKind::ConstantForce,
+            ..DetectSettings::default()
+        };
+        let sampled = records.iter().filter(|r| r.sample_rate_hz > 0.0);
+        Self {
+            each: sampled.map(|r| detect(r, rig, &settings)).collect(),
+            records: records.len(),
+        }
+    }
+
+    /// Whether most records are so.
+    fn most(&self, are: impl Fn(&Detection) -> bool) -> bool {
+        2 * self.each.iter().filter(|d| are(d)).count() > self.records
+    }
+}
+
+fn notes(found: &Detection, code: FlagCode) -> bool {
+    found.flags.iter().any(|f| f.code == code)
+}
+
+/// Fewest impacts by which two masses strike each other again and again.
+const FEWEST_STRIKES: usize = 3;
+/// Change of the approach speed over its error from which it is that of an impact.
+const STRIKES: f64 = 10.0;
+
+/// Whether two masses strike each other: most impacts turn their approach into a separation, and each mass loses speed
+/// toward the other.
+fn strikes(found: &Detection) -> bool {
+    let pushed = |mass: Option<MassSpeeds>| mass.is_some_and(|m| m.after_m_s < m.before_m_s);
+    let is = |impact: &&Impact| {
+        let before = impact.approach_speed_before_m_s.unwrap_or(0.0);
+        let after = impact.approach_speed_after_m_s.unwrap_or(0.0);
+        let error = impact.speed_error_m_s.unwrap_or(f64::INFINITY);
+        let turned = before > 0.0 && after < 0.0 && before - after > STRIKES * error;
+        turned && pushed(impact.x) && pushed(impact.y)
+    };
+    let count = found.impacts.iter().filter(is).count();
+    count >= FEWEST_STRIKES && 2 * count > found.impacts.len()
 }
 
 /// Channels whose names and units say nothing that are tried as the motion of a decay.
@@ -178,15 +197,11 @@ fn are_intervals(name: &str, values: &[f64]) -> bool {
 
 /// The column of a list of events that states the impacts.
 fn events(place: Place<'_>, channels: &mut [InferredChannel]) -> ContactContent {
-    let infos = place.set().channels.iter().enumerate();
-    let listed: Vec<usize> = infos
-        .filter(|(_, info)| !numbers_rows(info))
-        .map(|(i, _)| i)
-        .collect();
-    let interval = |i: &usize| {
-        let values = place.numbers(*i);
-        are_intervals(&channels[*i].name, &values)
-    };
+    let mut listed = lists::listed(place);
+    if listed.is_empty() {
+        listed.extend(lists::changes_at(place));
+    }
+    let interval = |i: &usize| are_intervals(&channels[*i].name, &place.numbers(*i));
     let (at, content) = match listed.iter().find(|i| !interval(i)) {
         Some(at) => (Some(*at), ContactContent::Times),
         None => (listed.first().copied(), ContactContent::Intervals),
@@ -194,8 +209,10 @@ fn events(place: Place<'_>, channels: &mut [InferredChannel]) -> ContactContent 
     for channel in channels.iter_mut() {
         channel.role = None;
     }
-    if let Some(channel) = at.and_then(|at| channels.get_mut(at)) {
+    if let Some((at, channel)) = at.and_then(|at| Some((at, channels.get_mut(at)?))) {
         channel.role = Some(Role::Contact);
+        let unit = channel.unit.as_deref();
+        channel.counted_in = Some(AxisUnit::of(unit, &channel.name, &place.numbers(at)));
     }
     content
 }
@@ -265,24 +282,37 @@ fn read(place: Place<'_>, channels: &[InferredChannel]) -> Record {
 /// Pictures a second by which records are looked at that number them, and state no rate.
 const USUAL_FRAMES_HZ: f64 = 240.0;
 
+/// What a channel of a dimension shows of a motion.
+fn quantity(dimension: Option<Dimension>) -> MotionSignal {
+    match dimension {
+        Some(Dimension::Velocity) => MotionSignal::Velocity,
+        Some(Dimension::Acceleration) => MotionSignal::Acceleration,
+        _ => MotionSignal::Displacement,
+    }
+}
+
+/// Whether a record's longest oscillation is a free decay: a hold before its release, or noise, may be fitted first.
 fn decays(record: &Record) -> bool {
-    let channels: Vec<decay::Watched<'_>> = record
+    let channels: Vec<Watched<'_>> = record
         .channels
         .iter()
         .filter(|c| !c.role.is_of_y() && c.values.iter().all(|v| v.is_finite()))
-        .map(|c| decay::Watched::displacement(&c.values))
+        .map(|c| Watched {
+            values: &c.values,
+            quantity: quantity(c.role.dimension()),
+        })
         .collect();
     if channels.is_empty() || record.sample_rate_hz <= 0.0 {
         return false;
     }
-    decay::fit_channels(&channels, record.sample_rate_hz)
-        .first()
-        .is_some_and(|d| {
-            let periods = d.samples as f64 / record.sample_rate_hz * d.natural_frequency_hz;
-            let long = d.residual_ratio < DECAY_LEAVES && periods > DECAY_PERIODS;
-            let clear = d.residual_ratio < CLEAR_LEAVES && periods > CLEAR_PERIODS;
-            (long || clear) && d.damping_ratio < 0.5
-        })
+    let is_one = |d: &Decay| {
+        let periods = d.samples as f64 / record.sample_rate_hz * d.natural_frequency_hz;
+        let long = d.residual_ratio < DECAY_LEAVES && periods > DECAY_PERIODS;
+        let clear = d.residual_ratio < CLEAR_LEAVES && periods > CLEAR_PERIODS;
+        (long || clear) && d.damping_ratio < 0.5
+    };
+    let found = decay::fit_channels(&channels, record.sample_rate_hz);
+    found.iter().max_by_key(|d| d.samples).is_some_and(is_one)
 }
 
 /// Correlation from which two sensors see one body, whichever way they point: 1/(1 + q²) with noise of q times the motion

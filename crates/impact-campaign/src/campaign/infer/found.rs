@@ -3,7 +3,10 @@
 use std::collections::BTreeMap;
 
 use impact_records::event::RigKind;
+use impact_records::record::calibrate::ChannelKey;
 use impact_records::record::{ContactContent, Role};
+use labfiles::DatasetInfo;
+use labfiles::timing::AxisUnit;
 
 /// What was found in a folder.
 #[derive(Debug, Default)]
@@ -36,6 +39,10 @@ pub struct FolderContents {
     pub records: usize,
     /// Tables that are no records, as those of settings and notes: files, or sheets of them.
     pub others: Vec<String>,
+    /// Tables of the heights before and after an impact, among `others`.
+    pub heights: Vec<String>,
+    /// Whether the run table or the files' attributes state drive frequencies.
+    pub states_drive: bool,
     /// What was probably measured.
     pub experiment: Experiment,
 }
@@ -54,7 +61,7 @@ pub struct RefusedFile {
 /// A channel and the role inferred for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InferredChannel {
-    /// Name in the file.
+    /// Name in the file, without that of the run.
     pub name: String,
     /// What the file calls its signal beside its name, if it does.
     pub label: Option<String>,
@@ -70,8 +77,19 @@ pub struct InferredChannel {
     pub role: Option<Role>,
     /// Levels of a signal that has only two.
     pub levels: Option<[f64; 2]>,
+    /// How often it goes from one of them to the other, in the record in which it does so most.
+    pub changes: usize,
     /// The sign that its impacts show: 1 toward the other mass or the stop, -1 away from it.
     pub sign: i8,
+    /// Of times whose unit the file does not state: the unit that their name or their numbers show.
+    pub counted_in: Option<AxisUnit>,
+}
+
+impl InferredChannel {
+    /// Index of the channel in a dataset, as campaign.toml finds it.
+    pub(super) fn find(&self, dataset: &DatasetInfo) -> Option<usize> {
+        ChannelKey::Name(self.name.clone()).find(dataset)
+    }
 }
 
 /// What was probably measured.

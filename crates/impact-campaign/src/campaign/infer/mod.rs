@@ -1,8 +1,10 @@
 //! The records in a folder of files, and the role that each channel probably has.
 
+mod drive;
 mod experiment;
 mod found;
 mod globs;
+mod lists;
 mod place;
 mod roles;
 
@@ -36,18 +38,29 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
     let mut opened = Vec::new();
     for path in &paths {
         let relative = path.strip_prefix(folder).unwrap_or(path).to_path_buf();
-        if found.run_table.is_none() && is_run_table(path) {
+        if found.run_table.is_none()
+            && let Some(head) = head_of_run_table(path)
+        {
             found.run_table = Some(slashed(&relative));
+            found.states_drive = run_table::states_drive(&head);
             continue;
         }
         let opened_path = open(path);
         if let (None, Ok(source)) = (&found.run_table, &opened_path) {
-            let lists = source.format() == "excel" && source.datasets().iter().any(lists_sheets);
-            found.run_table = lists.then(|| slashed(&relative));
+            let sheets = source.datasets().iter().filter(|set| lists_sheets(set));
+            let mut sheets = sheets.filter(|_| source.format() == "excel");
+            if let Some(set) = sheets.next() {
+                found.run_table = Some(slashed(&relative));
+                found.states_drive = run_table::has_frequencies(names_of(set));
+            }
         }
         match opened_path {
             Ok(source) if holds_record(source.as_ref()) => opened.push((relative, source)),
-            Ok(_) => found.others.push(slashed(&relative)),
+            Ok(source) => {
+                let heights = source.datasets().iter().any(lists::are_heights);
+                found.heights.extend(heights.then(|| slashed(&relative)));
+                found.others.push(slashed(&relative));
+            }
             Err(error) => found.refused.push(RefusedFile {
                 file: slashed(&relative),
                 reason: error.found,
@@ -85,6 +98,7 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
     if let (Some((path, _)), Some(first)) = (records.first(), places.first()) {
         found.example = slashed(path);
         describe(*first, &mut found);
+        without_runs(&places, &mut found.channels);
         found.looked_at = 1 + look_at_others(&places, &mut found.channels);
         roles::assign(&mut found.channels);
     }
@@ -94,7 +108,11 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
 
 /// Whether a sheet is a run table of the workbook's other sheets.
 fn lists_sheets(set: &DatasetInfo) -> bool {
-    run_table::lists_sheets(set.channels.iter().map(|c| c.name.as_str()))
+    run_table::lists_sheets(names_of(set))
+}
+
+fn names_of(set: &DatasetInfo) -> impl Iterator<Item = &str> {
+    set.channels.iter().map(|c| c.name.as_str())
 }
 
 /// How many times longer than a table of notes, with times of its own, a record is.
@@ -106,7 +124,7 @@ fn without_notes(mut places: Vec<Place<'_>>) -> Vec<Place<'_>> {
     let timed = |place: &Place<'_>| {
         let set = place.set();
         let counts = || (0..set.channels.len()).any(|i| time_axis::counts_frames(set, i));
-        is_timed(set) || experiment::is_event_list(set) || counts()
+        is_timed(set) || lists::is_list(*place) || counts()
     };
     let any_timed = places.iter().any(timed);
     if any_timed {
@@ -129,7 +147,8 @@ fn without_notes(mut places: Vec<Place<'_>>) -> Vec<Place<'_>> {
             .filter(|(i, _)| !time(set, *i));
         let shares = signals.any(|(_, c)| longest.set().channel_index(&c.name).is_some());
         let long = any_timed && LONGER_THAN_NOTES * rows(place) > rows(&longest);
-        shares || long
+        let listed = || lists::is_list(longest) && lists::is_list(*place);
+        shares || long || listed()
     });
     places
 }
@@ -141,9 +160,8 @@ fn is_timed(set: &DatasetInfo) -> bool {
 
 /// The records of a file.
 fn records_in(source: &dyn Source) -> impl Iterator<Item = Place<'_>> {
-    let sets = source.datasets().iter().enumerate();
-    let records = sets.filter(|(_, set)| is_record(set));
-    records.map(move |(dataset, _)| Place { source, dataset })
+    let places = (0..source.datasets().len()).map(move |dataset| Place { source, dataset });
+    places.filter(|place| is_record(*place))
 }
 
 /// The files below a folder, also through links, each folder once; folders of results are left out.
@@ -182,27 +200,29 @@ fn is_other(path: &Path) -> bool {
 /// Bytes at the front of a file that show whether it is a run table.
 const HEAD_BYTES: u64 = 1 << 16;
 
-/// Whether a file is a text table with a column `file`.
-fn is_run_table(path: &Path) -> bool {
-    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    if !ending.is_some_and(|e| ["csv", "tsv", "txt"].contains(&e.as_str())) {
-        return false;
+/// The front of a file that is a text table with a column `file`.
+fn head_of_run_table(path: &Path) -> Option<Vec<u8>> {
+    let ending = path.extension()?.to_string_lossy().to_lowercase();
+    if !["csv", "tsv", "txt"].contains(&ending.as_str()) {
+        return None;
     }
     let mut head = Vec::new();
     let read = File::open(path).and_then(|f| f.take(HEAD_BYTES).read_to_end(&mut head));
-    read.is_ok() && run_table::is_run_table(&head)
+    read.ok()?;
+    run_table::is_run_table(&head).then_some(head)
 }
 
 fn holds_record(source: &dyn Source) -> bool {
-    source.datasets().iter().any(is_record)
+    records_in(source).next().is_some()
 }
 
 /// Fewest samples of a record.
 const FEWEST_SAMPLES: u64 = 16;
 
 /// Whether a dataset is a record: of many samples, or a list of events.
-fn is_record(set: &DatasetInfo) -> bool {
-    set.channels.iter().any(|c| c.samples >= FEWEST_SAMPLES) || experiment::is_event_list(set)
+fn is_record(place: Place<'_>) -> bool {
+    let mut channels = place.set().channels.iter();
+    channels.any(|c| c.samples >= FEWEST_SAMPLES) || lists::is_list(place)
 }
 
 fn describe(first: Place<'_>, found: &mut FolderContents) {
@@ -211,15 +231,24 @@ fn describe(first: Place<'_>, found: &mut FolderContents) {
     found.datasets = first.source.datasets().len();
     found.attributes = set.attributes.clone();
     found.timed = is_timed(set);
+    found.states_drive |= set.attributes.keys().any(|name| is_drive_frequency(name));
     let frames = |i| time_axis::counts_frames(set, i);
     found.counts_frames = !found.timed && (0..set.channels.len()).any(frames);
     found.channels = channels(first);
+}
+
+/// Whether an attribute is called as the frequency of a drive.
+fn is_drive_frequency(name: &str) -> bool {
+    let lower = name.to_lowercase();
+    let driven = ["drive", "exc", "forc", "anreg", "erreg"];
+    lower.contains("freq") && driven.iter().any(|word| lower.contains(word))
 }
 
 fn channels(first: Place<'_>) -> Vec<InferredChannel> {
     let set = first.set();
     let seen = |(i, info): (usize, &ChannelInfo)| {
         let values = first.numbers(i);
+        let levels = two_levels(&values);
         InferredChannel {
             name: info.name.clone(),
             label: info.properties.get("label").cloned(),
@@ -231,11 +260,34 @@ fn channels(first: Place<'_>) -> Vec<InferredChannel> {
                 || is_clock(set, i)
                 || counts_rows(&values),
             role: None,
-            levels: two_levels(&values),
+            levels,
+            changes: levels.map_or(0, |levels| changes(&values, levels)),
             sign: 1,
+            counted_in: None,
         }
     };
     set.channels.iter().enumerate().map(seen).collect()
+}
+
+/// Leave the names of runs out of those of channels, where each record has one channel that is called so without:
+/// `Position Run #1`, `Position Run #2` in files of their own.
+fn without_runs(places: &[Place<'_>], channels: &mut [InferredChannel]) {
+    for (index, channel) in channels.iter_mut().enumerate() {
+        let Some((bare, _)) = labfiles::without_run(&channel.name) else {
+            continue;
+        };
+        let shorter = InferredChannel {
+            name: bare,
+            ..channel.clone()
+        };
+        let own = places.first().and_then(|place| shorter.find(place.set()));
+        let all = places
+            .iter()
+            .all(|place| shorter.find(place.set()).is_some());
+        if all && own == Some(index) {
+            *channel = shorter;
+        }
+    }
 }
 
 /// Whether values are the numbers of their rows.
@@ -266,12 +318,15 @@ fn look_at_others(places: &[Place<'_>], channels: &mut [InferredChannel]) -> usi
         };
         (left, looked_at) = (rest, looked_at + 1);
         for channel in channels.iter_mut() {
-            let Some(index) = place.set().channel_index(&channel.name) else {
+            let Some(index) = channel.find(place.set()) else {
                 continue;
             };
             let values = place.numbers(index);
+            let levels = two_levels(&values);
+            let changes = levels.map_or(0, |levels| changes(&values, levels));
             channel.range = hull(channel.range, range(&values));
-            channel.levels = wider(channel.levels, two_levels(&values));
+            channel.levels = wider(channel.levels, levels);
+            channel.changes = channel.changes.max(changes);
         }
     }
     looked_at
@@ -309,10 +364,7 @@ fn two_levels(values: &[f64]) -> Option<[f64; 2]> {
     };
     let (below, above) = (near(low), near(high));
     let kept = (below + above) as f64 >= 0.9 * values.len() as f64;
-    let crossings = values
-        .windows(2)
-        .filter(|w| (w[0] < 0.5 * (low + high)) != (w[1] < 0.5 * (low + high)))
-        .count();
+    let crossings = changes(values, [low, high]);
     // a sine is long near its crests too, but takes more than two samples between them
     let steep = values
         .windows(2)
@@ -320,6 +372,13 @@ fn two_levels(values: &[f64]) -> Option<[f64; 2]> {
         .count();
     (high > low && kept && below > 0 && above > 0 && crossings > 0 && 2 * steep >= crossings)
         .then_some([low, high])
+}
+
+/// How often values go from one of two levels to the other.
+fn changes(values: &[f64], [low, high]: [f64; 2]) -> usize {
+    let middle = 0.5 * (low + high);
+    let pairs = values.windows(2);
+    pairs.filter(|w| (w[0] < middle) != (w[1] < middle)).count()
 }
 
 #[cfg(test)]
@@ -337,7 +396,9 @@ mod tests {
             is_time: false,
             role: None,
             levels: None,
+            changes: 0,
             sign: 1,
+            counted_in: None,
         }
     }
 
@@ -795,6 +856,222 @@ mod tests {
             let (found, _) = toml_of(&[("r.csv", text)]);
             assert_eq!(found.experiment, Experiment::FreeDecay, "{damping}");
         }
+    }
+
+    /// Rows at 2 kHz of a driven mass that strikes a stop in each second period: a sine of a frequency, the motion, the contact.
+    fn driven_rows(frequency_hz: f64) -> String {
+        let row = |i: i32| {
+            let t = f64::from(i) / 2000.0;
+            let phase = std::f64::consts::TAU * frequency_hz * t;
+            let motion = phase.sin() + 0.5 * (0.5 * phase).cos();
+            let contact = if (0.5 * phase).sin() > 0.995 {
+                4.8
+            } else {
+                0.0
+            };
+            format!("{t:.4},{:.5},{motion:.5},{contact:.2}\n", 1.5 * phase.cos())
+        };
+        (0..3000).map(row).collect()
+    }
+
+    #[test]
+    fn a_pure_sine_beside_a_motion_of_its_frequency_is_the_drive() {
+        let record = |k: i32| {
+            let rows = driven_rows(9.0 + 0.5 * f64::from(k));
+            format!("t (s),current (V),vibrometer (V),contact (V)\n{rows}")
+        };
+        let (_, text) = toml_of(&[("a.csv", record(0)), ("b.csv", record(1))]);
+        assert!(
+            text.contains("[channels.drive]\nchannel = \"current\""),
+            "{text}"
+        );
+        assert!(text.contains("flight = \"harmonic\""), "{text}");
+    }
+
+    #[test]
+    fn a_run_table_of_drive_frequencies_is_of_a_driven_rig() {
+        // bounces of R = 0.8, as far as the record shows
+        let (mut speed, mut began) = (4.0, 0.0);
+        let mut row = |i: i32| {
+            let t = f64::from(i) / 500.0;
+            while t > began + 2.0 * speed / 9.81 {
+                began += 2.0 * speed / 9.81;
+                speed *= 0.8;
+            }
+            let flown = t - began;
+            format!("{t:.3},{:.5}\n", speed * flown - 4.905 * flown * flown)
+        };
+        let rows: String = (0..1500).map(&mut row).collect();
+        let record = format!("t (s),y (m)\n{rows}");
+        let table = |heading: &str| format!("Datei;{heading}\na.csv;8,5\n");
+        let flight_of = |heading: &str| {
+            let files = [("a.csv", record.clone()), ("runs.csv", table(heading))];
+            let (found, text) = toml_of(&files);
+            assert!(text.contains("run_table = \"runs.csv\""), "{text}");
+            found.experiment
+        };
+        assert_eq!(flight_of("Frequenz [Hz]"), Experiment::Driven);
+        let of_gaps = flight_of("Spalt [mm]");
+        assert!(matches!(of_gaps, Experiment::FreeFlight(_)), "{of_gaps:?}");
+    }
+
+    #[test]
+    fn a_hammer_and_a_force_that_fades_are_no_drive() {
+        let row = |i: i32, beside: &dyn Fn(f64, f64) -> f64| {
+            let t = f64::from(i) / 500.0;
+            let w = std::f64::consts::TAU * 5.0;
+            let after = (t - 0.2).max(0.0);
+            let motion = (-0.02 * w * after).exp() * (w * after).sin();
+            format!("{t:.3},{motion:.5},{:.4}\n", beside(t, motion))
+        };
+        let hammer = |t: f64, _: f64| {
+            if (t - 0.2).abs() < 5e-3 {
+                3.0
+            } else {
+                0.01 * (7919.0 * t).sin()
+            }
+        };
+        let load = |_: f64, motion: f64| 2500.0 + 900.0 * motion;
+        let cases: [(&str, &dyn Fn(f64, f64) -> f64); 2] =
+            [("hammer (V)", &hammer), ("\"Load, lbf\"", &load)];
+        for (heading, beside) in cases {
+            let rows: String = (0..2500).map(|i| row(i, beside)).collect();
+            let (found, text) = toml_of(&[("r.csv", format!("t (s),v (m/s),{heading}\n{rows}"))]);
+            assert_eq!(found.experiment, Experiment::FreeDecay, "{heading}");
+            assert!(!text.contains("\n[channels.drive]"), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_trigger_beside_a_decay_is_no_contact() {
+        let rows: String = decay_rows(5.0, 0.02, 1500)
+            .lines()
+            .enumerate()
+            .fold(String::new(), |rows, (i, line)| {
+                format!("{rows}{line},{}\n", if i > 100 { 5.0 } else { 0.0 })
+            });
+        let text = format!("x-axis,1,2\nsecond,Volt,Volt\n{rows}");
+        let (found, text) = toml_of(&[("scope.csv", text)]);
+        assert_eq!(found.experiment, Experiment::FreeDecay);
+        assert!(
+            text.contains("[channels.velocity_x]\nchannel = \"1\""),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn lists_of_times_are_ready_to_run_but_for_units_that_nobody_states() {
+        let labels = "3.9504\t3.9504\tbounce 1\n4.5410\t4.5410\tbounce 2\n5.0400\t5.0400\tbounce 3\n\
+                      5.4616\t5.4616\tbounce 4\n";
+        let edges = "t_us,state\n5602888,CLOSED\n5604188,OPEN\n6076704,CLOSED\n6078028,OPEN\n6446580,CLOSED\n";
+        let epoch = "Timestamp,Peak\n1684140000690,0.9\n1684140001163,0.8\n1684140001581,0.7\n1684140001952,0.6\n";
+        let counts = "ticks\n1000\n5000\n8000\n10000\n";
+        for (list, channel, unit) in [
+            (labels, "column_1", "\nunit = \"s\""),
+            (edges, "t_us", "\n# unit = as the file states"),
+            (epoch, "Timestamp", "\nunit = \"ms\""),
+            (counts, "ticks", "\n# unit = \"ms\"              # FILL IN"),
+        ] {
+            let (_, text) = toml_of(&[("list.txt", list.to_owned())]);
+            let table = format!("[channels.contact]\nchannel = \"{channel}\"{unit}");
+            assert!(text.contains(&table), "{text}");
+            assert!(text.contains("\ncontent = \"times\""), "{text}");
+            assert!(text.contains("flight = \"constant_force\""), "{text}");
+        }
+    }
+
+    #[test]
+    fn throws_side_by_side_in_a_list_are_records() {
+        let rows = "1,0.1,0.2\n2,500.0,510.0\n3,900.0,930.0\n4,1220.0,\n";
+        let text = format!("bounce no.,Throw 1 (ms),Throw 2 (ms)\n{rows}");
+        let (found, text) = toml_of(&[("throws.csv", text)]);
+        assert_eq!((found.files, found.records), (1, 2));
+        assert!(
+            text.contains("[channels.contact]\nchannel = \"time\""),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn names_are_those_without_the_run_and_two_sensors_are_two_masses() {
+        let record = |run: usize| {
+            let row = |i: i32| {
+                let t = f64::from(i) * 0.02;
+                let far = (t - 1.0).max(0.0);
+                format!(
+                    "{t:.2},{:.4},{:.4}\n",
+                    0.3 + 0.5 * t - 0.7 * far,
+                    0.9 - 0.6 * far
+                )
+            };
+            let rows: String = (0..110).map(row).collect();
+            let heads = ["Time (s)", "Position - Ch 1 (m)", "Position - Ch 2 (m)"];
+            format!(
+                "{}\n{rows}",
+                heads.map(|head| format!("{head} Run #{run}")).join(",")
+            )
+        };
+        let (_, text) = toml_of(&[("run1.csv", record(1)), ("run2.csv", record(2))]);
+        assert!(text.contains("machine = \"double\""), "{text}");
+        for (role, name) in [("x", "Position - Ch 1"), ("y", "Position - Ch 2")] {
+            let table = format!("[channels.displacement_{role}]\nchannel = \"{name}\"");
+            assert!(text.contains(&table), "{text}");
+        }
+    }
+
+    #[test]
+    fn two_markers_of_any_names_are_two_masses() {
+        let markers = [
+            "riderA X", "riderA Y", "riderA Z", "riderB X", "riderB Y", "riderB Z",
+        ];
+        let spans = [800.0, 1.0, 1.0, 600.0, 1.0, 1.0];
+        let named: Vec<(&str, &str, f64)> = markers
+            .into_iter()
+            .zip(spans)
+            .map(|(n, s)| (n, "mm", s))
+            .collect();
+        let mut expected = [None; 6];
+        expected[0] = Some(Role::DisplacementX);
+        expected[3] = Some(Role::DisplacementY);
+        assert_eq!(roles_of(&named), expected);
+        // sensors of two quantities are on one body
+        let phone = ["accX", "accY", "accZ", "gyroX", "gyroY", "gyroZ"];
+        let units = ["m/s^2", "rad/s"].map(|unit| [unit; 3]).concat();
+        let named: Vec<_> = phone
+            .into_iter()
+            .zip(units)
+            .map(|(n, u)| (n, u, 1.0))
+            .collect();
+        let roles = roles_of(&named);
+        assert!(roles.iter().flatten().all(|r| !r.is_of_y()), "{roles:?}");
+    }
+
+    #[test]
+    fn pendulums_that_strike_each_other_are_no_free_decay() {
+        // two of equal mass and R = 0.9, released from one side; x and y are positive toward the other mass
+        let (step, w) = (1e-3, std::f64::consts::TAU);
+        let mut at = [-0.1, 0.0, 0.0, 0.0];
+        let mut rows = String::new();
+        for i in 0..6000 {
+            let [x, y, u, v] = at;
+            if i % 2 == 0 {
+                rows += &format!("{:.3},{x:.6},{y:.6},{u:.5},{v:.5}\n", f64::from(i) * step);
+            }
+            let (u, v) = (u - step * w * w * x, v - step * w * w * y);
+            let (x, y) = (x + step * u, y + step * v);
+            let (mean, half) = (0.5 * (u - v), 0.45 * (u + v));
+            let strikes = x + y >= 0.0 && half > 0.0;
+            let after = if strikes {
+                [mean - half, -mean - half]
+            } else {
+                [u, v]
+            };
+            at = [x, y, after[0], after[1]];
+        }
+        let heads = "t (s),pos left (m),pos right (m),vel left (m/s),vel right (m/s)";
+        let (found, text) = toml_of(&[("cradle.csv", format!("{heads}\n{rows}"))]);
+        let flights = Experiment::FreeFlight(impact_records::event::RigKind::Double);
+        assert_eq!(found.experiment, flights, "{text}");
     }
 
     #[test]

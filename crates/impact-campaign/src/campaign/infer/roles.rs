@@ -60,8 +60,8 @@ fn is_signal(channel: &InferredChannel) -> bool {
 struct Axes {
     /// Those along which less happens than along another.
     others: Vec<usize>,
-    /// Of each sensor the one along which most happens, with the words of its name without the axis.
-    chosen: Vec<(usize, Vec<String>)>,
+    /// Of each sensor the one along which most happens, with the mass that it refers to.
+    chosen: Vec<(usize, Option<char>)>,
 }
 
 impl Axes {
@@ -84,7 +84,7 @@ impl Axes {
             let z = same('z');
             let phone = base.iter().any(|w| PHONES.contains(&w.as_str()));
             let all: Vec<usize> = [Some(i), Some(y), z].into_iter().flatten().collect();
-            let span = |i: usize| channels[i].range.map_or(0.0, |[low, high]| high - low);
+            let span = |i: usize| span(&channels[i]);
             let sensor = kind(&channels[i]) == Kind::Acceleration;
             let unlike = span(i).max(span(y)) > UNLIKE * span(i).min(span(y));
             let one = base.is_empty() || phone || sensor || unlike;
@@ -98,16 +98,29 @@ impl Axes {
                 .unwrap_or(i);
             axes.others
                 .extend(all.into_iter().filter(|axis| *axis != most));
-            axes.chosen.push((most, base.clone()));
+            axes.chosen.push((most, side_of(base)));
         }
+        axes.two_masses(channels);
         axes
     }
 
-    /// The mass that a channel's name refers to.
+    /// The mass that a channel refers to: by its name, or as one of two markers.
     fn side(&self, index: usize, channel: &InferredChannel) -> Option<char> {
         match self.chosen.iter().find(|(i, _)| *i == index) {
-            Some((_, base)) => side_of(base),
+            Some((_, side)) => *side,
             None => side(shown(channel)),
+        }
+    }
+
+    /// Two markers, or sensors of one quantity, that move alike are two masses where their names refer to none.
+    fn two_masses(&mut self, channels: &[InferredChannel]) {
+        let [(first, x @ None), (second, y @ None)] = self.chosen.as_mut_slice() else {
+            return;
+        };
+        let [first, second] = [&channels[*first], &channels[*second]];
+        let [one, other] = [span(first), span(second)];
+        if kind(first) == kind(second) && one.max(other) <= UNLIKE * one.min(other) {
+            (*x, *y) = (Some('x'), Some('y'));
         }
     }
 
@@ -134,6 +147,11 @@ impl Axes {
                 .moving(channels)
                 .any(|(i, c)| self.side(i, c) != Some('y'))
     }
+}
+
+/// How far a channel goes.
+fn span(channel: &InferredChannel) -> f64 {
+    channel.range.map_or(0.0, |[low, high]| high - low)
 }
 
 /// How many times farther one of two masses moves at most.
@@ -278,6 +296,14 @@ impl Kind {
     }
 }
 
+/// Most changes of a trigger in a record: to its other level, and back.
+const OF_TRIGGER: usize = 2;
+
+/// Whether neither name, unit nor shape shows what a channel measures.
+pub(super) fn is_unknown(channel: &InferredChannel) -> bool {
+    kind(channel) == Kind::Unknown
+}
+
 /// Quantity of a channel, from its name, unit and shape.
 fn kind(channel: &InferredChannel) -> Kind {
     let words = words(shown(channel));
@@ -308,7 +334,7 @@ fn kind(channel: &InferredChannel) -> Kind {
         () if has(&["vel", "speed", "laser", "ldv", "vib", "vx", "vy"]) => Kind::Velocity,
         () if has(&["disp", "pos", "dx", "dy", "angle", "winkel"]) => Kind::Displacement,
         () if has(&["acc"]) => Kind::Acceleration,
-        () if channel.levels.is_some() => Kind::Contact,
+        () if channel.levels.is_some() && channel.changes > OF_TRIGGER => Kind::Contact,
         // a coordinate, in pixels too
         () if unit.is_none() && is_coordinate(channel, &words) => Kind::Displacement,
         () => Kind::Unknown,

@@ -17,7 +17,8 @@ keys! {
     #[serde(default)]
     pub struct ChannelTable {
         /// its name in the file, with or without its unit (`Position (m) Run #1` and `Position Run #1` are the same),
-        /// the label of its signal, or its index from 0; required
+        /// also without its run where only one channel is called so, the label of its signal, or its index from 0;
+        /// required
         channel: Placed<WrittenKey>;
         /// of the numbers in the file; required if the file states none
         unit: Placed<String>;

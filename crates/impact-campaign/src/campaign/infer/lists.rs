@@ -1,0 +1,186 @@
+//! Lists of times: which tables are such, and which of their columns contain the times.
+
+use super::place::Place;
+use impact_records::record::changes;
+use impact_records::signal::columns;
+use labfiles::units::{self, Dimension};
+use labfiles::{ChannelInfo, DatasetInfo, StoredType, timing};
+
+/// Fewest and most rows of a list.
+const FEWEST_EVENTS: u64 = 3;
+const MOST_EVENTS: u64 = 400;
+/// How many times longer than the shortest the longest interval of a list is where other columns are beside it: samples
+/// are taken at even times.
+const UNEVEN: f64 = 1.2;
+/// Part of the intervals that are shorter than the one before where a mass bounces.
+const MOST_SHORTER: f64 = 0.75;
+
+/// Whether a dataset is a list of times.
+pub(super) fn is_list(place: Place<'_>) -> bool {
+    !listed(place).is_empty()
+}
+
+/// The columns of a list that contain times or intervals; none where the dataset is no list.
+///
+/// A table of few rows is one if all its columns are in units of time. Beside remarks, as in a track of labels or beside
+/// the state of a line, its times must be uneven. Beside other numbers, and where neither a name nor a unit states
+/// that a column contains times, they must be those of a mass that bounces: each interval shorter than the one before.
+pub(super) fn listed(place: Place<'_>) -> Vec<usize> {
+    let set = place.set();
+    let rows = set.channels.iter().map(|c| c.samples).max().unwrap_or(0);
+    if !(FEWEST_EVENTS..=MOST_EVENTS).contains(&rows) {
+        return Vec::new();
+    }
+    if let Some(time) = changes_at(place) {
+        return vec![time];
+    }
+    let numbers = numbers(set);
+    let (of_time, others): (Vec<usize>, Vec<usize>) =
+        numbers.iter().partition(|i| is_of_time(&set.channels[**i]));
+    let text = |c: &ChannelInfo| c.stored == StoredType::Text;
+    if others.is_empty() && !set.channels.iter().any(text) {
+        return of_time;
+    }
+    let named = |i: &usize| of_time.contains(i) || timing::is_time_name(&set.channels[*i].name);
+    let (named, others): (Vec<usize>, Vec<usize>) = numbers.iter().partition(|i| named(i));
+    match (named.first(), others.first()) {
+        (Some(time), None) if is_uneven(&place.numbers(*time)) => named,
+        (Some(time), Some(_)) if bounces(&place.numbers(*time)) => vec![*time],
+        (None, Some(time)) if may_be_times(set, &others) && bounces(&place.numbers(*time)) => {
+            vec![*time]
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The columns of numbers, without those that count the rows.
+fn numbers(set: &DatasetInfo) -> Vec<usize> {
+    let counts = |c: &ChannelInfo| c.unit.is_none() && timing::numbers_rows(&c.name);
+    let columns = set.channels.iter().enumerate();
+    let columns = columns.filter(|(_, c)| c.stored != StoredType::Text && !counts(c));
+    columns.map(|(i, _)| i).collect()
+}
+
+/// Whether a column is in a unit of time.
+fn is_of_time(channel: &ChannelInfo) -> bool {
+    let unit = units::unit_of(channel.unit.as_deref(), &channel.name);
+    unit.is_some_and(|u| u.dimension == Dimension::Time)
+}
+
+/// Whether the first of columns without a word of time may contain times: it has no unit, and is the only one or has
+/// no name either.
+fn may_be_times(set: &DatasetInfo, columns: &[usize]) -> bool {
+    let first = &set.channels[columns[0]];
+    let unnamed = first.name == format!("column_{}", columns[0] + 1);
+    first.unit.is_none() && (unnamed || columns.len() == 1)
+}
+
+/// The intervals of times that rise from row to row, up to empty rows at their end; none if they do not.
+fn intervals(times: &[f64]) -> Vec<f64> {
+    let filled = times.iter().copied().filter(|t| t.is_finite());
+    let filled: Vec<f64> = filled.collect();
+    let intervals: Vec<f64> = filled.windows(2).map(|w| w[1] - w[0]).collect();
+    let rise = intervals.iter().all(|i| *i > 0.0);
+    if rise { intervals } else { Vec::new() }
+}
+
+/// Whether times rise, by uneven steps.
+fn is_uneven(times: &[f64]) -> bool {
+    let intervals = intervals(times);
+    let (least, greatest) = columns::extremes(&intervals);
+    !intervals.is_empty() && greatest > UNEVEN * least
+}
+
+/// Whether times are those of a mass that bounces.
+fn bounces(times: &[f64]) -> bool {
+    let intervals = intervals(times);
+    let shorter = intervals.windows(2).filter(|w| w[1] < w[0]).count();
+    let most = MOST_SHORTER * intervals.len().saturating_sub(1) as f64;
+    is_uneven(times) && shorter > 0 && shorter as f64 >= most
+}
+
+/// The column of times of a list of changes.
+pub(super) fn changes_at(place: Place<'_>) -> Option<usize> {
+    let set = place.set();
+    let time = set.time_axis?;
+    let times = place.numbers(time);
+    let states = changes::candidates(set, time).map(|state| place.numbers(state));
+    // an analyser lists the rows of all its lines, those too that never change
+    let lines: Vec<Vec<f64>> = states.filter(|s| s.len() == times.len()).collect();
+    let mut levels = lines.iter().map(|line| changes::line_levels(&times, line));
+    let found = changes::all_change(&lines) && levels.any(|found| found.is_some());
+    // a square wave that is sampled at even times changes with each row too
+    let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    let (least, greatest) = columns::extremes(&steps);
+    (found && greatest > 2.0 * least).then_some(time)
+}
+
+/// Stems of the word for a height, lower case.
+const HEIGHTS: [&str; 5] = ["height", "höhe", "hoehe", "hauteur", "altezza"];
+
+/// Whether a table contains the heights before and after impacts.
+pub(super) fn are_heights(set: &DatasetInfo) -> bool {
+    let height = |c: &&ChannelInfo| {
+        let name = c.name.to_lowercase();
+        HEIGHTS.iter().any(|stem| name.contains(stem))
+    };
+    set.channels.iter().filter(height).count() > 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The columns of a list in a text.
+    fn of(text: &str) -> Vec<usize> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("list.csv");
+        std::fs::write(&path, text).unwrap();
+        let source = labfiles::open(&path).unwrap();
+        listed(Place {
+            source: source.as_ref(),
+            dataset: 0,
+        })
+    }
+
+    #[test]
+    fn times_beside_remarks_states_and_strengths_are_lists() {
+        let labels = "3.9504\t3.9504\tbounce 1\n4.5410\t4.5410\tbounce 2\n5.0400\t5.0400\tbounce 3\n\
+                      5.4616\t5.4616\tbounce 4\n";
+        assert_eq!(of(labels), [0]);
+        let edges = "t_us,state\n5602888,CLOSED\n5604188,OPEN\n6076704,CLOSED\n6078028,OPEN\n";
+        assert_eq!(of(edges), [0]);
+        let epoch = "Timestamp,Peak\n1684140000690,0.9\n1684140001163,0.8\n1684140001581,0.7\n1684140001952,0.6\n";
+        assert_eq!(of(epoch), [0]);
+        let numbered =
+            "bounce no.,Ball A (ms),Ball B (ms)\n1,0.1,0.2\n2,500.0,510.0\n3,900.0,930.0\n";
+        assert_eq!(of(numbered), [1, 2]);
+    }
+
+    #[test]
+    fn short_tables_of_other_quantities_are_no_lists() {
+        let heights = "trial,drop_height_cm,rebound_height_cm\n1,50.0,27.6\n2,75.0,41.7\n3,100.0,55.7\n4,50.0,28.7\n";
+        assert!(of(heights).is_empty());
+        // a calibration, and a short series at even times
+        let calibration = "volts,mm\n0.0,0.0\n1.0,2.1\n1.9,4.0\n2.7,5.7\n";
+        assert!(of(calibration).is_empty());
+        let series = "time (s),temperature\n0,20.1\n60,20.4\n120,20.8\n180,21.0\n";
+        assert!(of(series).is_empty());
+        let uneven = "time (s),temperature\n0,20.1\n50,20.4\n170,20.8\n210,21.0\n900,21.3\n";
+        assert!(of(uneven).is_empty());
+    }
+
+    #[test]
+    fn a_table_of_two_heights_is_one_of_heights() {
+        let named = |names: [&str; 2]| {
+            let text = format!("{},{}\n50,27\n75,41\n100,55\n", names[0], names[1]);
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("heights.csv");
+            std::fs::write(&path, text).unwrap();
+            are_heights(&labfiles::open(&path).unwrap().datasets()[0])
+        };
+        assert!(named(["drop_height_cm", "rebound_height_cm"]));
+        assert!(named(["Fallhöhe (cm)", "Sprunghöhe (cm)"]));
+        assert!(!named(["height (cm)", "time (s)"]));
+    }
+}
