@@ -268,7 +268,13 @@ fn frozen_stretches(values: &[f64]) -> Vec<(usize, usize)> {
     if found.is_empty() {
         return found;
     }
+    // of values that are no multiples of a digit none equals another by chance
     let digit = columns::digit(values);
+    let digit = if are_multiples(values, digit) {
+        digit
+    } else {
+        0.0
+    };
     let chance = |(way, length): (f64, usize)| {
         let each = (digit / way).min(1.0);
         each.powi(i32::try_from(length).unwrap_or(i32::MAX))
@@ -278,6 +284,16 @@ fn frozen_stretches(values: &[f64]) -> Vec<(usize, usize)> {
         found.clear();
     }
     found
+}
+
+/// Whether values are apart by multiples of a digit, but for some.
+fn are_multiples(values: &[f64], digit: f64) -> bool {
+    let off = |v: &&f64| {
+        let digits = (**v - values[0]) / digit;
+        (digits - digits.round()).abs() > 0.05
+    };
+    // of any values a tenth are so near to multiples
+    2 * values.iter().filter(off).count() < values.len()
 }
 
 /// Chance of so many events or more where a number is expected (Poisson's distribution).

@@ -42,7 +42,8 @@ const APART: f64 = 5.0;
 /// Level of the comparison of both parts; shared by the four parameters.
 const LEVEL: f64 = 1e-4;
 /// Share of the least change that is named from which parts are fitted by themselves: where records of the other rig are
-/// lost, or allowances absorb a part of the change, all that is left shows less of it.
+/// lost, or allowances absorb a part of the change, all that is left shows less of it. So too of the records of a part that
+/// are lost, of all of them.
 const SEEN: f64 = 0.25;
 /// What the extrapolation of speeds and the length of contacts leave open in R of either part.
 const LEAST_OF_R: f64 = 5e-3;
@@ -314,7 +315,7 @@ fn by_lost_records(ranks: &[usize], selection: &Selection<'_>) -> Option<usize> 
     records.extend(selection.lost.iter().map(|r| (ranks[r.observation], 1.0)));
     // a proportion's variance is at least that of one half record
     let share = records.iter().map(|r| r.1).sum::<f64>() / records.len().max(1) as f64;
-    furthest(&mut records, ((share * (1.0 - share)).sqrt(), 0.0))
+    furthest(&mut records, ((share * (1.0 - share)).sqrt(), SEEN))
 }
 
 /// The rank from which on R of the records' impacts is another, by their medians. What its line over the speed
