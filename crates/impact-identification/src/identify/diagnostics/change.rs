@@ -41,10 +41,6 @@ const SUSPECT: f64 = 30.0;
 const APART: f64 = 5.0;
 /// Level of the comparison of both parts; shared by the four parameters.
 const LEVEL: f64 = 1e-4;
-/// Share of the least change that is named from which parts are fitted by themselves: where records of the other rig are
-/// lost, or allowances absorb a part of the change, all that is left shows less of it. So too of the records of a part that
-/// are lost, of all of them.
-const SEEN: f64 = 0.25;
 /// What the extrapolation of speeds and the length of contacts leave open in R of either part.
 const LEAST_OF_R: f64 = 5e-3;
 
@@ -193,14 +189,12 @@ impl<'a> Search<'a> {
         records.sort_by_key(|(rank, _)| *rank);
         let stride = records.len().div_ceil(MOST).max(1);
         let records: Vec<(usize, &PlacedRows)> = records.into_iter().step_by(stride).collect();
-        let free = problem.free.iter().copied().enumerate();
-        let (places, changing): (Vec<usize>, Vec<Coordinate>) = free
+        let free = problem.free.iter();
+        let places: Vec<usize> = free
+            .enumerate()
             .filter(|(_, c)| Coordinate::PHYSICAL.contains(c))
-            .unzip();
-        let is_seen = |change: &DVector<f64>| {
-            let mut changes = changing.iter().zip(change.iter());
-            changes.any(|(c, change)| change.abs() > SEEN * least(*c))
-        };
+            .map(|(i, _)| i)
+            .collect();
         let mut all = problem.priors_normal(self.fitted.at);
         records.iter().for_each(|(_, rows)| all.inform(rows));
         let mut after = Normal::zeros(problem.free.len());
@@ -210,10 +204,9 @@ impl<'a> Search<'a> {
             let enough = k >= FEWEST && records.len() - k >= FEWEST;
             // records of one rank stay together
             let begins = k > 0 && records[k - 1].0 < *rank;
-            if let Some((chi2, _)) = (enough && begins)
+            if let Some(chi2) = (enough && begins)
                 .then(|| gain(&all, &after, &places))
                 .flatten()
-                .filter(|(_, change)| is_seen(change))
                 && best.is_none_or(|(most, _)| chi2 > most)
             {
                 best = Some((chi2, *rank));
@@ -285,8 +278,8 @@ fn ranks(observations: &[Observation]) -> Vec<usize> {
     ranks
 }
 
-/// χ² of a change of some coordinates in the records of `after`, all others being fitted to all, and the change.
-fn gain(all: &Normal, after: &Normal, places: &[usize]) -> Option<(f64, DVector<f64>)> {
+/// χ² of a change of some coordinates in the records of `after`, all others being fitted to all.
+fn gain(all: &Normal, after: &Normal, places: &[usize]) -> Option<f64> {
     let (n, m) = (all.gradient.len(), places.len());
     let entry = |i: usize, k: usize| match (i < n, k < n) {
         (true, true) => all.matrix[(i, k)],
@@ -304,8 +297,7 @@ fn gain(all: &Normal, after: &Normal, places: &[usize]) -> Option<(f64, DVector<
     });
     let change = (&covariance * gradient).rows(n, m).into_owned();
     let own = covariance.view((n, n), (m, m)).into_owned();
-    let chi2 = (change.transpose() * inverse(&own)? * &change)[(0, 0)];
-    Some((chi2, change))
+    Some((change.transpose() * inverse(&own)? * &change)[(0, 0)])
 }
 
 /// The rank from which on most of the periodic records are lost, or before which they are.
@@ -315,7 +307,7 @@ fn by_lost_records(ranks: &[usize], selection: &Selection<'_>) -> Option<usize> 
     records.extend(selection.lost.iter().map(|r| (ranks[r.observation], 1.0)));
     // a proportion's variance is at least that of one half record
     let share = records.iter().map(|r| r.1).sum::<f64>() / records.len().max(1) as f64;
-    furthest(&mut records, ((share * (1.0 - share)).sqrt(), SEEN))
+    furthest(&mut records, (share * (1.0 - share)).sqrt())
 }
 
 /// The rank from which on R of the records' impacts is another, by their medians. What its line over the speed
@@ -350,10 +342,7 @@ fn by_impacts(ranks: &[usize], observations: &[Observation], blocks: &Blocks) ->
         .map(|w| (w[1].1 - w[0].1).abs())
         .collect();
     let typical = 1.4826 * robust::median(&steps)? / std::f64::consts::SQRT_2;
-    furthest(
-        &mut records,
-        (typical.max(0.5 * LEAST_OF_R), SEEN * LEAST_OF_R),
-    )
+    furthest(&mut records, typical.max(0.5 * LEAST_OF_R))
 }
 
 /// Slope of the line of least squares through points; zero where all have one place.
@@ -366,8 +355,8 @@ fn slope(points: &[[f64; 2]]) -> f64 {
 }
 
 /// The rank from which on the mean of values differs most from that before, if that is beyond chance, the
-/// values having a standard deviation, and more than a least difference.
-fn furthest(records: &mut [(usize, f64)], (deviation, least): (f64, f64)) -> Option<usize> {
+/// values having a standard deviation.
+fn furthest(records: &mut [(usize, f64)], deviation: f64) -> Option<usize> {
     records.sort_by_key(|r| r.0);
     let count = records.len();
     let all: f64 = records.iter().map(|r| r.1).sum();
@@ -377,7 +366,7 @@ fn furthest(records: &mut [(usize, f64)], (deviation, least): (f64, f64)) -> Opt
             let (a, b) = (k as f64, (count - k) as f64);
             let apart = ((all - before) / b - before / a).abs();
             let z_score = apart / (deviation * (a.recip() + b.recip()).sqrt());
-            if z_score > APART && apart > least && best.is_none_or(|(most, _)| z_score > most) {
+            if z_score > APART && best.is_none_or(|(most, _)| z_score > most) {
                 best = Some((z_score, *rank));
             }
         }
@@ -520,7 +509,7 @@ mod tests {
             after.inform(&row);
         }
         // Two measurements in each of 8 and of 12, their difference 3: 9/(1/16 + 1/24).
-        let (chi2, _) = gain(&all, &after, &[0]).expect("regular");
+        let chi2 = gain(&all, &after, &[0]).expect("regular");
         assert!(
             (chi2 - 9.0 / (1.0 / 16.0 + 1.0 / 24.0)).abs() < 1e-9,
             "{chi2}"
@@ -534,9 +523,9 @@ mod tests {
             let value = |k: usize| scatter[k % 6] + if k >= 17 { step } else { 0.0 };
             (0..40).map(|k| (k, value(k))).collect()
         };
-        assert_eq!(furthest(&mut values(3.0), (1.0, 0.0)), Some(17));
-        assert_eq!(furthest(&mut values(-3.0), (1.0, 0.0)), Some(17));
-        assert_eq!(furthest(&mut values(0.0), (1.0, 0.0)), None);
+        assert_eq!(furthest(&mut values(3.0), 1.0), Some(17));
+        assert_eq!(furthest(&mut values(-3.0), 1.0), Some(17));
+        assert_eq!(furthest(&mut values(0.0), 1.0), None);
     }
 
     #[test]
