@@ -155,6 +155,9 @@ impl Parameters {
         let bent = self.effect(Effect::ContactReach) * pressed;
         let drag = contact_s * drag_law * contact.drag * decay;
         let beyond = press_law * contact.press * at.press_per_s + drag_law * contact.drag * decay;
+        let beyond_slope = press_law * contact.press_slope * at.press_per_s
+            + drag_law * contact.drag_slope * decay;
+        let of_law = contact.press * at.press_per_s + DRAG_OF_LAW * contact.drag * decay;
         // of a contact that lasts longer by so many seconds
         let length = |longer_s: f64| {
             Some(OwnSlope {
@@ -164,14 +167,7 @@ impl Parameters {
         };
         match coordinate {
             Coordinate::Restitution => Some(OwnSlope {
-                physical: [
-                    1.0 + contact_s
-                        * (press_law * contact.press_slope * at.press_per_s
-                            + drag_law * contact.drag_slope * decay),
-                    0.0,
-                    0.0,
-                    0.0,
-                ],
+                physical: [1.0 + contact_s * beyond_slope, 0.0, 0.0, 0.0],
                 clearance_m: contact_s * speed * contact.reach_slope * (1.0 + bent),
             }),
             Coordinate::Frequency => Some(OwnSlope {
@@ -207,11 +203,7 @@ impl Parameters {
                 Effect::ContactDuration => length(1e-3 * slower),
                 Effect::ContactSpeed => length(duration_s * slower_slope),
                 Effect::RestitutionSpeed => only(0, at.log_speed()),
-                Effect::ContactLaw => only(
-                    0,
-                    contact_s
-                        * (contact.press * at.press_per_s + DRAG_OF_LAW * contact.drag * decay),
-                ),
+                Effect::ContactLaw => only(0, contact_s * of_law),
                 Effect::ContactReach => clearance(contact_s * speed * contact.reach * pressed),
                 // of the values of an orbit, or at the channel
                 Effect::SecondHarmonicCos

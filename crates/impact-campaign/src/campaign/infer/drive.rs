@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn valid_a_drive_acts_to_the_end_and_a_decay_fades() {
         assert!(acts(&wave(|t| 0.3 + (60.0 * t).sin())));
-        assert!(!acts(&wave(|t| 0.3 + (-1.0 * t).exp() * (60.0 * t).sin())));
+        assert!(!acts(&wave(|t| 0.3 + (-t).exp() * (60.0 * t).sin())));
         let idle = wave(|t| (1e5 * t * t).sin());
         assert!(!acts(&idle));
     }
