@@ -279,6 +279,7 @@ fn fitted(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {
     // where dry friction is what the damping follows, what it leaves beside friction is what is not explained
     let explained = Some(&prepared.free).filter(|free| free.shape == Shape::Rubbed);
     let explained = explained.and_then(|free| prepared.at_every_sample(free));
+    let explained = explained.filter(|e| e.residual_ratio < whole.residual_ratio);
     let explained = explained.as_ref().unwrap_or(&whole);
     let beside_friction = friction::beside(&prepared, &viscous, hz);
     if beside_friction.is_some_and(|b| b.sticks && b.periods < LEAST_PERIODS) {

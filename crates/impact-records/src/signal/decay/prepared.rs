@@ -222,7 +222,10 @@ impl Prepared {
     /// The linear part of a fit at every sample.
     pub(super) fn at_every_sample(&self, point: &Point) -> Option<AtEverySample> {
         let rates = point.per_sample(self.factor);
-        let series = Series::white(self.samples.clone(), self.series.degree);
+        let series = Series {
+            quantity: self.series.quantity,
+            ..Series::white(self.samples.clone(), self.series.degree)
+        };
         let own = series.project(point.shape, rates)?;
         let residuals = series.residuals(&own);
         let [a, b] = own.amplitudes();
