@@ -96,7 +96,8 @@ pub(super) fn skip(record: &mut Record, times: Option<&mut Vec<f64>>, skip_s: f6
         return;
     }
     if count >= record.samples() {
-        let duration_s = record.samples() as f64 * step_s;
+        // to the nanosecond: steps of printed times are no exact numbers
+        let duration_s = (1e9 * record.samples() as f64 * step_s).round() / 1e9;
         let problem = Problem::AllSkipped { duration_s, skip_s };
         record.flags.push(Flag::new(None, problem));
     }
