@@ -81,10 +81,8 @@ pub(crate) fn sample_rate_beside(
     decimal: Option<u8>,
 ) -> Option<f64> {
     let of = |keys: &[&str], wanted: Dimension| {
-        let mut found = keys
-            .iter()
-            .map(|k| quantity(attributes, k, wanted, decimal));
-        found.find_map(|number| number)
+        keys.iter()
+            .find_map(|k| quantity(attributes, k, wanted, decimal))
     };
     let step = || of(STEP_KEYS, Dimension::Time).map(f64::recip);
     let rate = of(RATE_KEYS, Dimension::Frequency).or_else(step);
@@ -197,8 +195,8 @@ fn quantity(
             // a sentence may follow: `8000 Hz. Sample values on linear scale.`
             let first = symbol.split_whitespace().next().unwrap_or(symbol);
             let first = first.trim_end_matches(['.', ',', ';']);
-            let mut factors = [symbol, first].into_iter().map(|s| factor(s, wanted));
-            Some(number * factors.find_map(|f| f)?)
+            let factor = factor(symbol, wanted).or_else(|| factor(first, wanted))?;
+            Some(number * factor)
         }
     }
 }

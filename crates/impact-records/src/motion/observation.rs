@@ -15,9 +15,8 @@ use crate::motion::late_channel::LateChannel;
 use crate::motion::response::{Response, responses};
 use crate::motion::undetermined::Undetermined;
 use crate::record::{Excitation, Flag, FlagCode, Problem, Record, Role, Setting};
-use crate::signal::decay::{self, Decay, MotionSignal, Watched};
+use crate::signal::decay::{self, Decay, Watched};
 use crate::signal::robust;
-use labfiles::units::Dimension;
 
 /// Greatest and least value of a motion channel, SI, about its mean.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -356,22 +355,13 @@ pub fn scale_drives(observations: &mut [Observation]) {
 /// Relative change of the measured drive amplitude from which it counts.
 const DRIVE_CHANGES: f64 = 5e-3;
 
-/// What of the motion a channel of a role shows.
-fn quantity(role: Role) -> MotionSignal {
-    match role.dimension() {
-        Some(Dimension::Velocity) => MotionSignal::Velocity,
-        Some(Dimension::Acceleration) => MotionSignal::Acceleration,
-        _ => MotionSignal::Displacement,
-    }
-}
-
 /// Free decays of the motion channels of mass x, else of mass y.
 fn free_decays(record: &Record) -> Vec<Decay> {
     let of_mass = |y: bool| {
         let watched = |role: Role| {
             Some(Watched {
                 values: record.values(role)?,
-                quantity: quantity(role),
+                quantity: role.motion_signal(),
             })
         };
         let channels: Vec<Watched<'_>> = Role::ALL

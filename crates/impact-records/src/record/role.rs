@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::signal::decay::MotionSignal;
 use labfiles::units::Dimension;
 
 /// What a channel measures on the rig.
@@ -99,6 +100,15 @@ impl Role {
             Self::VelocityX | Self::VelocityY => Some(Dimension::Velocity),
             Self::DisplacementX | Self::DisplacementY => Some(Dimension::Length),
             Self::AccelerationX | Self::AccelerationY => Some(Dimension::Acceleration),
+        }
+    }
+
+    /// What of a motion a channel of this role shows.
+    pub fn motion_signal(self) -> MotionSignal {
+        match self.dimension() {
+            Some(Dimension::Velocity) => MotionSignal::Velocity,
+            Some(Dimension::Acceleration) => MotionSignal::Acceleration,
+            _ => MotionSignal::Displacement,
         }
     }
 }

@@ -34,7 +34,7 @@ pub(super) fn settle(some: &[Place<'_>], channels: &mut [InferredChannel]) {
         channels.iter().position(is)
     };
     if let Some(index) = called(channels)
-        && most(some, &channels[index], is_pulses)
+        && most(some, |place| is_so(*place, &channels[index], is_pulses))
     {
         channels[index].role = None;
     }
@@ -49,17 +49,25 @@ pub(super) fn settle(some: &[Place<'_>], channels: &mut [InferredChannel]) {
 pub(super) fn without_idle(some: &[Place<'_>], channels: &mut [InferredChannel]) {
     let drives = channels.iter_mut().filter(|c| c.role == Some(Role::Drive));
     for channel in drives {
-        if most(some, channel, |values| !acts(values)) {
+        if most(some, |place| is_so(*place, channel, |values| !acts(values))) {
             channel.role = None;
         }
     }
 }
 
-/// Whether a channel's values are so in most records.
-fn most(some: &[Place<'_>], channel: &InferredChannel, are: impl Fn(&[f64]) -> bool) -> bool {
-    let values = |place: &Place<'_>| Some(place.numbers(channel.find(place.set())?));
-    let so = some.iter().filter_map(values).filter(|v| are(v)).count();
-    2 * so > some.len()
+/// Whether most records are so.
+fn most(some: &[Place<'_>], are: impl Fn(&Place<'_>) -> bool) -> bool {
+    2 * some.iter().filter(|place| are(place)).count() > some.len()
+}
+
+/// Whether a record has a channel and its values are so.
+fn is_so(place: Place<'_>, channel: &InferredChannel, are: impl Fn(&[f64]) -> bool) -> bool {
+    values(place, channel).is_some_and(|values| are(&values))
+}
+
+/// A channel's values in a record.
+fn values(place: Place<'_>, channel: &InferredChannel) -> Option<Vec<f64>> {
+    Some(place.numbers(channel.find(place.set())?))
 }
 
 /// Whether a signal rests for most of a record, as a hammer's.
@@ -93,14 +101,14 @@ fn sine(some: &[Place<'_>], channels: &[InferredChannel]) -> Option<usize> {
     };
     let mut tried = (0..channels.len()).filter(untold).take(MOST_TRIED);
     tried.find(|index| {
-        let drives = |place: &&Place<'_>| {
-            let numbers = |c: &InferredChannel| Some(place.numbers(c.find(place.set())?));
-            let frequency = numbers(&channels[*index]).and_then(|values| steady_sine(&values));
-            let motion = numbers(moving);
+        let drives = |place: &Place<'_>| {
+            let sine = values(*place, &channels[*index]);
+            let frequency = sine.and_then(|values| steady_sine(&values));
+            let motion = values(*place, moving);
             let share = frequency.zip(motion).map(|(f, motion)| share(&motion, f));
             share.is_some_and(|share| share > MOVED)
         };
-        2 * some.iter().filter(drives).count() > some.len()
+        most(some, drives)
     })
 }
 

@@ -9,10 +9,10 @@ use impact_records::event::{
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
 use impact_records::record::{ContactContent, FlagCode, Record, Role, Setting};
 use impact_records::signal::columns::dot;
-use impact_records::signal::decay::{self, Decay, MotionSignal, Watched};
+use impact_records::signal::decay::{self, Decay, Watched};
 use impact_records::signal::{onsets, robust};
 use labfiles::timing::AxisUnit;
-use labfiles::units::{self, Dimension};
+use labfiles::units;
 
 /// Records that are looked at.
 const MOST_RECORDS: usize = 6;
@@ -29,8 +29,9 @@ const FEWEST_SOUNDS: usize = 4;
 /// Find out what was measured, and set roles and signs for it.
 pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
     let Some(first) = places.first() else { return };
-    if lists::is_list(*first) || lists::changes_at(*first).is_some() {
-        found.experiment = Experiment::Events(events(*first, &mut found.channels));
+    let times = lists::of_times(*first);
+    if !times.is_empty() {
+        found.experiment = Experiment::Events(events(*first, &times, &mut found.channels));
         return;
     }
     let some = spread(places, MOST_RECORDS);
@@ -195,12 +196,8 @@ fn are_intervals(name: &str, values: &[f64]) -> bool {
     called(&INTERVALS) || (called(&FLIGHTS) && fall > 0) || 2 * fall >= values.len().max(1)
 }
 
-/// The column of a list of events that states the impacts.
-fn events(place: Place<'_>, channels: &mut [InferredChannel]) -> ContactContent {
-    let mut listed = lists::listed(place);
-    if listed.is_empty() {
-        listed.extend(lists::changes_at(place));
-    }
+/// The column of a list of events that states the impacts, among those that contain times.
+fn events(place: Place<'_>, listed: &[usize], channels: &mut [InferredChannel]) -> ContactContent {
     let interval = |i: &usize| are_intervals(&channels[*i].name, &place.numbers(*i));
     let (at, content) = match listed.iter().find(|i| !interval(i)) {
         Some(at) => (Some(*at), ContactContent::Times),
@@ -282,15 +279,6 @@ fn read(place: Place<'_>, channels: &[InferredChannel]) -> Record {
 /// Pictures a second by which records are looked at that number them, and state no rate.
 const USUAL_FRAMES_HZ: f64 = 240.0;
 
-/// What a channel of a dimension shows of a motion.
-fn quantity(dimension: Option<Dimension>) -> MotionSignal {
-    match dimension {
-        Some(Dimension::Velocity) => MotionSignal::Velocity,
-        Some(Dimension::Acceleration) => MotionSignal::Acceleration,
-        _ => MotionSignal::Displacement,
-    }
-}
-
 /// Whether a record's longest oscillation is a free decay: a hold before its release, or noise, may be fitted first.
 fn decays(record: &Record) -> bool {
     let channels: Vec<Watched<'_>> = record
@@ -299,7 +287,7 @@ fn decays(record: &Record) -> bool {
         .filter(|c| !c.role.is_of_y() && c.values.iter().all(|v| v.is_finite()))
         .map(|c| Watched {
             values: &c.values,
-            quantity: quantity(c.role.dimension()),
+            quantity: c.role.motion_signal(),
         })
         .collect();
     if channels.is_empty() || record.sample_rate_hz <= 0.0 {

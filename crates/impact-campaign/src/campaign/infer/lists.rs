@@ -20,12 +20,21 @@ pub(super) fn is_list(place: Place<'_>) -> bool {
     !listed(place).is_empty()
 }
 
+/// The columns that contain times or intervals of a list, or of one of changes that is as long as a record.
+pub(super) fn of_times(place: Place<'_>) -> Vec<usize> {
+    let mut found = listed(place);
+    if found.is_empty() {
+        found.extend(changes_at(place));
+    }
+    found
+}
+
 /// The columns of a list that contain times or intervals; none where the dataset is no list.
 ///
 /// A table of few rows is one if all its columns are in units of time. Beside remarks, as in a track of labels or beside
 /// the state of a line, its times must be uneven. Beside other numbers, and where neither a name nor a unit states
 /// that a column contains times, they must be those of a mass that bounces: each interval shorter than the one before.
-pub(super) fn listed(place: Place<'_>) -> Vec<usize> {
+fn listed(place: Place<'_>) -> Vec<usize> {
     let set = place.set();
     let rows = set.channels.iter().map(|c| c.samples).max().unwrap_or(0);
     if !(FEWEST_EVENTS..=MOST_EVENTS).contains(&rows) {
@@ -100,7 +109,7 @@ fn bounces(times: &[f64]) -> bool {
 }
 
 /// The column of times of a list of changes.
-pub(super) fn changes_at(place: Place<'_>) -> Option<usize> {
+fn changes_at(place: Place<'_>) -> Option<usize> {
     let set = place.set();
     let time = set.time_axis?;
     let times = place.numbers(time);

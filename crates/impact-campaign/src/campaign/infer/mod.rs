@@ -138,6 +138,7 @@ fn without_notes(mut places: Vec<Place<'_>>) -> Vec<Place<'_>> {
         return places;
     };
     let time = |set: &DatasetInfo, i: usize| set.time_axis == Some(i);
+    let of_lists = lists::is_list(longest);
     places.retain(|place| {
         let set = place.set();
         let mut signals = set
@@ -147,8 +148,7 @@ fn without_notes(mut places: Vec<Place<'_>>) -> Vec<Place<'_>> {
             .filter(|(i, _)| !time(set, *i));
         let shares = signals.any(|(_, c)| longest.set().channel_index(&c.name).is_some());
         let long = any_timed && LONGER_THAN_NOTES * rows(place) > rows(&longest);
-        let listed = || lists::is_list(longest) && lists::is_list(*place);
-        shares || long || listed()
+        shares || long || of_lists && lists::is_list(*place)
     });
     places
 }
