@@ -4,6 +4,7 @@
 use rayon::prelude::*;
 
 use crate::methods::blocks::Blocks;
+use crate::methods::trajectories::block::TrajectoryBlock;
 use crate::methods::trajectories::record::Misfit;
 use crate::parameters::Parameters;
 use crate::solver::mean_squares;
@@ -50,19 +51,34 @@ impl Blocks {
         let block = &mut self.trajectory;
         block.find_changes(parameters);
         let differences = block.differences(parameters);
-        let pairs = block.records.par_iter().zip(&differences);
-        let misfits: Vec<Misfit<'_>> = pairs
-            .filter_map(|(record, apart)| Some(Misfit::new(record, apart.as_ref()?)))
-            .collect();
-        let scores = |allowance: f64| {
-            misfits
-                .par_iter()
-                .map(|m| m.mean_square(allowance))
-                .collect()
-        };
-        let allowed = least_allowance(scores);
+        let misfits = misfits(block, &differences);
+        let allowed = least_allowance(|allowance| mean_squares_with(&misfits, allowance));
         block.allow(allowed);
     }
+
+    /// Whether the relative error that periodic records are allowed is, but for a share of it, the least
+    /// that explains what is left at parameters.
+    pub fn allows_trajectories_the_least(&self, at: &Parameters, share: f64) -> bool {
+        let differences = self.trajectory.differences(at);
+        let misfits = misfits(&self.trajectory, &differences);
+        let allowed = self.trajectory.relative_error();
+        let explains = |allowance: f64| is_explained(&mean_squares_with(&misfits, allowance));
+        let less = allowed * (1.0 - share);
+        explains(allowed * (1.0 + share)) && (less < LEAST_ALLOWANCE || !explains(less))
+    }
+}
+
+/// What the model leaves of each periodic record that it has.
+fn misfits<'a>(block: &'a TrajectoryBlock, differences: &'a [Option<Vec<f64>>]) -> Vec<Misfit<'a>> {
+    let pairs = block.records.par_iter().zip(differences);
+    let known = pairs.filter_map(|(record, apart)| Some(Misfit::new(record, apart.as_ref()?)));
+    known.collect()
+}
+
+/// The mean square of each with a relative error allowed beside the noise.
+fn mean_squares_with(misfits: &[Misfit<'_>], allowance: f64) -> Vec<f64> {
+    let all = misfits.par_iter();
+    all.map(|misfit| misfit.mean_square(allowance)).collect()
 }
 
 /// Relative error that is always allowed, so that weights stay finite on noiseless data.
@@ -71,22 +87,28 @@ pub const LEAST_ALLOWANCE: f64 = 1e-6;
 const MOST_ALLOWANCE: f64 = 0.1;
 
 /// The least relative error beside the noise with which residuals are of unit size; next to none where
-/// the noise alone explains them. The median of the items' mean squares, `scores`, is judged, so that a few records that do not belong change nothing.
+/// the noise alone explains them.
 fn least_allowance(mut scores: impl FnMut(f64) -> Vec<f64>) -> f64 {
-    let mut excess = |allowance: f64| robust::median(&scores(allowance)).unwrap_or(0.0) - 1.0;
-    if excess(LEAST_ALLOWANCE) <= 0.0 {
+    let mut explains = |allowance: f64| is_explained(&scores(allowance));
+    if explains(LEAST_ALLOWANCE) {
         return LEAST_ALLOWANCE;
     }
     let (mut low, mut high) = (LEAST_ALLOWANCE, MOST_ALLOWANCE);
     for _ in 0..14 {
         let middle = (low * high).sqrt();
-        if excess(middle) > 0.0 {
-            low = middle;
-        } else {
+        if explains(middle) {
             high = middle;
+        } else {
+            low = middle;
         }
     }
     high
+}
+
+/// Whether residuals are at most of unit size. The median of the items' mean squares is judged, so that a few
+/// records that do not belong change nothing.
+fn is_explained(mean_squares: &[f64]) -> bool {
+    robust::median(mean_squares).unwrap_or(0.0) <= 1.0
 }
 
 /// What mean squares of records that belong together look like.

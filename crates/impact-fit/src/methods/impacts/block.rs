@@ -10,7 +10,7 @@ use impact_records::motion::Observation;
 use impact_records::record::Role;
 
 /// One impact's speeds.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SpeedPair {
     /// Index of the record among the observations.
     pub observation: usize,

@@ -11,6 +11,8 @@ use crate::methods::weighing::Bulk;
 use crate::parameters::Parameters;
 use crate::solver::{FitError, Precision, mean_squares};
 
+/// Records that a rough fit rests on; of more, every second, third …
+const FIRST: usize = 128;
 /// Slowest multiplier's distance from 1 at which a motion is at its end.
 pub(in crate::methods) const END: f64 = 2e-3;
 
@@ -21,32 +23,17 @@ const NEAR_END: f64 = 0.1;
 const SETTLED: f64 = 0.1;
 
 impl Selection<'_> {
-    /// Fit the folded records, first as if the rig were ideal, then with all that may add to it; those
-    /// without an orbit at the start are tried again, and those that fit far worse than the bulk are left out and named.
+    /// Fit the folded records, first some of them as if the rig were ideal and with all that may add to it, then
+    /// all; those that fit far worse than the bulk are left out and named.
     pub fn fit_trajectories(&mut self, start: Parameters) -> Option<FitResult> {
-        let nominal = self.evidence.nominal;
-        let start = starts::best(&self.blocks, &nominal, start);
-        let all = self.blocks.trajectory.records.clone();
-        self.keep_those_with_orbits(&start);
-        let first =
-            match self.trajectories_with_orbits(&nominal.ideal(), start, Precision::Start)? {
-                Ok(first) => first.fit.parameters,
-                failed => return Some(failed),
-            };
-        self.blocks.trajectory.records.clone_from(&all);
-        self.keep_those_with_orbits(&first);
-        self.blocks.weigh_trajectories(&first);
-        self.blocks.trajectory.reduce(&first);
-        let mut found = match self.trajectories_with_orbits(&nominal, first, Precision::Start)? {
+        let start = starts::best(&self.blocks, &self.evidence.nominal, start);
+        let mut found = match self.roughly_fitted(start)? {
             Ok(found) => found,
             failed => return Some(failed),
         };
-        self.blocks.trajectory.records = all;
         self.blocks.trajectory.find_changes(&found.fit.parameters);
         for _ in 0..ROUNDS {
             let parameters = found.fit.parameters;
-            let allowed = self.blocks.trajectory.relative_error();
-            let lost = self.lost.len();
             self.keep_fitting(&parameters);
             self.blocks.weigh_trajectories(&parameters);
             self.blocks.trajectory.reduce(&parameters);
@@ -55,12 +42,43 @@ impl Selection<'_> {
                 Ok(found) => found,
                 failed => return Some(failed),
             };
-            let change = self.blocks.trajectory.relative_error() / allowed - 1.0;
-            if self.lost.len() == lost && change.abs() < SETTLED {
+            if self.all_fit_as_weighed(&found.fit.parameters) {
                 break;
             }
         }
         Some(Ok(found))
+    }
+
+    /// A rough fit of the folded records, of many of every second, third …, those with an orbit where it begins;
+    /// all records are as before.
+    fn roughly_fitted(&mut self, start: Parameters) -> Option<FitResult> {
+        let nominal = self.evidence.nominal;
+        let all = std::mem::take(&mut self.blocks.trajectory.records);
+        let stride = all.len().div_ceil(FIRST).max(1);
+        let some = || all.iter().step_by(stride).cloned().collect();
+        self.blocks.trajectory.records = some();
+        self.keep_those_with_orbits(&start);
+        let ideal = self.trajectories_with_orbits(&nominal.ideal(), start);
+        let found = match ideal {
+            Some(Ok(ideal)) => {
+                let first = ideal.fit.parameters;
+                self.blocks.trajectory.records = some();
+                self.keep_those_with_orbits(&first);
+                self.blocks.weigh_trajectories(&first);
+                self.blocks.trajectory.reduce(&first);
+                self.trajectories_with_orbits(&nominal, first)
+            }
+            none => none,
+        };
+        self.blocks.trajectory.records = all;
+        found
+    }
+
+    /// Whether all folded records belong to the bulk at parameters, and the error that they are allowed beside the
+    /// noise is what the residuals there ask for.
+    fn all_fit_as_weighed(&self, at: &Parameters) -> bool {
+        let fitting = self.fitting(at).1;
+        fitting.iter().all(Result::is_ok) && self.blocks.allows_trajectories_the_least(at, SETTLED)
     }
 
     /// Fit the folded records that have an orbit where the fit begins.
@@ -68,10 +86,9 @@ impl Selection<'_> {
         &mut self,
         nominal: &Nominal,
         start: Parameters,
-        precision: Precision,
     ) -> Option<FitResult> {
         loop {
-            let found = fit::from(&self.blocks, nominal, start, precision)?;
+            let found = fit::from(&self.blocks, nominal, start, Precision::Start)?;
             match &found {
                 Err(FitError::NoModel(missing)) if !missing.is_empty() => {
                     let without: Vec<usize> = missing.iter().map(|(_, item)| *item).collect();
@@ -132,26 +149,36 @@ impl Selection<'_> {
 
     /// Keep the records that fit like the bulk, and name the others.
     fn keep_fitting(&mut self, parameters: &Parameters) {
-        let scores = mean_squares(&self.blocks.trajectory, parameters);
+        let (typical, fitting) = self.fitting(parameters);
+        self.typical = typical;
+        let records = std::mem::take(&mut self.blocks.trajectory.records);
+        for (record, fits) in records.into_iter().zip(fitting) {
+            match fits {
+                Ok(()) => self.blocks.trajectory.records.push(record),
+                Err(reason) => {
+                    self.note(record.observation, reason);
+                    self.lost.push(record);
+                }
+            }
+        }
+    }
+
+    /// The typical mean square of the folded records, and of each whether it fits like the bulk, else why not.
+    fn fitting(&self, at: &Parameters) -> (f64, Vec<Result<(), Reason>>) {
+        let scores = mean_squares(&self.blocks.trajectory, at);
         let known: Vec<f64> = scores.iter().flatten().copied().collect();
         let bulk = Bulk::of(&known);
-        self.typical = bulk.typical;
-        let ended = self.near_their_end(parameters, END);
-        let records = std::mem::take(&mut self.blocks.trajectory.records);
-        for (item, (record, score)) in records.into_iter().zip(scores).enumerate() {
-            let reason = match score.filter(|_| !ended.contains(&item)) {
-                Some(s) if s <= bulk.limit => {
-                    self.blocks.trajectory.records.push(record);
-                    continue;
-                }
-                Some(s) => Reason::WaveformUnlikeOthers {
-                    times_worse: bulk.times_worse(s),
-                },
-                None => Reason::NoSuchMotion,
-            };
-            self.note(record.observation, reason);
-            self.lost.push(record);
-        }
+        let ended = self.near_their_end(at, END);
+        let fits = |(item, score): (usize, Option<f64>)| match score {
+            Some(s) if !ended.contains(&item) => {
+                let times_worse = bulk.times_worse(s);
+                let unlike = Reason::WaveformUnlikeOthers { times_worse };
+                if s <= bulk.limit { Ok(()) } else { Err(unlike) }
+            }
+            _ => Err(Reason::NoSuchMotion),
+        };
+        let fitting = scores.into_iter().enumerate().map(fits).collect();
+        (bulk.typical, fitting)
     }
 
     /// Whether a periodic record's motion, once disturbed, decays by less than a factor e while it

@@ -151,7 +151,7 @@ impl<'a> Search<'a> {
         let found = suspects.into_iter().flatten().filter_map(|rank| {
             let first = ranks.iter().position(|r| *r == rank)?;
             let record = observations[first].record.clone();
-            apart(self.evidence, Other::From { rank, record })
+            self.apart(Other::From { rank, record })
         });
         let found: Vec<Change> = found.collect();
         let most = found.iter().map(Change::chi2).fold(0.0, f64::max);
@@ -172,7 +172,35 @@ impl<'a> Search<'a> {
             explains_more_than_speed(&inside, pairs).then_some((chi2, of))
         });
         let (_, of) = tried.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        apart(self.evidence, of)
+        self.apart(of)
+    }
+
+    /// Both parts of a campaign, each fitted by itself, where they differ by more than R over the speed explains.
+    fn apart(&self, of: Other) -> Option<Change> {
+        let observations = self
+            .evidence
+            .observations
+            .iter()
+            .zip(ranks(self.evidence.observations));
+        let second: Vec<bool> = observations.map(|(o, rank)| of.holds(o, rank)).collect();
+        let both = [false, true].map(|part| part_alone(self.evidence, &|i| second[i] == part));
+        let [Some(first), Some(other)] = both else {
+            return None;
+        };
+        let common = first.into_iter();
+        let common = common.filter_map(|(c, a)| Some((c, [a, *other.get(&c)?])));
+        let change = Change {
+            of,
+            parts: common.collect(),
+        };
+        let pairs = &self.fitted.selection.blocks.impact.pairs;
+        let differing: Vec<Coordinate> = change.differing().map(|(c, _)| *c).collect();
+        let one_rig = match differing.as_slice() {
+            [] => true,
+            [Coordinate::Restitution] => change.is_of_speed(pairs, &second),
+            _ => false,
+        };
+        (!one_rig).then_some(change)
     }
 
     /// The rank from which on a change of all four parameters explains most, by the records' rows, and its χ²: with A
@@ -226,6 +254,23 @@ fn groups(observations: &[Observation]) -> Vec<Other> {
     gaps.chain([Other::SweepsDown]).collect()
 }
 
+/// By how much R of impacts of one speed is another in a part; `None` where all impacts are in one part.
+fn apart_at_one_speed(pairs: &[SpeedPair], inside: &[bool]) -> Option<f64> {
+    let part = |p: &SpeedPair| f64::from(inside[p.observation]);
+    if pairs.iter().all(|p| inside[p.observation]) || !pairs.iter().any(|p| inside[p.observation]) {
+        return None;
+    }
+    // what the speed does not explain of R, and of which part an impact is of
+    let beyond_speed = |of: &dyn Fn(&SpeedPair) -> f64| {
+        let points: Vec<[f64; 2]> = pairs.iter().map(|p| [p.before_m_s.ln(), of(p)]).collect();
+        let slope = slope(&points);
+        points.into_iter().map(move |[x, y]| y - slope * x)
+    };
+    let ratios = beyond_speed(&|p| p.after_m_s / p.before_m_s);
+    let points = beyond_speed(&part).zip(ratios).map(<[f64; 2]>::from);
+    Some(slope(&points.collect::<Vec<_>>()))
+}
+
 /// Whether impacts inside and outside a group differ in R by more than over their speeds.
 fn explains_more_than_speed(inside: &[usize], pairs: &[SpeedPair]) -> bool {
     let left = |of: &dyn Fn(&SpeedPair) -> f64| {
@@ -237,24 +282,6 @@ fn explains_more_than_speed(inside: &[usize], pairs: &[SpeedPair]) -> bool {
         rest.iter().map(|r| (r - mean).powi(2)).sum::<f64>()
     };
     left(&|p| inside[p.observation] as f64) <= left(&|p| p.before_m_s)
-}
-
-/// Both parts of a campaign, each fitted by itself, where they differ.
-fn apart(evidence: &Evidence<'_>, of: Other) -> Option<Change> {
-    let ranks = ranks(evidence.observations);
-    let both = [false, true].map(|second| {
-        let within = |i: usize| of.holds(&evidence.observations[i], ranks[i]) == second;
-        part_alone(evidence, &within)
-    });
-    let [Some(first), Some(second)] = both else {
-        return None;
-    };
-    let parts: Parts = first
-        .into_iter()
-        .filter_map(|(c, a)| Some((c, [a, *second.get(&c)?])))
-        .collect();
-    let differ = parts.iter().any(|(c, both)| differs(*c, both));
-    differ.then_some(Change { of, parts })
 }
 
 /// Whether a parameter of two parts differs beyond chance and beyond what drifts.
@@ -307,7 +334,7 @@ fn by_lost_records(ranks: &[usize], selection: &Selection<'_>) -> Option<usize> 
     records.extend(selection.lost.iter().map(|r| (ranks[r.observation], 1.0)));
     // a proportion's variance is at least that of one half record
     let share = records.iter().map(|r| r.1).sum::<f64>() / records.len().max(1) as f64;
-    furthest(&mut records, (share * (1.0 - share)).sqrt())
+    furthest(&mut records, (share * (1.0 - share)).sqrt(), 0.0)
 }
 
 /// The rank from which on R of the records' impacts is another, by their medians. What its line over the speed
@@ -336,13 +363,33 @@ fn by_impacts(ranks: &[usize], observations: &[Observation], blocks: &Blocks) ->
         .filter_map(|(rank, ratios)| Some((rank, robust::median(&ratios)?)))
         .collect();
     records.sort_by_key(|r| r.0);
+    let mut records = without_lone_ones(&records);
     // the scatter of neighbours, which a change in one place does not widen
     let steps: Vec<f64> = records
         .windows(2)
         .map(|w| (w[1].1 - w[0].1).abs())
         .collect();
     let typical = 1.4826 * robust::median(&steps)? / std::f64::consts::SQRT_2;
-    furthest(&mut records, typical.max(0.5 * LEAST_OF_R))
+    furthest(
+        &mut records,
+        typical.max(0.5 * LEAST_OF_R),
+        0.5 * LEAST_OF_R,
+    )
+}
+
+/// Values in order, each the median of it and its neighbours: one record of few impacts is no change.
+fn without_lone_ones(records: &[(usize, f64)]) -> Vec<(usize, f64)> {
+    let near = |i: usize| {
+        let last = (i + 1).min(records.len() - 1);
+        let mut near: Vec<f64> = records[i.saturating_sub(1)..=last]
+            .iter()
+            .map(|r| r.1)
+            .collect();
+        near.sort_by(f64::total_cmp);
+        near[near.len() / 2]
+    };
+    let smoothed = records.iter().enumerate().map(|(i, r)| (r.0, near(i)));
+    smoothed.collect()
 }
 
 /// Slope of the line of least squares through points; zero where all have one place.
@@ -355,8 +402,8 @@ fn slope(points: &[[f64; 2]]) -> f64 {
 }
 
 /// The rank from which on the mean of values differs most from that before, if that is beyond chance, the
-/// values having a standard deviation.
-fn furthest(records: &mut [(usize, f64)], deviation: f64) -> Option<usize> {
+/// values having a standard deviation, and more than a least difference.
+fn furthest(records: &mut [(usize, f64)], deviation: f64, least: f64) -> Option<usize> {
     records.sort_by_key(|r| r.0);
     let count = records.len();
     let all: f64 = records.iter().map(|r| r.1).sum();
@@ -366,7 +413,8 @@ fn furthest(records: &mut [(usize, f64)], deviation: f64) -> Option<usize> {
             let (a, b) = (k as f64, (count - k) as f64);
             let apart = ((all - before) / b - before / a).abs();
             let z_score = apart / (deviation * (a.recip() + b.recip()).sqrt());
-            if z_score > APART && best.is_none_or(|(most, _)| z_score > most) {
+            let beyond = apart > least && z_score > APART;
+            if beyond && best.is_none_or(|(most, _)| z_score > most) {
                 best = Some((z_score, *rank));
             }
         }
@@ -384,9 +432,25 @@ impl Change {
         self.parts.values().map(of).sum()
     }
 
+    /// The parameters that differ, with what both parts say of them.
+    fn differing(&self) -> impl Iterator<Item = (&Coordinate, &[(f64, Spread); 2])> + Clone {
+        self.parts.iter().filter(|(c, both)| differs(**c, both))
+    }
+
+    /// Whether R of impacts of one speed is nearer to one value in both parts than to the values of the parts:
+    /// then R differs with the speed, and the speed with the part.
+    fn is_of_speed(&self, pairs: &[SpeedPair], second: &[bool]) -> bool {
+        let restitution = self.parts.get(&Coordinate::Restitution);
+        let apart = restitution.map(|[(a, _), (b, _)]| b - a);
+        let at_one_speed = apart_at_one_speed(pairs, second);
+        apart
+            .zip(at_one_speed)
+            .is_some_and(|(apart, own)| own / apart < 0.5)
+    }
+
     /// What changed.
     pub fn finding(&self, of: usize) -> Finding {
-        let changed = self.parts.iter().filter(|(c, both)| differs(**c, both));
+        let changed = self.differing();
         let of_part = |part: usize| {
             let values = changed.clone().filter_map(|(c, both)| {
                 let estimate = stated(*c, both[part]);
@@ -523,9 +587,9 @@ mod tests {
             let value = |k: usize| scatter[k % 6] + if k >= 17 { step } else { 0.0 };
             (0..40).map(|k| (k, value(k))).collect()
         };
-        assert_eq!(furthest(&mut values(3.0), 1.0), Some(17));
-        assert_eq!(furthest(&mut values(-3.0), 1.0), Some(17));
-        assert_eq!(furthest(&mut values(0.0), 1.0), None);
+        assert_eq!(furthest(&mut values(3.0), 1.0, 0.0), Some(17));
+        assert_eq!(furthest(&mut values(-3.0), 1.0, 0.0), Some(17));
+        assert_eq!(furthest(&mut values(0.0), 1.0, 0.0), None);
     }
 
     #[test]
@@ -610,6 +674,53 @@ mod tests {
             let apart = (value.value - truth).abs();
             assert!(apart < 1.5 * value.half_width, "{value:?}");
         }
+    }
+
+    #[test]
+    fn speeds_that_go_with_the_part_are_told_from_a_change_of_the_rig() {
+        // the second part hits at half the speed; R falls with the logarithm of the speed, or is another there
+        let pairs = |by_speed: f64, changed: f64| -> Vec<SpeedPair> {
+            let impact = |i: usize| {
+                let second = i % 2 == 1;
+                let before = (0.2 + 0.01 * i as f64) / if second { 2.0 } else { 1.0 };
+                let ratio = 0.8 - by_speed * before.ln() + if second { changed } else { 0.0 };
+                SpeedPair {
+                    observation: i % 2,
+                    before_m_s: before,
+                    after_m_s: ratio * before,
+                    ..SpeedPair::default()
+                }
+            };
+            (0..40).map(impact).collect()
+        };
+        let second = [false, true];
+        let alone =
+            |by_speed: f64, changed: f64| apart_at_one_speed(&pairs(by_speed, changed), &second);
+        assert!(alone(0.03, 0.0).expect("both parts").abs() < 1e-12);
+        assert!((alone(0.03, -0.02).expect("both parts") + 0.02).abs() < 1e-12);
+        assert_eq!(apart_at_one_speed(&pairs(0.03, 0.0), &[false; 2]), None);
+        let change = |[a, b]: [f64; 2]| Change {
+            of: Other::SweepsDown,
+            parts: BTreeMap::from([(
+                Coordinate::Restitution,
+                [a, b].map(|r| (r, Spread::known(1e-3))),
+            )]),
+        };
+        assert!(change([0.84, 0.86]).is_of_speed(&pairs(0.03, 0.0), &second));
+        assert!(!change([0.84, 0.82]).is_of_speed(&pairs(0.0, -0.02), &second));
+    }
+
+    #[test]
+    fn one_record_of_few_impacts_is_no_change() {
+        let with = |odd: &[usize]| -> Vec<(usize, f64)> {
+            let all = (0..40).map(|i| (i, if odd.contains(&i) { 0.7 } else { 0.9 }));
+            all.collect()
+        };
+        assert!(furthest(&mut with(&[30]), 2.5e-3, 0.0).is_some());
+        assert!(furthest(&mut without_lone_ones(&with(&[30])), 2.5e-3, 0.0).is_none());
+        let changed: Vec<usize> = (20..40).collect();
+        let found = furthest(&mut without_lone_ones(&with(&changed)), 2.5e-3, 2.5e-3);
+        assert_eq!(found, Some(20));
     }
 
     #[test]
