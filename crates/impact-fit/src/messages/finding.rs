@@ -225,6 +225,8 @@ pub enum Finding {
         standard_error: f64,
         /// How sure.
         z_score: f64,
+        /// The approach speed for which R is stated, m/s.
+        speed_m_s: f64,
     },
     /// The model does not fit a method's data.
     Misfit {
@@ -402,7 +404,8 @@ message_table! { "finding": Finding, key = template_key;
     Self::MomentumNotConserved { measured, stated, .. } =>
         measured = Value::Number(*measured, 3),
         stated = Value::Number(*stated, 3);
-    Self::BeyondModel { effect, strength, standard_error, .. } =>
+    Self::BeyondModel { effect, strength, standard_error, speed_m_s, .. } =>
+        speed = Value::Number(*speed_m_s, 3),
         strength = Value::Number(effect.unit().factor() * strength.abs(), 3),
         error = Value::Number(1.96 * effect.unit().factor() * standard_error, 3);
     Self::Misfit { method, remark } | Self::Noticed { method, remark } =>

@@ -19,6 +19,7 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
             strength,
             standard_error: 0.0,
             z_score: 0.0,
+            speed_m_s: 0.0,
         })
     });
     // an early channel has a text of its own, and so has the drive

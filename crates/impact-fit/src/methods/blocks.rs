@@ -47,6 +47,9 @@ pub struct Blocks {
     pub impact_outliers: Vec<SpeedPair>,
     /// Stated clearances that carry an error of their own, m, rising.
     pub gaps_m: Vec<f64>,
+    /// The approach speed at which R is stated where it depends on it, m/s: the median of all impacts or, where their
+    /// speeds are not measured, of the periodic records; 0 without impacts.
+    pub typical_approach_m_s: f64,
     /// Half a sample, s.
     half_sample_s: f64,
     /// What counts the iterations of the fits.
@@ -106,6 +109,7 @@ impl Blocks {
             flight: FlightBlock::new(rig, observations),
             impact_outliers,
             gaps_m: Vec::new(),
+            typical_approach_m_s: 0.0,
             half_sample_s: half_sample_s(observations),
             progress: evidence.progress.cloned().unwrap_or_default(),
         };
@@ -165,6 +169,7 @@ impl Blocks {
             flight: self.flight.clone(),
             impact_outliers: self.impact_outliers.clone(),
             gaps_m: self.gaps_m.clone(),
+            typical_approach_m_s: self.typical_approach_m_s,
             half_sample_s: self.half_sample_s,
             progress: self.progress.clone(),
         }
@@ -197,6 +202,7 @@ impl Blocks {
         let by_impacts = Some(self.impact.typical_approach_m_s).filter(|v| *v > 0.0);
         let typical_m_s = by_impacts.or_else(|| robust::median(&speeds));
         let typical_m_s = typical_m_s.unwrap_or(0.0);
+        self.typical_approach_m_s = typical_m_s;
         for record in &mut self.trajectory.records {
             record.typical_approach_m_s = typical_m_s;
             record.place = places[record.observation];

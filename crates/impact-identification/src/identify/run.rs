@@ -381,7 +381,9 @@ impl<'a> IdentificationRun<'a> {
     /// What to make of the fits.
     fn identification(&self) -> Identification {
         let (mut suspicions, doubts) = doubt::parted(self.suspicions());
-        let beyond = self.found.together().map_or_else(Vec::new, beyond::beyond);
+        let speed_m_s = self.selection.blocks.typical_approach_m_s;
+        let joint = self.found.together();
+        let beyond = joint.map_or_else(Vec::new, |found| beyond::beyond(found, speed_m_s));
         let mut results = Widened::new(&self.selection, &self.found);
         results.by_impacts(&self.selection);
         let agreement = results.by_agreement(&self.found, beyond.is_empty() && self.is_on_time());

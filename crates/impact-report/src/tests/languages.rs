@@ -156,6 +156,7 @@ fn real_rig() -> ReportContent {
         strength: 0.01,
         standard_error: 1e-3,
         z_score: 10.0,
+        speed_m_s: 0.3,
     });
     id.verdict.findings.extend(findings);
     let stated = |coordinate, clearance_m| UncertaintySource::Stated {

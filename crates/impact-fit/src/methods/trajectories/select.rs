@@ -4,11 +4,12 @@ use rayon::prelude::*;
 
 use crate::evidence::Nominal;
 use crate::messages::Reason;
+use crate::method_fit::MethodFit;
 use crate::methods::fit::FitResult;
 use crate::methods::selection::{ROUNDS, Selection};
 use crate::methods::trajectories::{fit, starts};
 use crate::methods::weighing::Bulk;
-use crate::parameters::Parameters;
+use crate::parameters::{Coordinate, Parameters};
 use crate::solver::{FitError, Precision, mean_squares};
 
 /// Records that a rough fit rests on; of more, every second, third …
@@ -22,6 +23,19 @@ const NEAR_END: f64 = 0.1;
 /// Relative change of the error allowed beside the noise below which another round changes nothing.
 const SETTLED: f64 = 0.1;
 
+/// Standard errors of a fit within which another one is near it.
+const NEAR: f64 = 3.0;
+
+/// Whether a fit is near another one, so that what was found of the records there holds here.
+fn is_near(found: &MethodFit, other: &MethodFit) -> bool {
+    let apart = |c: Coordinate| {
+        let [a, b] = [found, other].map(|fit| fit.fit.parameters.coordinate(c));
+        (a - b).abs()
+    };
+    let within = |c: &Coordinate| other.spread(*c).is_none_or(|s| apart(*c) < NEAR * s.error);
+    Coordinate::PHYSICAL.iter().all(within)
+}
+
 impl Selection<'_> {
     /// Fit the folded records, first some of them as if the rig were ideal and with all that may add to it, then
     /// all; those that fit far worse than the bulk are left out and named.
@@ -33,7 +47,8 @@ impl Selection<'_> {
         };
         self.blocks.trajectory.find_changes(&found.fit.parameters);
         for _ in 0..ROUNDS {
-            let parameters = found.fit.parameters;
+            let before = found;
+            let parameters = before.fit.parameters;
             self.keep_fitting(&parameters);
             self.blocks.weigh_trajectories(&parameters);
             self.blocks.trajectory.reduce(&parameters);
@@ -42,7 +57,7 @@ impl Selection<'_> {
                 Ok(found) => found,
                 failed => return Some(failed),
             };
-            if self.all_fit_as_weighed(&found.fit.parameters) {
+            if is_near(&found, &before) && self.all_fit_as_weighed(&found.fit.parameters) {
                 break;
             }
         }

@@ -13,14 +13,16 @@ const NAMED_PICKUP: f64 = 2.0;
 /// χ² of two degrees of freedom that is as rare.
 const NAMED_PAIR: f64 = 15.3;
 
-/// The significant effects of a joint fit. The two parts of a harmonic are named as its amplitude.
-pub fn beyond(found: &MethodFit) -> Vec<Finding> {
+/// The significant effects of a joint fit, in which R is that at an approach speed, m/s. The two parts of a harmonic
+/// are named as its amplitude.
+pub fn beyond(found: &MethodFit, speed_m_s: f64) -> Vec<Finding> {
+    let harmonic = |cos, sin| harmonic(found, (cos, sin), speed_m_s);
     Effect::ALL
         .iter()
         .copied()
         .filter_map(|effect| match effect {
-            Effect::SecondHarmonicCos => harmonic(found, effect, Effect::SecondHarmonicSin),
-            Effect::ThirdHarmonicCos => harmonic(found, effect, Effect::ThirdHarmonicSin),
+            Effect::SecondHarmonicCos => harmonic(effect, Effect::SecondHarmonicSin),
+            Effect::ThirdHarmonicCos => harmonic(effect, Effect::ThirdHarmonicSin),
             Effect::SecondHarmonicSin | Effect::ThirdHarmonicSin => None,
             single => {
                 let (strength, standard_error) = estimated(found, single)?;
@@ -32,6 +34,7 @@ pub fn beyond(found: &MethodFit) -> Vec<Finding> {
                     strength,
                     standard_error,
                     z_score,
+                    speed_m_s,
                 })
             }
         })
@@ -44,7 +47,7 @@ fn estimated(found: &MethodFit, effect: Effect) -> Option<(f64, f64)> {
     (error > 0.0).then(|| (found.fit.parameters.coordinate(coordinate), error))
 }
 
-fn harmonic(found: &MethodFit, cos: Effect, sin: Effect) -> Option<Finding> {
+fn harmonic(found: &MethodFit, (cos, sin): (Effect, Effect), speed_m_s: f64) -> Option<Finding> {
     let ((a, ea), (b, eb)) = (estimated(found, cos)?, estimated(found, sin)?);
     let correlation = found
         .fit
@@ -57,5 +60,6 @@ fn harmonic(found: &MethodFit, cos: Effect, sin: Effect) -> Option<Finding> {
         strength,
         standard_error: (a * ea).hypot(b * eb) / strength,
         z_score: chi2.sqrt(),
+        speed_m_s,
     })
 }

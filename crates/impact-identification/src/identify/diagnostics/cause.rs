@@ -135,6 +135,7 @@ mod tests {
             strength: 0.04,
             standard_error: 0.001,
             z_score: 40.0,
+            speed_m_s: 0.3,
         };
         let misfit = |method, remark| Finding::Misfit { method, remark };
         let waveforms = misfit(
@@ -197,6 +198,7 @@ mod tests {
             strength: 0.04,
             standard_error: 0.001,
             z_score: 40.0,
+            speed_m_s: 0.3,
         };
         let apart = Finding::Disagreement {
             pair: PairAgreement::default(),
