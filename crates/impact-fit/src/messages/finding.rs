@@ -47,6 +47,13 @@ pub enum Finding {
         /// How sure.
         z_score: f64,
     },
+    /// The gains of all channels of motion are off alike, or all clearances are.
+    GainsOrClearances {
+        /// Relative deviation, positive where the channels read too high.
+        deviation: f64,
+        /// How sure.
+        z_score: f64,
+    },
     /// One of the gains of two channels is off, the data do not tell which.
     GainsApart {
         /// The channels, the one that reads more first.
@@ -307,6 +314,7 @@ impl Finding {
             Self::WrongClearance { .. }
             | Self::WrongGain { .. }
             | Self::GainOrClearances { .. }
+            | Self::GainsOrClearances { .. }
             | Self::GainsApart { .. }
             | Self::LateChannel { .. }
             | Self::UndeclaredLowPass { .. }
@@ -328,6 +336,9 @@ message_table! { "finding": Finding, key = template_key;
     Self::WrongGain { channel, deviation, .. } | Self::GainOrClearances { channel, deviation, .. } =>
         channel = Value::Message(channel),
         key = Value::Name(channel.name()),
+        share = Value::Percent(deviation.abs(), 1),
+        direction = direction(*deviation);
+    Self::GainsOrClearances { deviation, .. } =>
         share = Value::Percent(deviation.abs(), 1),
         direction = direction(*deviation);
     Self::GainsApart { channels: [high, low], deviation, .. } =>

@@ -8,6 +8,7 @@ use crate::identify::diagnostics::beyond;
 use crate::identify::diagnostics::cause;
 use crate::identify::diagnostics::change::{Change, Fitted, Search};
 use crate::identify::diagnostics::clock;
+use crate::identify::diagnostics::common_scale::{self, CommonScale, common_scale};
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::doubt::{self, Suspicion};
 use crate::identify::diagnostics::late_channel;
@@ -524,9 +525,22 @@ impl<'a> IdentificationRun<'a> {
         search.in_time().or_else(between_groups)
     }
 
-    /// The gap that deviates most from what the others say, if one does.
+    /// The share by which all clearances are off alike, if they are.
+    fn common_scale(&self) -> Option<CommonScale> {
+        let uncertainty_m = self.evidence.nominal.clearance_uncertainty_m;
+        common_scale(
+            &self.selection.blocks,
+            self.found.together()?,
+            uncertainty_m,
+        )
+    }
+
+    /// The gap that deviates most from what the others say, if one does and not all do alike.
     fn odd_gap(&self) -> Option<OddGap> {
         let joint = self.found.together()?;
+        if self.common_scale().is_some() {
+            return None;
+        }
         let Selection {
             blocks,
             lost,
@@ -601,7 +615,10 @@ impl<'a> IdentificationRun<'a> {
         found.extend(suspicion::sides(&joint.fit, &Vec::from_iter(stated)));
         let mut found: Vec<Suspicion> = found.into_iter().map(Suspicion::from).collect();
         found.extend(wrong_gains::open(joint, nominal));
-        found.extend(wrong_gains::wrong_gain(joint, nominal));
+        found.extend(match self.common_scale() {
+            Some(scale) => Some(common_scale::suspicion(scale, joint)),
+            None => wrong_gains::wrong_gain(joint, nominal),
+        });
         found
     }
 

@@ -6,6 +6,7 @@ pub mod beyond;
 pub mod cause;
 pub mod change;
 pub mod clock;
+pub mod common_scale;
 pub mod contradicting_gap;
 pub mod doubt;
 pub mod late_channel;

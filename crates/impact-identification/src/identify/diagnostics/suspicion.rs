@@ -24,7 +24,7 @@ const FAR_OFF: f64 = 4.0;
 const GAP_LIMIT: f64 = 2e-3;
 /// Standard uncertainties, those of the clearances and of the fit combined, from which a gap is named
 /// whose uncertainty is stated.
-const GAP_SURE: f64 = 3.4;
+pub(super) const GAP_SURE: f64 = 3.4;
 
 /// Whether a gap is so far off that it is named, where clearances have a standard uncertainty.
 fn is_named(odd: &OddGap, uncertainty_m: f64) -> bool {
@@ -123,9 +123,7 @@ pub fn odd_gap(
 ) -> Option<OddGap> {
     let block = &blocks.trajectory;
     let odd: Vec<OddGap> = if uncertainty_m > 0.0 {
-        let gaps = blocks.gaps_m.iter().enumerate();
-        gaps.filter_map(|(i, gap)| beyond_stated(found, i, *gap, uncertainty_m))
-            .collect()
+        gaps_beyond_stated(blocks, found, uncertainty_m)
     } else {
         let gaps = stated_gaps(&block.records);
         let shifts = gaps.iter();
@@ -136,6 +134,17 @@ pub fn odd_gap(
     odd.into_iter()
         .max_by(|a, b| a.z_score.abs().total_cmp(&b.z_score.abs()))
         .filter(|odd| is_named(odd, uncertainty_m))
+}
+
+/// What the data alone say of the errors of all gaps that a fit carries with their priors.
+pub(super) fn gaps_beyond_stated(
+    blocks: &Blocks,
+    found: &MethodFit,
+    uncertainty_m: f64,
+) -> Vec<OddGap> {
+    let gaps = blocks.gaps_m.iter().enumerate();
+    gaps.filter_map(|(i, gap)| beyond_stated(found, i, *gap, uncertainty_m))
+        .collect()
 }
 
 /// What the data alone say of the error of a gap that a fit carries with its prior of standard
