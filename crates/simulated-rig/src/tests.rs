@@ -131,6 +131,19 @@ fn valid_a_velocity_that_is_late_by_three_samples_is_told_by_its_jumps() {
 }
 
 #[test]
+fn valid_a_contact_that_is_late_by_three_samples_is_told_by_the_jumps() {
+    let mut effects = RigEffects::default();
+    effects.delays_s[1] = 1.5e-3;
+    let [contact] = late(&campaign(&effects))[..] else {
+        panic!("the contact is late");
+    };
+    assert_eq!(contact.role, Role::Contact);
+    // within half a sample
+    let off_s = contact.delay_s - 1.5e-3;
+    assert!(off_s.abs() < 0.25e-3, "{}", contact.delay_s);
+}
+
+#[test]
 fn valid_velocities_behind_a_low_pass_are_told_by_their_jumps() {
     let mut records = campaign(&RigEffects::default());
     let decay = (-std::f64::consts::TAU * 200.0 / RATE_HZ).exp();

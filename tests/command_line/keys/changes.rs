@@ -100,7 +100,7 @@ changes! {
     ("channels.ROLE.unit", Classify, as_is, Replace("\"vx\"\nunit = \"V\"", "\"vx\"\nunit = \"mV\""));
     ("channels.ROLE.scale", Classify, as_is, Replace("\"50 mm/s per V\"\nhigh", "\"40 mm/s per V\"\nhigh"));
     ("channels.ROLE.offset", Classify, as_is, Add("channels.contact", r#"offset = "3 V""#));
-    ("channels.ROLE.sign", Classify, as_is, Replace("sign = 1", "sign = -1"));
+    ("channels.ROLE.sign", Identify, as_is, Replace("sign = 1", "sign = -1"));
     ("channels.ROLE.high_pass", Classify, as_is, Replace(r#""0.5 Hz""#, r#""2 Hz""#));
     ("channels.ROLE.low_pass", Classify, as_is, Add("channels.velocity_x", r#"low_pass = "200 Hz""#));
     ("channels.ROLE.low_pass_order", Classify, filtered, Replace("low_pass_order = 1", "low_pass_order = 4"));

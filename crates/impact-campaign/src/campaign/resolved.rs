@@ -130,6 +130,9 @@ impl ResolvedCampaign {
             let found = late.iter().find(|l| l.role == setup.role);
             setup.delay_s += found.map_or(0.0, |l| l.delay_s);
             setup.low_pass = setup.low_pass.or(found.and_then(|l| l.low_pass));
+            if found.is_some_and(|l| l.inverted) {
+                setup.sign = -setup.sign;
+            }
         }
         campaign
     }

@@ -11,9 +11,8 @@ use crate::campaign::resolved::ResolvedCampaign;
 use impact_fit::evidence::Evidence;
 use impact_fit::methods::resonance::late_drive::late_drive;
 use impact_records::motion::{
-    Bracket, LateChannel, Observation, brackets, late_channels, scale_drives,
+    Bracket, LateChannel, Observation, brackets, inverted_channels, late_channels, scale_drives,
 };
-use impact_records::record::Role;
 use labfiles::output::OutputError;
 
 /// All records as observed.
@@ -71,7 +70,7 @@ impl Observed {
     }
 
     /// What was observed of a campaign's records, in their order, with the brackets in it; observed again where
-    /// channels are late.
+    /// channels are not as stated.
     ///
     /// # Errors
     /// [`PipelineError::NothingUsable`] where no record can be used.
@@ -103,37 +102,46 @@ impl Observed {
     }
 }
 
-/// The observations; made again where they show that channels are later than stated, with what these show
-/// moved back: channels beside each other by their impacts, then the drive's by the phases of the motion.
+/// The observations; made again where they show that channels are not as stated, with these corrected: signs by the
+/// directions of jumps, channels beside each other by the times of impacts, then the drive's by the phases of the
+/// motion.
 fn aligned(
     campaign: &ResolvedCampaign,
     observations: Vec<Observation>,
     progress: Progress<'_>,
 ) -> Result<Vec<Observation>, OutputError> {
-    let mut late = late_channels(&observations);
-    let mut observations = observations;
-    if !late.is_empty() {
-        observations = observed_again(campaign, &late, progress)?;
+    let found = inverted_channels(&observations);
+    let observations = corrected(campaign, (observations, found), progress)?;
+    let found = late_channels(&observations);
+    let mut observations = corrected(campaign, (observations, found), progress)?;
+    // of a drive of the other sign the delay is told once its sign is right
+    for _ in 0..2 {
+        scale_drives(&mut observations);
+        let found = late_drive(&evidence::evidence(campaign, &observations, &[]));
+        let Some(found) = found else { break };
+        observations = corrected(campaign, (observations, vec![found]), progress)?;
+        if !found.inverted {
+            break;
+        }
     }
-    scale_drives(&mut observations);
-    let Some(delay_s) = late_drive(&evidence::evidence(campaign, &observations, &[])) else {
-        return Ok(observations);
-    };
-    late.push(LateChannel::by(Role::Drive, delay_s));
-    observed_again(campaign, &late, progress)
+    Ok(observations)
 }
 
-/// The observations with what late channels show moved back.
-fn observed_again(
+/// The observations with what was found of channels corrected too; the same where nothing was.
+fn corrected(
     campaign: &ResolvedCampaign,
-    late: &[LateChannel],
+    (observations, found): (Vec<Observation>, Vec<LateChannel>),
     progress: Progress<'_>,
 ) -> Result<Vec<Observation>, OutputError> {
-    let (campaign, kept) = (campaign.with_late(late), BlockCache::none());
+    if found.is_empty() {
+        return Ok(observations);
+    }
+    let late = LateChannel::together(evidence::late(&observations), found);
+    let (campaign, kept) = (campaign.with_late(&late), BlockCache::none());
     let whole = campaign.records.len();
     let mut again = observe::observe_in_chunks(&campaign, &kept, whole, progress)?;
     for observation in &mut again {
-        observation.late = late.to_vec();
+        observation.late.clone_from(&late);
     }
     Ok(again)
 }

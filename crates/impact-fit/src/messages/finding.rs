@@ -72,6 +72,11 @@ pub enum Finding {
         /// How sure.
         z_score: f64,
     },
+    /// The sign of a channel is the opposite of the stated one.
+    InvertedChannel {
+        /// The channel.
+        channel: Role,
+    },
     /// The corner of a channel's high-pass is far off the stated one.
     WrongCorner {
         /// The channel.
@@ -317,6 +322,7 @@ impl Finding {
             | Self::GainsOrClearances { .. }
             | Self::GainsApart { .. }
             | Self::LateChannel { .. }
+            | Self::InvertedChannel { .. }
             | Self::UndeclaredLowPass { .. }
             | Self::WrongCorner { .. }
             | Self::SidesUnlike { .. }
@@ -351,6 +357,9 @@ message_table! { "finding": Finding, key = template_key;
         channel = Value::Message(channel),
         key = Value::Name(channel.name()),
         time = Value::Number(later_ms.abs(), 2);
+    Self::InvertedChannel { channel } =>
+        channel = Value::Message(channel),
+        key = Value::Name(channel.name());
     Self::WrongCorner { channel, deviation, .. } =>
         channel = Value::Message(channel),
         key = Value::Name(channel.name()),
@@ -454,7 +463,7 @@ fn template_key(finding: &Finding) -> String {
             channel, later_ms, ..
         } => {
             let which = if *later_ms > 0.0 { "late" } else { "early" };
-            let what = if *channel == Role::Drive {
+            let what = if matches!(channel, Role::Drive | Role::Contact) {
                 "drive"
             } else {
                 "channel"

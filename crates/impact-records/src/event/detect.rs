@@ -3,6 +3,7 @@
 use crate::event::arcs::{self, Arcs, Candidate, DEGREE, Instant};
 use crate::event::channel_lags::{ChannelLag, channel_lags};
 use crate::event::contact::{Closed, closed_intervals};
+use crate::event::directions::{JumpDirections, jump_directions};
 use crate::event::drive::{self, DriveTone};
 use crate::event::finite_contact::{self, FiniteContact};
 use crate::event::impact::{DetectionSource, Impact};
@@ -13,6 +14,8 @@ use crate::event::touches::touches;
 use crate::event::{drift, free_flight, impact_speeds, integrated};
 use crate::record::{Flag, ListedTimes, Problem, Record, Role};
 use crate::signal::local_fit::LocalFit;
+use crate::signal::ringing;
+use crate::signal::robust;
 use crate::signal::whole;
 use labfiles::units::Dimension;
 
@@ -91,6 +94,9 @@ pub struct Detection {
     /// How much later than the contact or the other mass the channels show impacts; looked for where impacts
     /// are closer than one delay could make them, or contradict the contact.
     pub lags: Vec<ChannelLag>,
+    /// Ways in which the velocities of the masses jump; looked at where jumps go up, contradict the contact, or are
+    /// not found.
+    pub directions: Vec<JumpDirections>,
     /// Problems found.
     pub flags: Vec<Flag>,
 }
@@ -180,10 +186,16 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
     } else {
         Vec::new()
     };
+    let directions = if found.may_be_inverted() {
+        jump_directions(&kinematics, width)
+    } else {
+        Vec::new()
+    };
     let impacts = refined(&mut kinematics, arcs, drive.as_ref(), rig);
     Detection {
         drive,
         lags,
+        directions,
         impacts,
         jump_samples: found.jump_samples,
         unsupported_pulses: found.unsupported,
@@ -228,6 +240,7 @@ fn freely(record: &Record, kinematics: Kinematics, rig: RigKind, closed: &[Close
         closed_fraction: closed_samples as f64 / record.samples().max(1) as f64,
         kinematics,
         lags: Vec::new(),
+        directions: Vec::new(),
         flags: found.flags,
     }
 }
@@ -248,6 +261,7 @@ fn listed(kinematics: Kinematics, times_s: &[f64], known: ListedTimes) -> Detect
         closed_fraction: 0.0,
         kinematics,
         lags: Vec::new(),
+        directions: Vec::new(),
         flags: Vec::new(),
     }
 }
@@ -450,8 +464,22 @@ impl Fused {
     }
 }
 
+impl Fused {
+    /// Whether a channel may be of the other sign: jumps go up, contradict the contact, or are not found, as where those
+    /// of two masses cancel each other.
+    fn may_be_inverted(&self) -> bool {
+        let contradicted = self.unsupported + self.missed;
+        self.upward > 0 || 2 * contradicted > self.candidates.len() || self.candidates.is_empty()
+    }
+}
+
 /// Share of a jump that the flights beside it must show.
 const SHOWN: f64 = 0.5;
+/// Height of a jump, over that of the one before it, up to which it may be what that one's ringing leaves; any that
+/// the contact does not show, after one that it does, may be.
+const OF_RINGING: f64 = 0.3;
+/// Height of a jump, over the greatest, from which it is one of those by which ringing is told.
+const STRONG: f64 = 0.5;
 
 impl Fused {
     /// Without the jumps that no contact pulse and no difference of the flights beside them confirm:
@@ -464,11 +492,27 @@ impl Fused {
             candidates,
             samples,
         };
+        let rings = rings_for(velocity, all);
         let shows = |i: usize| {
-            let Some([before, after]) = arcs::flights(velocity, arcs, i) else {
+            let middle = all[i].jump.middle();
+            let mut windows = arcs::windows(velocity, arcs, i);
+            let other = i.checked_sub(1).map(|k| &all[k]);
+            let may_ring = |other: &&Candidate| {
+                let height = all[i].jump.height.abs();
+                let weak = height < OF_RINGING * other.jump.height.abs();
+                rings > 0.0 && (weak || other.source == DetectionSource::Both)
+            };
+            if let Some(other) = other.filter(may_ring) {
+                let calm = whole::index((other.jump.middle() + rings).ceil());
+                let first = &mut windows[0];
+                first.0 = first.0.max(calm);
+                if first.0 + arcs::DEGREE + 1 > first.1 {
+                    return false;
+                }
+            }
+            let Some([before, after]) = arcs::fits(&velocity.values, windows) else {
                 return true;
             };
-            let middle = all[i].jump.middle();
             let fall = before.value(middle) - after.value(middle);
             let error = before
                 .error_factor(middle)
@@ -483,6 +527,17 @@ impl Fused {
             ..self
         }
     }
+}
+
+/// Samples for which a velocity rings after its strong jumps, as behind a filter.
+fn rings_for(velocity: &Series, all: &[Candidate]) -> f64 {
+    let heights = all.iter().map(|c| c.jump.height.abs());
+    let strong = STRONG * heights.fold(0.0, f64::max);
+    let strong = all.iter().filter(|c| c.jump.height.abs() > strong);
+    let times: Vec<f64> = strong.map(|c| c.jump.middle()).collect();
+    let size = robust::robust_deviation(&velocity.values).unwrap_or(0.0);
+    let [_, after] = ringing::beside_impacts(&velocity.values, &times, size);
+    after
 }
 
 /// Samples at which a jump that belongs to a pulse may begin.
@@ -659,6 +714,36 @@ mod tests {
         let kept = without.confirmed(&velocity, ARC_SAMPLES);
         let places: Vec<usize> = kept.candidates.iter().map(|c| c.jump.left).collect();
         assert_eq!((places, kept.missed), (vec![99, 199, 299], 3));
+    }
+
+    #[test]
+    fn what_rings_after_a_jump_is_no_further_one() {
+        // a vibration of 5 samples behind each jump, which dies away
+        let rings = |i: usize| {
+            let since = (i % 100) as f64;
+            0.6 * (-since / 4.0).exp() * (std::f64::consts::TAU / 5.0 * since).sin()
+        };
+        let values = sawtooth(800).into_iter().enumerate();
+        let ringing: Vec<f64> = values.map(|(i, v)| v + rings(i)).collect();
+        let ringing = Series::clean(ringing);
+        let mut found = fuse((&Body::default(), &ringing), &[], 16, 10);
+        let first = found.candidates[0].clone();
+        assert!(rings_for(&ringing, &found.candidates) > 12.0);
+        let calm = Series::clean(sawtooth(800));
+        assert!(rings_for(&calm, &found.candidates) < 3.0);
+        let mut seeming = first.clone();
+        seeming.jump.left += 10;
+        seeming.jump.height *= 0.2;
+        found.candidates = vec![first.clone(), seeming];
+        for candidate in [200, 300, 400].map(|apart| apart + first.jump.left) {
+            let mut further = first.clone();
+            further.jump.left = candidate;
+            found.candidates.push(further);
+        }
+        let kept = found.confirmed(&ringing, ARC_SAMPLES).candidates;
+        let places: Vec<usize> = kept.iter().map(|c| c.jump.left).collect();
+        assert!(!places.contains(&(first.jump.left + 10)), "{places:?}");
+        assert_eq!(places[0], first.jump.left);
     }
 
     #[test]

@@ -9,6 +9,7 @@ use crate::motion::harmonics;
 use crate::motion::kind::Motion;
 use crate::motion::settling;
 use crate::motion::undetermined::Undetermined;
+use crate::signal::ringing;
 use crate::signal::whole;
 
 /// Settings of the classification.
@@ -171,13 +172,16 @@ impl View {
             .iter()
             .map(|i| i.time_s * rate_hz)
             .collect();
-        let guard = detection.jump_samples as f64 + 1.5;
+        let of_jump = [detection.jump_samples as f64 + 1.5; 2];
         let period = period_s * rate_hz;
         let periods = velocity.values.len() as f64 / period;
         // At least three drive periods, or as many again, must overlap.
         let reach = whole::count((periods - 3.0).max(0.5 * periods).floor().max(1.0));
         let most = settings.most_periods.min(reach);
-        let level = closure::size(&velocity.values, (&times, guard));
+        let size = |guard| closure::size(&velocity.values, (&times, guard));
+        let [before, after] = ringing::beside_impacts(&velocity.values, &times, size(of_jump));
+        let guard = [of_jump[0].max(before), of_jump[1].max(after)];
+        let level = size(guard);
         Self {
             closures: closures_beside_hum(
                 &velocity.values,
@@ -198,7 +202,7 @@ const MAINS_HZ: [f64; 6] = [50.0, 60.0, 100.0, 120.0, 150.0, 180.0];
 fn closures_beside_hum(
     values: &[f64],
     period: f64,
-    impacts: (&[f64], f64),
+    impacts: (&[f64], [f64; 2]),
     (most, rate_hz): (u32, f64),
 ) -> Vec<WaveformClosure> {
     let closures = closure::waveform(values, period, impacts, most, &[]);
@@ -473,6 +477,7 @@ mod tests {
             unsupported_touches: 0,
             closed_fraction: 0.0,
             lags: Vec::new(),
+            directions: Vec::new(),
             flags: Vec::new(),
         }
     }

@@ -23,13 +23,13 @@ pub(super) struct WaveformClosure {
 /// Closure of a waveform for n = 1 … `most`, samples near impacts left out.
 ///
 /// `period` in samples, `impacts` in samples; a sample is left out when it, or its partner nT
-/// later, is within `guard` samples of an impact, where interpolation fails. A constant
+/// later, is within the samples of `guard` before or after an impact, where interpolation fails. A constant
 /// difference (drift) does not count, nor do tones at the given frequencies, in cycles per sample:
 /// mains hum repeats after periods of its own.
 pub(super) fn waveform(
     values: &[f64],
     period: f64,
-    (impacts, guard): (&[f64], f64),
+    (impacts, guard): (&[f64], [f64; 2]),
     most: u32,
     hum: &[f64],
 ) -> Vec<WaveformClosure> {
@@ -70,7 +70,7 @@ pub(super) fn waveform(
 
 /// Root mean square of a waveform about its mean, samples near impacts left out as for its closure: what its
 /// noise and its closure are relative to. An acceleration's spikes do not count.
-pub(super) fn size(values: &[f64], (impacts, guard): (&[f64], f64)) -> f64 {
+pub(super) fn size(values: &[f64], (impacts, guard): (&[f64], [f64; 2])) -> f64 {
     scale(values, &open_samples(values.len(), impacts, guard))
 }
 
@@ -126,11 +126,11 @@ impl Hum {
 }
 
 /// 1 for each sample that keeps clear of impacts, 0 beside one.
-fn open_samples(count: usize, impacts: &[f64], guard: f64) -> Vec<f64> {
+fn open_samples(count: usize, impacts: &[f64], [before, after]: [f64; 2]) -> Vec<f64> {
     let mut open = vec![1.0; count];
     for time in impacts {
-        let first = whole::index((time - guard).ceil().max(0.0));
-        let last = whole::index((time + guard).floor().max(-1.0) + 1.0);
+        let first = whole::index((time - before).ceil().max(0.0));
+        let last = whole::index((time + after).floor().max(-1.0) + 1.0);
         let last = last.min(count);
         open[first.min(last)..last].fill(0.0);
     }
@@ -252,7 +252,7 @@ mod tests {
             .map(|i| f64::from(i) * std::f64::consts::TAU / 157.3)
             .map(|a| a.cos() + 0.1 * (0.5 * a).sin())
             .collect();
-        let found = waveform(&values, 157.3, (&[], 2.0), 4, &[]);
+        let found = waveform(&values, 157.3, (&[], [2.0; 2]), 4, &[]);
         assert!(found[0].ratio > 0.05);
         assert!(found[1].ratio < 1e-5);
         assert!(found[3].ratio < 1e-5);
@@ -268,9 +268,9 @@ mod tests {
             .map(|t| (drive_hz * t).cos() + 0.02 * (hum_hz * t + 1.0).cos())
             .collect();
         let period = rate_hz / drive_hz;
-        let with = waveform(&values, period, (&[], 2.0), 2, &[]);
+        let with = waveform(&values, period, (&[], [2.0; 2]), 2, &[]);
         assert!(with[0].ratio > 3.0 * with[1].ratio);
-        let without = waveform(&values, period, (&[], 2.0), 2, &[hum_hz / rate_hz]);
+        let without = waveform(&values, period, (&[], [2.0; 2]), 2, &[hum_hz / rate_hz]);
         assert!(without.iter().all(|c| c.ratio < 1e-5), "{without:?}");
     }
 
@@ -280,7 +280,7 @@ mod tests {
             .map(|i| f64::from(i) * std::f64::consts::TAU / 157.3)
             .map(|a| a.cos() + 0.1 * (0.5 * a).sin())
             .collect();
-        let found = waveform(&values, 157.3, (&[], 2.0), 2, &[0.025, 0.03]);
+        let found = waveform(&values, 157.3, (&[], [2.0; 2]), 2, &[0.025, 0.03]);
         assert!(found[0].ratio > 0.05 && found[1].ratio < 1e-5);
     }
 
@@ -313,14 +313,14 @@ mod tests {
         };
         let values: Vec<f64> = (0..2000).map(value).collect();
         let impacts: Vec<f64> = (0..20).map(|k| 100.0 * f64::from(k) + 40.0).collect();
-        let size = size(&values, (&impacts, 2.5));
+        let size = size(&values, (&impacts, [2.5; 2]));
         assert!((size - 0.5f64.sqrt()).abs() < 0.01, "{size}");
     }
 
     #[test]
     fn samples_beside_impacts_are_not_open() {
         // 4.5 ± 1 closes samples 4 and 5, the first and the last impact reach over the edges.
-        let open = open_samples(10, &[4.5, 0.2, 9.6], 1.0);
+        let open = open_samples(10, &[4.5, 0.2, 9.6], [1.0; 2]);
         let list: Vec<usize> = (0..10).filter(|i| open[*i] == 0.0).collect();
         assert_eq!(list, [0, 1, 4, 5, 9]);
     }

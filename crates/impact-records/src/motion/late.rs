@@ -35,8 +35,8 @@ struct Told {
 }
 
 /// The channels that are later than the earliest of all, of which the contact is one, by more than the
-/// detection of impacts bears, or whose jumps take longer than the contact is closed; and one that is earlier than the
-/// contact and another, which agree.
+/// detection of impacts bears, or whose jumps take longer than the contact is closed; one that is earlier than the
+/// contact and another, which agree; and the contact, where it is later than all others.
 pub fn late_channels(observations: &[Observation]) -> Vec<LateChannel> {
     let usable = observations.iter().filter(|o| !o.excluded());
     let all: Vec<(&Observation, &ChannelLag)> = usable
@@ -71,7 +71,10 @@ pub fn late_channels(observations: &[Observation]) -> Vec<LateChannel> {
             ..LateChannel::by(t.role, delay_s)
         })
     });
-    late.collect()
+    // all are earlier than the contact
+    let by_s = -reference_s;
+    let contact = (by_contact && by_s > 0.0).then(|| LateChannel::by(Role::Contact, by_s));
+    late.chain(contact).collect()
 }
 
 /// The lag of the earliest channel.
@@ -176,7 +179,8 @@ mod tests {
         // both behind the contact, within what the detection bears
         assert_eq!(late([0.5, 0.4], true), []);
         // the contact is the late one
-        assert_eq!(late([-2.0, -2.0], true), []);
+        let contact = LateChannel::by(Role::Contact, 2e-3);
+        assert_eq!(late([-2.0, -2.0], true), [contact]);
         // x is early: the contact and y agree
         assert_eq!(late([-3.0, 0.1], true), [x(-3e-3)]);
         // without a contact: y behind x

@@ -1,10 +1,10 @@
-//! A channel that is later than stated.
+//! A channel that is later than stated, or of the other sign.
 
 use serde::{Deserialize, Serialize};
 
 use crate::record::{LowPass, Role};
 
-/// A channel that is later than stated.
+/// A channel that is later than stated, or of the other sign.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LateChannel {
     /// The channel.
@@ -18,6 +18,9 @@ pub struct LateChannel {
     /// it where its order is not known.
     #[serde(default = "all")]
     pub order_share: f64,
+    /// Whether its sign is the opposite of the stated one.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub inverted: bool,
 }
 
 impl LateChannel {
@@ -28,7 +31,32 @@ impl LateChannel {
             delay_s,
             low_pass: None,
             order_share: all(),
+            inverted: false,
         }
+    }
+
+    /// A channel whose sign is the opposite of the stated one.
+    pub fn inverted(role: Role) -> Self {
+        Self {
+            inverted: true,
+            ..Self::by(role, 0.0)
+        }
+    }
+
+    /// What is found of channels after `known` was corrected, together with that: one entry a channel.
+    pub fn together(known: &[Self], found: Vec<Self>) -> Vec<Self> {
+        let mut all = known.to_vec();
+        for new in found {
+            match all.iter_mut().find(|l| l.role == new.role) {
+                Some(old) => {
+                    old.delay_s += new.delay_s;
+                    old.inverted ^= new.inverted;
+                    old.low_pass = old.low_pass.or(new.low_pass);
+                }
+                None => all.push(new),
+            }
+        }
+        all
     }
 }
 

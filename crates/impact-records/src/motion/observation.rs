@@ -6,7 +6,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::event::{
-    ChannelLag, DetectSettings, DriveTone, FlightKind, Impact, RigKind, detect, of_motion,
+    ChannelLag, DetectSettings, DriveTone, FlightKind, Impact, JumpDirections, RigKind, detect,
+    of_motion,
 };
 use crate::motion::classify::{Classification, ClassifySettings, classify, undetermined};
 use crate::motion::fold::{Folded, fold};
@@ -63,7 +64,10 @@ pub struct Observation {
     /// How much later than the contact or the other mass the channels show impacts, where that may matter.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lags: Vec<ChannelLag>,
-    /// Channels that were found late, beyond what is stated; their samples have been moved back.
+    /// Ways in which the velocities of the masses jump, where that may matter.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub directions: Vec<JumpDirections>,
+    /// Channels that were found late, beyond what is stated, or of the other sign; their samples have been corrected.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub late: Vec<LateChannel>,
     /// Amplitudes of the motion channels.
@@ -141,6 +145,7 @@ impl Observation {
             flags: self.flags.clone(),
             impacts: Vec::new(),
             lags: Vec::new(),
+            directions: Vec::new(),
             late: self.late.clone(),
             amplitudes: Vec::new(),
             response: Vec::new(),
@@ -214,6 +219,7 @@ pub fn observe(
         missed_pulses: detection.missed_pulses,
         jump_samples: detection.contact_samples(),
         lags: detection.lags.clone(),
+        directions: detection.directions.clone(),
         flags,
         classification,
         ..undriven(record)
@@ -309,6 +315,7 @@ fn undriven(record: &Record) -> Observation {
         jump_samples: 1,
         low_pass: smears_jumps(record),
         lags: Vec::new(),
+        directions: Vec::new(),
         late: Vec::new(),
         amplitudes: amplitudes(record),
         response: Vec::new(),
@@ -435,6 +442,7 @@ impl Observation {
             jump_samples: 1,
             low_pass: false,
             lags: Vec::new(),
+            directions: Vec::new(),
             late: Vec::new(),
             amplitudes: Vec::new(),
             response: Vec::new(),

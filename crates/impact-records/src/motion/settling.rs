@@ -78,7 +78,7 @@ mod tests {
         let values: Vec<f64> = (0..2045)
             .map(|i| of(f64::from(i) / PERIOD) + noise.sample(&mut random))
             .collect();
-        let closures = waveform(&values, PERIOD, (&[], 2.0), 6, &[]);
+        let closures = waveform(&values, PERIOD, (&[], [2.0; 2]), 6, &[]);
         let least = closures
             .iter()
             .map(|c| c.ratio)

@@ -6,7 +6,7 @@ use super::bind::flag;
 pub use super::bind::{BoundChannel, ChannelKey, ChannelSetup, RecordSetup, bind};
 use super::times::Clocks;
 use super::{Channel, ContactContent, Flag, FlagCode, ListedTimes, Problem, Record, Role, Setting};
-use super::{changes, condition, consistency, events, late};
+use super::{changes, condition, consistency, contact_levels, events, late};
 use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 
 /// A record without channels, for a file that cannot be read.
@@ -126,6 +126,7 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
     }
     condition::inspect(&mut record, &ranges, setup.driven);
     if !record.excluded() {
+        contact_levels::settle(&mut record);
         let flags = consistency::inspect(&record);
         record.flags.extend(flags);
     }

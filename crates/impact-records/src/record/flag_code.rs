@@ -138,6 +138,10 @@ flag_codes! {
     ContactWithoutVelocityJump = "contact_without_velocity_jump",
     /// Contact pulses without a jump of velocity, of a record that is checked.
     ContactWithoutJump = "contact_without_jump",
+    /// The contact's threshold is within its noise.
+    ThresholdInNoise = "threshold_in_noise",
+    /// The contact opens at impacts; it was turned around.
+    ContactInverted = "contact_inverted",
     /// The campaign excludes the record.
     Excluded = "excluded",
 }

@@ -10,6 +10,7 @@ pub mod calibrate;
 pub mod changes;
 mod condition;
 pub mod consistency;
+mod contact_levels;
 mod content;
 mod events;
 mod flag;

@@ -9,6 +9,7 @@ pub mod drift;
 pub mod interpolation;
 pub mod local_fit;
 pub mod onsets;
+pub(crate) mod ringing;
 pub mod robust;
 mod spectrum;
 pub mod thinning;

@@ -1,10 +1,12 @@
-//! A drive's channel that is later than the channels of the motion: their phases tell it, as the amplitudes tell f0
-//! and β.
+//! A drive's channel that is later than the channels of the motion, or of the other sign: their phases tell it, as the
+//! amplitudes tell f0 and β.
 
 use crate::evidence::{Evidence, Nominal};
 use crate::methods::blocks::Blocks;
 use crate::methods::resonance::fit;
 use crate::solver::mean_squares;
+use impact_records::motion::LateChannel;
+use impact_records::record::Role;
 
 /// Greatest lag that is looked for, in periods of the fastest drive.
 const WIDEST: f64 = 1.0;
@@ -17,20 +19,46 @@ const SURE: f64 = 4.0;
 /// over corners of 0.5 to 4 Hz.
 const LEFT: f64 = 0.1;
 
-/// By how much the drive's channel is later than all channels of the motion, s; `None` where impactless records do
-/// not show it to be later or earlier than is stated.
-pub fn late_drive(evidence: &Evidence<'_>) -> Option<f64> {
+/// The drive's channel where impactless records show it to be later or earlier than is stated, beside all channels of
+/// the motion, or to be of the other sign; `None` where they do not.
+pub fn late_drive(evidence: &Evidence<'_>) -> Option<LateChannel> {
     let blocks = Blocks::new(evidence);
     let points = &blocks.resonance.points;
-    let fastest_hz = points.iter().map(|p| p.frequency_hz).fold(0.0, f64::max);
-    if fastest_hz == 0.0 || points.iter().any(|p| p.phase_error_rad.is_none()) {
+    if points.is_empty() || points.iter().any(|p| p.phase_error_rad.is_none()) {
         return None;
     }
-    let misfit = |lag_s: f64| misfit(&blocks, &behind(&evidence.nominal, lag_s));
-    let stated = evidence.nominal.delay_uncertainties_s.iter();
+    let at_once = misfit(&blocks, &evidence.nominal)?;
+    let late = lag(&blocks, &evidence.nominal, at_once).map(|(lag_s, left)| {
+        let late = LateChannel::by(Role::Drive, lag_s);
+        (late, left)
+    });
+    let turned = misfit(&turned_around(&blocks), &evidence.nominal)
+        .map(|left| (LateChannel::inverted(Role::Drive), left));
+    let fitting = late.into_iter().chain(turned);
+    let fitting = fitting.filter(|(_, left)| *left < LEFT * at_once);
+    let best = fitting.min_by(|a, b| a.1.total_cmp(&b.1));
+    best.map(|(channel, _)| channel)
+}
+
+/// The blocks with all responses of the other sign.
+fn turned_around(blocks: &Blocks) -> Blocks {
+    let mut turned = blocks.clone();
+    let points = turned.resonance.points.iter_mut();
+    for response in points.flat_map(|p| &mut p.responses) {
+        (response.real, response.imaginary) = (-response.real, -response.imaginary);
+    }
+    turned
+}
+
+/// The lag of the drive's channel with which the phases fit best, s, if it is noticed, and the misfit that it leaves;
+/// `at_once`: that without one.
+fn lag(blocks: &Blocks, nominal: &Nominal, at_once: f64) -> Option<(f64, f64)> {
+    let points = blocks.resonance.points.iter();
+    let fastest_hz = points.map(|p| p.frequency_hz).fold(0.0, f64::max);
+    let misfit = |lag_s: f64| misfit(blocks, &behind(nominal, lag_s));
+    let stated = nominal.delay_uncertainties_s.iter();
     let stated_s = stated.map(|own| own.unwrap_or(blocks.half_sample_s()));
     let unnoticed_s = SURE * stated_s.fold(0.0, f64::max);
-    let at_once = misfit(0.0)?;
     // the phases fit best near no lag
     if [-unnoticed_s, unnoticed_s]
         .into_iter()
@@ -48,8 +76,8 @@ pub fn late_drive(evidence: &Evidence<'_>) -> Option<f64> {
     }
     let near_s = vertex(coarse_s, step_s, &misfit)?;
     let lag_s = vertex(near_s, 0.2 * step_s, &misfit)?;
-    let told = lag_s.abs() > unnoticed_s && misfit(lag_s)? < LEFT * at_once;
-    told.then_some(lag_s)
+    let left = misfit(lag_s)?;
+    (lag_s.abs() > unnoticed_s).then_some((lag_s, left))
 }
 
 /// What is stated, with the motion's channels as much earlier as the drive is later.
@@ -85,7 +113,7 @@ fn vertex(middle: f64, step: f64, value: &impl Fn(f64) -> Option<f64>) -> Option
 mod tests {
     use super::*;
     use crate::fixture::{evidence, observed, recorded};
-    use impact_records::record::{Record, Role};
+    use impact_records::record::Record;
 
     /// The record with the drive's channel so many samples later than the others, or earlier.
     fn with_late_drive(record: &Record, samples: isize) -> Record {
@@ -117,9 +145,33 @@ mod tests {
             if samples.abs() < 2 {
                 assert_eq!(found, None, "{samples} samples");
             } else {
-                let off = found.expect("a lag") / step_s - samples as f64;
+                let found = found.expect("a lag");
+                assert!(!found.inverted, "{samples} samples");
+                let off = found.delay_s / step_s - samples as f64;
                 assert!(off.abs() < 0.5, "{samples} samples: {off} off");
             }
+        }
+    }
+
+    #[test]
+    fn valid_a_drive_of_the_other_sign_is_told_from_the_phases_whether_it_is_late_or_not() {
+        let records = recorded((0.8, 12.0), 60, 43);
+        let turned = |record: &Record| {
+            let mut record = record.clone();
+            let drive = record.channels.iter_mut().filter(|c| c.role == Role::Drive);
+            let values = drive.flat_map(|c| &mut c.values);
+            values.for_each(|v| *v = -*v);
+            record
+        };
+        for samples in [0, 6] {
+            let as_stated: Vec<Record> = records
+                .iter()
+                .map(|r| with_late_drive(r, samples))
+                .collect();
+            let other: Vec<Record> = as_stated.iter().map(turned).collect();
+            let observations = observed(&other);
+            let found = late_drive(&evidence(&observations));
+            assert_eq!(found, Some(LateChannel::inverted(Role::Drive)));
         }
     }
 

@@ -1,4 +1,4 @@
-//! Channels whose delay is far off the stated one: found by the impacts before the fit, or by the fit.
+//! Channels whose delay or sign is not as stated: found by the impacts before the fit, or by the fit.
 
 use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
 use impact_fit::evidence::Nominal;
@@ -7,7 +7,7 @@ use impact_fit::method_fit::MethodFit;
 use impact_fit::methods::blocks::Blocks;
 use impact_fit::parameters::{Coordinate, GAIN_ROLES};
 use impact_records::motion::{Observation, one_pole_hz};
-use impact_records::record::{LowPass, Role};
+use impact_records::record::LowPass;
 
 /// Standard deviations of what is stated from which a delay is named.
 const SURE: f64 = 4.0;
@@ -50,19 +50,24 @@ pub fn late_channels(
             later_ms: moved_ms + rest_ms,
             z_score: sure + moved_ms / (1e3 * stated_s).max(f64::MIN_POSITIVE),
         };
-        (moved.is_some() || sure.abs() > SURE).then(|| finding.into())
+        (moved_ms != 0.0 || sure.abs() > SURE).then(|| finding.into())
     };
-    let drive = moved.iter().find(|l| l.role == Role::Drive);
-    let drive = drive.map(|l| {
+    // what drives and closes is not fitted
+    let others = moved.iter().filter(|l| !GAIN_ROLES.contains(&l.role));
+    let others = others.filter(|l| l.delay_s != 0.0).map(|l| {
         let finding = Finding::LateChannel {
-            channel: Role::Drive,
+            channel: l.role,
             later_ms: 1e3 * l.delay_s,
             z_score: l.delay_s / blocks.half_sample_s().max(f64::MIN_POSITIVE),
         };
         finding.into()
     });
+    let inverted = moved.iter().filter(|l| l.inverted).map(|l| {
+        let finding = Finding::InvertedChannel { channel: l.role };
+        finding.into()
+    });
     let motion = GAIN_ROLES.iter().enumerate().filter_map(of);
-    motion.chain(drive).collect()
+    inverted.chain(motion).chain(others).collect()
 }
 
 /// What is open where a filter's order is not known, or its corner: behind one pole an amplitude at the frequency f

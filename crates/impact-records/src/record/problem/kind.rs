@@ -605,6 +605,22 @@ problems! {
         /// Contacts with one.
         with: usize,
     };
+    /// The contact's threshold is within its noise.
+    ThresholdInNoise: ThresholdInNoise {
+        /// The threshold, SI.
+        threshold: f64,
+        /// The level at rest, SI.
+        rest: f64,
+        /// Standard deviation of the noise, SI.
+        noise: f64,
+        /// Of the channel.
+        dimension: Dimension,
+    };
+    /// The contact opens at impacts.
+    ContactInverted: ContactOpens {
+        /// Share of the record in which it is beyond its threshold.
+        share: f64,
+    };
     /// The campaign excludes the record.
     Excluded: ExcludedByCampaign;
 }

@@ -275,6 +275,12 @@ message_table! { "problem": Problem;
     Self::ContactsWithoutJump { without, with } =>
         without = Value::Count(*without),
         with = Value::Count(*with);
+    Self::ThresholdInNoise { threshold, rest, noise, dimension } =>
+        threshold = at_level(*threshold),
+        rest = at_level(*rest),
+        noise = at_level(*noise),
+        unit = symbol(*dimension);
+    Self::ContactOpens { share } => share = Value::Percent(*share, 1);
 }
 
 message_table! { "remedy": Remedy, key = remedy_key;
