@@ -242,10 +242,8 @@ mod tests {
             let divided = behind.transfer(rate) / shown.transfer(rate);
             let mut o = Observation::of("r", frequency_hz, Motion::Impactless);
             o.late = vec![LateChannel {
-                role: Role::VelocityX,
-                delay_s: 0.0,
                 low_pass: Some(shown),
-                order_share: 1.0,
+                ..LateChannel::by(Role::VelocityX, 0.0)
             }];
             o.response = vec![Response {
                 role: Role::VelocityX,
