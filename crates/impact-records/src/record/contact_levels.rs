@@ -50,7 +50,7 @@ fn beside_noise(record: &mut Record) -> Option<Flag> {
     if !lifts {
         record.channels.retain(|c| c.role != Role::Contact);
     }
-    let problem = Problem::ThresholdInNoise {
+    let problem = Problem::ThresholdWithinNoise {
         threshold,
         rest,
         noise,

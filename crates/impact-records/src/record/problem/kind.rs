@@ -606,7 +606,7 @@ problems! {
         with: usize,
     };
     /// The contact's threshold is within its noise.
-    ThresholdInNoise: ThresholdInNoise {
+    ThresholdInNoise: ThresholdWithinNoise {
         /// The threshold, SI.
         threshold: f64,
         /// The level at rest, SI.

@@ -275,7 +275,7 @@ message_table! { "problem": Problem;
     Self::ContactsWithoutJump { without, with } =>
         without = Value::Count(*without),
         with = Value::Count(*with);
-    Self::ThresholdInNoise { threshold, rest, noise, dimension } =>
+    Self::ThresholdWithinNoise { threshold, rest, noise, dimension } =>
         threshold = at_level(*threshold),
         rest = at_level(*rest),
         noise = at_level(*noise),
