@@ -238,6 +238,7 @@ pub enum Finding {
         /// How sure.
         z_score: f64,
         /// The approach speed for which R is stated, m/s.
+        #[serde(default)]
         speed_m_s: f64,
     },
     /// The model does not fit a method's data.
