@@ -6,16 +6,43 @@
     reason = "a test fails by panicking"
 )]
 
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::evidence::{Evidence, Nominal};
-use crate::parameters::Parameters;
+use crate::method_fit::MethodFit;
+use crate::parameters::{Coordinate, Parameters};
+use crate::solver::{Fit, FitReport};
+use crate::statistics::scatter::Scatter;
 use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
 use impact_records::event::{DetectSettings, RigKind};
 use impact_records::motion::{BoundaryKind, Bracket, ClassifySettings, Observation, observe};
 use impact_records::record::{Record, Sweep};
 use simulated_rig::run::calibrated;
 use simulated_rig::{Faults, Laboratory, Plan, RigEffects, Truth, records};
+
+/// A fit that ended at parameters with a covariance of the free coordinates, its residuals of unit size.
+pub fn fitted(
+    parameters: Parameters,
+    free: Vec<Coordinate>,
+    covariance: DMatrix<f64>,
+) -> MethodFit {
+    MethodFit {
+        fit: Fit {
+            parameters,
+            free,
+            covariance,
+            cost: 1.0,
+            residuals: 1,
+            report: FitReport::default(),
+        },
+        factor: 1.0,
+        reduced: 1.0,
+        scatter: Scatter::default(),
+        shared_gains: Vec::new(),
+        parts: Vec::new(),
+    }
+}
 
 /// Records of a rig without effects: two equal masses with R, f0 in Hz, β = 0.06 and `x_st` = 1 mm.
 pub fn recorded((restitution, f0): (f64, f64), count: usize, seed: u64) -> Vec<Record> {

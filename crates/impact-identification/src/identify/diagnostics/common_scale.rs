@@ -6,14 +6,11 @@
 //! by the same with a unit vector for g.
 
 use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
-use crate::identify::diagnostics::suspicion::{self, GAP_SURE, OddGap};
+use crate::identify::diagnostics::suspicion::{self, GAP_SURE, INFORMED, OddGap};
 use impact_fit::messages::{Finding, Note};
 use impact_fit::method_fit::MethodFit;
 use impact_fit::methods::blocks::Blocks;
 use impact_fit::parameters::{Coordinate, GAIN_ROLES};
-
-/// Least part of what is stated of the clearances' common share that the data take away for it to be judged.
-const INFORMED: f64 = 0.1;
 
 /// The share by which all clearances of a fit are off.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,9 +89,8 @@ pub fn suspicion(scale: CommonScale, found: &MethodFit) -> Suspicion {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impact_fit::fixture::fitted;
     use impact_fit::parameters::Parameters;
-    use impact_fit::solver::{Fit, FitReport};
-    use impact_fit::statistics::scatter::Scatter;
     use nalgebra::{DMatrix, DVector};
 
     const GAPS_M: [f64; 3] = [0.4e-3, 0.9e-3, 1.8e-3];
@@ -110,21 +106,7 @@ mod tests {
         for (coordinate, error) in free.iter().zip(&solution) {
             parameters = parameters.with(*coordinate, *error);
         }
-        MethodFit {
-            fit: Fit {
-                parameters,
-                free,
-                covariance,
-                cost: 1.0,
-                residuals: 1,
-                report: FitReport::default(),
-            },
-            factor: 1.0,
-            reduced: 1.0,
-            scatter: Scatter::default(),
-            shared_gains: Vec::new(),
-            parts: Vec::new(),
-        }
+        fitted(parameters, free, covariance)
     }
 
     #[test]

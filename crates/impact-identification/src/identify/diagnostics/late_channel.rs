@@ -1,6 +1,7 @@
 //! Channels whose delay or sign is not as stated: found by the impacts before the fit, or by the fit.
 
 use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
+use crate::identify::diagnostics::suspicion::INFORMED;
 use impact_fit::evidence::Nominal;
 use impact_fit::messages::{Finding, Note};
 use impact_fit::method_fit::MethodFit;
@@ -11,8 +12,6 @@ use impact_records::record::LowPass;
 
 /// Standard deviations of what is stated from which a delay is named.
 const SURE: f64 = 4.0;
-/// Least part of a delay's prior variance that the data take away for it to be judged.
-const INFORMED: f64 = 0.1;
 
 /// The channels that are later or earlier than stated; what they showed was moved where impacts told it, and
 /// the fit allows for the rest. Of a low-pass that is not stated, what its order leaves open stays in doubt.

@@ -26,6 +26,9 @@ const GAP_LIMIT: f64 = 2e-3;
 /// whose uncertainty is stated.
 pub(super) const GAP_SURE: f64 = 3.4;
 
+/// Least part of a prior's variance that the data take away for what it states to be judged.
+pub(super) const INFORMED: f64 = 0.1;
+
 /// Whether a gap is so far off that it is named, where clearances have a standard uncertainty.
 fn is_named(odd: &OddGap, uncertainty_m: f64) -> bool {
     if uncertainty_m > 0.0 {
@@ -158,7 +161,7 @@ fn beyond_stated(found: &MethodFit, i: usize, gap: f64, uncertainty_m: f64) -> O
     let stated = uncertainty_m.powi(2);
     let informed = (stated - variance) / stated;
     // A gap that the data hardly inform is not judged.
-    (informed > 0.1).then(|| {
+    (informed > INFORMED).then(|| {
         let off_m = 1e-3 * found.fit.parameters.coordinate(coordinate) / informed;
         let apart = stated + variance / informed + (between_m / informed).powi(2);
         OddGap {
@@ -282,7 +285,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use impact_fit::solver::FitReport;
+    use impact_fit::fixture::fitted;
     use impact_fit::statistics::scatter::{Excess, Scatter};
 
     /// A fit whose first gap is 6 µm off with a variance of 1 µm², 8/9 of it known by the data; `ratio`: the
@@ -295,23 +298,14 @@ mod tests {
             freedom: 5.0,
             share: 1.0,
         };
+        let parameters = Parameters::symmetric(0.8, 12.0, 0.05, 1e-3).with(gap, 6e-3);
+        let covariance = DMatrix::from_element(1, 1, 1e-6);
         MethodFit {
-            fit: Fit {
-                parameters: Parameters::symmetric(0.8, 12.0, 0.05, 1e-3).with(gap, 6e-3),
-                free: vec![gap],
-                covariance: DMatrix::from_element(1, 1, 1e-6),
-                cost: 1.0,
-                residuals: 1,
-                report: FitReport::default(),
-            },
-            factor: 1.0,
-            reduced: 1.0,
-            shared_gains: Vec::new(),
             scatter: Scatter {
                 groups: 6,
                 excess: vec![excess],
             },
-            parts: Vec::new(),
+            ..fitted(parameters, vec![gap], covariance)
         }
     }
 

@@ -9,6 +9,7 @@
 use nalgebra::DMatrix;
 
 use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
+use crate::identify::diagnostics::suspicion::INFORMED;
 use impact_fit::evidence::Nominal;
 use impact_fit::messages::{Finding, Note};
 use impact_fit::method_fit::MethodFit;
@@ -19,8 +20,6 @@ use impact_records::record::Role;
 /// that were made alike may differ hides the difference of their gains, so that a gain ten times its
 /// uncertainty off is about four standard deviations off.
 const SURE: f64 = 3.0;
-/// Least part of a gain's prior variance that the data take away for it to be judged.
-const INFORMED: f64 = 0.1;
 /// Difference of the squared statistics of two gains below which the data do not tell which is off.
 const TOLD: f64 = 9.0;
 
@@ -167,9 +166,8 @@ fn candidates(found: &MethodFit, covariance: &DMatrix<f64>, nominal: &Nominal) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impact_fit::fixture::fitted;
     use impact_fit::parameters::Parameters;
-    use impact_fit::solver::{Fit, FitReport};
-    use impact_fit::statistics::scatter::Scatter;
 
     const STATED: f64 = 5e-3;
 
@@ -204,21 +202,7 @@ mod tests {
             free.push(Coordinate::Gain(i));
             parameters = parameters.with(Coordinate::Gain(i), solution[i + 1]);
         }
-        MethodFit {
-            fit: Fit {
-                parameters,
-                free,
-                covariance,
-                cost: 1.0,
-                residuals: 1,
-                report: FitReport::default(),
-            },
-            factor: 1.0,
-            reduced: 1.0,
-            scatter: Scatter::default(),
-            shared_gains: Vec::new(),
-            parts: Vec::new(),
-        }
+        fitted(parameters, free, covariance)
     }
 
     #[test]
