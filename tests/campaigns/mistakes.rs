@@ -102,6 +102,24 @@ fn valid_clearances_that_are_off_alike_are_named_and_not_used() {
 }
 
 #[test]
+fn valid_velocities_in_another_unit_leave_the_static_deflection_open() {
+    let thousand = |toml: &str| {
+        toml.replace(" m/s/V\"", " mm/s/V\"")
+            .replace(" m/V\"", " mm/V\"")
+    };
+    let found = Simulated::of("realistic").found_with("campaign.toml", thousand);
+    // the masses seem to hit at clearances a thousand times smaller
+    assert_eq!(first_suspicion(&found), "clearances_off_alike");
+    let ratio = found["suspicions"][0]["ratio"].as_f64().expect("a ratio");
+    assert!((ratio - 1e-3).abs() < 1e-4, "{ratio}");
+    let deflection = &found["joint"]["static_deflection_m"];
+    assert_eq!(deflection["status"], "weak");
+    assert_eq!(deflection["note"]["kind"], "instrument_off");
+    let [low, high] = interval_of_r(&found);
+    assert!(low < 0.75 && 0.75 < high, "{low} {high}");
+}
+
+#[test]
 fn valid_a_high_pass_that_is_not_stated_is_named() {
     let without = |toml: &str| {
         let lines = toml.lines().filter(|line| !line.starts_with("high_pass"));

@@ -66,13 +66,17 @@ fn identify_as_stated(evidence: &Evidence<'_>) -> Identification {
     let begin = begun(evidence);
     if let Some(contradicted) = contradicted_clearances(evidence, &begin) {
         return match reconciled(evidence, &begin, &contradicted) {
-            Some(opened) => with_open_gains(&opened.evidence(evidence)),
+            Some(opened) => with_open_gains(&opened.evidence(evidence), None),
             None => without_clearances(evidence, contradicted),
         };
     }
-    let run = IdentificationRun::of(evidence, begin, evidence.nominal);
+    with_gains_judged(IdentificationRun::of(evidence, begin, evidence.nominal))
+}
+
+/// The same, by gains that are left to the data where these refute them.
+fn with_gains_judged(run: IdentificationRun<'_>) -> Identification {
     match run.refuted_gains() {
-        Some(opened) => with_open_gains(&opened.evidence(evidence)),
+        Some(opened) => with_open_gains(&opened.evidence(run.evidence), run.contradicted),
         None => completed(run),
     }
 }
@@ -102,13 +106,11 @@ fn reconciled(
     reconciling.next().filter(|_| reconciling.next().is_none())
 }
 
-/// The identification with gains that are left to the data.
-fn with_open_gains(evidence: &Evidence<'_>) -> Identification {
-    completed(IdentificationRun::of(
-        evidence,
-        begun(evidence),
-        evidence.nominal,
-    ))
+/// The identification with gains that are left to the data; `contradicted`: the clearances, if they are.
+fn with_open_gains(evidence: &Evidence<'_>, contradicted: Option<Suspicion>) -> Identification {
+    let mut run = IdentificationRun::of(evidence, begun(evidence), evidence.nominal);
+    run.contradicted = contradicted;
+    completed(run)
 }
 
 /// The identification by all fits, with masses that are not as stated left to the data.
@@ -126,6 +128,7 @@ fn completed(mut run: IdentificationRun<'_>) -> Identification {
         ..*run.evidence
     };
     let mut again = IdentificationRun::of(&other, begun(&other), run.stated);
+    again.contradicted = run.contradicted;
     again.without_contradictions();
     again.identification()
 }
@@ -146,19 +149,20 @@ fn without_clearances(evidence: &Evidence<'_>, contradicted: Finding) -> Identif
     for o in &mut observations {
         o.setting.clearance_m = None;
     }
-    let mut found = identify_as_stated(&Evidence {
+    let without = Evidence {
         observations: &observations,
         brackets: &[],
         ..*evidence
-    });
+    };
+    let mut run = IdentificationRun::of(&without, begun(&without), without.nominal);
+    run.contradicted = Some(stated_clearances::suspicion(contradicted));
+    let mut found = with_gains_judged(run);
     let brackets = evidence.brackets.iter().enumerate();
     let left_out = brackets.map(|(index, bracket)| LeftOut {
         item: Item::bracket(index, bracket),
         reason: Reason::GapNotAsStated,
     });
     found.left_out.extend(left_out);
-    found.verdict.findings.insert(0, contradicted.clone());
-    found.suspicions.insert(0, contradicted);
     found
 }
 
@@ -192,6 +196,8 @@ struct IdentificationRun<'a> {
     stated: Nominal,
     selection: Selection<'a>,
     found: Fits,
+    /// That all clearances are not as stated, so that none is used.
+    contradicted: Option<Suspicion>,
     /// What was found of gaps that are not as stated.
     odd_gaps: Vec<Suspicion>,
 }
@@ -204,6 +210,7 @@ impl<'a> IdentificationRun<'a> {
             stated,
             found: first_values(&selection, resonance),
             selection,
+            contradicted: None,
             odd_gaps: Vec::new(),
         };
         run.fit();
@@ -569,7 +576,8 @@ impl<'a> IdentificationRun<'a> {
     fn suspicions(&self) -> Vec<Suspicion> {
         let observations = self.evidence.observations;
         let clock = self.evidence.nominal.clock_uncertainty;
-        let mut found = Vec::from_iter(clock::suspicion(observations, clock));
+        let mut found = Vec::from_iter(self.contradicted.clone());
+        found.extend(clock::suspicion(observations, clock));
         found.extend(stated_frequencies::no_drive(observations).map(Suspicion::from));
         found.extend(self.odd_gaps.iter().cloned());
         found.extend(late_channel::late_channels(

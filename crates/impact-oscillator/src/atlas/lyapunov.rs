@@ -8,7 +8,7 @@ use nalgebra::{Matrix4, Vector4};
 use crate::model::contact::free_accelerations;
 use crate::model::flight::{Drive, State};
 use crate::model::simulate::{Arc, Sink};
-use crate::model::variation::{free_flow, saltation};
+use crate::model::variation::{free_flow, free_flow_of_one, saltation, saltation_of_one};
 use crate::model::{Impact, ImpactKind, Machine, Restitution};
 
 /// Stretches from whose scatter an exponent's error is taken.
@@ -102,16 +102,21 @@ impl<'a> Lyapunov<'a> {
             eta: self.eta,
             phase: impact.phase,
         };
-        self.before = State {
-            x,
-            vx: impact.vx_before,
-            ..State::default()
+        let state = |vx: f64| {
+            let state = State {
+                x,
+                vx,
+                ..State::default()
+            };
+            let (ax, _) = free_accelerations(self.machine, drive, &state);
+            State { ax, ..state }
         };
-        (self.before.ax, _) = free_accelerations(self.machine, drive, &self.before);
+        let (before, after) = (state(impact.vx_before), state(impact.vx_after));
         let flight = impact.tau - self.time;
+        let flown = free_flow_of_one(&self.machine.x, flight) * self.variation.xy();
+        let struck = saltation_of_one(self.machine, &before, &after) * flown;
         self.pass(flight);
-        self.apply(&free_flow(self.machine, flight));
-        self.impact(impact);
+        self.varied(Vector4::new(struck.x, struck.y, 0.0, 0.0));
     }
 
     /// Time passes; at the end of a drive period the growth is noted.
@@ -139,7 +144,12 @@ impl<'a> Lyapunov<'a> {
     }
 
     fn apply(&mut self, map: &Matrix4<f64>) {
-        self.variation = map * self.variation;
+        self.varied(map * self.variation);
+    }
+
+    /// The variation as it has become, whose growth is noted.
+    fn varied(&mut self, variation: Vector4<f64>) {
+        self.variation = variation;
         let size = self.variation.norm();
         if size > 0.0 {
             self.growth += size.ln();

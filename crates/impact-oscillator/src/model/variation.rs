@@ -17,14 +17,22 @@ pub fn free_flow(machine: &Machine, time: f64) -> Matrix4<f64> {
 }
 
 fn fill_flow(m: &mut Matrix4<f64>, at: usize, o: &Oscillator, time: f64) {
+    m.fixed_view_mut::<2, 2>(at, at)
+        .copy_from(&free_flow_of_one(o, time));
+}
+
+/// Flow of the variation (X, X') of one mass over a time.
+pub(crate) fn free_flow_of_one(o: &Oscillator, time: f64) -> Matrix2<f64> {
     let lambda = exponent(o);
     let (d, w) = (-lambda.re, lambda.im);
     let e = (-d * time).exp();
     let (s, c) = (w * time).sin_cos();
-    m[(at, at)] = e * (c + d * s / w);
-    m[(at, at + 1)] = e * s / w;
-    m[(at + 1, at)] = -e * s * o.stiffness_per_mass() / w;
-    m[(at + 1, at + 1)] = e * (c - d * s / w);
+    Matrix2::new(
+        e * (c + d * s / w),
+        e * s / w,
+        -e * s * o.stiffness_per_mass() / w,
+        e * (c - d * s / w),
+    )
 }
 
 /// Saltation matrix at an impact: which maps a variation (X, X', Y, Y') just before to one
@@ -43,8 +51,7 @@ fn fill_flow(m: &mut Matrix4<f64>, at: usize, o: &Oscillator, time: f64) {
 /// ```
 pub fn saltation(machine: &Machine, before: &State, after: &State) -> Matrix4<f64> {
     let w = before.vx + before.vy;
-    let law = machine.restitution();
-    let slope = 1.0 + law.at(w) + w * law.slope_at(w);
+    let slope = turned(machine, w);
     let (mx, my) = machine.mobility();
     let mut jump = Matrix4::identity();
     for (row, mobility) in [(1, mx), (3, my)] {
@@ -54,6 +61,20 @@ pub fn saltation(machine: &Machine, before: &State, after: &State) -> Matrix4<f6
     let rate = |s: &State| Vector4::new(s.vx, s.ax, s.vy, s.ay);
     let normal = Vector4::new(1.0, 0.0, 1.0, 0.0);
     jump + (rate(after) - jump * rate(before)) * normal.transpose() / w
+}
+
+/// The saltation matrix of one mass at an impact on the stop: of its variation (X, X').
+pub(crate) fn saltation_of_one(machine: &Machine, before: &State, after: &State) -> Matrix2<f64> {
+    let w = before.vx;
+    let kept = 1.0 - machine.mobility().0 * turned(machine, w);
+    let (position, speed) = (after.vx - before.vx, after.ax - kept * before.ax);
+    Matrix2::new(1.0 + position / w, 0.0, speed / w, kept)
+}
+
+/// How the change of the relative velocity at an impact follows the approach speed w: d((1 + R)w)/dw.
+fn turned(machine: &Machine, w: f64) -> f64 {
+    let law = machine.restitution();
+    1.0 + law.at(w) + w * law.slope_at(w)
 }
 
 /// Eigenvalues of a variation's map, largest modulus first; the stop's own two rows are left

@@ -7,9 +7,10 @@
 
 use impact_oscillator::model::flight::{Drive, State, free_flight};
 
+use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
 use impact_fit::evidence::Evidence;
-use impact_fit::messages::Finding;
-use impact_fit::parameters::Parameters;
+use impact_fit::messages::{Finding, Note};
+use impact_fit::parameters::{Coordinate, Parameters};
 use impact_records::event::{Impact, RigKind};
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
@@ -36,6 +37,20 @@ pub fn contradicted(evidence: &Evidence<'_>, fitted: &Parameters) -> Option<Find
     let of = |o: &Observation| Some([o.setting.clearance_m?, flown_m(o)?]);
     let pairs: Vec<[f64; 2]> = evidence.observations.iter().filter_map(of).collect();
     found(evidence.rig, &pairs)
+}
+
+/// The finding, and what it leaves open of `x_st`: where all clearances seem to be off by one factor, the scales of the
+/// channels may be.
+pub fn suspicion(finding: Finding) -> Suspicion {
+    let doubts = match finding {
+        Finding::ClearancesOffAlike { ratio, .. } => vec![Doubt {
+            parameter: Coordinate::Deflection,
+            by: ratio.ln().abs(),
+            note: Note::InstrumentOff,
+        }],
+        _ => Vec::new(),
+    };
+    Suspicion { finding, doubts }
 }
 
 /// What pairs of stated and flown clearances, m, have in common where it is not that they are alike.
@@ -183,6 +198,23 @@ mod tests {
             ),
             None
         );
+    }
+
+    #[test]
+    fn a_factor_may_be_that_of_the_channels_scales_and_a_shift_is_not() {
+        let alike = Finding::ClearancesOffAlike {
+            ratio: 1e-3,
+            records: 8,
+        };
+        let doubts = suspicion(alike).doubts;
+        assert_eq!(doubts.len(), 1);
+        assert_eq!(doubts[0].parameter, Coordinate::Deflection);
+        assert!((doubts[0].by - 1000f64.ln()).abs() < 1e-12);
+        let shifted = Finding::ClearancesShifted {
+            added_m: 1e-3,
+            records: 8,
+        };
+        assert_eq!(suspicion(shifted).doubts, []);
     }
 
     #[test]
