@@ -4,6 +4,7 @@ pub mod block;
 pub mod fit;
 pub mod jump;
 pub mod midpoints;
+pub mod over_restitution;
 pub mod posterior;
 pub mod propagation;
 pub mod result;

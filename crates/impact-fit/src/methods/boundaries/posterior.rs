@@ -21,6 +21,7 @@ use rayon::prelude::*;
 
 use crate::methods::boundaries::block::{BoundaryBlock, predicted_hz};
 use crate::methods::boundaries::jump::{Jump, Tilt, density, mills_ratio, normal};
+use crate::methods::boundaries::over_restitution::BoundaryCurves;
 use crate::methods::boundaries::propagation::{Factors, Propagation};
 use crate::methods::boundaries::surroundings::{SimulatedBoundary, Surroundings};
 use crate::parameters::{Coordinate, Parameters};
@@ -123,37 +124,34 @@ pub fn of_brackets(
         ends: &EARLY_SCALES[..1],
         ..all
     };
-    let mut found = over_grid(block, surroundings, all);
-    let plain = over_grid(block, &surroundings.of_instants(), at_their_ends);
+    let boundaries = BoundaryCurves::new(block, surroundings);
+    let mut found = over_grid(&boundaries, all);
+    let plain = over_grid(&boundaries.of_instants(), at_their_ends);
     if plain.evidence > found.evidence + REFUTED.ln() {
         found = found.reaching(&plain);
     }
     let (mean, deviation) = found.restitution;
     let missed = waveforms.filter(|p| (p.restitution - mean).abs() > MISSED * deviation);
-    let early = missed.and_then(|p| early_jumps(block, surroundings, p));
+    let early = missed.and_then(|p| early_jumps(&boundaries, p));
     Some(early.unwrap_or(found))
 }
 
 /// Posterior where a jump may come at any distance before its boundary; `None` where that does not
 /// explain what the brackets are off the waveforms.
-fn early_jumps(
-    block: &BoundaryBlock,
-    surroundings: &Surroundings,
-    waveforms: &Parameters,
-) -> Option<Posterior> {
-    let found = over_grid(block, surroundings, Scales::alike(&ANY_DISTANCE));
+fn early_jumps(boundaries: &BoundaryCurves<'_>, waveforms: &Parameters) -> Option<Posterior> {
+    let found = over_grid(boundaries, Scales::alike(&ANY_DISTANCE));
     let [low, high] = found.interval95;
-    let early = mean_distance(block, waveforms);
+    let early = mean_distance(boundaries.block, waveforms);
     (low..=high)
         .contains(&waveforms.restitution)
         .then_some(Posterior { early, ..found })
 }
 
 /// Posterior with jumps of these scales.
-fn over_grid(block: &BoundaryBlock, surroundings: &Surroundings, scales: Scales<'_>) -> Posterior {
-    let at = |r: f64| likelihood(block, surroundings, (r, scales));
+fn over_grid(boundaries: &BoundaryCurves<'_>, scales: Scales<'_>) -> Posterior {
+    let at = |r: f64| likelihood(boundaries, (r, scales));
     // The middle scale alone tells where R may be.
-    let (low, high) = support(&|r| likelihood(block, surroundings, (r, scales.middle())));
+    let (low, high) = support(&|r| likelihood(boundaries, (r, scales.middle())));
     let grid: Vec<f64> = (0..FINE)
         .map(|i| low + (high - low) * i as f64 / (FINE - 1) as f64)
         .collect();
@@ -232,17 +230,13 @@ struct Held<'a> {
 
 /// Log-likelihood of all brackets at R. Each family of boundaries has its own scale of early jumps, which is
 /// summed out.
-fn likelihood(
-    block: &BoundaryBlock,
-    surroundings: &Surroundings,
-    (restitution, scales): (f64, Scales<'_>),
-) -> f64 {
-    let places = surroundings.boundaries(block, restitution);
+fn likelihood(boundaries: &BoundaryCurves<'_>, (restitution, scales): (f64, Scales<'_>)) -> f64 {
+    let places = boundaries.at(restitution);
     let mut log = 0.0;
     let mut families: BTreeMap<Family, usize> = BTreeMap::new();
     let mut of_families: Vec<&[f64]> = Vec::new();
     let mut held: Vec<(Held<'_>, usize)> = Vec::new();
-    for (bracket, place) in block.brackets.iter().zip(&places) {
+    for (bracket, place) in boundaries.block.brackets.iter().zip(&places) {
         let Some(boundary) = place else {
             // A boundary that does not reach the clearance is as one far away.
             log += Jump::of(bracket, 1.0).probability(f64::INFINITY).ln();
@@ -256,7 +250,7 @@ fn likelihood(
         }
         held.push((Held { bracket, boundary }, index));
     }
-    log + summed_over_scales(&held, &of_families, surroundings)
+    log + summed_over_scales(&held, &of_families, boundaries)
 }
 
 /// Logarithm of the mean over the scales of all families, each as likely before: a family's sum is taken at the best scales
@@ -264,13 +258,13 @@ fn likelihood(
 fn summed_over_scales(
     held: &[(Held<'_>, usize)],
     families: &[&[f64]],
-    surroundings: &Surroundings,
+    boundaries: &BoundaryCurves<'_>,
 ) -> f64 {
     let mut directions: Vec<_> = held
         .iter()
         .map(|(h, _)| h.boundary.direction.clone())
         .collect();
-    let length = surroundings.positive();
+    let length = boundaries.positive();
     directions.extend(length.clone());
     let mut from: Option<Propagation> = None;
     let mut of = |chosen: &[f64]| {
@@ -474,7 +468,8 @@ mod tests {
         let surroundings = Surroundings::known(&p, &[prior]);
         let [low, high] = of_brackets(&block, &surroundings, None).unwrap().interval95;
         assert!(low < 0.7 && 0.72 < high, "{low} {high}");
-        let alone = over_grid(&block, &surroundings, Scales::alike(&EARLY_SCALES));
+        let boundaries = BoundaryCurves::new(&block, &surroundings);
+        let alone = over_grid(&boundaries, Scales::alike(&EARLY_SCALES));
         assert!(alone.interval95[0] > 0.7, "{alone:?}");
     }
 

@@ -107,14 +107,15 @@ impl Surroundings {
         block: &BoundaryBlock,
         restitution: f64,
     ) -> Vec<Option<SimulatedBoundary>> {
-        let about = Parameters {
-            restitution,
-            ..self.about
-        };
         let brackets = block.brackets.iter();
         brackets
-            .map(|bracket| self.boundary(block, bracket, &about))
+            .map(|bracket| self.boundary(block, bracket, restitution))
             .collect()
+    }
+
+    /// Place of the length of contacts among the deviates, if it is one of them.
+    pub fn length(&self) -> Option<usize> {
+        self.length
     }
 
     /// The same with contacts without length.
@@ -136,12 +137,41 @@ impl Surroundings {
         Some(direction)
     }
 
-    fn boundary(
+    /// Where the boundary of a bracket lies at R, along a known direction.
+    pub fn boundary_along(
         &self,
         block: &BoundaryBlock,
         bracket: &Bracket,
-        about: &Parameters,
+        (restitution, direction): (f64, DVector<f64>),
     ) -> Option<SimulatedBoundary> {
+        let frequency_hz = predicted_hz(bracket, &self.at(restitution), block.rig)?;
+        Some(self.without_length(frequency_hz, direction))
+    }
+
+    /// A boundary with all deviates zero, from where it lies with contacts of the mean length.
+    fn without_length(&self, frequency_hz: f64, direction: DVector<f64>) -> SimulatedBoundary {
+        let at_mean = self.length.map_or(0.0, |i| direction[i] * MEAN_OF_POSITIVE);
+        SimulatedBoundary {
+            frequency_hz: frequency_hz - at_mean,
+            direction,
+        }
+    }
+
+    fn at(&self, restitution: f64) -> Parameters {
+        Parameters {
+            restitution,
+            ..self.about
+        }
+    }
+
+    /// Where the boundary of a bracket lies at R; `None` if it does not reach its clearance.
+    pub fn boundary(
+        &self,
+        block: &BoundaryBlock,
+        bracket: &Bracket,
+        restitution: f64,
+    ) -> Option<SimulatedBoundary> {
+        let about = &self.at(restitution);
         let frequency_hz = predicted_hz(bracket, about, block.rig)?;
         let place = BoundaryPlace::of(bracket, about, block.rig);
         let step_hz = FREQUENCY_STEP * frequency_hz;
@@ -169,11 +199,7 @@ impl Surroundings {
         let direction =
             DVector::from_iterator(self.deviates.len(), self.deviates.iter().map(moved));
         let known = direction.iter().all(|d| d.is_finite());
-        let at_mean = self.length.map_or(0.0, |i| direction[i] * MEAN_OF_POSITIVE);
-        known.then_some(SimulatedBoundary {
-            frequency_hz: frequency_hz - at_mean,
-            direction,
-        })
+        known.then(|| self.without_length(frequency_hz, direction))
     }
 }
 
