@@ -25,7 +25,7 @@ pub(super) struct Explore {
     /// A folder of results, a campaign.toml or a study; without it, the theory
     #[arg(value_name = "RESULTS|CAMPAIGN.TOML|STUDY.TOML")]
     given: Option<PathBuf>,
-    /// Port on 127.0.0.1 [default: one that is free]
+    /// Port on 127.0.0.1 [default: 8427, or one that is free]
     #[arg(long, value_name = "N")]
     port: Option<u16>,
     /// Print the page's address and open no browser

@@ -132,3 +132,28 @@ fn a_motion_that_would_take_minutes_is_refused() {
     moderate["watch"] = json!({"settle_periods": 20000.0, "watch_periods": 20000.0});
     assert_eq!(page.answer(&motion, &moderate).kind(), "motion");
 }
+
+#[test]
+fn a_motion_of_countless_impacts_ends_and_what_was_given_up_is_no_answer() {
+    let explorer = Explorer::theory();
+    let mut page = explorer.page();
+    let mut state = page.hello().header["state"].clone();
+    state["asymmetry"] = json!({"drive_amplitude": 1.0, "stiffness": 100.0, "mass": 0.01});
+    let motion = json!({"kind": "motion", "carried_from": [1.3, 1.0]});
+    for start in [
+        json!({"x": 0.47234, "vx": 2.2476, "y": 0.34557, "vy": 2.2169}),
+        json!({"x": 0.44453, "vx": 2.1837, "y": 0.44453, "vy": 2.1837}),
+    ] {
+        state["cursor"]["start"] = start;
+        let id = page.ask(&motion, &state);
+        let mut last = page.next().expect("an answer");
+        if last.kind() == "motion" {
+            // it is whole: nothing else follows until the next answer
+            page.ask(&json!({"kind": "boundaries", "points": 2}), &state);
+            last = page.next().expect("the next answer");
+            assert_eq!(last.kind(), "boundaries");
+        } else {
+            assert_eq!((last.kind(), &last.header["id"]), ("refused", &json!(id)));
+        }
+    }
+}

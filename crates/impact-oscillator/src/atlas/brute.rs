@@ -127,9 +127,7 @@ fn carried_in_lanes(
     };
     let chunks: Vec<&[(usize, Cell)]> = rows.chunks(share).collect();
     let mut done: Vec<(usize, Outcome)> = parallel::map(&chunks, march).concat();
-    if patience::is_over() {
-        return Err(ModelError::GivenUp);
-    }
+    patience::still_wanted()?;
     done.sort_unstable_by_key(|d| place(grid, d.0));
     let mut outcomes: Vec<Outcome> = done.into_iter().map(|d| d.1).collect();
     watch_again(&unit, &mut outcomes, settings, Follow::Decision);

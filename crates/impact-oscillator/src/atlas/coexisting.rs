@@ -81,9 +81,5 @@ pub fn beside(
     };
     let cells: Vec<usize> = (0..grid.len()).collect();
     let found = parallel::map(&cells, other);
-    if patience::is_over() {
-        Err(ModelError::GivenUp)
-    } else {
-        Ok(found)
-    }
+    patience::still_wanted().map(|()| found)
 }

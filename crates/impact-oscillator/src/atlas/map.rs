@@ -120,11 +120,8 @@ fn march(
             let cells: Vec<Cell> = starts.iter().map(|s| unit.cell(s)).collect();
             let mut outcomes = march_all(&unit.course(settings), &cells, settings.kernel);
             watch_again(&unit, &mut outcomes, settings, follow);
-            if patience::is_over() {
-                Err(ModelError::GivenUp)
-            } else {
-                Ok(outcomes.iter().map(|o| unit.end(o)).collect())
-            }
+            patience::still_wanted()?;
+            Ok(outcomes.iter().map(|o| unit.end(o)).collect())
         }
         _ => parallel::map(starts, |s| exact_cell(machine, s, settings))
             .into_iter()

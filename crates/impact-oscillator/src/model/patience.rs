@@ -38,12 +38,22 @@ impl Patience {
     /// # Errors
     /// [`ModelError::GivenUp`] where it is not at the end: what was found is not whole.
     pub fn work<T>(&self, work: impl FnOnce() -> T) -> Result<T, ModelError> {
-        let found = within(Some(self.clone()), work);
-        if (self.0)() {
-            Ok(found)
-        } else {
-            Err(ModelError::GivenUp)
-        }
+        within(Some(self.clone()), || {
+            let found = work();
+            still_wanted().map(|()| found)
+        })
+    }
+}
+
+/// Before what was found is used.
+///
+/// # Errors
+/// [`ModelError::GivenUp`] where the work of this thread is wanted no longer: what was found is not whole.
+pub fn still_wanted() -> Result<(), ModelError> {
+    if is_over() {
+        Err(ModelError::GivenUp)
+    } else {
+        Ok(())
     }
 }
 

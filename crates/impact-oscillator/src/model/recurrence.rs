@@ -67,6 +67,11 @@ pub(crate) struct Return {
     pub(crate) x: f64,
 }
 
+/// Impacts of a watch that are kept, some 150 MB: what strikes more often is all but at rest.
+const MOST_IMPACTS: usize = 1_000_000;
+/// Most impacts of a period that is looked for.
+const MOST_OF_A_PERIOD: usize = 5_000;
+
 #[derive(Default)]
 struct Returns {
     list: Vec<Return>,
@@ -78,10 +83,12 @@ impl Sink for Returns {
         self.x = arc.paths.x.at(arc.duration)[0];
     }
     fn impact(&mut self, impact: &Impact) {
-        self.list.push(Return {
-            impact: *impact,
-            x: self.x,
-        });
+        if self.list.len() < MOST_IMPACTS {
+            self.list.push(Return {
+                impact: *impact,
+                x: self.x,
+            });
+        }
     }
 }
 
@@ -154,7 +161,7 @@ fn recurring(list: &[Return], period: f64, watch: &Watch) -> Option<SettledMotio
         .fold(0.0, f64::max);
     let last = list.len() - 1;
     let lag = |tolerance: f64, least: usize| {
-        (1..list.len()).find(|&p| {
+        (1..list.len().min(MOST_OF_A_PERIOD)).find(|&p| {
             let checks = p.max(least).min(last - p + 1);
             let cycles = (list[last].impact.tau - list[last - p].impact.tau) / period;
             (0..checks).all(|k| closure(&list[last - k], &list[last - k - p], period) <= tolerance)

@@ -15,7 +15,7 @@ use impact_oscillator::atlas::basins::basin_rows;
 use impact_oscillator::atlas::map::{UnitMass, even};
 use impact_oscillator::atlas::portrait::{LONGEST_LAG, Portrait, PortraitPlan, portrait};
 use impact_oscillator::atlas::sweep::{Carried, SweepPoint, impactless};
-use impact_oscillator::model::patience::carry;
+use impact_oscillator::model::patience::{carry, still_wanted};
 use impact_oscillator::model::range;
 use impact_oscillator::model::simulate::Snapshot;
 use impact_oscillator::{
@@ -82,10 +82,12 @@ pub(super) fn seen(state: &State, carried_from: Option<(f64, f64)>) -> Result<Se
         cursor,
         ..state.clone()
     };
+    let portrait = portrait(&machine, &shown.portrait())?;
+    still_wanted()?;
     Ok(Seen {
         cursor,
         point,
-        portrait: portrait(&machine, &shown.portrait())?,
+        portrait,
     })
 }
 
@@ -196,6 +198,7 @@ pub(super) fn run(state: &State, periods: f64, facts: bool, job: &Job) -> Result
     let mut stretch = Trajectory::default();
     let period = setting.period();
     simulator.advance(periods * period, &mut stretch);
+    still_wanted()?;
     let steps = whole::index((periods * RUN_SAMPLES).ceil());
     let taus = even((0.0, periods * period, steps + 1));
     let states = stretch.sample(taus.iter().copied());

@@ -95,18 +95,26 @@ struct App {
     pages: Arc<Semaphore>,
 }
 
+/// Port of an explorer that is given none.
+const USUAL_PORT: u16 = 8427;
+
 impl Server {
-    /// Listen on a port of 127.0.0.1; without one, on any that is free.
+    /// Listen on a port of 127.0.0.1; without one, on the usual one, so that a bookmark leads to the next explorer
+    /// too, or on any that is free.
     ///
     /// # Errors
     /// [`ExploreError::Port`] where it cannot be listened on.
     pub fn bind(session: Session, port: Option<u16>) -> Result<Self, ExploreError> {
-        let port = port.unwrap_or(0);
         let refused = |e: std::io::Error| ExploreError::Port {
-            port,
+            port: port.unwrap_or(USUAL_PORT),
             reason: labfiles::said(&e),
         };
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(refused)?;
+        let listen = |port: u16| TcpListener::bind((Ipv4Addr::LOCALHOST, port));
+        let listener = match port {
+            Some(port) => listen(port),
+            None => listen(USUAL_PORT).or_else(|_| listen(0)),
+        };
+        let listener = listener.map_err(refused)?;
         listener.set_nonblocking(true).map_err(refused)?;
         let address = listener.local_addr().map_err(refused)?;
         let mut secret = [0u8; 16];
