@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::load::load_campaign;
+use super::out_folder::Work;
 use super::patterns::expanded;
 use super::progress::Progress;
 use super::report_args::{each_once, language_parser, paper_parser, quoted};
 use super::speech::{Output, plain, said};
 use super::stdout::{print, print_json};
-use super::{Exit, Failure, Verbosity, interrupt};
+use super::{Exit, Failure, Verbosity, out_folder};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
 use impact_campaign::pipeline::campaigns;
 use impact_campaign::pipeline::{self, Observed};
@@ -87,7 +88,7 @@ impl Compare {
         let given: Vec<Given> = given
             .map(|(number, path)| Given::at(path, number, verbosity))
             .collect::<Result<_, _>>()?;
-        let _lock = interrupt::lock(&self.out)?;
+        let _lock = out_folder::take(&self.out, Work::Comparison)?;
         let mut all = Vec::new();
         for (number, given) in given.into_iter().enumerate() {
             all.extend(given.identified(number, verbosity)?);

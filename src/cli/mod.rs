@@ -24,6 +24,7 @@ mod machine;
 mod merge;
 #[cfg(feature = "mpi")]
 mod mpi;
+mod out_folder;
 mod pairs;
 mod patterns;
 mod plan;

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::machine::at_least;
+use super::out_folder::Work;
 use super::stdout::print_json;
-use super::{Exit, Failure, Progress, Verbosity, interrupt};
+use super::{Exit, Failure, Progress, Verbosity, out_folder};
 use impact_campaign::pipeline::plan;
 use impact_identification::identify::boundary_plan::BoundaryPlan;
 use impact_records::message::plain;
@@ -49,7 +50,7 @@ impl Plan {
     /// [`Failure`] where the campaign cannot be used or an output cannot be written.
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let campaign = super::load::load_campaign(&self.campaign, verbosity)?;
-        let _lock = interrupt::lock(&self.out)?;
+        let _lock = out_folder::take(&self.out, Work::Plan)?;
         let bar = Progress::new(verbosity, "observe", campaign.records.len() as u64);
         let step = |stage: &'static str, done, total| bar.step(stage, done, total);
         let found = plan::plan(&campaign, self.settings, &self.out, &step)?;

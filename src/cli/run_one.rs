@@ -5,11 +5,12 @@ use std::path::Path;
 use super::details::{print_fits, print_records};
 use super::left_out::print_left_out;
 use super::load::load_campaign;
+use super::out_folder::Work;
 use super::premises::print_premises;
 use super::progress::{LATER, Progress};
 use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::speech::Speech;
-use super::{Failure, Verbosity, interrupt};
+use super::{Failure, Verbosity, out_folder};
 use impact_campaign::pipeline::{self, Completed, Destination, PipelineError, checkpoint};
 use impact_fit::{Finding, VerdictKind};
 use impact_identification::identify::Identification;
@@ -44,7 +45,7 @@ impl RunOptions<'_> {
     ) -> Result<Completed, Failure> {
         let mut resolved = load_campaign(campaign, verbosity)?;
         self.report.apply(&mut resolved.report, verbosity)?;
-        let _lock = interrupt::lock(out)?;
+        let _lock = out_folder::take(out, Work::Identification)?;
         let records = resolved.records.len() as u64;
         let bar = Progress::new(verbosity, "observe", records).with_later(LATER);
         let destination = Destination {

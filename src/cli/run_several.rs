@@ -4,11 +4,12 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use super::estimate_text::with_error;
+use super::out_folder::Work;
 use super::patterns::expanded;
 use super::report_args::refuse_formats;
 use super::run_one::RunOptions;
 use super::speech::Speech;
-use super::{Exit, Failure, Verbosity, interrupt};
+use super::{Exit, Failure, Verbosity, interrupt, out_folder};
 use impact_campaign::campaign::sections::report::ReportSettings;
 use impact_campaign::campaign::{
     self,
@@ -53,7 +54,7 @@ pub(super) fn run(
     options: RunOptions<'_>,
     verbosity: Verbosity,
 ) -> Result<Exit, Failure> {
-    let _lock = interrupt::lock(out)?;
+    let _lock = out_folder::take(out, Work::Comparison)?;
     layout::check(out)?;
     let folders = campaign_folders::names(campaigns);
     let mut worst = Exit::Done;

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 
 use super::machine::{MachineArgs, StartArgs, at_least};
+use super::out_folder::Work;
 use super::theory::OutArgs;
-use super::{Exit, Failure, Verbosity, interrupt};
+use super::{Exit, Failure, Verbosity, out_folder};
 use impact_campaign::pipeline::synthesise::{Recipe, write_campaign};
 use impact_oscillator::atlas::portrait::{PortraitPlan, Soft};
 use impact_oscillator::model::Setting;
@@ -217,7 +218,7 @@ impl Simulate {
 
 impl Campaign {
     fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
-        let _lock = interrupt::lock(&self.out)?;
+        let _lock = out_folder::take(&self.out, Work::Simulation)?;
         if self.out.join("campaign.toml").exists() && !self.force {
             return Err(Failure::new(
                 format!("{} holds a campaign already", self.out.display()),

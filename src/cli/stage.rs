@@ -9,13 +9,14 @@ use clap::Args;
 use super::details::{print_fits, print_records};
 use super::left_out::print_left_out;
 use super::load::load_campaign;
+use super::out_folder::Work;
 use super::premises::print_premises;
 use super::progress::Progress;
 use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::run_one::{command_line, print_verdict};
 use super::speech::Speech;
 use super::stdout::{print, print_json_file};
-use super::{Exit, Failure, Verbosity, interrupt};
+use super::{Exit, Failure, Verbosity, interrupt, out_folder};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
 use impact_campaign::pipeline::{self, store};
 use impact_report::catalog::Catalog;
@@ -137,7 +138,7 @@ fn commands(campaign: &Path, folder: &Path, options: &ReportArgs) -> String {
 impl Ingest {
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let campaign = load_campaign(&self.campaign, verbosity)?;
-        let _lock = interrupt::lock(&self.out)?;
+        let _lock = out_folder::take(&self.out, Work::Identification)?;
         let bar = Progress::new(verbosity, "ingest", campaign.records.len() as u64);
         let usable = store::ingest(&campaign, &self.out, &|_, done, total| bar.set(done, total))?;
         drop(bar);

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 
 use super::coverage::Coverage;
+use super::out_folder::COPY;
 use super::pairs::Pairs;
-use super::theory::{COPY, in_folder};
+use super::theory::in_folder;
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_workbench::theory::{self, Study as Written};
 use labfiles::output::write_bytes;

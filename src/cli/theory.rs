@@ -6,6 +6,7 @@ use std::sync::Mutex;
 
 use clap::Args;
 
+use super::out_folder::{self, COPY};
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
 use impact_campaign::pipeline::block_cache::BlockCache;
 use impact_workbench::theory::{Pictures, Study, StudyContext, run};
@@ -21,9 +22,6 @@ pub(super) struct OutArgs {
     #[arg(long)]
     pub resume: bool,
 }
-
-/// Name of the study beside its results; it is written last, so its presence marks complete results.
-pub(super) const COPY: &str = "study.toml";
 
 impl OutArgs {
     /// The folder.
@@ -95,14 +93,7 @@ fn refuse_other_results(folder: &Path, study: &str) -> Result<(), Failure> {
         (_, true) => run,
         _ => return Ok(()),
     };
-    Err(Failure::new(
-        format!(
-            "{} holds results of other work ({})",
-            folder.display(),
-            held.display()
-        ),
-        "name another folder with --out, or remove this one first",
-    ))
+    Err(out_folder::of_other_work(folder, &held))
 }
 
 /// A study as it is written.

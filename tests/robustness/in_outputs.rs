@@ -265,6 +265,31 @@ fn folders() -> Vec<Case> {
             ],
         ),
         case(
+            "a campaign into the folder of a study",
+            |lab| {
+                std::fs::create_dir(lab.path("out")).expect("a folder");
+                lab.write("out/study.toml", "title = \"Regions\"\n[regions.atlas]\n");
+            },
+            &["run", "campaign.toml", "--out", "out"],
+            &[
+                "out holds results of other work",
+                "name another folder with --out",
+            ],
+        ),
+        case(
+            "a comparison into results of a campaign",
+            |lab| {
+                std::fs::create_dir(lab.path("out")).expect("a folder");
+                lab.write("out/identification.json", "{}");
+                lab.write("other.toml", &lab.read("campaign.toml"));
+            },
+            &["compare", "campaign.toml", "other.toml", "--out", "out"],
+            &[
+                "out holds results of other work",
+                "name another folder with --out",
+            ],
+        ),
+        case(
             "watch into results of another version",
             |lab| {
                 std::fs::create_dir(lab.path("out")).expect("a folder");

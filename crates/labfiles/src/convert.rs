@@ -104,7 +104,11 @@ pub fn convert(
         Target::Hdf5 | Target::Uff => (false, false),
         Target::UffText => (false, true),
     };
-    let note = if tables { filled_up } else { texts_left_out };
+    let note = match target {
+        _ if tables => filled_up,
+        Target::Hdf5 => series_of_texts_left_out,
+        _ => texts_left_out,
+    };
     let mut notes = grouped(&items, note);
     if matches!(target, Target::Uff | Target::UffText) {
         notes.extend(uff::notes(&items, text, options.single_precision));
@@ -125,10 +129,21 @@ pub fn convert(
     })
 }
 
-/// That a record has texts, which HDF5 and universal files cannot hold.
+/// That a record has texts, which universal files cannot hold.
 fn texts_left_out(item: &Item<'_>) -> Option<String> {
+    left_out(item, |_| true)
+}
+
+/// That a record has texts beside those that are its attributes, which its samples in HDF5 cannot hold.
+fn series_of_texts_left_out(item: &Item<'_>) -> Option<String> {
+    let is_attribute = |name: &str| item.attributes.iter().any(|(own, _)| own == name);
+    left_out(item, |name| !is_attribute(name))
+}
+
+/// That texts of some names are left out.
+fn left_out(item: &Item<'_>, concerns: impl Fn(&str) -> bool) -> Option<String> {
     let texts = item.channels().iter();
-    let texts = texts.filter(|c| c.stored == StoredType::Text);
+    let texts = texts.filter(|c| c.stored == StoredType::Text && concerns(&c.name));
     let names: Vec<&str> = texts.map(|c| c.name.as_str()).collect();
     let said = |names: String| format!("texts are left out ({names}); Parquet and CSV keep them");
     (!names.is_empty()).then(|| said(names.join(", ")))

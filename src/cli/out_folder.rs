@@ -1,0 +1,58 @@
+//! A folder holds the results of one kind of work: files of two would lie beside each other, and none would say which
+//! belong together.
+
+use std::path::Path;
+
+use super::{Failure, interrupt};
+use impact_campaign::pipeline::{campaigns, identify, plan};
+use labfiles::output::Lock;
+
+/// Work that writes into a folder, but for studies of the theory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Work {
+    /// The identification of a campaign.
+    Identification,
+    /// The comparison of campaigns.
+    Comparison,
+    /// A plan of further settings.
+    Plan,
+    /// The simulation of a campaign.
+    Simulation,
+}
+
+/// Name of the study beside its results; it is written last, so its presence marks complete results.
+pub(super) const COPY: &str = "study.toml";
+
+/// The file that marks the results of each work.
+const MARKS: [(Option<Work>, &str); 4] = [
+    (Some(Work::Identification), identify::FILE),
+    (Some(Work::Comparison), campaigns::COMPARISON),
+    (Some(Work::Plan), plan::FILE),
+    (None, COPY),
+];
+
+/// The right to write into a folder for a work.
+///
+/// # Errors
+/// [`Failure`] where the folder holds results of other work or is written into.
+pub(super) fn take(folder: &Path, work: Work) -> Result<Lock, Failure> {
+    let lock = interrupt::lock(folder)?;
+    let others = MARKS.iter().filter(|(of, _)| *of != Some(work));
+    let mut held = others.map(|(_, mark)| folder.join(mark));
+    match held.find(|mark| mark.exists()) {
+        Some(held) => Err(of_other_work(folder, &held)),
+        None => Ok(lock),
+    }
+}
+
+/// That a folder holds results of other work, by the file that marks them.
+pub(super) fn of_other_work(folder: &Path, held: &Path) -> Failure {
+    Failure::new(
+        format!(
+            "{} holds results of other work ({})",
+            folder.display(),
+            held.display()
+        ),
+        "name another folder with --out, or remove this one first",
+    )
+}
