@@ -174,10 +174,14 @@ pub(super) fn read(folder: &Path, name: &str, faults: &mut FaultCollector) -> Ve
         .collect();
     for row in &mut rows {
         row.file = beside(folder, name, &row.file).unwrap_or_else(|| row.file.clone());
-        if slashes::is_foreign(&row.file) && !folder.join(&row.file).exists() {
+    }
+    rows.retain(|row| {
+        let missing = slashes::is_foreign(&row.file) && !folder.join(&row.file).exists();
+        if missing {
             bad.0[FILE].push((row.line, slashes::shown(&row.file)));
         }
-    }
+        !missing
+    });
     bad.note(faults);
     if rows.is_empty() && !faults.blocks() {
         let what = "the run table has a header and no records".to_owned();
