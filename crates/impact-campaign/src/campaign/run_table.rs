@@ -2,6 +2,7 @@
 
 mod headings;
 mod sheets;
+mod text;
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -19,6 +20,8 @@ use impact_records::record::Sweep;
 use labfiles::units::{self, Dimension};
 
 use headings::{COLUMNS, DATASET, FILE, column_of, columns_of, states_setting};
+
+use text::{decode, is_file, reader};
 
 pub(super) use headings::in_english;
 pub(super) use sheets::sheet_of;
@@ -116,15 +119,6 @@ fn text_of(folder: &Path, name: &str, faults: &mut FaultCollector) -> Option<Wri
         separator: sheets::SEPARATOR,
         sheets: Some(sheet.sheets),
     })
-}
-
-/// Whether a cell of the run table `name` is the name of a file, in a folder or beside the table.
-fn is_file(folder: &Path, name: &str) -> impl Fn(&str) -> bool {
-    let folders = [
-        Some(folder.to_path_buf()),
-        folder.join(name).parent().map(Path::to_path_buf),
-    ];
-    move |cell| folders.iter().flatten().any(|f| f.join(cell).is_file())
 }
 
 /// Read the run table `name` of a folder; rows with a fault are left out, and each fault is noted. The rows of a
@@ -277,26 +271,6 @@ pub(super) fn states_drive(head: &[u8]) -> bool {
         cell.chars().any(|c| ('1'..='9').contains(&c))
     };
     rows.iter().any(stated) && !rows.iter().any(decays)
-}
-
-fn reader(text: &str, separator: u8) -> csv::Reader<&[u8]> {
-    csv::ReaderBuilder::new()
-        .delimiter(separator)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes())
-}
-
-/// By its byte-order mark, else UTF-8, else Windows-1252.
-fn decode(bytes: &[u8]) -> String {
-    let without_mark = match std::str::from_utf8(bytes) {
-        Ok(_) => encoding_rs::UTF_8,
-        Err(_) => encoding_rs::WINDOWS_1252,
-    };
-    // the lines' numbers are counted by line feeds
-    let text = without_mark.decode(bytes).0;
-    text.replace("\r\n", "\n").replace('\r', "\n")
 }
 
 /// The separator of the header line: the most frequent of comma, semicolon and tab.

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::headings::{
     COLUMNS, DATASET, FILE, column_of, columns_of, states_setting, words_of, words_of_settings,
 };
-use super::{decode, is_file, reader};
+use super::text::{decode, is_file, reader};
 
 /// What separates the cells of a sheet's text.
 pub(super) const SEPARATOR: u8 = b'\t';
