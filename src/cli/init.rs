@@ -114,6 +114,20 @@ fn print_summary(path: &Path, found: &FolderContents, verbosity: Verbosity) {
     if let Some(more) = found.refused.len().checked_sub(NAMED).filter(|n| *n > 0) {
         verbosity.info(&format!("{} more are no records", counted(more, "file")));
     }
+    for other in found.others.iter().take(NAMED) {
+        verbosity.info(&format!(
+            "{other} is not a record: it is a table of notes or settings, and not used"
+        ));
+    }
+    if let Some(more) = found.others.len().checked_sub(NAMED).filter(|n| *n > 0) {
+        verbosity.info(&format!(
+            "{} are not used either",
+            counted(more, "more table")
+        ));
+    }
+    for note in &found.notes {
+        verbosity.info(note);
+    }
     let assigned = found.channels.iter().filter(|c| c.role.is_some()).count();
     let left_over = without_role(found);
     verbosity.info(&format!(

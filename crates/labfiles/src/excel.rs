@@ -84,18 +84,19 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     opened("excel", path, datasets, notes, Workbook { tables, places })
 }
 
-/// The tables of a workbook's sheets, as text with tabs between the cells; `None` if the file is no workbook.
+/// The names and tables of a workbook's sheets, as text with tabs between the cells; `None` if the file is no workbook.
 ///
 /// # Errors
 /// If the file cannot be read, or is a damaged workbook.
-pub fn workbook_tables(path: &Path) -> Result<Option<Vec<Vec<u8>>>, ReadError> {
+pub fn workbook_tables(path: &Path) -> Result<Option<Vec<(String, Vec<u8>)>>, ReadError> {
     let mut front = Vec::new();
     let read = File::open(path).and_then(|f| f.take(COMPOUND.len() as u64).read_to_end(&mut front));
     read.map_err(|e| ReadError::io(path, &e))?;
     if !recognises(&front) {
         return Ok(None);
     }
-    let tables = sheets(path)?.into_iter().filter_map(|(_, text)| text.ok());
+    let tables = sheets(path)?.into_iter();
+    let tables = tables.filter_map(|(name, text)| Some((name, text.ok()?)));
     Ok(Some(tables.collect()))
 }
 

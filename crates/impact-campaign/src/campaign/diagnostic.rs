@@ -8,6 +8,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use super::names::natural_key;
+use super::slashes;
 use super::statement::{Gathered, Members, Statement};
 use impact_records::message::{Print, typed};
 use impact_records::record::{Flag, FlagCode, Remedy};
@@ -77,7 +78,7 @@ impl fmt::Display for Place {
             let line = self.line.map(|line| format!(":{line}"));
             parts.push(format!(
                 "{}{}",
-                self.file.display(),
+                slashes::shown(&self.file.display().to_string()),
                 line.unwrap_or_default()
             ));
         }

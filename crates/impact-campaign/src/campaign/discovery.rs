@@ -10,6 +10,7 @@ use super::context::ResolveContext;
 use super::diagnostic::{Code, Diagnostic, FaultCollector, Place, Severity, first_of};
 use super::names::natural_key;
 use super::run_table::{self, Row};
+use super::slashes;
 use super::sources::Sources;
 use super::statement::Statement;
 use super::values::OneOrMany;
@@ -73,9 +74,10 @@ pub(super) fn list_files(
             } else {
                 shared.folder
             };
-            let what = format!("no file matches '{pattern}' in {}", folder.display());
-            let remedy = if pattern.contains('\\') {
-                "write / between folders, as in \"sub/*.csv\", on Windows too"
+            let shown = slashes::shown(pattern);
+            let what = format!("no file matches '{shown}' in {}", folder.display());
+            let remedy = if pattern.contains('\\') || slashes::is_foreign(pattern) {
+                slashes::REMEDY
             } else {
                 "check the pattern; it is relative to campaign.toml"
             };

@@ -1,54 +1,30 @@
 //! The run table: a CSV file or a sheet of a workbook with one row per record, units in its header.
 
-use std::collections::{BTreeMap, HashSet};
+mod headings;
+mod sheets;
+mod text;
+
+use std::collections::HashSet;
 use std::path::Path;
 use std::str::FromStr;
 
 use strum::VariantNames;
 
 use super::context::Wrong;
-use super::diagnostic::{Code, FaultCollector, first_of};
+use super::diagnostic::{Code, Diagnostic, FaultCollector, Place, Severity, first_of};
 use super::nearest::nearest;
+use super::slashes;
 use super::values::Excitation;
-use impact_records::language::{Language, RunTableWords};
+use impact_records::language::Language;
 use impact_records::record::Sweep;
 use labfiles::units::{self, Dimension};
 
-/// The columns that a run table may have.
-const COLUMNS: [&str; 9] = [
-    "file",
-    "dataset",
-    "record",
-    "drive_frequency",
-    "clearance",
-    "sweep",
-    "drive_amplitude",
-    "excitation",
-    "specimen",
-];
+use headings::{COLUMNS, DATASET, FILE, column_of, columns_of, states_setting};
 
-/// What a word of any language is called in this program.
-fn called<'a>(
-    word: &str,
-    of: impl Fn(&'static RunTableWords) -> &'static BTreeMap<String, Vec<String>> + 'a,
-) -> Option<&'static str> {
-    let lower = word.trim().to_lowercase();
-    let mut each = Language::all().flat_map(|language| of(language.run_table()));
-    let found = each.find(|(_, others)| others.contains(&lower));
-    found.map(|(name, _)| name.as_str())
-}
+use text::{decode, is_file, reader};
 
-/// A word of a cell as this program writes it.
-pub(super) fn in_english(word: &str) -> String {
-    let known = called(word, |table| &table.words);
-    known.map_or_else(|| word.trim().to_lowercase(), str::to_owned)
-}
-
-/// The column of a heading without its unit.
-fn column_of(bare: &str) -> Option<usize> {
-    let place = |name: &str| COLUMNS.iter().position(|c| *c == name);
-    place(bare).or_else(|| place(called(bare, |table| &table.columns)?))
-}
+pub(super) use headings::in_english;
+pub(super) use sheets::sheet_of;
 
 /// The columns that hold numbers.
 const NUMBERS: [usize; 3] = [3, 4, 6];
@@ -85,84 +61,95 @@ struct Header {
     factor: [f64; COLUMNS.len()],
 }
 
-/// The text of a run table, and whether it is a sheet of a workbook.
-fn text_of(path: &Path, faults: &mut FaultCollector) -> Option<(String, bool)> {
-    let mut refuse = |what: String| {
-        let remedy = "check run_table in [records]; its path starts at the folder of campaign.toml, where that is a \
-                      link at the link's";
+/// A run table as it is written.
+struct Written {
+    text: String,
+    separator: u8,
+    /// The names of the sheets of the workbook in which it is one.
+    sheets: Option<Vec<String>>,
+}
+
+/// The text of a run table.
+fn text_of(folder: &Path, name: &str, faults: &mut FaultCollector) -> Option<Written> {
+    let path = &folder.join(name);
+    let mut refuse = |what: String, remedy: &str| {
         faults.fault(Code::UnreadableFile, None, "", what, remedy);
+    };
+    let lies = "check run_table in [records]; its path starts at the folder of campaign.toml, where that is a \
+                link at the link's";
+    let cannot = |said: &str| {
+        if !slashes::is_foreign(name) {
+            return (format!("the run table cannot be read: {said}"), lies);
+        }
+        let shown = slashes::shown(name);
+        let what = format!("the run table cannot be read: its name '{shown}' has a backslash");
+        (what, slashes::REMEDY)
     };
     let tables = match labfiles::workbook_tables(path) {
         Ok(tables) => tables,
         Err(error) => {
-            refuse(format!("the run table cannot be read: {}", error.found));
+            let (what, remedy) = cannot(&error.found);
+            refuse(what, remedy);
             return None;
         }
     };
     let Some(tables) = tables else {
         return match std::fs::read(path) {
-            Ok(bytes) => Some((decode(&bytes), false)),
+            Ok(bytes) => {
+                let text = decode(&bytes);
+                Some(Written {
+                    separator: separator(&text),
+                    text,
+                    sheets: None,
+                })
+            }
             Err(error) => {
-                let said = labfiles::said(&error);
-                refuse(format!("the run table cannot be read: {said}"));
+                let (what, remedy) = cannot(&labfiles::said(&error));
+                refuse(what, remedy);
                 None
             }
         };
     };
-    let sheet = tables.into_iter().map(|bytes| decode(&bytes)).find(|text| {
-        let mut reader = reader(text, separator(text));
-        reader
-            .headers()
-            .is_ok_and(|names| lists_sheets(names.iter()))
-    });
+    let sheet = sheets::among(tables, &is_file(folder, name));
     if sheet.is_none() {
-        refuse("no sheet of the workbook is a run table: none has the columns 'dataset' and 'clearance' or 'drive_frequency'".to_owned());
+        refuse(sheets::none_found(), lies);
     }
-    sheet.map(|text| (text, true))
-}
-
-/// Whether the headings of a sheet are those of a run table: the names of other sheets, and a setting.
-pub(super) fn lists_sheets<'a>(headings: impl Iterator<Item = &'a str>) -> bool {
-    let columns: Vec<usize> = headings
-        .filter_map(|name| column_of(name).or_else(|| column_of(units::split_unit(name).0)))
-        .collect();
-    let has = |name: &str| columns.iter().any(|c| COLUMNS[*c] == name);
-    has("dataset") && (has("clearance") || has("drive_frequency"))
+    sheet.map(|sheet| Written {
+        text: sheet.text,
+        separator: sheets::SEPARATOR,
+        sheets: Some(sheet.sheets),
+    })
 }
 
 /// Read the run table `name` of a folder; rows with a fault are left out, and each fault is noted. The rows of a
 /// workbook's sheet are records of that workbook where no column names files.
 pub(super) fn read(folder: &Path, name: &str, faults: &mut FaultCollector) -> Vec<Row> {
-    let Some((text, in_workbook)) = text_of(&folder.join(name), faults) else {
+    let Some(written) = text_of(folder, name, faults) else {
         return Vec::new();
     };
-    let workbook = in_workbook.then_some(name);
-    let separator = separator(&text);
-    let mut reader = reader(&text, separator);
-    let header = match reader.headers() {
-        Ok(names) if names.iter().any(|n| !n.is_empty()) => {
-            read_header(&names.clone(), in_workbook, faults)
-        }
-        _ => {
-            let what = "the run table is empty".to_owned();
-            faults.fault(
-                Code::Missing,
-                Some(1),
-                "",
-                what,
-                "write a header line and one line per record",
-            );
-            return Vec::new();
-        }
-    };
+    let (text, separator) = (&written.text, written.separator);
+    let workbook = written.sheets.is_some().then_some(name);
+    let mut reader = reader(text, separator);
+    let names = reader.headers().cloned().unwrap_or_default();
+    if names.iter().all(str::is_empty) {
+        let remedy = "write a header line and one line per record";
+        faults.fault(Code::Missing, Some(1), "", "the run table is empty", remedy);
+        return Vec::new();
+    }
+    let columns = written.columns(&names, &is_file(folder, name));
+    let header = read_header(&names, &columns, workbook.is_some(), faults);
     if faults.blocks() {
         return Vec::new();
     }
-    let columns = reader.headers().map_or(0, csv::StringRecord::len);
     let records: Vec<csv::StringRecord> = reader
         .records()
-        .filter_map(|record| whole_row(record, columns, faults))
+        .filter_map(|record| whole_row(record, names.len(), faults))
         .collect();
+    if let Some(own) = written.sheets.as_deref()
+        && names_none(own, &header, &records, faults)
+    {
+        return Vec::new();
+    }
     let Some(mark) = decimal_mark(separator, &records, &header, faults) else {
         return Vec::new();
     };
@@ -179,10 +166,17 @@ pub(super) fn read(folder: &Path, name: &str, faults: &mut FaultCollector) -> Ve
             read_row(&cells, &mut bad, faults)
         })
         .collect();
-    bad.note(faults);
     for row in &mut rows {
         row.file = beside(folder, name, &row.file).unwrap_or_else(|| row.file.clone());
     }
+    rows.retain(|row| {
+        let missing = slashes::is_foreign(&row.file) && !folder.join(&row.file).exists();
+        if missing {
+            bad.0[FILE].push((row.line, slashes::shown(&row.file)));
+        }
+        !missing
+    });
+    bad.note(faults);
     if rows.is_empty() && !faults.blocks() {
         let what = "the run table has a header and no records".to_owned();
         faults.fault(Code::Missing, None, "", what, "write one line per record");
@@ -197,22 +191,69 @@ fn beside(folder: &Path, table: &str, file: &str) -> Option<String> {
     moved.then(|| below.to_string_lossy().into_owned())
 }
 
-/// Whether a text begins as a run table does: with a header that has the column of files.
-pub(super) fn is_run_table(head: &[u8]) -> bool {
-    let text = decode(head);
-    let mut reader = reader(&text, separator(&text));
-    let names = reader.headers();
-    names.is_ok_and(|names| names.iter().any(|name| column_of(name) == Some(0)))
+impl Written {
+    /// The column of each heading, if it is known.
+    fn columns(
+        &self,
+        names: &csv::StringRecord,
+        is_file: &dyn Fn(&str) -> bool,
+    ) -> Vec<Option<usize>> {
+        let mut reader = reader(&self.text, self.separator);
+        let rows: Vec<csv::StringRecord> = reader.records().filter_map(Result::ok).collect();
+        let sheets = self.sheets.as_deref().unwrap_or_default();
+        let is_sheet = |cell: &str| sheets.iter().any(|sheet| sheet == cell);
+        columns_of(names, &rows, [is_file, &is_sheet])
+    }
 }
 
-/// Whether headings contain that of the drive frequency.
-pub(super) fn has_frequencies<'a>(mut headings: impl Iterator<Item = &'a str>) -> bool {
-    headings.any(is_frequency)
+/// Whether the rows of a workbook's sheet name datasets of which none is in it, and no file; noted as a fault.
+fn names_none(
+    own: &[String],
+    header: &Header,
+    records: &[csv::StringRecord],
+    faults: &mut FaultCollector,
+) -> bool {
+    let (None, Some(at)) = (header.at[FILE], header.at[DATASET]) else {
+        return false;
+    };
+    let cells = records.iter().filter_map(|record| record.get(at));
+    let named: Vec<&str> = cells.filter(|cell| !cell.is_empty()).collect();
+    let none = !named.is_empty() && !named.iter().any(|cell| sheets::holds(own, cell));
+    if none {
+        let names: Vec<String> = named.iter().map(|name| format!("'{name}'")).collect();
+        let what = format!(
+            "the run table has no column 'file', and none of the datasets that it names is in its own workbook: {}",
+            first_of(&names)
+        );
+        let remedy =
+            "add a column file: in each row the name of the workbook that holds the record";
+        faults.fault(Code::Missing, None, "file", what, remedy);
+    }
+    none
+}
+
+/// Rows at the front of a file from which is told what its cells name.
+const LOOKED_AT: usize = 50;
+
+/// Whether a text begins as a run table does: with a header that has the column of files, or a setting and a column whose
+/// cells name files.
+pub(super) fn is_run_table(head: &[u8], is_file: &dyn Fn(&str) -> bool) -> bool {
+    let text = decode(head);
+    let mut reader = reader(&text, separator(&text));
+    let Ok(names) = reader.headers().cloned() else {
+        return false;
+    };
+    if names.iter().any(|name| column_of(name) == Some(FILE)) {
+        return true;
+    }
+    let rows = reader.records().filter_map(Result::ok).take(LOOKED_AT);
+    let rows: Vec<csv::StringRecord> = rows.collect();
+    let columns = columns_of(&names, &rows, [is_file, &|_: &str| false]);
+    columns.contains(&Some(FILE)) && states_setting(&columns)
 }
 
 fn is_frequency(heading: &str) -> bool {
-    let column = column_of(heading).or_else(|| column_of(units::split_unit(heading).0));
-    column.is_some_and(|c| COLUMNS[c] == "drive_frequency")
+    column_of(heading).is_some_and(|c| COLUMNS[c] == "drive_frequency")
 }
 
 /// Whether the front of a run table states drive frequencies, and no free decays.
@@ -232,26 +273,6 @@ pub(super) fn states_drive(head: &[u8]) -> bool {
     rows.iter().any(stated) && !rows.iter().any(decays)
 }
 
-fn reader(text: &str, separator: u8) -> csv::Reader<&[u8]> {
-    csv::ReaderBuilder::new()
-        .delimiter(separator)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes())
-}
-
-/// By its byte-order mark, else UTF-8, else Windows-1252.
-fn decode(bytes: &[u8]) -> String {
-    let without_mark = match std::str::from_utf8(bytes) {
-        Ok(_) => encoding_rs::UTF_8,
-        Err(_) => encoding_rs::WINDOWS_1252,
-    };
-    // the lines' numbers are counted by line feeds
-    let text = without_mark.decode(bytes).0;
-    text.replace("\r\n", "\n").replace('\r', "\n")
-}
-
 /// The separator of the header line: the most frequent of comma, semicolon and tab.
 fn separator(text: &str) -> u8 {
     let filled = |l: &&str| !l.starts_with('#') && !l.trim().is_empty();
@@ -266,6 +287,7 @@ fn separator(text: &str) -> u8 {
 
 fn read_header(
     names: &csv::StringRecord,
+    columns: &[Option<usize>],
     in_workbook: bool,
     faults: &mut FaultCollector,
 ) -> Header {
@@ -273,14 +295,15 @@ fn read_header(
         factor: [1.0; COLUMNS.len()],
         ..Header::default()
     };
-    for (index, name) in names.iter().enumerate() {
+    let mut unknown = Vec::new();
+    for (index, (name, column)) in names.iter().zip(columns).enumerate() {
         let (bare, symbol) = if COLUMNS.contains(&name) {
             (name, None)
         } else {
             units::split_unit(name)
         };
-        let Some(column) = column_of(bare) else {
-            note_unknown(name, bare, faults);
+        let Some(column) = *column else {
+            unknown.push((name, bare));
             continue;
         };
         if header.at[column].replace(index).is_some() {
@@ -310,27 +333,51 @@ fn read_header(
             "add it: the names of the files, one per record",
         );
     }
+    let complete = (header.at[FILE].is_some() || in_workbook) && states_setting(columns);
+    note_unknown(&unknown, complete, faults);
     header
 }
 
-fn note_unknown(name: &str, bare: &str, faults: &mut FaultCollector) {
-    let remedy = match nearest(bare, &COLUMNS) {
-        Some(near) => format!("did you mean '{near}'? Otherwise begin its name with 'note'"),
-        None => format!(
-            "the columns are {}; begin a remark's name with 'note'",
-            COLUMNS.join(", ")
-        ),
-    };
-    let lower = bare.to_lowercase();
-    let mut remarks = Language::all().flat_map(|language| &language.run_table().remarks);
-    if !remarks.any(|r| lower.starts_with(r)) {
-        faults.fault(
-            Code::UnknownEntry,
-            Some(1),
-            name,
-            format!("the column '{name}' is not known"),
-            &remedy,
+/// Columns that are none of a run table, and no remarks: notes where the columns that are needed are there and nothing like
+/// them is meant.
+fn note_unknown(unknown: &[(&str, &str)], complete: bool, faults: &mut FaultCollector) {
+    let mut unused = Vec::new();
+    for (name, bare) in unknown {
+        let lower = bare.to_lowercase();
+        let mut remarks = Language::all().flat_map(|language| &language.run_table().remarks);
+        if remarks.any(|r| lower.starts_with(r)) {
+            continue;
+        }
+        let remedy = match nearest(bare, &COLUMNS) {
+            Some(near) => format!("did you mean '{near}'? Otherwise begin its name with 'note'"),
+            None if complete => {
+                unused.push((*name).to_owned());
+                continue;
+            }
+            None => format!(
+                "the columns are {}; begin a remark's name with 'note'",
+                COLUMNS.join(", ")
+            ),
+        };
+        let what = format!("the column '{name}' is not known");
+        faults.fault(Code::UnknownEntry, Some(1), name, what, &remedy);
+    }
+    if !unused.is_empty() {
+        let place = Place {
+            file: faults.file().to_path_buf(),
+            line: Some(1),
+            ..Place::default()
+        };
+        let what = format!(
+            "columns that are not known are not used: {}",
+            unused.join(", ")
         );
+        let remedy = format!(
+            "nothing, if they are notes; the columns are {}",
+            COLUMNS.join(", ")
+        );
+        let kind = (Code::UnknownEntry, Severity::Note);
+        faults.extend([Diagnostic::new(kind, place, what, &remedy)]);
     }
 }
 
@@ -544,6 +591,13 @@ fn expected(column: usize, texts: &[String]) -> (String, &'static str) {
         (what, "write one of these words")
     };
     match column {
+        FILE => {
+            let has = if one { "has" } else { "have" };
+            (
+                format!("{has} a backslash, and no such file exists"),
+                slashes::REMEDY,
+            )
+        }
         5 => of(Sweep::VARIANTS),
         7 => of(Excitation::VARIANTS),
         _ => {
@@ -591,15 +645,15 @@ mod tests {
             "\u{feff}file;clearance in mm\n",
             "\"file\";\"note\"\n",
         ] {
-            assert!(is_run_table(text.as_bytes()), "{text}");
+            assert!(is_run_table(text.as_bytes(), &|_| false), "{text}");
         }
         let unicode: Vec<u8> = "\u{feff}file\tsweep\n"
             .encode_utf16()
             .flat_map(u16::to_le_bytes)
             .collect();
-        assert!(is_run_table(&unicode));
+        assert!(is_run_table(&unicode, &|_| false));
         for text in ["", "t;x\n0;1\n", "profile;file name\n", "1,2\n"] {
-            assert!(!is_run_table(text.as_bytes()), "{text}");
+            assert!(!is_run_table(text.as_bytes(), &|_| false), "{text}");
         }
     }
 
@@ -696,7 +750,7 @@ mod tests {
     #[test]
     fn german_headings_and_words_are_read() {
         let text = "Datei;Frequenz [Hz];Spalt in mm;Richtung;Bemerkung\na.csv;12,5;1,2;auf;gut\nb.csv;12;1,2;Ab;\n";
-        assert!(is_run_table(text.as_bytes()));
+        assert!(is_run_table(text.as_bytes(), &|_| false));
         let (windows, _, _) = encoding_rs::WINDOWS_1252.encode(text);
         let (rows, faults) = read_text(&windows);
         assert_eq!(faults, [""; 0]);
@@ -707,5 +761,83 @@ mod tests {
         );
         assert!((rows[1].clearance_m.unwrap() - 1.2e-3).abs() < 1e-15);
         assert_eq!(rows[1].sweep, Some(Sweep::Down));
+    }
+
+    #[test]
+    fn headings_may_have_capitals() {
+        let text = b"File,Frequency [Hz],CLEARANCE_mm,Sweep\na,8.5,2,Up\n";
+        assert!(is_run_table(text, &|_| false));
+        let (rows, faults) = read_text(text);
+        assert_eq!(faults, [""; 0]);
+        assert_eq!(rows[0].drive_frequency_hz, Some(8.5));
+        assert_eq!(rows[0].clearance_m, Some(2e-3));
+        assert_eq!(rows[0].sweep, Some(Sweep::Up));
+    }
+
+    #[test]
+    fn symbols_and_other_words_of_a_gap_and_a_sweep_are_headings() {
+        for heading in ["f [Hz]", "f (Hz)", "Excitation frequency (Hz)"] {
+            assert!(is_frequency(heading), "{heading}");
+        }
+        assert_eq!(column_of("F [N]"), None);
+        for (heading, column) in [
+            ("Luftspalt [mm]", "clearance"),
+            ("Spaltmaß [mm]", "clearance"),
+            ("Sweeprichtung", "sweep"),
+        ] {
+            assert_eq!(column_of(heading).map(|c| COLUMNS[c]), Some(column));
+        }
+    }
+
+    #[test]
+    fn unknown_columns_beside_all_that_are_needed_are_one_note() {
+        let text = "Nr.;Datum;Datei;Frequenz [Hz];Prüfer\n1;3.5.;a.csv;8,5;FP\n";
+        let (rows, faults) = read_text(text.as_bytes());
+        assert_eq!(rows.len(), 1);
+        assert_eq!(faults.len(), 1);
+        let found = "1: : columns that are not known are not used: Nr., Datum, Prüfer. ";
+        assert!(faults[0].starts_with(found), "{faults:?}");
+        // one that is needed may be meant
+        for text in ["file,Nr.\na,1\n", "file,gap [mm],swep\na,1,up\n"] {
+            let (_, faults) = read_text(text.as_bytes());
+            assert!(faults[0].contains("is not known"), "{faults:?}");
+        }
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn backslashes_in_names_are_named() {
+        let (_, faults) = read_text(b"file,gap [mm]\nsub\\r0.csv,1\nsub\\r1.csv,1\n");
+        let remedy = slashes::REMEDY;
+        let what = r"file: 'sub\r0.csv', 'sub\r1.csv' have a backslash, and no such file exists (in 2 lines: 2, 3)";
+        assert_eq!(faults, [format!("{what}. {remedy}")]);
+        for table in ["sub\\runs.csv", "sub\runs.csv"] {
+            let mut faults = FaultCollector::new(Path::new(table));
+            read(Path::new(""), table, &mut faults);
+            let said = faults.into_diagnostics().0.remove(0).to_string();
+            let what = format!(r"its name 'sub\runs.csv' has a backslash. {remedy}");
+            assert!(said.contains(&what), "{said}");
+            assert!(!said.contains('\r'), "{said:?}");
+        }
+    }
+
+    #[test]
+    fn rows_of_a_workbook_that_name_datasets_of_another_lack_a_column_of_files() {
+        let mut header = Header::default();
+        header.at[DATASET] = Some(0);
+        let rows = ["run 1", "run 2"].map(|name| csv::StringRecord::from(vec![name]));
+        let said = |own: &str| {
+            let mut faults = FaultCollector::new(Path::new("s.xlsx"));
+            let none = names_none(&[own.to_owned()], &header, &rows, &mut faults);
+            (none, faults.into_diagnostics().to_string())
+        };
+        assert_eq!(said("run 2"), (false, String::new()));
+        let (none, text) = said("S");
+        assert!(none, "{text}");
+        assert!(
+            text.contains("'run 1', 'run 2'. add a column file"),
+            "{text}"
+        );
+        assert_eq!(text.lines().count(), 1);
     }
 }

@@ -96,6 +96,9 @@ fn records(text: &mut String, found: &FolderContents) -> std::fmt::Result {
             first_of(&found.others)
         )?;
     }
+    for note in &found.notes {
+        writeln!(text, "# {note}")?;
+    }
     let listed = matches!(
         found.experiment,
         Experiment::Events(ContactContent::Times | ContactContent::Intervals)

@@ -41,6 +41,8 @@ pub struct FolderContents {
     pub others: Vec<String>,
     /// Tables of the heights before and after an impact, among `others`.
     pub heights: Vec<String>,
+    /// What else a user should know of the files.
+    pub notes: Vec<String>,
     /// Whether the run table or the files' attributes state drive frequencies.
     pub states_drive: bool,
     /// What was probably measured.

@@ -36,23 +36,23 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
     paths.sort();
     let mut found = FolderContents::default();
     let mut opened = Vec::new();
+    let mut run_sheet = None;
     for path in &paths {
         let relative = path.strip_prefix(folder).unwrap_or(path).to_path_buf();
         if found.run_table.is_none()
-            && let Some(head) = head_of_run_table(path)
+            && let Some(head) = head_of_run_table(folder, path)
         {
             found.run_table = Some(slashed(&relative));
             found.states_drive = run_table::states_drive(&head);
             continue;
         }
         let opened_path = open(path);
-        if let (None, Ok(source)) = (&found.run_table, &opened_path) {
-            let sheets = source.datasets().iter().filter(|set| lists_sheets(set));
-            let mut sheets = sheets.filter(|_| source.format() == "excel");
-            if let Some(set) = sheets.next() {
-                found.run_table = Some(slashed(&relative));
-                found.states_drive = run_table::has_frequencies(names_of(set));
-            }
+        let of_book = match &opened_path {
+            Ok(source) => source.format() == "excel",
+            Err(_) => ends_as_workbook(path),
+        };
+        if found.run_table.is_none() && of_book {
+            run_sheet = run_sheet_of(folder, &slashed(&relative), &mut found);
         }
         match opened_path {
             Ok(source) if holds_record(source.as_ref()) => opened.push((relative, source)),
@@ -85,10 +85,13 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
     for (path, source) in &records {
         let used = of(source.as_ref());
         let sets = source.datasets().iter().enumerate();
-        let others = sets.filter(|(i, set)| !used.contains(i) && !lists_sheets(set));
+        let lists = |set: &DatasetInfo| Some((slashed(path), set.name.clone())) == run_sheet;
+        let others = sets.filter(|(i, set)| !used.contains(i) && !lists(set));
         let named = others.map(|(_, set)| format!("{}: {}", slashed(path), set.name));
         found.others.extend(named);
     }
+    let table = found.run_table.clone();
+    found.others.retain(|other| Some(other) != table.as_ref());
     found.files = records.len();
     let named: Vec<&Path> = records.iter().map(|(path, _)| path.as_path()).collect();
     let relative = |path: &PathBuf| path.strip_prefix(folder).unwrap_or(path).to_path_buf();
@@ -106,13 +109,26 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
     found
 }
 
-/// Whether a sheet is a run table of the workbook's other sheets.
-fn lists_sheets(set: &DatasetInfo) -> bool {
-    run_table::lists_sheets(names_of(set))
+/// Take a workbook as the run table if one of its sheets is such; its name and that sheet's. One that cannot name its
+/// records is noted.
+fn run_sheet_of(folder: &Path, book: &str, found: &mut FolderContents) -> Option<(String, String)> {
+    let sheet = run_table::sheet_of(folder, book)?;
+    if !sheet.names_records {
+        found.notes.push(format!(
+            "{book} states the settings of datasets that are not in it; it can be the run table with a column file that \
+             names the workbook of each"
+        ));
+        return None;
+    }
+    found.run_table = Some(book.to_owned());
+    found.states_drive = sheet.states_drive;
+    Some((book.to_owned(), sheet.name))
 }
 
-fn names_of(set: &DatasetInfo) -> impl Iterator<Item = &str> {
-    set.channels.iter().map(|c| c.name.as_str())
+/// Whether a file is called as a workbook is.
+fn ends_as_workbook(path: &Path) -> bool {
+    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    ending.is_some_and(|e| e.starts_with("xls"))
 }
 
 /// How many times longer than a table of notes, with times of its own, a record is.
@@ -200,8 +216,8 @@ fn is_other(path: &Path) -> bool {
 /// Bytes at the front of a file that show whether it is a run table.
 const HEAD_BYTES: u64 = 1 << 16;
 
-/// The front of a file that is a text table with a column `file`.
-fn head_of_run_table(path: &Path) -> Option<Vec<u8>> {
+/// The front of a file below a folder that is a text table with a column of files.
+fn head_of_run_table(folder: &Path, path: &Path) -> Option<Vec<u8>> {
     let ending = path.extension()?.to_string_lossy().to_lowercase();
     if !["csv", "tsv", "txt"].contains(&ending.as_str()) {
         return None;
@@ -209,7 +225,9 @@ fn head_of_run_table(path: &Path) -> Option<Vec<u8>> {
     let mut head = Vec::new();
     let read = File::open(path).and_then(|f| f.take(HEAD_BYTES).read_to_end(&mut head));
     read.ok()?;
-    run_table::is_run_table(&head).then_some(head)
+    let beside = path.parent().unwrap_or(folder);
+    let is_file = |cell: &str| [folder, beside].iter().any(|f| f.join(cell).is_file());
+    run_table::is_run_table(&head, &is_file).then_some(head)
 }
 
 fn holds_record(source: &dyn Source) -> bool {
@@ -1089,5 +1107,23 @@ mod tests {
             roles_of(&[("vx", "m/s", 0.5), ("vy", "m/s", 0.4)]),
             [Some(Role::VelocityX), Some(Role::VelocityY)]
         );
+    }
+
+    #[test]
+    fn a_table_whose_cells_are_names_of_files_is_the_run_table_and_others_are_named() {
+        let record = |k: i32| format!("t (s),v (m/s)\n{}", decay_rows(f64::from(5 + k), 0.02, 600));
+        for heading in ["Durchlauf", "Messung", "File"] {
+            let table = format!("{heading};f [Hz];Luftspalt [mm]\na.csv;8,5;2\nb.csv;9;2\n");
+            let files = [
+                ("a.csv", record(0)),
+                ("b.csv", record(1)),
+                ("labbook.csv", "record,gap\n1,2\n2,3\n".to_owned()),
+                ("z runs.csv", table),
+            ];
+            let (found, text) = toml_of(&files);
+            assert_eq!(found.run_table.as_deref(), Some("z runs.csv"), "{heading}");
+            assert!(found.states_drive, "{heading}");
+            assert!(text.contains("notes or settings: labbook.csv\n"), "{text}");
+        }
     }
 }

@@ -1,0 +1,33 @@
+//! The text of a run table: how it is decoded and read, and which of its cells are names of files.
+
+use std::path::Path;
+
+/// Whether a cell of the run table `name` is the name of a file, in a folder or beside the table.
+pub(super) fn is_file(folder: &Path, name: &str) -> impl Fn(&str) -> bool {
+    let folders = [
+        Some(folder.to_path_buf()),
+        folder.join(name).parent().map(Path::to_path_buf),
+    ];
+    move |cell| folders.iter().flatten().any(|f| f.join(cell).is_file())
+}
+
+/// A reader of a text's rows.
+pub(super) fn reader(text: &str, separator: u8) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new()
+        .delimiter(separator)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes())
+}
+
+/// By its byte-order mark, else UTF-8, else Windows-1252.
+pub(super) fn decode(bytes: &[u8]) -> String {
+    let without_mark = match std::str::from_utf8(bytes) {
+        Ok(_) => encoding_rs::UTF_8,
+        Err(_) => encoding_rs::WINDOWS_1252,
+    };
+    // the lines' numbers are counted by line feeds
+    let text = without_mark.decode(bytes).0;
+    text.replace("\r\n", "\n").replace('\r', "\n")
+}
