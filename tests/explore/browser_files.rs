@@ -38,6 +38,7 @@ fn browser_the_svg_shows_what_is_seen() {
     browser.until(STRIPED);
     browser.evaluate("document.fonts.ready.then(() => true)");
     browser.evaluate(KEPT);
+    browser.evaluate("void impactid.said('a passing hint', 1e6)");
     export(&mut browser, "SVG");
     let svg = kept(&mut browser, "explorer.svg");
     let svg = svg.as_str().unwrap();
@@ -70,6 +71,7 @@ fn browser_the_svg_shows_what_is_seen() {
     ] {
         assert!(text.contains(part), "{part} is not in: {text}");
     }
+    assert!(!text.contains("passinghint"), "{text}");
     assert!(!svg.contains("undefined") && !svg.contains("NaN"));
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
@@ -152,6 +154,11 @@ fn browser_a_map_that_is_being_replaced_is_faint() {
     let both =
         format!("[impactid.map.tiles.every((t) => t.id === impactid.wire.newest.map), {opacity}]");
     let while_filling = browser.evaluate(&both);
+    // names and legend of the map before are hidden and faint until there are new ones
+    let of_before = "impactid.map.cells128?.id !== impactid.wire.newest.map";
+    let hidden =
+        "impactid.map.unnamed && document.getElementById('legend').classList.contains('late')";
+    browser.until(&format!("!({of_before}) || ({hidden})"));
     let alone = while_filling[0] == json!(true);
     assert!(
         alone || while_filling[1].as_f64().unwrap() < 0.25,

@@ -30,6 +30,20 @@ fn browser_an_old_address_asks_for_the_new_one_and_keeps_what_it_showed() {
             "(() => {{ const i = document.querySelector('dialog input'); i.value = '{text}'; i.dispatchEvent(new Event('change')); }})()"
         ))
     };
+    // Esc and Close leave no empty page: the question comes back
+    let dialog = "document.getElementById('dialog')";
+    for leave in ["requestClose()", "querySelector('.buttons button').click()"] {
+        browser.evaluate(&format!(
+            "{dialog}.querySelector('.fault').textContent = ''; void {dialog}.{leave}"
+        ));
+        browser.until(&format!(
+            "{dialog}.open && {dialog}.querySelector('.fault').textContent.includes('nothing to show')"
+        ));
+    }
+    for _ in 0..3 {
+        browser.key("Escape", 0);
+        browser.until(&format!("{dialog}.open"));
+    }
     give(&mut browser, "nothing");
     browser.until("document.querySelector('dialog .fault').textContent.includes('no token')");
     give(&mut browser, &"0".repeat(32));

@@ -13,6 +13,18 @@ fn browser_boundaries_are_named_and_sweeps_lie_apart() {
     browser.until(QUIET);
     browser.until("impactid.map.names?.some((n) => n.text === 's₂(1)')");
     browser.until("impactid.map.names.some((n) => n.text === 's₁(1/2)')");
+    // the legend has the boundaries that are in view
+    let legend = "document.getElementById('legend').textContent";
+    let view = browser.evaluate("JSON.stringify(impactid.state.view)");
+    for (rho, listed) in [("[-1.1, 4]", true), ("[0, 4]", false)] {
+        browser.evaluate(&format!("impactid.look([1.2, 3], {rho})"));
+        browser.until(QUIET);
+        browser.until(&format!("{legend}.includes('stay together') === {listed}"));
+    }
+    browser.evaluate(&format!(
+        "(({{ eta, rho }}) => impactid.look(eta, rho))(JSON.parse({view}))"
+    ));
+    browser.until(QUIET);
     // a record of a sweep up and one of a sweep down at the same setting
     let apart = "(() => { const all = impactid.campaign.placed(impactid.map.frame); \
          const f = impactid.map.frame, at = (p) => p.y - f.py(impactid.campaign.at(p.r.frequency_hz, p.r)[1]); \
@@ -38,7 +50,7 @@ fn browser_ticks_and_phases_have_no_dust() {
     let mut browser = Chromium::open(&explorer.url(), SIZE);
     browser.until(QUIET);
     let longest = "(async () => { const { around, ticks } = await import('/draw.js'); \
-         return Math.max(...[0.1, 1e-3, 3.2, 700, -0.07].flatMap((v) => { const [a, b] = around([[v, v]]), t = ticks(a, b, 4); return t.all.map((x) => t.text(x).length); })); })()";
+         return Math.max(...[0, 1e-13, 0.1, 1e-3, 3.2, 700, -0.07].flatMap((v) => { const [a, b] = around([[v, v]]), t = ticks(a, b, 4); return t.all.map((x) => t.text(x).length); })); })()";
     let longest = browser.evaluate(longest).as_u64().unwrap();
     assert!(longest <= 8, "{longest}");
     // a scale has two numbers, and they leave room for its title

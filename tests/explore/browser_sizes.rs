@@ -20,7 +20,7 @@ const FAULTS: &str = "(() => { const faults = [], box = (e) => e.getBoundingClie
      const name = (e) => e.id || e.className || e.textContent || e.tagName; \
      const all = (query) => [...document.querySelectorAll(query)].filter(shown); \
      if (document.documentElement.scrollWidth > innerWidth) faults.push('the page is wider than its window'); \
-     for (const e of all('#legend, #readout, .legend, #residuals, #sliders')) \
+     for (const e of all('#legend, #readout, .legend, #residuals, #sliders, h1, #numbers')) \
        if (e.scrollHeight > e.clientHeight + 1 || e.scrollWidth > e.clientWidth + 1) faults.push(`${name(e)} is cut`); \
      for (const e of all('button, input, select, canvas, dt, dd, h1, #legend > span')) \
        if (box(e).left < -1 || box(e).right > innerWidth + 1) faults.push(`${name(e)} leaves the window`); \
@@ -36,6 +36,10 @@ const FAULTS: &str = "(() => { const faults = [], box = (e) => e.getBoundingClie
      const map = box(document.getElementById('mapbox')).height; \
      if (map < Math.max(250, 0.5 * innerHeight)) faults.push(`the map is ${map} px high`); \
      return faults; })()";
+
+/// The motion under the longest title of the sample studies.
+const TITLE: &str = "panel('motion'); document.getElementById('title').textContent = \
+     'Soft contact: z = 1 at eta = 1.25, rho = 1 as the contact stiffens to the rigid one (last)'";
 
 /// From now on the page notes texts that leave their picture.
 pub(super) const CUT: &str = "(() => { window.cut = new Set(); const of = CanvasRenderingContext2D.prototype, fill = of.fillText; \
@@ -74,6 +78,12 @@ fn browser_the_caption_of_a_demo_covers_no_key() {
                .filter((e) => { const b = e.getBoundingClientRect(); return b.left < c.right && b.right > c.left && b.top < c.bottom && b.bottom > c.top; }) \
                .map((e) => e.id || e.textContent); })()";
         assert_eq!(browser.evaluate(covered), json!([]), "{size:?}");
+        // that of a demo that plays stays for long, and covers no field and no button either
+        browser.evaluate("void impactid.player.start(impactid.demos[2])");
+        browser.until("document.querySelector('#caption.demo:not([hidden])') !== null");
+        browser.until(QUIET);
+        let all = covered.replace("canvas'", "canvas, input, button, h1, #residuals'");
+        assert_eq!(browser.evaluate(&all), json!([]), "{size:?}");
     }
 }
 
@@ -111,6 +121,7 @@ fn browser_nothing_is_cut_or_covered_at_any_size() {
                 "along('eta')",
                 "panel('basins')",
                 "nearest?.()",
+                TITLE,
             ] {
                 browser.evaluate(&format!("void impactid.{action}"));
                 browser.until(QUIET);

@@ -72,6 +72,11 @@ fn browser_values_out_of_range_are_refused_in_their_field() {
         browser.key(key, 0);
         let all = "[...document.querySelectorAll('dialog label')]";
         let field = format!("{all}.find((l) => l.textContent === '{name}').querySelector('input')");
+        // each field states its range before anything is typed
+        let ranges = "[...document.querySelectorAll('dialog label input')].map((i) => document.getElementById(i.getAttribute('aria-describedby')).textContent)";
+        for range in browser.evaluate(ranges).as_array().unwrap() {
+            assert!(range.as_str().unwrap().contains(" to "), "{key}: {range}");
+        }
         type_into(&mut browser, &field, text);
         assert_eq!(fault(&mut browser, &field), said);
         browser.key("Escape", 0);
@@ -79,6 +84,28 @@ fn browser_values_out_of_range_are_refused_in_their_field() {
         assert_eq!(browser.evaluate(state), before, "{name}");
     }
     assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_a_thumb_steps_from_a_value_beyond_its_end() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    let damping = "document.querySelectorAll('.slider input[type=text]')[1]";
+    let thumb = "document.querySelectorAll('.slider input[type=range]')[1]";
+    type_into(&mut browser, damping, "0.5");
+    browser.until("impactid.state.damping_ratio === 0.5");
+    browser.evaluate(&format!("{thumb}.focus()"));
+    browser.key("ArrowLeft", 0);
+    browser.until("Math.abs(impactid.state.damping_ratio - 0.4995) < 1e-9");
+    browser.key("ArrowRight", 0);
+    browser.until("Math.abs(impactid.state.damping_ratio - 0.5) < 1e-9");
+    // back inside, the ends are those from before
+    type_into(&mut browser, damping, "0.1");
+    browser.until(&format!(
+        "Number({thumb}.max) === 0.3 && Number({thumb}.value) === 0.1"
+    ));
 }
 
 #[test]

@@ -75,7 +75,7 @@ export class Demos {
     const mine = ++this.playing;
     for (const step of demo.steps) {
       this.step(step);
-      if (step.caption) this.app.said(step.caption, 1e6);
+      if (step.caption) this.app.said(step.caption, Infinity, true);
       await new Promise((resolve) => setTimeout(resolve, 1000 * step.seconds));
       if (this.playing !== mine) return;
     }

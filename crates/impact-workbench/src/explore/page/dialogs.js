@@ -1,17 +1,28 @@
 // Dialogs: initial conditions, parameters, R(v), exports, demos, keys.
 import { KEYS } from "./keys.js";
 import { copyAddress, exportFiles, png, svg } from "./exports.js";
-import { make, numberField, typed } from "./fields.js";
+import { between, make, numberField, typed } from "./fields.js";
 import { tableOf } from "./formula.js";
 import { turned } from "./plots.js";
 
 /** The law R(v) that a text states in one of the forms; throws where it states none. */
 function lawOf(form, text) {
   if (form === "formula") return { table: tableOf(text) };
-  const lines = text.trim().split(/\n+/).map((l) => l.trim().split(/[\s;]+/).map(typed));
-  if (lines.flat().includes(null)) throw new Error("Numbers alone are understood here");
-  const [a, b, c] = lines[0];
-  if (form === "constant" && !(a >= 0 && a <= 1)) throw new Error("R is between 0 and 1");
+  const need = (holds, why) => { if (!holds) throw new Error(why); };
+  const share = (name, v) => need(v >= 0 && v <= 1, `${name} = ${v} is not between 0 and 1`);
+  const lines = text.trim().split(/\n+/).map((l) => l.trim().split(/[\s;]+/).map(typed)), all = lines.flat();
+  need(!all.includes(null), "Numbers alone are understood here");
+  if (form === "table") {
+    lines.forEach((l, i) => need(l.length === 2, `Line ${i + 1} has ${l.length} of 2 numbers`));
+    lines.forEach(([v, r], i) => { need(v >= 0 && !(i && v <= lines[i - 1][0]), `Line ${i + 1}: speeds rise, from 0 at least`); share(`Line ${i + 1}: R`, r); });
+  } else {
+    const count = form === "constant" ? 1 : 3;
+    need(all.length === count, `${all.length} of ${count} numbers`);
+  }
+  const [a, b, c] = all;
+  if (form === "constant") share("R", a);
+  if (form === "power_law") { need(a >= 0, `coefficient = ${a} is negative`); need(b > 0, `exponent = ${b} is not above 0`); share("floor", c); }
+  if (form === "exponential") { share("slow", a); share("fast", b); need(c > 0, `speed = ${c} is not above 0`); }
   return { constant: a, table: { table: lines }, power_law: { power_law: { coefficient: a, exponent: b, floor: c } }, exponential: { exponential: { slow: a, fast: b, speed: c } } }[form];
 }
 
@@ -36,12 +47,13 @@ export class Dialogs {
     this.box.querySelector("input, select, textarea, #dialog-body button, button")?.focus();
   }
 
-  /** Fields [name, limit, get, put]; what is typed counts at once. */
+  /** Fields [name, limit, get, put] with their ranges; what is typed counts at once. */
   fields(title, rows, note) {
     const grid = make("div", undefined, "fields");
     for (const [name, limit, get, put] of rows) {
-      const label = make("label", name), { input, fault } = numberField(name, this.app.limits[limit], get, put);
-      label.append(input); label.style.display = "contents"; grid.append(label, fault);
+      const label = make("label", name), range = this.app.limits[limit], { input, fault } = numberField(name, range, get, put), within = make("span", between(range), "note");
+      within.id = fault.id.replace("fault", "range"); input.setAttribute("aria-describedby", within.id);
+      label.append(input); label.style.display = "contents"; grid.append(label, within, fault);
     }
     this.open(title, ...(note ? [make("p", note, "note")] : []), grid);
   }
@@ -108,16 +120,18 @@ export class Dialogs {
     for (const [name, label] of [["constant", "constant"], ["table", "table"], ["formula", "formula"], ["power_law", "power law"], ["exponential", "exponential"]]) {
       const o = make("option", label); o.value = name; select.append(o);
     }
+    note.id = "law-note"; note.setAttribute("role", "status"); text.setAttribute("aria-errormessage", note.id);
+    const say = (of, why) => { note.textContent = (why ? `${why}. ` : "") + forms[of][1]; note.className = why ? "fault" : "note"; text.setAttribute("aria-invalid", String(Boolean(why))); };
     const fill = (name) => {
       const now = name === kind ? { constant: () => String(r), table: () => r.table.map((p) => p.join(" ")).join("\n"), power_law: () => [r.power_law.coefficient, r.power_law.exponent, r.power_law.floor].join(" "), exponential: () => [r.exponential.slow, r.exponential.fast, r.exponential.speed].join(" ") }[name]() : forms[name][0];
-      text.value = now; note.textContent = forms[name][1]; note.className = "note";
+      text.value = now; say(name);
       kindOf.textContent = name === "formula" ? "Formula" : "Numbers";
     };
     select.value = kind; fill(kind);
     select.addEventListener("change", () => fill(select.value));
     const apply = make("button", "Apply"); apply.type = "button";
     apply.addEventListener("click", () => {
-      try { app.parameters({ restitution: lawOf(select.value, text.value) }); this.box.close(); } catch (error) { note.textContent = `${error.message}. ${forms[select.value][1]}`; note.className = "fault"; }
+      try { app.parameters({ restitution: lawOf(select.value, text.value) }); this.box.close(); } catch (error) { say(select.value, error.message); text.focus(); }
     });
     const label = make("label", "R(v) as a "), area = make("label");
     label.append(select); area.append(kindOf, text);

@@ -33,12 +33,18 @@ export async function enter(app, token) {
   if (state !== "wrong") return new Promise(() => {});
   return new Promise((resolve) => {
     const label = make("label", "Address that `impactid explore` prints "), input = make("input"), fault = make("p", "", "fault");
+    const { box } = app.dialogs;
+    const show = () => app.dialogs.open("Which explorer?", make("p", "This address is that of an explorer that has ended. What it shows is kept: give the address of the one that runs now.", "note"), label, fault);
+    // without the address there is nothing to show: the question comes back
+    const again = () => { fault.textContent ||= "Without the address this page has nothing to show."; show(); };
+    fault.setAttribute("role", "alert"); box.addEventListener("close", again);
     input.type = "text"; input.autocomplete = "off"; label.append(input);
+    input.addEventListener("keydown", (e) => { if (e.key === "Enter") { e.preventDefault(); input.blur(); } });
     input.addEventListener("change", async () => {
       const given = TOKEN.exec(input.value)?.[0];
-      if (given && (await ask(given)) === "open") { keep(given); app.dialogs.box.close(); resolve(given); } else fault.textContent = given ? "The server does not know this token." : "This address has no token: it has 32 digits and letters after t=.";
+      if (given && (await ask(given)) === "open") { keep(given); box.removeEventListener("close", again); box.close(); resolve(given); } else fault.textContent = given ? "The server does not know this token." : "This address has no token: it has 32 digits and letters after t=.";
     });
-    app.dialogs.open("Which explorer?", make("p", "This address is that of an explorer that has ended. What it shows is kept: give the address of the one that runs now.", "note"), label, fault);
+    show();
   });
 }
 

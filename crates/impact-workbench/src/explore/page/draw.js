@@ -214,13 +214,17 @@ export function rich(c, text, x, y, room = Infinity) {
   return width;
 }
 
+/** Values below this are all 0 in a picture. */
+const NOTHING = 1e-9;
+
 /** The range of values with a margin. */
 export function around(lists, margin = 0.06) {
   let [low, high] = [Infinity, -Infinity];
   for (const list of lists) for (const v of list) if (Number.isFinite(v)) { if (v < low) low = v; if (v > high) high = v; }
   if (low > high) return [0, 1];
+  if (Math.max(Math.abs(low), Math.abs(high)) < NOTHING) return [-1, 1];
   // a constant is a line in the middle, and its ticks need few digits
-  const spread = Math.max(high - low, 0.02 * Math.max(Math.abs(high), Math.abs(low)), 1e-9), room = margin * spread + (spread - (high - low)) / 2;
+  const spread = Math.max(high - low, 0.02 * Math.max(Math.abs(high), Math.abs(low))), room = margin * spread + (spread - (high - low)) / 2;
   return [low - room, high + room];
 }
 

@@ -3,7 +3,7 @@ import { FONT, colour, drawnInto } from "./draw.js";
 import { SvgContext } from "./svg.js";
 
 /** Texts that belong to what is shown, beside the pictures. */
-const TEXTS = "h1, #readout, #legend, #sliders, #residuals, #numbers, #line-note, .tools select, #basin-shares, #record-head, #record-evidence, #caption";
+const TEXTS = "h1, #readout, #legend, #sliders, #residuals, #numbers, #line-note, .tools select, #basin-shares, #record-head, #record-evidence, #caption.demo";
 /** Space around the pictures, px. */
 const MARGIN = 12;
 

@@ -8,7 +8,7 @@ export const make = (name, text, className) => {
 };
 
 /** A range as text. */
-const between = ([low, high]) => `${low} to ${high}`.replaceAll("-", "−");
+export const between = ([low, high]) => `${low} to ${high}`.replaceAll("-", "−");
 
 /** A number as it is typed, with a comma or a point; `null` where it is none. */
 export function typed(text) {
@@ -95,17 +95,22 @@ export class Sliders {
     range.addEventListener("focus", next);
     range.addEventListener("input", () => { change(Number(range.value)); next(); });
     row.append(make("span", name), range, field.fault, field.input);
-    return { row, range, shown, field, pair: name.endsWith("Y/X") };
+    return { row, range, ends: [low, high], shown, field, pair: name.endsWith("Y/X") };
   }
 
   /** Thumbs and fields at what the state holds. */
   show() {
-    for (const { row, range, shown, field, pair } of this.rows) {
+    for (const { row, range, ends, shown, field, pair } of this.rows) {
       const v = shown();
       range.disabled = v === null;
       // what compares two masses has no meaning for one
       row.style.visibility = pair && this.app.state.single ? "hidden" : "";
-      if (v !== null && Number(range.value) !== v) range.value = v;
+      // a value that was typed beyond the ends is within reach of the thumb too, which never jumps from it
+      if (v !== null) {
+        const [least, most] = document.activeElement === range ? [Number(range.min), Number(range.max)] : ends;
+        range.min = Math.min(least, v); range.max = Math.max(most, v);
+        if (Number(range.value) !== v) range.value = v;
+      }
       field.show();
     }
   }

@@ -26,6 +26,8 @@ const CURSOR_PARTS = new Set(["cursor", "line"]);
 const PAUSE = 250;
 /** Time between two looks at what a running motion is, ms. */
 const LOOK = 200;
+/** What to do while a line is drawn. */
+const DRAW = "drag the line on the map, or move the cursor with the arrows and press L again";
 /** Most trajectories that are set into a picture. */
 const MOST_INSETS = 12;
 
@@ -315,6 +317,7 @@ class App {
     const { cursor } = this.state;
     if (this.map.drawing) {
       this.map.drawing = false;
+      this.said("");
       const [eta, rho] = this.lineFrom;
       this.state = { ...this.state, line: { eta: [eta, cursor.eta], rho: [rho, cursor.rho], steps: this.state.line?.steps ?? 200 } };
       this.panel("line");
@@ -322,7 +325,7 @@ class App {
     }
     this.map.drawing = true;
     this.lineFrom = [cursor.eta, cursor.rho];
-    this.said("drag the line on the map, or move the cursor with the arrows and press L again");
+    this.said(DRAW, Infinity);
   }
 
   otherCharacteristic(name) {
@@ -472,11 +475,13 @@ class App {
     element("legend").replaceChildren(...items, from);
   }
 
-  said(text, ms = 4000) {
+  /** Say something for a time; what a demo says has a row of its own, and belongs to the pictures. */
+  said(text, ms = 4000, demo = false) {
     const box = element("caption");
     clearTimeout(this.saying);
     box.textContent = text; box.hidden = !text;
-    this.saying = setTimeout(() => { box.hidden = true; }, ms);
+    box.classList.toggle("demo", demo);
+    if (ms < Infinity) this.saying = setTimeout(() => { box.hidden = true; if (this.map.drawing) this.said(DRAW, Infinity); }, ms);
   }
 
   message(text, remedy, fixed = false) {

@@ -40,6 +40,7 @@ export class MapView {
     this.labels = [];
     this.finished = 0;       // id of the newest request whose map came to its end
     this.late = false;       // whether what is wanted has not come yet: what is older is faint
+    this.unnamed = false;    // whether names and legend are those of a map before: hidden and faint
     this.theme = "";
     this.pointer();
     new ResizeObserver(() => this.redraw()).observe(this.canvas);
@@ -63,16 +64,25 @@ export class MapView {
 
   /** Another map was asked for: what is shown is that of another machine or view, and faint unless it comes at once. */
   asked() {
-    clearTimeout(this.waiting);
+    clearTimeout(this.waiting); clearTimeout(this.naming);
     if (!this.late) this.waiting = setTimeout(() => this.fade(true), AT_ONCE);
+    if (!this.unnamed) this.naming = setTimeout(() => this.unname(true), AT_ONCE);
   }
 
   fade(late) {
     clearTimeout(this.waiting);
     if (this.late === late) return;
     this.late = late;
-    document.getElementById("legend").classList.toggle("late", late);
     this.redraw("tiles", "lines");
+  }
+
+  /** Names and legend follow only with the second level of a map. */
+  unname(unnamed) {
+    clearTimeout(this.naming);
+    if (this.unnamed === unnamed) return;
+    this.unnamed = unnamed;
+    document.getElementById("legend").classList.toggle("late", unnamed);
+    this.redraw("lines");
   }
 
   /** A strip of motions that coexist with those of the map's cells. */
@@ -149,7 +159,7 @@ export class MapView {
     this.fade(!tile.complete && this.tiles.some((t) => t.id !== tile.id));
     if (tile.complete) {
       this.tiles = this.tiles.filter((t) => t === tile || (t.id === tile.id && t.level > tile.level));
-      if (tile.level === 1) { this.labels = placeLabels(tile, this.taken(tile)); this.cells128 = tile; }
+      if (tile.level === 1) { this.labels = placeLabels(tile, this.taken(tile)); this.cells128 = tile; this.unname(false); }
       if (tile.level >= 1) this.app.legend(commonest(tile));
     }
     if (frame.last) this.finished = frame.id;
@@ -186,6 +196,8 @@ export class MapView {
     for (const name of Object.keys(this.curves)) {
       if (!(name in frame.column) || frame.column[name].length === 0) this.curves[name].stale = true;
     }
+    const kinds = this.kinds().map((k) => k.text).join();
+    if (this.listed !== kinds) { this.listed = kinds; this.app.legend(this.app.legendStyles ?? []); }
     this.redraw("lines");
   }
 
@@ -238,7 +250,7 @@ export class MapView {
       this.boundaries(f);
       if (app.campaign) app.campaign.draw(f, c);
       this.boundaryNames(f, c);
-      if (!this.late) this.regionLabels(f, c);
+      if (!this.unnamed) this.regionLabels(f, c);
     });
     f.axes();
     if (scale) this.rigAxes(f, scale);
@@ -422,9 +434,11 @@ export class MapView {
     }
   }
 
-  /** The kinds of boundaries that are drawn, for the legend. */
+  /** The kinds of boundaries that are in view, for the legend. */
   kinds() {
-    const seen = new Set(Object.entries(this.curves).filter(([, c]) => !c.stale).map(([k]) => k.split(":")[0]));
+    const { view } = this.app.state, meets = (list, i, [low, high]) => Math.min(list[i - 1], list[i]) <= high && Math.max(list[i - 1], list[i]) >= low;
+    const inView = ({ eta, rho, stale }) => !stale && eta.some((_, i) => i > 0 && meets(eta, i, view.eta) && meets(rho, i, view.rho));
+    const seen = new Set(Object.entries(this.curves).filter(([, c]) => inView(c)).map(([k]) => k.split(":")[0]));
     return Object.entries(KINDS).filter(([k]) => seen.has(k)).map(([, style]) => style);
   }
 }
