@@ -65,9 +65,7 @@ fn headed(
     let is_sheet = |cell: &str| sheets.iter().any(|sheet| sheet == cell);
     let columns = columns_of(&headings, &rows, [is_file, &is_sheet]);
     let at = |column: usize| columns.iter().position(|c| *c == Some(column));
-    if at(FILE).or(at(DATASET)).is_none() {
-        return None;
-    }
+    at(FILE).or(at(DATASET))?;
     let names_sheet = |index: usize| {
         let mut cells = rows.iter().filter_map(|row| row.get(index));
         cells.any(|cell| holds(sheets, cell))
