@@ -1,7 +1,5 @@
 //! Each request with what answers it.
 
-use std::time::Duration;
-
 use serde_json::json;
 
 use super::frame::Frame;
@@ -10,16 +8,11 @@ use super::stop::Stop;
 use super::wire::{Ask, Request};
 use super::{ExploreError, Session, demo, evidence, export, limits, maps, motions};
 
-/// Longest time that one motion may take.
-const LONGEST: Duration = Duration::from_secs(20);
-
 /// Answer a request.
 pub(super) fn answer(session: &Session, request: &Request, job: &Job) {
-    let longest = request.ask.is_single().then_some(LONGEST);
-    let found = if request.ask.is_given_up() {
-        job.patience(longest).work(|| ask(session, request, job))
-    } else {
-        Ok(ask(session, request, job))
+    let found = match request.ask.longest() {
+        Some(longest) => job.patience(longest).work(|| ask(session, request, job)),
+        None => Ok(ask(session, request, job)),
     };
     let stop = match found {
         Ok(answered) => answered,

@@ -24,8 +24,8 @@ pub enum ExploreError {
     /// A value is outside its range, or the model refuses it.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// A motion takes too long.
-    #[error("this motion takes too long to compute")]
+    /// A motion, or a picture of many, takes too long.
+    #[error("this takes too long to compute")]
     TooLong,
     /// A record has no place here, or no such thing exists.
     #[error("{0}")]
@@ -69,7 +69,7 @@ impl ExploreError {
             Self::Model(_) => {
                 "give a value within the range that the message names"
             }
-            Self::TooLong => "let it settle for fewer periods, or choose a greater η",
+            Self::TooLong => "let it settle for fewer periods, choose a greater η, or fewer cells or steps",
             Self::Absent(_) => "choose one that the page lists",
             Self::Port { .. } => {
                 "another program listens there, perhaps another explorer: choose another --port, or \

@@ -43,11 +43,10 @@ impl Audience {
 }
 
 impl Job {
-    /// Simulations go on as long as somebody waits for them, and a single motion no longer than a limit.
-    pub(super) fn patience(&self, longest: Option<Duration>) -> Patience {
+    /// Simulations go on as long as somebody waits for them, and no longer than a limit.
+    pub(super) fn patience(&self, longest: Duration) -> Patience {
         let (audience, begin) = (self.audience.clone(), Instant::now());
-        let in_time = move || longest.is_none_or(|longest| begin.elapsed() < longest);
-        Patience::new(move || in_time() && !audience.is_gone())
+        Patience::new(move || begin.elapsed() < longest && !audience.is_gone())
     }
 
     /// This map's first tiles begin.

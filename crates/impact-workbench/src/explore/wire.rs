@@ -1,9 +1,16 @@
 //! What the page asks.
 
+use std::time::Duration;
+
 use serde::Deserialize;
 use serde_json::Value;
 
 use super::{ExploreError, State};
+
+/// Longest time that one motion may take.
+const LONGEST_MOTION: Duration = Duration::from_secs(20);
+/// The same of a picture of many, which comes in parts.
+const LONGEST_PICTURE: Duration = Duration::from_secs(1800);
 
 /// A request of the page.
 #[derive(Debug, Clone)]
@@ -125,26 +132,18 @@ impl Kind {
 }
 
 impl Ask {
-    /// Whether it asks for one motion, which is answered at once or not at all.
-    pub(super) fn is_single(&self) -> bool {
-        matches!(
-            self,
-            Self::Motion { .. } | Self::Run { .. } | Self::Inset {}
-        )
-    }
-
-    /// Whether its simulations are given up in their middle once nobody waits for them. All of them are on the
-    /// job's own thread or on those of its page.
-    pub(super) fn is_given_up(&self) -> bool {
-        let streams = matches!(
-            self,
+    /// Longest time that its simulations may take, which are given up in their middle then, or once nobody waits for
+    /// them; `None` of what is not simulated on the job's own thread or on those of its page.
+    pub(super) fn longest(&self) -> Option<Duration> {
+        match self {
+            Self::Motion { .. } | Self::Run { .. } | Self::Inset {} => Some(LONGEST_MOTION),
             Self::Map {}
-                | Self::Boundaries { .. }
-                | Self::Line {}
-                | Self::Basins {}
-                | Self::Coexisting {}
-        );
-        streams || self.is_single()
+            | Self::Boundaries { .. }
+            | Self::Line {}
+            | Self::Basins {}
+            | Self::Coexisting {} => Some(LONGEST_PICTURE),
+            _ => None,
+        }
     }
 
     /// The kind whose jobs it replaces: the next stretch of a motion counts as the motion.
