@@ -218,7 +218,11 @@ fn describe(channel: &InferredChannel) -> String {
         None => ", no numbers".to_owned(),
     };
     let name = channel.name.replace(['\n', '\r'], " ");
-    format!("{name} ({unit}, {} samples{range}{time})", channel.samples)
+    let plural = if channel.samples == 1 { "" } else { "s" };
+    format!(
+        "{name} ({unit}, {} sample{plural}{range}{time})",
+        channel.samples
+    )
 }
 
 /// The line of a channel's unit; the unit, if the file states one or the channel is a rate by its name.
