@@ -7,7 +7,7 @@ use super::{Failure, interrupt};
 use impact_campaign::pipeline::{campaigns, identify, plan};
 use labfiles::output::Lock;
 
-/// Work that writes into a folder, but for studies of the theory.
+/// Work that writes into a folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Work {
     /// The identification of a campaign.
@@ -18,17 +18,19 @@ pub(super) enum Work {
     Plan,
     /// The simulation of a campaign.
     Simulation,
+    /// A study of the theory.
+    Study,
 }
 
 /// Name of the study beside its results; it is written last, so its presence marks complete results.
 pub(super) const COPY: &str = "study.toml";
 
 /// The file that marks the results of each work.
-const MARKS: [(Option<Work>, &str); 4] = [
-    (Some(Work::Identification), identify::FILE),
-    (Some(Work::Comparison), campaigns::COMPARISON),
-    (Some(Work::Plan), plan::FILE),
-    (None, COPY),
+const MARKS: [(Work, &str); 4] = [
+    (Work::Identification, identify::FILE),
+    (Work::Comparison, campaigns::COMPARISON),
+    (Work::Plan, plan::FILE),
+    (Work::Study, COPY),
 ];
 
 /// The right to write into a folder for a work.
@@ -37,7 +39,7 @@ const MARKS: [(Option<Work>, &str); 4] = [
 /// [`Failure`] where the folder holds results of other work or is written into.
 pub(super) fn take(folder: &Path, work: Work) -> Result<Lock, Failure> {
     let lock = interrupt::lock(folder)?;
-    let others = MARKS.iter().filter(|(of, _)| *of != Some(work));
+    let others = MARKS.iter().filter(|(of, _)| *of != work);
     let mut held = others.map(|(_, mark)| folder.join(mark));
     match held.find(|mark| mark.exists()) {
         Some(held) => Err(of_other_work(folder, &held)),

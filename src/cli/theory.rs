@@ -6,8 +6,8 @@ use std::sync::Mutex;
 
 use clap::Args;
 
-use super::out_folder::{self, COPY};
-use super::{Exit, Failure, Progress, Verbosity, interrupt};
+use super::out_folder::{self, COPY, Work};
+use super::{Exit, Failure, Progress, Verbosity};
 use impact_campaign::pipeline::block_cache::BlockCache;
 use impact_workbench::theory::{Pictures, Study, StudyContext, run};
 use labfiles::output::write_bytes;
@@ -58,8 +58,8 @@ impl OutArgs {
         work: impl FnOnce(&StudyContext<'_>) -> Result<(), Failure>,
     ) -> Result<Exit, Failure> {
         let folder = self.folder();
-        let _lock = interrupt::lock(folder)?;
-        refuse_other_results(folder, study)?;
+        let _lock = out_folder::take(folder, Work::Study)?;
+        refuse_other_study(folder, study)?;
         in_folder((folder, key, self.resume), what, verbosity, work)?;
         let copy = folder.join(COPY);
         write_bytes(&copy, study.as_bytes())?;
@@ -79,21 +79,17 @@ fn works(study: &str) -> BTreeSet<String> {
     tables.map(|(name, _)| name).collect()
 }
 
-/// Refuse a folder that holds results of other work: files of both would lie there, and one study that replays
+/// Refuse a folder that holds results of another study: files of both would lie there, and one study that replays
 /// half of them.
 ///
 /// # Errors
 /// [`Failure`] that names the folder.
-fn refuse_other_results(folder: &Path, study: &str) -> Result<(), Failure> {
+fn refuse_other_study(folder: &Path, study: &str) -> Result<(), Failure> {
     let copy = folder.join(COPY);
-    let other = std::fs::read_to_string(&copy).is_ok_and(|held| works(&held) != works(study));
-    let run = folder.join(impact_campaign::pipeline::identify::FILE);
-    let held = match (other, run.exists()) {
-        (true, _) => copy,
-        (_, true) => run,
-        _ => return Ok(()),
-    };
-    Err(out_folder::of_other_work(folder, &held))
+    match std::fs::read_to_string(&copy) {
+        Ok(held) if works(&held) != works(study) => Err(out_folder::of_other_work(folder, &copy)),
+        _ => Ok(()),
+    }
 }
 
 /// A study as it is written.

@@ -19,12 +19,13 @@ use impact_records::language::Language;
 use impact_records::record::Sweep;
 use labfiles::units::{self, Dimension};
 
-use headings::{COLUMNS, DATASET, FILE, column_of, columns_of, states_setting};
+use headings::{COLUMNS, DATASET, FILE, FREQUENCY, column_of, columns_of, states_setting};
 
-use text::{decode, is_file, reader};
+use text::{decode, reader};
 
 pub(super) use headings::in_english;
 pub(super) use sheets::sheet_of;
+pub(super) use text::is_file;
 
 /// The columns that hold numbers.
 const NUMBERS: [usize; 3] = [3, 4, 6];
@@ -253,7 +254,7 @@ pub(super) fn is_run_table(head: &[u8], is_file: &dyn Fn(&str) -> bool) -> bool 
 }
 
 fn is_frequency(heading: &str) -> bool {
-    column_of(heading).is_some_and(|c| COLUMNS[c] == "drive_frequency")
+    column_of(heading) == Some(FREQUENCY)
 }
 
 /// Whether the front of a run table states drive frequencies, and no free decays.

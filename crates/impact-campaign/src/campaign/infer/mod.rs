@@ -225,9 +225,7 @@ fn head_of_run_table(folder: &Path, path: &Path) -> Option<Vec<u8>> {
     let mut head = Vec::new();
     let read = File::open(path).and_then(|f| f.take(HEAD_BYTES).read_to_end(&mut head));
     read.ok()?;
-    let beside = path.parent().unwrap_or(folder);
-    let is_file = |cell: &str| [folder, beside].iter().any(|f| f.join(cell).is_file());
-    run_table::is_run_table(&head, &is_file).then_some(head)
+    run_table::is_run_table(&head, &run_table::is_file(folder, path)).then_some(head)
 }
 
 fn holds_record(source: &dyn Source) -> bool {

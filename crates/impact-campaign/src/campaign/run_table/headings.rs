@@ -22,8 +22,10 @@ pub(super) const COLUMNS: [&str; 9] = [
 pub(super) const FILE: usize = 0;
 /// The column of datasets.
 pub(super) const DATASET: usize = 1;
+/// The column of drive frequencies.
+pub(super) const FREQUENCY: usize = 3;
 /// The columns of settings, of which a run table in a workbook states one.
-const SETTINGS: [usize; 2] = [3, 4];
+const SETTINGS: [usize; 2] = [FREQUENCY, 4];
 
 /// A word as it is compared: in small letters, but for symbols (`f` is a frequency, `F` a force).
 fn compared(word: &str) -> String {

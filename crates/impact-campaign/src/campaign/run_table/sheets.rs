@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::headings::{
-    COLUMNS, DATASET, FILE, column_of, columns_of, states_setting, words_of, words_of_settings,
+    DATASET, FILE, FREQUENCY, column_of, columns_of, states_setting, words_of, words_of_settings,
 };
 use super::text::{decode, is_file, reader};
 
@@ -75,10 +75,7 @@ fn headed(
         text: "\n".repeat(skipped) + below,
         sheets: sheets.to_vec(),
         names_records: at(FILE).is_some() || at(DATASET).is_some_and(names_sheet),
-        states_drive: columns
-            .iter()
-            .flatten()
-            .any(|c| COLUMNS[*c] == "drive_frequency"),
+        states_drive: columns.contains(&Some(FREQUENCY)),
     })
 }
 

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-/// Whether a cell of the run table `name` is the name of a file, in a folder or beside the table.
-pub(super) fn is_file(folder: &Path, name: &str) -> impl Fn(&str) -> bool {
+/// Whether a cell of a run table is the name of a file, in a folder or beside the table, whose path may start there.
+pub(in super::super) fn is_file(folder: &Path, table: impl AsRef<Path>) -> impl Fn(&str) -> bool {
     let folders = [
         Some(folder.to_path_buf()),
-        folder.join(name).parent().map(Path::to_path_buf),
+        folder.join(table).parent().map(Path::to_path_buf),
     ];
     move |cell| folders.iter().flatten().any(|f| f.join(cell).is_file())
 }
