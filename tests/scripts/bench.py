@@ -78,7 +78,7 @@ class Bench:
         self.p[rig.OMEGA], self.p[rig.PHASE] = 2.0 * math.pi * frequency_hz, self.phase
         self.p[rig.GAP] = gap_m
         slope = 1.0 + 0.01 * self.kind.effects * self.d["sign"] * (frequency_hz / self.d["f0"] - 1.0)
-        self.p[[rig.FX, rig.FY]] = self.force * slope
+        self.p[[rig.FX, rig.FY]] = self.force * slope * (frequency_hz / self.d["f0"]) ** self.kind.force_power
 
     def knock(self):
         """What slamming doors and adjusting the generator do to the masses."""

@@ -34,6 +34,8 @@ class Channel:
     noise_v: float = 0.0
     full_scale_v: float = 10.0
     bits: int = 12
+    missed: float = 0.0  # share of the impacts that the contact does not show
+    chatter: bool = False  # a closed contact opens twice for a moment
     wide: bool = False  # the converter's range was chosen for the spikes at impacts
 
 
@@ -52,13 +54,21 @@ class Motion:
         """States at times that were asked for before."""
         return self.states[np.searchsorted(self.times, times)]
 
-    def closed(self, times):
+    def closed(self, times, chatter=False):
         """Whether the contact is closed."""
         if not len(self.impacts):
             return np.zeros(len(times), bool)
         index = np.searchsorted(self.impacts[:, 0], times, side="right") - 1
         end = np.maximum(self.impacts[:, 2], self.impacts[:, 0] + self.pulse_s)
-        return (index >= 0) & (times < end[np.maximum(index, 0)])
+        index, known = np.maximum(index, 0), index >= 0
+        begin, end = self.impacts[index, 0], end[index]
+        part = np.floor(7.0 * (times - begin) / (end - begin))
+        return known & (times < end) & ~(chatter & ((part == 2) | (part == 5)))
+
+    def without(self, share):
+        """The motion without a share of its impacts, for what does not see them all."""
+        kept = np.modf(1e4 * self.impacts[:, 0])[0] >= share
+        return replace(self, impacts=self.impacts[kept])
 
     def drive_v(self, times):
         """The generator's voltage."""
@@ -72,8 +82,10 @@ def channels(d, kind):
     result = []
     for role in kind.roles:
         name = {"drive": "generator", "contact": "contact"}.get(role, f"sensor_{role}")
-        noise = 10.0 * d["noise"] * (1.0 if kind.bits == 12 else 0.1)
+        noise = 10.0 * d["noise"] * kind.noise * (1.0 if kind.bits <= 12 else 0.1)
         c = Channel(role, name, delay_s=late.get(role, 0.0), noise_v=noise, bits=kind.bits)
+        if role == "contact":
+            c = replace(c, missed=kind.contact_missed, chatter=kind.chatter)
         if role not in ("drive", "contact"):
             c = motion_channel(c, d, kind, speed)
         result.append(c)
@@ -95,7 +107,7 @@ def motion_channel(c, d, kind, speed):
         scale = float(f"{(spike if kind.spikes_fit else 0.1 * spike) / 10.0:.2g}")
         unit = "m/s^2/V"
     c = replace(c, scale=scale, scale_text=f"{scale:g} {unit}", gain=gain)
-    c = replace(c, high_passed=c.role == "velocity_y", low_pass=kind.low_pass)
+    c = replace(c, high_passed=kind.high_pass_hidden or c.role == "velocity_y", low_pass=kind.low_pass)
     if kind.smear:
         c = replace(c, smear=kind.smear if kind.smear > 0.0 else d["smear_x"] if of_x else d["smear_y"])
     if of_x:
@@ -146,7 +158,7 @@ def samples(channel, motion, ticks):
     if channel.role == "drive":
         volts = motion.drive_v(read_at) * channel.gain
     elif channel.role == "contact":
-        volts = CONTACT_V * motion.closed(read_at)
+        volts = CONTACT_V * motion.without(channel.missed).closed(read_at, channel.chatter)
     else:
         volts = sensor(channel, motion, ticks) * channel.gain / channel.scale
     volts = volts + channel.pickup_drive * motion.drive_v(ticks)

@@ -37,7 +37,7 @@ def campaign_toml(d, kind, name, sensors):
             lines.append('threshold = "2.4 V"')
         if c.scale_text:
             lines.append(f'scale = "{c.scale_text}"')
-        if c.high_passed:
+        if c.high_passed and not kind.high_pass_hidden:
             lines.append(f'high_pass = "{d["high_pass_hz"]:.3f} Hz"')
         if kind.low_pass_stated and c.low_pass[0]:
             lines.append(f'low_pass = "{c.low_pass[1]:g} Hz"')

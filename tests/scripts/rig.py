@@ -15,8 +15,8 @@ from numba import njit
 # Indices of the array of parameters that the integrator is given.
 (MX, BX, KX, FX, MY, BY, KY, FY, IX, IY, HARDENING, FRICTION, SPEED_OF_FRICTION, A2, PHI2, A3, PHI3, GAP, OMEGA,
  PHASE, LAW, CONTACT_K, CONTACT_C, RESTITUTION, SPEED_EXPONENT, SPEED_REFERENCE, CORNER_X, CORNER_Y, MODE_M,
- MODE_K, MODE_B, STEP, CONTACT_STEP, STICK_SPEED, TOUCH_SPEED) = range(35)
-PARAMETERS = 35
+ MODE_K, MODE_B, STEP, CONTACT_STEP, STICK_SPEED, TOUCH_SPEED, LAG_Y) = range(36)
+PARAMETERS = 36
 # The state: x, x', y, y', the second mode's mass in x and in y, and what a high-pass takes off x' and y'.
 STATES = 10
 RIGID, SPRING_DAMPER, HUNT_CROSSLEY = 0.0, 1.0, 2.0
@@ -36,6 +36,15 @@ def press(u, w, p):
     else:
         force = p[CONTACT_K] * u * math.sqrt(u) * (1.0 + p[CONTACT_C] * w / p[TOUCH_SPEED])
     return max(0.0, force)
+
+
+@njit(cache=True)
+def drive(theta, p):
+    """Course of a force over its amplitude."""
+    course = math.cos(theta)
+    if p[A2] != 0.0 or p[A3] != 0.0:
+        course += p[A2] * math.cos(2.0 * theta + p[PHI2]) + p[A3] * math.cos(3.0 * theta + p[PHI3])
+    return course
 
 
 @njit(cache=True)
@@ -59,11 +68,8 @@ def sticking_force(t, s, p):
 def slope(t, s, p, stuck, d):
     """Time derivative of the state into d."""
     theta = p[OMEGA] * t + p[PHASE]
-    drive = math.cos(theta)
-    if p[A2] != 0.0 or p[A3] != 0.0:
-        drive += p[A2] * math.cos(2.0 * theta + p[PHI2]) + p[A3] * math.cos(3.0 * theta + p[PHI3])
-    fx = applied(s[0], s[1], p[FX] * drive, p[KX], p[BX], p)
-    fy = applied(s[2], s[3], p[FY] * drive, p[KY], p[BY], p)
+    fx = applied(s[0], s[1], p[FX] * drive(theta, p), p[KX], p[BX], p)
+    fy = applied(s[2], s[3], p[FY] * drive(theta - p[LAG_Y], p), p[KY], p[BY], p)
     for i in range(STATES):
         d[i] = 0.0
     if p[MODE_M] > 0.0:

@@ -52,7 +52,8 @@ def machine(d, kind):
     p[rig.FX] = k * d["xst_m"]
     if kind.machine == "double":
         p[rig.MY], p[rig.KY] = kind.mass_ratio * p[rig.MX], d["ky"] * p[rig.KX]
-        p[rig.BY], p[rig.FY] = p[rig.BX], d["fy"] * p[rig.FX]
+        p[rig.BY], p[rig.FY] = kind.damping_ratio_y * p[rig.BX], d["fy"] * p[rig.FX]
+        p[rig.LAG_Y] = kind.force_lag_rad
         p[rig.IY] = 1.0 / p[rig.MY]
     p[rig.IX] = 1.0 / p[rig.MX]
     if kind.second_mode:
