@@ -161,10 +161,18 @@ pub fn is_time_name(name: &str) -> bool {
     // a heading of a unit alone
     let bare = first == "in" && words.len() == 2 && unit_of_text(&words[1]).is_some();
     bare || FIRST_WORDS.contains(&first.as_str())
+        || is_field_of_time(name)
         || words.iter().any(known)
         || alone
         || since
         || name.trim().eq_ignore_ascii_case("x_value")
+}
+
+/// Whether a name is that of a field, or of a channel in a group, that is called as a time alone: `laser.t`.
+fn is_field_of_time(name: &str) -> bool {
+    let field = name.rsplit_once(['.', '/']).map(|(_, field)| field);
+    let whole = !name.contains(char::is_whitespace);
+    field.is_some_and(|f| whole && FIRST_WORDS.contains(&f.to_lowercase().as_str()))
 }
 
 /// Words that name a column of the numbers of rows.
@@ -588,6 +596,10 @@ mod tests {
         let axis = Clock::Axis;
         assert_eq!(
             clocks(&["x.time", "x.values", "contact.time", "contact.values"])[1..],
+            [axis(0), Clock::Shared, axis(2)]
+        );
+        assert_eq!(
+            clocks(&["geo.t", "geo.y", "laser.t", "laser.y"])[1..],
             [axis(0), Clock::Shared, axis(2)]
         );
         assert_eq!(

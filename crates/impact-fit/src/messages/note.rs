@@ -68,6 +68,15 @@ pub enum Note {
     Drifts,
     /// The damping ratio changes over the decay.
     DampingChanges,
+    /// Three times in one record leave nothing that tells their errors.
+    TimesNotTold {
+        /// The error that each is given, s.
+        error_s: f64,
+    },
+    /// What oscillates does not decay, beside or after a motion that does.
+    MayBeForced,
+    /// The fits leave more of the decays than noise, so that they are not of one oscillation.
+    NotOneOscillation,
     /// The record holds too few periods of motion for a test of the decay.
     FewPeriods {
         /// How many.
@@ -141,6 +150,7 @@ message_table! { "note": Note;
         parameter = Value::Message(parameter),
         correlation = Value::Number(*correlation, 2);
     Self::ByMethodAlone { method } => method = Value::Message(method);
+    Self::TimesNotTold { error_s } => error = Value::Number(1e3 * *error_s, 1);
     Self::FewPeriods { periods } => periods = Value::Number(*periods, 1);
     Self::FrictionNotTold { periods, equivalent } =>
         periods = Value::Number(*periods, 1),

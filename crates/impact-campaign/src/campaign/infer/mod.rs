@@ -643,6 +643,24 @@ mod tests {
     }
 
     #[test]
+    fn carts_along_one_axis_are_two_masses_in_any_unit() {
+        for [one, other] in [
+            ["cart A x", "cart B x"],
+            ["cart1_x", "cart2_x"],
+            ["Rider 1 X", "Rider 2 X"],
+            ["red X", "blue X"],
+        ] {
+            for unit in ["m", "px"] {
+                let roles = roles_of(&[(one, unit, 0.5), (other, unit, 0.4)]);
+                let both = [Role::DisplacementX, Role::DisplacementY].map(Some);
+                assert_eq!(roles, both, "{one} {unit}");
+            }
+        }
+        // one marker beside the time alone is one mass
+        assert_eq!(roles_of(&[("marker x", "m", 0.5)]), [Some(Role::DisplacementX)]);
+    }
+
+    #[test]
     fn axes_of_one_sensor_are_those_of_one_body() {
         let imu = [
             ("ax_g", "", 0.02),

@@ -347,9 +347,13 @@ fn is_coordinate(channel: &InferredChannel, words: &[String]) -> bool {
         .unit
         .as_deref()
         .is_none_or(|u| ["px", "pixel", "pixels"].contains(&u));
-    let [word] = words else { return false };
+    let Some((word, before)) = words.split_last() else {
+        return false;
+    };
     let letter = word.trim_end_matches(|c: char| c.is_ascii_digit());
-    pixels && ["x", "y", "z"].contains(&letter)
+    // of a named marker in pixels
+    let of_marker = before.is_empty() || channel.unit.is_some();
+    pixels && of_marker && ["x", "y", "z"].contains(&letter)
 }
 
 /// Channels named alike but for what they measure: "Blue Position", "Blue Velocity", "Red Position" ….
@@ -360,6 +364,8 @@ struct Groups {
     second: Option<String>,
     /// All groups with a motion, also one at rest.
     all: Vec<String>,
+    /// Whether all motions are along one axis, so that its letter tells no more than a quantity does: "cart A x", "cart B x".
+    of_one_axis: bool,
 }
 
 impl Groups {
@@ -367,13 +373,16 @@ impl Groups {
         let mut names: Vec<String> = Vec::new();
         let alive = |c: &InferredChannel| c.range.is_some_and(|[low, high]| high > low);
         let moves = |c: &&InferredChannel| matches!(kind(c), Kind::Velocity | Kind::Displacement);
-        let all: Vec<String> = channels
-            .iter()
-            .filter(moves)
-            .filter_map(|c| group(&c.name))
-            .collect();
-        for channel in channels.iter().filter(moves).filter(|c| alive(c)) {
-            let Some(group) = group(&channel.name) else {
+        let moving = || channels.iter().filter(moves);
+        let mut letters = moving().filter_map(|c| Some(axis(c)?.1));
+        let letter = letters.next();
+        let mut groups = Self {
+            of_one_axis: letter.is_some() && letters.all(|l| Some(l) == letter),
+            ..Self::default()
+        };
+        groups.all = moving().filter_map(|c| groups.of_channel(c)).collect();
+        for channel in moving().filter(|c| alive(c)) {
+            let Some(group) = groups.of_channel(channel) else {
                 continue;
             };
             if !names.contains(&group) {
@@ -381,19 +390,25 @@ impl Groups {
             }
         }
         let mut names = names.into_iter();
-        match (names.next(), names.next(), names.next()) {
-            (first, second, None) => Self { first, second, all },
-            _ => Self {
-                all,
-                ..Self::default()
-            },
+        if let (first, second, None) = (names.next(), names.next(), names.next()) {
+            (groups.first, groups.second) = (first, second);
         }
+        groups
+    }
+
+    /// The group of a channel: what comes before its quantity, or before the axis that all motions are along.
+    fn of_channel(&self, channel: &InferredChannel) -> Option<String> {
+        let by_axis = || {
+            let (base, _) = axis(channel).filter(|_| self.of_one_axis)?;
+            (!base.is_empty()).then(|| base.join(" "))
+        };
+        group(&channel.name).or_else(by_axis)
     }
 
     /// The mass that a channel's group is; `None` unless there are two.
     fn side(&self, channel: &InferredChannel) -> Option<char> {
         let second = self.second.as_ref()?;
-        let group = group(&channel.name)?;
+        let group = self.of_channel(channel)?;
         if Some(&group) == self.first.as_ref() {
             Some('x')
         } else {

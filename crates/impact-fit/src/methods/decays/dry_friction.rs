@@ -107,6 +107,8 @@ impl Shared {
     pub(super) fn estimate(&self, periods: f64) -> Estimate {
         let [low, high] = self.interval();
         let (viscous, spread) = self.viscous;
+        // noise that leaves less than nothing tells no more of β than one that leaves nothing
+        let high = if viscous < 0.0 { high.max(spread.half95()) } else { high };
         let value = self.value();
         let error = 0.5 * (high - low) / self.quantile();
         let most = estimate::limits(Coordinate::Damping).0;
@@ -124,7 +126,7 @@ impl Shared {
         Estimate {
             value: Some(value.max(0.0)),
             standard_error: Some(error),
-            interval95: Some([low.max(0.0), high.max(0.0)]),
+            interval95: Some([low.max(0.0), high]),
             status: if is_weak {
                 Status::Weak
             } else {

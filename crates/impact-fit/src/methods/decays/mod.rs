@@ -104,6 +104,9 @@ pub fn pooled(observations: &[Observation], effects: Effects) -> Option<MethodRe
     if let Some(periods) = too_short(&decays) {
         leave_weak(&mut result, Note::FewPeriods { periods });
     }
+    if are_most(&decays, &may_be_forced, &Decay::relative_error) {
+        leave_weak(&mut result, Note::MayBeForced);
+    }
     if let Some(mains_hz) = hums(&decays) {
         leave_weak(&mut result, Note::MayBeHum { mains_hz });
     }
@@ -164,6 +167,15 @@ fn hums(decays: &[&Decay]) -> Option<f64> {
     all.filter(|_| are_most(decays, &of_hum, &Decay::relative_error))
 }
 
+/// Greatest excursion before an undamped motion, over its amplitude, from which another motion went before it.
+const ANOTHER: f64 = 1.5;
+
+/// Whether a motion does not decay, and another does beside it or before it.
+fn may_be_forced(decay: &Decay) -> bool {
+    let beside = decay.beside.mode.is_some() || decay.beside.beat.is_some();
+    decay.is_undamped() && (beside || decay.before > ANOTHER)
+}
+
 /// Whether most of what decays tell of a quantity, by its errors, is told by some of them.
 fn are_most(
     decays: &[&Decay],
@@ -215,7 +227,8 @@ fn damping_estimate(decays: &[&Decay]) -> Estimate {
     let dampings: Vec<Measured> = decays.iter().map(measured).collect();
     let (value, spread) = weighted::mean(&dampings, &weighted::by_errors(&dampings));
     let half = spread.half95();
-    let most = value + half;
+    // noise that leaves less than nothing tells no more of β than one that leaves nothing
+    let most = value.max(0.0) + half;
     let undamped = value <= half;
     let status = if undamped || is_open(value, spread.error) {
         Status::Weak
@@ -225,7 +238,7 @@ fn damping_estimate(decays: &[&Decay]) -> Estimate {
     Estimate {
         value: Some(value.max(0.0)),
         standard_error: Some(spread.error),
-        interval95: Some([(value - half).max(0.0), most.max(0.0)]),
+        interval95: Some([(value - half).max(0.0), most]),
         status,
         note: undamped.then_some(Note::Undamped { most }),
     }
@@ -257,9 +270,33 @@ fn judge(result: &mut MethodResult, decays: &[&Decay], (spread, friction): (f64,
         Remark::DecaysHaveStructure { share, structure }
     };
     result.remarks.insert(0, of_residuals);
-    if !fits {
-        result.remarks.extend(beat(decays));
+    if fits {
+        return;
     }
+    let beats = beat(decays);
+    if !told || beats.is_some() {
+        let periods = median(&|d| d.periods);
+        allow_for_another(result, structure, periods);
+    }
+    result.remarks.extend(beats);
+}
+
+/// Widen the intervals by what an oscillation that decays leave, of a share of them and of a frequency near theirs, moves
+/// their rates: a phase that is off by s at random over a time T is a line whose slope is off by √12 s/T.
+fn allow_for_another(result: &mut MethodResult, share: f64, periods: f64) {
+    let off = 12f64.sqrt() * share / (std::f64::consts::TAU * periods.max(1.0));
+    let widen = |estimate: &mut Option<Estimate>, more: f64| {
+        if let Some([low, high]) = estimate.as_mut().and_then(|e| e.interval95.as_mut()) {
+            *low = (*low - more).max(0.0);
+            *high += more;
+        }
+    };
+    let parameters = &mut result.parameters;
+    let frequency = &mut parameters.natural_frequency_hz;
+    let hz = frequency.as_ref().and_then(|e| e.value).unwrap_or(0.0);
+    widen(frequency, NORMAL_975 * off * hz);
+    widen(&mut parameters.damping_ratio, NORMAL_975 * off);
+    leave_weak(result, Note::NotOneOscillation);
 }
 
 /// The two frequencies of decays that beat.

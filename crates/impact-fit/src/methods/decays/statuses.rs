@@ -81,6 +81,26 @@ fn an_interval_that_what_changes_made_wide_is_weak_with_that_reason() {
 }
 
 #[test]
+fn a_tone_before_which_another_motion_died_is_not_surely_the_rig() {
+    let mut tone = fitted(6.0, |t| (TAU * 47.3 * t).cos());
+    tone.before = 3.0;
+    let found = pooled(&[observation(vec![tone])], Effects::none()).unwrap();
+    let f0 = found.parameters.natural_frequency_hz.unwrap();
+    assert_eq!((f0.status, f0.note), (Status::Weak, Some(Note::MayBeForced)));
+}
+
+#[test]
+fn an_upper_limit_of_beta_is_no_nearer_to_zero_than_its_error_allows() {
+    let mut grows = fitted(4.0, |t| (TAU * 5.0 * t).cos());
+    grows.damping_ratio = -3e-3;
+    grows.damping_ratio_error = 1e-3;
+    grows.beside_friction = None;
+    let found = pooled(&[observation(vec![grows])], Effects::none()).unwrap();
+    let [low, high] = found.parameters.damping_ratio.unwrap().interval95.unwrap();
+    assert!(low == 0.0 && high > 1.9e-3, "{high}");
+}
+
+#[test]
 fn a_stop_by_hand_is_named() {
     let decay = |t: f64| (-0.4 * t).exp() * (TAU * 4.0 * t).cos();
     let stopped = fitted(6.0, |t| if t < 3.0 { decay(t) } else { 0.0 });

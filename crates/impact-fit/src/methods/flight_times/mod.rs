@@ -7,8 +7,8 @@
 mod rows;
 mod scatter;
 
-use crate::estimate;
-use crate::messages::Remark;
+use crate::estimate::{self, Status};
+use crate::messages::{Note, Remark};
 use crate::method::Method;
 use crate::methods::answer::MethodResult;
 use crate::methods::fits::Fits;
@@ -71,7 +71,11 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         .filter_map(|row| Some((row, fitted(&row.times_s)?)))
         .collect();
     if fits.is_empty() {
-        return None;
+        let remarks: Vec<Remark> = not_used(left_out, &missed, observations).collect();
+        return (!missed.is_empty()).then(|| MethodResult {
+            remarks,
+            ..MethodResult::default()
+        });
     }
     let stated_s = stated_error_s(&records);
     let scatter = Scatter::of(&fits, stated_s);
@@ -97,7 +101,11 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         freedom: scatter.freedom,
         ..Spread::known(error)
     };
-    let restitution = estimate::estimate_within(Coordinate::Restitution, value, spread, None);
+    let mut restitution = estimate::estimate_within(Coordinate::Restitution, value, spread, None);
+    if let Some(error_s) = scatter.times_s.filter(|_| !scatter.is_told()) {
+        restitution.status = Status::Weak;
+        restitution.note = Some(Note::TimesNotTold { error_s });
+    }
     result.parameters.restitution = Some(restitution);
     result.impact_groups = Some(ImpactGroups {
         by_record: all.clone(),
@@ -394,6 +402,51 @@ mod tests {
         let found = pooled(&[timed("a", &changing(0.41, 0.03, 5, 0.0, 0))]).expect("a result");
         let missed = |r: &Remark| matches!(r, Remark::ImpactsMissed { .. });
         assert!(!found.remarks.iter().any(missed), "{:?}", found.remarks);
+    }
+
+    #[test]
+    fn a_bounce_missed_in_a_short_throw_is_named_and_gives_no_r() {
+        // R = 0.84, the second of five impacts not heard
+        let found = pooled(&[timed("a", &[0.5, 1.2589, 2.4314, 2.8816])]).expect("a result");
+        assert_eq!(found.parameters.restitution, None);
+        let text = found.remarks.iter().map(ToString::to_string);
+        let text = text.collect::<Vec<_>>().join("\n");
+        assert!(text.contains("impacts missing among the times: 1, the first in a at about 1.896 s"), "{text}");
+    }
+
+    #[test]
+    fn three_times_tell_nothing_of_their_own_errors() {
+        let found = pooled(&[timed("a", &[0.5, 1.1, 1.58])]).expect("a result");
+        let r = found.parameters.restitution.expect("R");
+        assert_eq!(r.status, Status::Weak);
+        assert!(matches!(r.note, Some(Note::TimesNotTold { .. })), "{r:?}");
+        let [low, high] = r.interval95.expect("an interval");
+        assert!(high - low > 0.01, "{low} {high}");
+    }
+
+    #[test]
+    fn prop_intervals_of_short_throws_hold_r() {
+        use rand::SeedableRng;
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(20_261_128);
+        for (impacts, throws, scatter_s) in
+            [(4, 1, 3e-4), (4, 1, 1e-5), (3, 3, 3e-4), (5, 1, 3e-4), (4, 3, 1e-4)]
+        {
+            let held = (0..200).filter(|_| {
+                let mut throw = |k: usize| {
+                    let times = row(0.78, impacts - 1);
+                    let times = times.iter().map(|t| t + scatter_s * normal(&mut rng));
+                    // printed to 0.1 ms
+                    let times: Vec<f64> = times.map(|t| (1e4 * t).round() / 1e4).collect();
+                    timed(&format!("throw {k}"), &times)
+                };
+                let all: Vec<Observation> = (0..throws).map(&mut throw).collect();
+                let found = pooled(&all).expect("a result");
+                let r = found.parameters.restitution.and_then(|r| r.interval95);
+                r.is_some_and(|[low, high]| (low..=high).contains(&0.78))
+            });
+            let share = held.count() as f64 / 200.0;
+            assert!(share > 0.9, "{impacts} {throws} {scatter_s}: {share}");
+        }
     }
 
     #[test]

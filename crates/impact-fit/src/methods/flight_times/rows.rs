@@ -58,11 +58,11 @@ pub(super) fn rows(records: &[(usize, &Observation)]) -> Rows {
     for (record, o) in records {
         let flights = flights(o);
         let ratios = ratios(o);
-        let missed: Vec<usize> = (1..flights.len())
-            .filter(|k| two_in_one(&ratios, *k, median))
-            .collect();
-        let first = |k: &usize| (*record, o.impacts[*k].time_s + flights[*k] / (1.0 + median));
-        found.missed.extend(missed.iter().map(first));
+        let two = (1..flights.len()).filter_map(|k| Some((k, two_in_one(&ratios, k, median)?)));
+        let two: Vec<(usize, f64)> = two.collect();
+        let first = |(k, r): &(usize, f64)| (*record, o.impacts[*k].time_s + flights[*k] / (1.0 + r));
+        found.missed.extend(two.iter().map(first));
+        let missed: Vec<usize> = two.iter().map(|(k, _)| *k).collect();
         let mut begin = 0;
         for end in 1..=flights.len() {
             let beside = missed.contains(&end) || missed.contains(&(end - 1));
@@ -85,15 +85,22 @@ pub(super) fn rows(records: &[(usize, &Observation)]) -> Rows {
     found
 }
 
-/// Whether a flight is two, the impact between them missing: the ratios to the flight before and of the one
-/// after are R(1 + R) and R²/(1 + R), nearer to that than to R both.
-fn two_in_one(ratios: &[f64], flight: usize, restitution: f64) -> bool {
-    let (Some(to), Some(from)) = (ratios.get(flight - 1), ratios.get(flight)) else {
-        return false;
-    };
+/// How far the ratio of the flight after one that is two may be off what R of the two gives, relative.
+const AS_TWO: f64 = 0.15;
+
+/// R where a flight is two, the impact between them missing: the ratios to the flight before and of the one
+/// after are R(1 + R) and R²/(1 + R), nearer to that than to R both; or the flight is longer than the one before, and
+/// what follows is of the R that the two give.
+fn two_in_one(ratios: &[f64], flight: usize, restitution: f64) -> Option<f64> {
+    let (to, from) = (ratios.get(flight - 1)?, ratios.get(flight)?);
+    let own = 0.5 * ((1.0 + 4.0 * to).sqrt() - 1.0);
+    if *to > GREATEST && own < GREATEST && (from * (1.0 + own) / own.powi(2)).ln().abs() < AS_TWO {
+        return Some(own);
+    }
     let (sum, half) = (1.0 + restitution, 0.5 * (1.0 + restitution).ln());
     let near = |ratio: f64, two: f64| (ratio / two).ln().abs() < half;
-    near(*to, restitution * sum) && near(*from, restitution.powi(2) / sum)
+    let both = near(*to, restitution * sum) && near(*from, restitution.powi(2) / sum);
+    both.then_some(restitution)
 }
 
 /// Gauss–Newton for `t_0`, `T_0` and R from the ratio of the first two flights.

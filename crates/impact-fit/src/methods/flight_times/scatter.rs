@@ -12,7 +12,7 @@ use impact_records::signal::{columns, robust};
 
 /// Standard error of a time that neither its source nor the scatter states, s.
 const USUAL_ERROR_S: f64 = 2e-3;
-/// Degrees of freedom from which the scatter is looked at.
+/// Degrees of freedom from which a trend is looked at.
 const ENOUGH: f64 = 2.0;
 /// Ratios of the variances in a factor of ten.
 const PER_DECADE: f64 = 4.0;
@@ -25,7 +25,8 @@ const SURE: f64 = 0.95;
 pub(super) struct Scatter {
     /// Each row's.
     pub(super) rows: Vec<RowEstimate>,
-    /// Degrees of freedom of their errors; infinite where these are as stated.
+    /// Degrees of freedom of their errors, the scatter between rows where none is left in them; infinite where nothing
+    /// tells the errors of the times.
     pub(super) freedom: f64,
     /// Scatter of the times, s; not known where it is R that scatters.
     pub(super) times_s: Option<f64>,
@@ -48,17 +49,27 @@ impl Scatter {
     pub(super) fn of(fits: &[(&Row, Fitted)], stated_s: Option<f64>) -> Self {
         let ratios = Ratios::of(fits.iter().map(|(row, _)| *row));
         let mix = |with_slope| ratios.mixed(with_slope, stated_s);
-        let mixed = mix(false).filter(|m| m.freedom >= ENOUGH);
-        let Some(mixed) = mixed else {
-            return Self::by_times(fits, &ratios, stated_s.unwrap_or(USUAL_ERROR_S));
-        };
         let least_s = stated_s.unwrap_or(0.0);
+        let Some(mixed) = mix(false) else {
+            // three times in each row: what a source prints is the least that they may be off
+            return match fits.len() {
+                1 => Self::by_times(fits, &ratios, least_s.max(USUAL_ERROR_S)),
+                rows => Self {
+                    freedom: (rows - 1) as f64,
+                    ..Self::by_times(fits, &ratios, least_s)
+                },
+            };
+        };
         let known = fits.iter().enumerate().all(|(i, (_, fit))| {
             let (_, error) = mixed.logarithm(i);
             fit.restitution * error <= fit.error_per_s * least_s
         });
         if known {
-            return Self::by_times(fits, &ratios, least_s);
+            // digits are the least that the times may be off, and a scatter within them may be one by chance
+            return Self {
+                freedom: mixed.freedom,
+                ..Self::by_times(fits, &ratios, least_s)
+            };
         }
         let rows = fits.iter().enumerate().map(|(i, (_, fit))| {
             let (mean, error) = mixed.logarithm(i);
@@ -100,6 +111,11 @@ impl Scatter {
             times_s: Some(error_s),
             own: None,
         }
+    }
+
+    /// Whether anything tells the errors of the times.
+    pub(super) fn is_told(&self) -> bool {
+        self.freedom.is_finite()
     }
 }
 

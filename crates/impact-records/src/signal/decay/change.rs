@@ -88,7 +88,8 @@ pub struct Course {
     pub damping_z_score: f64,
     /// What changes the damping ratio best.
     pub law: DampingLaw,
-    /// Least and greatest damping ratio: of the parts, and that of the law without what changes it.
+    /// Least and greatest damping ratio: at both ends, of the parts, and those without what changes it by the laws that
+    /// are not excluded.
     pub damping_range: Option<[f64; 2]>,
     /// The damping ratio in parts of equal length, the first at the beginning.
     pub parts: Vec<PartOfDecay>,
@@ -157,15 +158,12 @@ impl<'a> Shapes<'a> {
         }
     }
 
-    /// Rate of decay by a law without what changes it.
-    fn viscous(&self, law: DampingLaw) -> Option<f64> {
-        let shape = match law {
-            DampingLaw::Friction => Shape::Friction,
-            DampingLaw::Drag => Shape::Drag,
-            DampingLaw::Unknown => return None,
-        };
-        let of_law = self.fits.iter().find(|f| f.0.shape == shape);
-        of_law.map(|f| f.0.rates[1])
+    /// Rates of decay without what changes them, by the laws that are not excluded.
+    fn viscous(&self) -> impl Iterator<Item = f64> {
+        let most = self.best().0.squares + TOLD * self.variance;
+        let possible = move |p: &&Point| p.shape != Shape::Bent && p.squares < most;
+        let points = self.fits.iter().map(|f| &f.0);
+        points.filter(possible).map(|p| p.rates[1])
     }
 
     /// Standard error of a rate of a fit.
@@ -198,14 +196,10 @@ pub(super) fn course(prepared: &Prepared, viscous: &Point, rate_hz: f64) -> Cour
     let parts = parts(shapes.series, best, count, shapes.variance);
     let at = |share: f64| best.shape.rate(&best.rates, share * count as f64) / natural;
     let error = shapes.error(best, 1) / natural;
-    let limit = shapes.viscous(law).map(|sigma| sigma / natural);
-    let limits = limit.map(|l| [l - error, l + error]);
-    let ends = if parts.is_empty() {
-        vec![at(0.125), at(0.875)]
-    } else {
-        parts.iter().map(|p| p.damping_ratio).collect()
-    };
-    let values = ends.into_iter().chain(limits.into_iter().flatten());
+    let limits = shapes.viscous().map(|sigma| sigma / natural);
+    let limits = limits.flat_map(|l| [l - error, l + error]);
+    let of_parts = parts.iter().map(|p| p.damping_ratio);
+    let values = [at(0.0), at(1.0)].into_iter().chain(of_parts).chain(limits);
     let range = crate::signal::robust::range(values);
     let z_score = shapes.fits.iter().map(|f| f.1.abs()).fold(0.0, f64::max);
     Course {

@@ -17,7 +17,7 @@ use super::prepared::Prepared;
 use super::response::{Response, rate};
 use super::shape::Shape;
 use super::watched::MotionSignal;
-use crate::signal::{robust, whole};
+use crate::signal::whole;
 
 /// A decay by viscous damping and dry friction of any amount.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -83,17 +83,40 @@ fn rests_at(series: &Series, viscous: &Point) -> Option<usize> {
     None
 }
 
-/// The squares that a motion up to a value and rest after it leave.
+/// Root mean square of what is no motion any more over that of what the fit to the motion leaves, at most.
+const QUIET: f64 = 3.0;
+
+/// The squares that a motion up to a value and rest after it leave, both over a background; `None` where what follows
+/// does not rest, as where two motions that beat have cancelled each other.
 fn squares_until(series: &Series, viscous: &Point, end: usize) -> Option<f64> {
     let point = series.part(0..end).descend(Shape::Rubbed, viscous.rates)?;
-    let rests = robust::squares_about_mean(&series.values[end..]);
-    Some((point.squares + rests).max(f64::MIN_POSITIVE))
+    let after = series.part(end..series.values.len());
+    // no more values than the background has factors are met whatever they are
+    let rests = after.squares_about_background().unwrap_or(0.0);
+    let exact = (1e-6 * point.displacement(series.quantity).norm()).powi(2);
+    let quiet = QUIET * QUIET * (point.squares / end as f64).max(exact);
+    let all = (point.squares + rests).max(f64::MIN_POSITIVE);
+    (rests <= quiet * after.values.len() as f64).then_some(all)
 }
 
-/// Ends that a motion may have under friction: where it comes to rest, and that of the series.
+/// Parts of a series, each from its beginning, whose fits are asked where the motion ends: where noise hides the end from
+/// fits of more and more of it, one of them holds most of the motion and little of the rest.
+const PARTS: usize = 8;
+
+/// Ends that a motion may have under friction: where it comes to rest, as fits of parts have it, and that of the series.
 fn ends(series: &Series, viscous: &Point) -> impl Iterator<Item = usize> {
-    let all = [rests_at(series, viscous), Some(series.values.len())];
-    all.into_iter().flatten()
+    let count = series.values.len();
+    let of_part = |k: usize| {
+        let part = series.part(0..k * count / PARTS);
+        let point = part.descend(Shape::Rubbed, viscous.rates)?;
+        last_turn(&point, series.quantity, count).filter(|end| *end < count)
+    };
+    let mut all: Vec<usize> = (1..=PARTS).filter_map(of_part).collect();
+    all.extend(rests_at(series, viscous));
+    all.push(count);
+    all.sort_unstable();
+    all.dedup();
+    all.into_iter()
 }
 
 /// The least squares that a motion under viscous damping and friction leaves.

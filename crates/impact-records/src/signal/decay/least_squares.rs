@@ -109,6 +109,18 @@ impl Series {
         (0..=self.degree).map(power).collect()
     }
 
+    /// The squares that the background alone leaves.
+    pub(super) fn squares_about_background(&self) -> Option<f64> {
+        let columns = self.background();
+        let (normal, right) = equations(&columns, &self.values);
+        let factors = normal.cholesky()?.solve(&right);
+        let mut rest = self.values.clone();
+        for (column, factor) in columns.iter().zip(factors.iter()) {
+            crate::signal::columns::subtract(&mut rest, *factor, column);
+        }
+        Some(dot(&rest, &rest))
+    }
+
     /// Background, friction where it has a column, cosine and sine at given rates.
     pub(super) fn linear_columns(&self, shape: Shape, rates: &Rates) -> Vec<Vec<f64>> {
         let mut columns = self.background();

@@ -27,7 +27,7 @@ use natural::{GROWS, Natural};
 use prepared::{LEAST_PERIODS, Prepared};
 use shape::Shape;
 
-use crate::signal::whole;
+use crate::signal::{robust, whole};
 
 pub use change::{Course, DampingLaw, Drift, LEAST_TESTED, PartOfDecay, RESOLVED};
 pub use friction::BesideFriction;
@@ -81,6 +81,9 @@ pub struct Decay {
     pub periods: f64,
     /// First fitted sample.
     pub first: usize,
+    /// Greatest excursion before that sample over the amplitude.
+    #[serde(default)]
+    pub before: f64,
     /// Number of fitted samples.
     pub samples: usize,
     /// When the motion was stopped, s from the record's first sample, if it was.
@@ -121,11 +124,19 @@ impl Decay {
             && self.damping_ratio < 2.0 * earlier.damping_ratio.abs() + GROWS * of_both
     }
 
+    /// Whether the amplitude does not fall by more than its error.
+    pub fn is_undamped(&self) -> bool {
+        self.damping_ratio < UNDAMPED * self.damping_ratio_error
+    }
+
     /// Standard error of f0 over f0.
     pub fn relative_error(&self) -> f64 {
         self.natural_frequency_error_hz / self.natural_frequency_hz
     }
 }
+
+/// Damping ratio, in standard errors, below which a motion may be undamped.
+const UNDAMPED: f64 = 2.0;
 
 /// Fit the first free decay of the samples of one channel.
 ///
@@ -172,15 +183,48 @@ pub fn fit_channels(channels: &[Watched<'_>], rate_hz: f64) -> Vec<Decay> {
 /// are what a record in which the mass is first held has in common with an oscillation.
 const MORE_LEFT: f64 = 2.0;
 
-/// The decays of one channel, one after each blow.
+/// The decays of one channel, one after each blow; where a drift hides the motion, of what is left without it.
 fn of_channel(channel: Watched<'_>, rate_hz: f64) -> Vec<Decay> {
+    let found = of_values(channel, rate_hz);
+    if !found.is_empty() {
+        return found;
+    }
+    let level = without_line(channel.values);
+    let channel = Watched {
+        values: &level,
+        ..channel
+    };
+    of_values(channel, rate_hz)
+}
+
+/// Samples less the straight line through the medians of their first and their last third.
+fn without_line(samples: &[f64]) -> Vec<f64> {
+    let third = samples.len() / 3;
+    let ends = [&samples[..third], &samples[samples.len() - third..]].map(robust::median);
+    let [Some(first), Some(last)] = ends else {
+        return samples.to_vec();
+    };
+    let slope = (last - first) / (2.0 * third as f64);
+    let line = |i: usize| first + slope * (i as f64 - 0.5 * third as f64);
+    let values = samples.iter().enumerate();
+    values.map(|(i, v)| v - line(i)).collect()
+}
+
+/// The decays of the samples of one channel.
+fn of_values(channel: Watched<'_>, rate_hz: f64) -> Vec<Decay> {
     let cleared = Cleared::of(channel);
     let decays = of_blows(&cleared, rate_hz);
     if cleared.tones.is_empty() {
         return decays;
     }
     let plain = of_blows(&Cleared::plain(channel), rate_hz);
-    if left(&decays, rate_hz) > MORE_LEFT * left(&plain, rate_hz) {
+    // a tone that is found once more is no decay
+    let is_tone = |d: &Decay| {
+        let omega = std::f64::consts::TAU * d.natural_frequency_hz / rate_hz;
+        cleared.is_tone([omega, 0.0], d.samples) && d.is_undamped()
+    };
+    let better = left(&decays, rate_hz) > MORE_LEFT * left(&plain, rate_hz);
+    if better && !plain.iter().all(is_tone) {
         plain
     } else {
         decays
@@ -259,6 +303,11 @@ fn of_part(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {
     Some(until_rest.unwrap_or(decay))
 }
 
+/// Greatest excursion of samples from an offset.
+fn greatest(samples: &[f64], offset: f64) -> f64 {
+    samples.iter().map(|v| (v - offset).abs()).fold(0.0, f64::max)
+}
+
 /// The decay of a part of a record with one blow or release.
 fn fitted(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {
     let prepared = Prepared::of(part)?;
@@ -303,6 +352,7 @@ fn fitted(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {
         channel: 0,
         periods: whole.samples as f64 * natural.frequency / prepared.factor as f64,
         first: prepared.first,
+        before: greatest(&part.cleared[..prepared.first], whole.offset) / whole.amplitude,
         samples: whole.samples,
         stopped_s: None,
     })

@@ -1,7 +1,7 @@
 //! Dry friction beside viscous damping.
 
 use super::super::{MotionSignal, Watched, fit_channels};
-use super::released;
+use super::{released, white};
 
 /// Differences of a series, at the same times.
 fn differentiated(values: &[f64], rate_hz: f64) -> Vec<f64> {
@@ -51,5 +51,30 @@ fn valid_velocities_and_accelerations_tell_the_friction_too() {
             (found.damping_ratio / 0.02 - 1.0).abs() < 0.01,
             "{quantity:?} {found:?}"
         );
+    }
+}
+
+#[test]
+fn valid_friction_is_told_under_a_drift_and_in_noise_above_it() {
+    // β, friction, rate, periods, drift over the record, noise
+    for (damping_ratio, rest, rate_hz, periods, drift, noise) in [
+        (0.03, 0.01, 120.0, 15.0, 0.3, 5e-3),
+        (0.03, 0.01, 120.0, 15.0, -0.3, 5e-3),
+        (0.0023, 0.01, 25.5, 43.0, 0.0, 0.03),
+    ] {
+        let mut held = 0;
+        for seed in 0..8 {
+            let mut samples = released(3.0, damping_ratio, rest, (rate_hz, periods));
+            let count = samples.len() as f64;
+            let times = samples.iter_mut().enumerate();
+            times.for_each(|(i, v)| *v += drift * i as f64 / count);
+            white(&mut samples, noise, seed);
+            let found = fit_channels(&[Watched::displacement(&samples)], rate_hz)[0]
+                .beside_friction
+                .unwrap();
+            let error = found.known_friction_error.hypot(found.added_error);
+            held += usize::from((found.damping_ratio - damping_ratio).abs() < 2.2 * error);
+        }
+        assert!(held > 5, "{damping_ratio} {drift}: {held} of 8");
     }
 }
