@@ -99,11 +99,8 @@ export class CampaignView {
   head() {
     const box = element("record-head"), label = make("label", "Record ");
     this.select = make("select");
-    this.select.append(...this.facts.records.map((r) => {
-      const o = make("option", `${r.id} (${r.decay ? "free decay" : named(r.motion)}${r.out === null ? "" : ", left out"})`);
-      o.value = r.id;
-      return o;
-    }));
+    const text = (r) => `${r.id} (${r.decay ? "free decay" : named(r.motion)}${r.out === null ? "" : ", left out"})`;
+    this.select.append(...this.facts.records.map((r) => new Option(text(r), r.id)));
     this.select.addEventListener("change", () => this.app.choose(this.facts.records.find((r) => r.id === this.select.value)));
     label.append(this.select);
     this.title = make("span");

@@ -118,9 +118,7 @@ export class Dialogs {
       power_law: ["0.05 0.4 0", "coefficient, exponent, floor: R = max(floor, 1 − coefficient·v^exponent)."],
       exponential: ["0.95 0.8 3", "slow, fast, speed: R = fast + (slow − fast)·exp(−v/speed)."],
     };
-    for (const [name, label] of [["constant", "constant"], ["table", "table"], ["formula", "formula"], ["power_law", "power law"], ["exponential", "exponential"]]) {
-      const o = make("option", label); o.value = name; select.append(o);
-    }
+    select.append(...Object.keys(forms).map((name) => new Option(name.replace("_", " "), name)));
     note.id = "law-note"; note.setAttribute("role", "status"); text.setAttribute("aria-errormessage", note.id);
     const say = (of, why) => { note.textContent = (why ? `${why}. ` : "") + forms[of][1]; note.className = why ? "fault" : "note"; text.setAttribute("aria-invalid", String(Boolean(why))); };
     const fill = (name) => {
