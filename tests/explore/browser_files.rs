@@ -174,3 +174,30 @@ fn browser_a_map_that_is_being_replaced_is_faint() {
     let late = browser.evaluate("document.getElementById('legend').classList.contains('late')");
     assert_eq!(late, json!(false));
 }
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_results_without_their_records_show_map_boundaries_and_fit() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["campaign.resolved.json", "identification.json"] {
+        let example = concat!(env!("CARGO_MANIFEST_DIR"), "/reports/example");
+        std::fs::copy(format!("{example}/{name}"), folder.path().join(name)).unwrap();
+    }
+    let explorer = Explorer::start(&["."], folder.path());
+    let mut browser = Chromium::open(&explorer.url(), (390, 844));
+    browser.until("document.getElementById('message').textContent.includes('cannot be shown')");
+    let wide = browser.evaluate("document.getElementById('message').offsetWidth");
+    assert!(wide.as_f64() > Some(350.0), "{wide}");
+    browser.until(QUIET);
+    browser.until("impactid.campaign.fit !== null && impactid.map.labels.length > 1");
+    browser.until("Object.values(impactid.map.curves).some((c) => c.exists)");
+    browser.evaluate("impactid.choose(impactid.campaign.facts.records[0])");
+    let why = "document.querySelector('#traces .bad')?.textContent";
+    browser.until(&format!("{why} !== undefined"));
+    let (why, hint) = (browser.evaluate(why), "which file is missing");
+    assert!(
+        why.as_str().is_some_and(|w| w.contains(".h5")),
+        "{hint}: {why}"
+    );
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
