@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::chromium::{Chromium, SIZE};
-use super::server::{Explorer, QUIET, SAMPLE};
+use super::server::{Explorer, QUIET, SAMPLE, STUDIES};
 
 /// The stripes of coexisting motions, which come last, are there.
 const STRIPED: &str = "impactid.map.other?.id === impactid.wire.newest.map";
@@ -78,24 +78,29 @@ fn browser_the_svg_shows_what_is_seen() {
 
 #[test]
 #[ignore = "needs chromium"]
-fn browser_the_png_has_the_keys_and_the_numbers() {
-    let explorer = Explorer::theory();
-    let mut browser = Chromium::open(&explorer.url(), SIZE);
-    browser.until(QUIET);
-    browser.until(STRIPED);
-    browser.evaluate("document.fonts.ready.then(() => true)");
-    browser.evaluate(KEPT);
-    export(&mut browser, "PNG");
-    browser.until("Boolean(kept.get('explorer.png'))");
-    // within the place of each key and number there is ink
-    let empty = "(() => { const b = kept.get('explorer.png'), canvas = new OffscreenCanvas(b.width, b.height), c = canvas.getContext('2d'); \
-         c.drawImage(b, 0, 0); \
-         const all = [...document.querySelectorAll('main canvas, #legend, #readout, #numbers, h1')].filter((e) => e.checkVisibility()).map((e) => e.getBoundingClientRect()); \
-         const left = Math.min(...all.map((b) => b.left)) - 12, top = Math.min(...all.map((b) => b.top)) - 12; \
-         const parts = [...document.querySelectorAll('#legend > span, #numbers dt, #numbers dd, #readout')]; \
-         return parts.filter((e) => { const r = e.getBoundingClientRect(), d = c.getImageData(r.left - left, r.top - top, r.width, r.height).data; \
-           let ink = 0; for (let i = 0; i < d.length; i += 4) if (d[i] + d[i + 1] + d[i + 2] < 400) ink++; return ink < 8; }).map((e) => e.textContent); })()";
-    assert_eq!(browser.evaluate(empty), json!([]));
+fn browser_the_png_has_the_keys_the_numbers_and_the_whole_title() {
+    let study = format!("{STUDIES}/soft-contact.toml");
+    let explorer = Explorer::start(&[&study], &std::env::temp_dir());
+    for size in [SIZE, (390, 844)] {
+        let mut browser = Chromium::open(&explorer.url(), size);
+        browser.until(QUIET);
+        browser.until(STRIPED);
+        browser.evaluate("document.fonts.ready.then(() => true)");
+        browser.evaluate(KEPT);
+        export(&mut browser, "PNG");
+        browser.until("Boolean(kept.get('explorer.png'))");
+        // within the place of each key, number and line of the title there is ink, and none at the edges
+        let empty = "(() => { const b = kept.get('explorer.png'), canvas = new OffscreenCanvas(b.width, b.height), c = canvas.getContext('2d'); \
+             c.drawImage(b, 0, 0); \
+             const all = [...document.querySelectorAll('main canvas, #legend, #readout, #numbers, h1')].filter((e) => e.checkVisibility()).map((e) => e.getBoundingClientRect()); \
+             const left = Math.floor(Math.min(...all.map((b) => b.left))) - 12, top = Math.floor(Math.min(...all.map((b) => b.top))) - 12; \
+             const ink = (x, y, w, h) => { const d = c.getImageData(x, y, w, h).data; let n = 0; for (let i = 0; i < d.length; i += 4) if (d[i] + d[i + 1] + d[i + 2] < 400) n++; return n; }; \
+             const parts = [...document.querySelectorAll('#legend > span, #numbers dt, #numbers dd, #readout')].map((e) => [e.textContent, e.getBoundingClientRect()]); \
+             const lines = [...document.getElementById('title').getClientRects()].map((r) => ['the end of a line of the title', new DOMRect(r.right - 30, r.top, 30, r.height)]); \
+             const edges = [ink(0, 0, 3, b.height), ink(b.width - 3, 0, 3, b.height)].some((n) => n > 0) ? ['an edge has ink'] : []; \
+             return [...parts, ...lines].filter(([, r]) => ink(r.left - left, r.top - top, r.width, r.height) < 8).map(([t]) => t).concat(edges); })()";
+        assert_eq!(browser.evaluate(empty), json!([]), "{size:?}");
+    }
 }
 
 #[test]
@@ -168,4 +173,31 @@ fn browser_a_map_that_is_being_replaced_is_faint() {
     assert_eq!(browser.evaluate(opacity), json!(1));
     let late = browser.evaluate("document.getElementById('legend').classList.contains('late')");
     assert_eq!(late, json!(false));
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_results_without_their_records_show_map_boundaries_and_fit() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["campaign.resolved.json", "identification.json"] {
+        let example = concat!(env!("CARGO_MANIFEST_DIR"), "/reports/example");
+        std::fs::copy(format!("{example}/{name}"), folder.path().join(name)).unwrap();
+    }
+    let explorer = Explorer::start(&["."], folder.path());
+    let mut browser = Chromium::open(&explorer.url(), (390, 844));
+    browser.until("document.getElementById('message').textContent.includes('cannot be shown')");
+    let wide = browser.evaluate("document.getElementById('message').offsetWidth");
+    assert!(wide.as_f64() > Some(350.0), "{wide}");
+    browser.until(QUIET);
+    browser.until("impactid.campaign.fit !== null && impactid.map.labels.length > 1");
+    browser.until("Object.values(impactid.map.curves).some((c) => c.exists)");
+    browser.evaluate("impactid.choose(impactid.campaign.facts.records[0])");
+    let why = "document.querySelector('#traces .bad')?.textContent";
+    browser.until(&format!("{why} !== undefined"));
+    let (why, hint) = (browser.evaluate(why), "which file is missing");
+    assert!(
+        why.as_str().is_some_and(|w| w.contains(".h5")),
+        "{hint}: {why}"
+    );
+    assert_eq!(browser.errors(), Vec::<String>::new());
 }

@@ -180,12 +180,50 @@ fn browser_names_on_the_map_have_places_of_their_own() {
     browser.until(QUIET);
     browser.until("impactid.map.other?.id === impactid.wire.newest.map");
     browser.until("impactid.map.names.some((n) => n.text === 's₂(1)')");
-    // where there is room regions are named beside records, and no two names cover each other
-    let covered = "(() => { const { frame: f, labels, names } = impactid.map, records = impactid.campaign.placed(f); \
-         const wide = labels.filter((l) => ['0', '1', '0 · 1'].includes(l.text)).map((l) => [l.text, f.px(l.eta), f.py(l.rho)]); \
-         const texts = [...wide, ...names.map((n) => [n.text, n.x, n.y])]; \
-         const near = (x, y, p, q, wide, high) => Math.abs(x - p) < wide && Math.abs(y - q) < high; \
-         return [...texts.filter(([, x, y]) => records.some((r) => near(x, y, r.x, r.y, 8, 10))).map(([t]) => `${t} on a record`), \
-           ...texts.flatMap(([t, x, y], i) => texts.slice(i + 1).filter(([, p, q]) => near(x, y, p, q, 30, 14)).map(([other]) => `${t} on ${other}`))]; })()";
-    assert_eq!(browser.evaluate(covered), json!([]));
+    browser.until("['0', '1'].every((name) => impactid.map.labels.some((l) => l.text === name))");
+    for state in [
+        "void impactid.home()",
+        "void impactid.look([0.6, 1.3], [0.3, 2.4])",
+        "void impactid.choose(impactid.campaign.facts.records.find((r) => r.motion.label === '1'))",
+    ] {
+        browser.evaluate(state);
+        browser.until(QUIET);
+        browser.until("impactid.map.other?.id === impactid.wire.newest.map");
+        browser.until("!impactid.map.unnamed && impactid.map.labels.length > 1 && impactid.map.due.size === 0");
+        assert_eq!(browser.evaluate(COVERED), json!([]), "{state}");
+    }
+}
+
+/// Names on the map that cover a record, a bracket or another name.
+const COVERED: &str = "(() => { const { frame: f, labels, names } = impactid.map, c = document.createElement('canvas').getContext('2d'), { campaign } = impactid; \
+     const texts = [...labels, ...names].map(({ text, x, y, font }) => { c.font = font; return [text, x, y, c.measureText(text).width / 2, 6]; }); \
+     const records = campaign.placed(f).map(({ r, x, y }) => [`record ${r.id}`, x, y, 4, 4]); \
+     const brackets = campaign.brackets(f).map(({ x0, x1, y }) => ['a bracket', (x0 + x1) / 2, y, (x1 - x0) / 2, 4]); \
+     const marks = [...records, ...brackets].filter(([, x, y]) => f.holds(x, y)); \
+     const over = (a, b) => Math.abs(a[1] - b[1]) < a[3] + b[3] && Math.abs(a[2] - b[2]) < a[4] + b[4]; \
+     return texts.flatMap((t, i) => [...texts.slice(i + 1), ...marks].filter((other) => over(t, other)).map((other) => `${t[0]} on ${other[0]}`)); })()";
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_trajectories_set_into_a_picture_cover_no_curve() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.evaluate("impactid.along('eta')");
+    for eta in [0.8, 1.0, 1.4] {
+        browser.evaluate(&format!(
+            "impactid.carry({eta}, 1); impactid.state.cursor.eta"
+        ));
+        browser.until(QUIET);
+        browser.evaluate("impactid.inset()");
+    }
+    browser.until("impactid.line.trajectories.size === 3 && [...impactid.line.trajectories.values()].every(Boolean)");
+    browser.until("impactid.line.done === true");
+    // the frames that are drawn: the picture's own, and those of the trajectories
+    let covering = "(() => { const of = CanvasRenderingContext2D.prototype, before = of.strokeRect, all = []; \
+         of.strokeRect = function (...box) { if (this.canvas.id === 'line-x') all.push(box); before.call(this, ...box); }; \
+         impactid.line.paint(); of.strokeRect = before; \
+         const [own, ...insets] = all; \
+         return [insets.length, insets.filter(([, top, , height]) => top + height > own[1] || top < 0).length]; })()";
+    assert_eq!(browser.evaluate(covering), json!([3, 0]));
 }

@@ -1,13 +1,11 @@
 //! Simulations that nobody waits for end, and one page never stops another.
 
 use std::collections::BTreeSet;
-use std::time::Duration;
-#[cfg(target_os = "linux")]
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use super::server::{Explorer, Page};
+use super::server::{Explorer, Page, SAMPLE};
 
 /// The slowest that is accepted: thousands of natural periods in a drive period.
 fn slowest(state: &Value) -> Value {
@@ -68,6 +66,51 @@ fn what_a_page_asked_for_ends_when_it_is_gone() {
     std::thread::sleep(Duration::from_secs(1));
     drop(page);
     rests(&explorer);
+}
+
+/// Of a kind of request on the sample what is asked and takes minutes: a record with a rig of thousands of natural
+/// periods between two samples, tables of a slow machine.
+fn slow_of(kind: &str, hello: &Value) -> Value {
+    if kind == "tables" {
+        return slowest(&hello["state"]);
+    }
+    let mut state = hello["state"].clone();
+    state["rig"] = json!({"natural_frequency_hz": 1e6, "static_deflection_m": 1.0});
+    state["damping_ratio"] = json!(1e-4);
+    state["record"] = hello["campaign"]["records"][100]["id"].clone();
+    state
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn records_and_tables_end_when_their_page_is_gone() {
+    let explorer = Explorer::start(&[SAMPLE], &std::env::temp_dir());
+    for kind in ["record", "tables"] {
+        let mut page = explorer.page();
+        let hello = page.hello().header;
+        page.ask(&json!({"kind": kind}), &slow_of(kind, &hello));
+        std::thread::sleep(Duration::from_secs(1));
+        drop(page);
+        rests(&explorer);
+    }
+}
+
+#[test]
+fn a_record_and_tables_that_are_asked_for_again_end_in_their_middle() {
+    let explorer = Explorer::start(&[SAMPLE], &std::env::temp_dir());
+    let mut page = explorer.page();
+    let hello = page.hello().header;
+    for kind in ["record", "tables"] {
+        let slow = slow_of(kind, &hello);
+        page.ask(&json!({"kind": kind}), &slow);
+        std::thread::sleep(Duration::from_secs(1));
+        let mut moderate = hello["state"].clone();
+        moderate["record"] = slow["record"].clone();
+        let begin = Instant::now();
+        let answer = page.answer(&json!({"kind": kind}), &moderate);
+        assert_ne!(answer.kind(), "refused", "{}", answer.header);
+        assert!(begin.elapsed() < Duration::from_secs(30), "{kind}");
+    }
 }
 
 #[test]

@@ -213,8 +213,8 @@ fn a_running_motion_goes_on_where_it_was() {
 }
 
 /// The files that the explorer exports, by name.
-fn exported(page: &mut Page, file: &str, state: &Value) -> BTreeMap<String, String> {
-    let frame = page.answer(&json!({"kind": "export", "file": file}), state);
+fn exported(page: &mut Page, kind: &str, state: &Value) -> BTreeMap<String, String> {
+    let frame = page.answer(&json!({"kind": kind}), state);
     assert_eq!(frame.kind(), "files", "{}", frame.header);
     let files = frame.header["files"].as_array().expect("files");
     let text = |f: &Value, key: &str| f[key].as_str().expect("text").to_owned();
@@ -252,7 +252,7 @@ fn valid_the_exported_study_leaves_the_same_tables() {
             .status()
             .expect("it runs");
         assert!(done.success());
-        let files = exported(&mut page, "csv", &state);
+        let files = exported(&mut page, "tables", &state);
         assert!(
             files.contains_key(table) && files.contains_key("map.csv"),
             "{:?}",

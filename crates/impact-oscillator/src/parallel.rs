@@ -5,8 +5,7 @@
 #[cfg(feature = "rayon")]
 pub(crate) fn map<T: Sync, U: Send>(items: &[T], f: impl Fn(&T) -> U + Send + Sync) -> Vec<U> {
     use rayon::prelude::*;
-    let now = crate::model::patience::current();
-    let one = |item| crate::model::patience::within(now.clone(), || f(item));
+    let one = crate::model::patience::carry_each(f);
     items.par_iter().map(one).collect()
 }
 

@@ -30,10 +30,21 @@ impl Observed {
     /// # Errors
     /// [`PipelineError::NothingUsable`] where no record can be used.
     pub fn of(campaign: &ResolvedCampaign, progress: Progress<'_>) -> Result<Self, PipelineError> {
+        Self::whatever_is_there(campaign, progress)?.usable(campaign)
+    }
+
+    /// Observe all records of a campaign, of which none need be there any more.
+    ///
+    /// # Errors
+    /// [`PipelineError`] where what is observed cannot be kept.
+    pub fn whatever_is_there(
+        campaign: &ResolvedCampaign,
+        progress: Progress<'_>,
+    ) -> Result<Self, PipelineError> {
         let kept = BlockCache::none();
         let whole = campaign.records.len();
         let observations = observe::observe_in_chunks(campaign, &kept, whole, progress)?;
-        Self::from_observations(campaign, observations, progress)
+        Self::corrected(campaign, observations, progress)
     }
 
     /// Observe all records of a campaign with checkpoints in `out`; with `resume` those of an
@@ -79,10 +90,24 @@ impl Observed {
         observations: Vec<Observation>,
         progress: Progress<'_>,
     ) -> Result<Self, PipelineError> {
+        Self::corrected(campaign, observations, progress)?.usable(campaign)
+    }
+
+    /// With the brackets; observed again where channels are not as stated.
+    fn corrected(
+        campaign: &ResolvedCampaign,
+        observations: Vec<Observation>,
+        progress: Progress<'_>,
+    ) -> Result<Self, PipelineError> {
         let mut observations = aligned(campaign, observations, progress)?;
         scale_drives(&mut observations);
-        if observations.iter().all(Observation::excluded) {
-            let refused = observations.into_iter().zip(&campaign.records);
+        Ok(Self::bracketed(observations))
+    }
+
+    /// Refuse where no record can be used.
+    fn usable(self, campaign: &ResolvedCampaign) -> Result<Self, PipelineError> {
+        if self.observations.iter().all(Observation::excluded) {
+            let refused = self.observations.into_iter().zip(&campaign.records);
             let refused = refused.map(|(o, entry)| RefusedRecord {
                 file: entry.file.clone(),
                 record: o.record,
@@ -90,7 +115,7 @@ impl Observed {
             });
             return Err(PipelineError::NothingUsable(refused.collect()));
         }
-        Ok(Self::bracketed(observations))
+        Ok(self)
     }
 
     /// Observations whose drives are scaled, with the brackets in them.

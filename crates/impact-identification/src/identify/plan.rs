@@ -14,6 +14,7 @@ use impact_fit::parameters::{Coordinate, GAIN_ROLES, Parameters};
 use impact_fit::solver::normal::inverse;
 use impact_fit::solver::{Fit, Problem};
 use impact_oscillator::model::orbit::{Orbit, stable_orbit};
+use impact_oscillator::model::patience::{carry_each, still_wanted};
 use impact_oscillator::{Machine, Setting, rho_grazing};
 use impact_records::motion::Observation;
 use impact_records::motion::{Folded, FoldedChannel, FoldedPoint};
@@ -231,7 +232,8 @@ fn candidates(
         .flat_map(|(f, c)| (1..=MOST_PERIODS).map(move |n| (f, c, n)))
         .collect();
     grid.into_par_iter()
-        .filter_map(|(frequency_hz, clearance_m, n)| {
+        .filter_map(carry_each(|(frequency_hz, clearance_m, n)| {
+            still_wanted().ok()?;
             let parameters = fit.parameters;
             let setting = parameters.setting(frequency_hz, clearance_m, 1.0);
             let machine = parameters.machine(evidence.rig);
@@ -249,7 +251,7 @@ fn candidates(
                 restitution_error_after: f64::NAN,
             };
             Some((place, information))
-        })
+        }))
         .collect()
 }
 

@@ -63,13 +63,19 @@ pub fn carry<T>(work: impl FnOnce() -> T) -> impl FnOnce() -> T {
     move || within(now, work)
 }
 
+/// The same for work that is done once for every item, wherever that is.
+pub fn carry_each<I, T>(work: impl Fn(I) -> T + Send + Sync) -> impl Fn(I) -> T + Send + Sync {
+    let now = current();
+    move |item| within(now.clone(), || work(item))
+}
+
 /// The patience of this thread.
-pub(crate) fn current() -> Option<Patience> {
+fn current() -> Option<Patience> {
     OF_THIS_THREAD.with_borrow(Clone::clone)
 }
 
 /// Do work under a patience, or under none.
-pub(crate) fn within<T>(patience: Option<Patience>, work: impl FnOnce() -> T) -> T {
+fn within<T>(patience: Option<Patience>, work: impl FnOnce() -> T) -> T {
     /// Puts the one before back, also where the work panics.
     struct Before(Option<Patience>);
     impl Drop for Before {

@@ -44,7 +44,8 @@ fn ask(session: &Session, request: &Request, job: &Job) -> Result<(), Stop> {
         Ask::Record {} => evidence::record(&*session.campaign()?, state, job),
         Ask::Residuals {} => evidence::residuals(&*session.campaign()?, state, job),
         Ask::Proposals {} => evidence::proposals(&*session.campaign()?, job),
-        Ask::Export { file } => export::export(state, *file, job),
+        Ask::Study {} => export::study(state, job),
+        Ask::Tables {} => export::tables(state, job),
         Ask::Demo { name } => send_demo(&demo::shipped(name)?, job),
         Ask::ReadDemo { text } => send_demo(&demo::Demo::read(text)?, job),
         Ask::WriteDemo { title, steps } => {

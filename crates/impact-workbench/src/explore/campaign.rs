@@ -27,6 +27,9 @@ use impact_records::record::Record;
 use impact_records::signal::robust;
 use impact_report::style::MotionStyle;
 
+/// Files that a note names.
+const NAMED: usize = 5;
+
 /// A campaign with what was observed and identified.
 pub struct OpenCampaign {
     pub(super) resolved: ResolvedCampaign,
@@ -58,10 +61,11 @@ impl OpenCampaign {
         )
     }
 
-    /// Read a results folder; with it come notes on inputs that are gone or changed.
+    /// Read a results folder; with it come notes on inputs that are gone or changed: without its records a
+    /// campaign has its fit.
     ///
     /// # Errors
-    /// [`ExploreError`] where a file is missing or of another version, or no record can be used.
+    /// [`ExploreError`] where a file of the results is missing or of another version.
     pub fn read(
         folder: &Path,
         progress: Progress<'_>,
@@ -73,7 +77,7 @@ impl OpenCampaign {
         let notes = changed_inputs(&resolved, &found);
         let observed = match store::read_observed(folder) {
             Ok(observed) => observed,
-            Err(_) => Observed::of(&resolved, progress)?,
+            Err(_) => Observed::whatever_is_there(&resolved, progress)?,
         };
         let known = observed.observations.len();
         let of_fit = resolved.records.len();
@@ -126,6 +130,14 @@ impl OpenCampaign {
         let record = read_one(&self.resolved, entry);
         self.resolved.sources.close();
         Some(record)
+    }
+
+    /// The file of a record as the campaign names it.
+    pub(super) fn file_of(&self, index: usize) -> String {
+        let file = self.resolved.records.get(index).map(|r| r.file.as_path());
+        let file = file.unwrap_or(Path::new(""));
+        let named = file.strip_prefix(self.resolved.folder()).unwrap_or(file);
+        named.display().to_string()
     }
 
     /// The fitted parameters with R, f0, β and `x_st` of the sliders.
@@ -214,7 +226,7 @@ impl OpenCampaign {
             cursor: self.first_cursor(scale, view),
             view,
             panel: Panel::Motion,
-            rig: self.has_places().then_some(scale),
+            rig: (self.has_places() || fit.is_some()).then_some(scale),
             ..first
         }
     }
@@ -341,19 +353,26 @@ fn fitted(p: &Parameters) -> Value {
 /// Inputs that are gone or differ from those that were identified from.
 fn changed_inputs(resolved: &ResolvedCampaign, found: &IdentificationFile) -> Vec<String> {
     let now = inputs::hashes(resolved);
-    let note = |(name, then): (&String, &String)| match now.get(name).map(String::as_str) {
-        Some(hash) if hash == then => None,
-        None | Some("unreadable") => Some(format!(
-            "{name} is gone: its records cannot be shown as measured"
-        )),
-        Some(_) => Some(format!(
-            "{name} has changed since the campaign was identified"
-        )),
-    };
-    found
-        .provenance
-        .inputs_sha256
-        .iter()
-        .filter_map(note)
-        .collect()
+    let (mut gone, mut changed) = (Vec::new(), Vec::new());
+    for (name, then) in &found.provenance.inputs_sha256 {
+        match now.get(name).map(String::as_str) {
+            Some(hash) if hash == then => {}
+            None | Some("unreadable") => gone.push(name.as_str()),
+            Some(_) => changed.push(name.as_str()),
+        }
+    }
+    let folder = resolved.folder().display();
+    let gone = named(&gone).map(|names| {
+        format!("Not in {folder} any more: {names}. What was measured there cannot be shown.")
+    });
+    let changed =
+        named(&changed).map(|names| format!("Changed since the campaign was identified: {names}."));
+    gone.into_iter().chain(changed).collect()
+}
+
+/// The first of some names, and how many more there are; `None` of none.
+fn named(names: &[&str]) -> Option<String> {
+    let (first, more) = names.split_at(names.len().min(NAMED));
+    let more = (!more.is_empty()).then(|| format!(" and {} more", more.len()));
+    (!names.is_empty()).then(|| first.join(", ") + &more.unwrap_or_default())
 }

@@ -14,6 +14,7 @@ use impact_fit::solver::Block;
 use impact_fit::{Method, Remark};
 use impact_identification::identify::plan::propose;
 use impact_identification::replay::{BesideRecord, Signal, beside};
+use impact_oscillator::model::patience::{carry_each, still_wanted};
 use impact_records::message::plain;
 use impact_records::motion::{BoundaryKind, Motion, Observation};
 use impact_report::style::MotionStyle;
@@ -79,7 +80,11 @@ pub(super) fn record(campaign: &OpenCampaign, state: &State, job: &Job) -> Resul
             .column("measured0", d.measured.values.iter().copied())
             .column("t1", d.fitted.time_s.iter().copied())
             .column("simulated1", d.fitted.values.iter().copied()),
-        BesideRecord::Nothing(why) => frame.with("shown", "nothing").with("why", plain(&why)),
+        BesideRecord::Nothing(why) => {
+            let file = campaign.file_of(index);
+            let why = format!("{file}: {}", plain(&why));
+            frame.with("shown", "nothing").with("why", why)
+        }
     };
     Ok(job.send(frame)?)
 }
@@ -134,10 +139,12 @@ struct Misfit {
 
 fn misfit(block: &dyn Block, at: &Parameters) -> Misfit {
     let of = |item| {
+        still_wanted().ok()?;
         let residuals = block.residuals(item, at);
         residuals.map(|r| (r.len(), r.iter().map(|v| v * v).sum::<f64>()))
     };
-    let items: Vec<Option<(usize, f64)>> = (0..block.items()).into_par_iter().map(of).collect();
+    let items = (0..block.items()).into_par_iter().map(carry_each(of));
+    let items: Vec<Option<(usize, f64)>> = items.collect();
     let known = || items.iter().flatten();
     Misfit {
         count: known().map(|i| i.0).sum(),
@@ -159,9 +166,6 @@ pub(super) fn residuals(campaign: &OpenCampaign, state: &State, job: &Job) -> Re
     let weights = campaign.identification.joint_fit.as_ref();
     let weights = weights.map(|j| &j.weights);
     for method in Method::FITTED {
-        if job.is_stale() {
-            return Err(Stop::Stale);
-        }
         let block = campaign.blocks.of(method).filter(|b| b.items() > 0);
         let Some(block) = block else { continue };
         let found = misfit(block, &at);

@@ -8,7 +8,6 @@ use super::ExploreError;
 use super::job::Job;
 use super::state::State;
 use super::stop::Stop;
-use super::wire::ExportFile;
 use crate::theory::{Pictures, StudyContext, run};
 use impact_campaign::pipeline::block_cache::BlockCache;
 
@@ -39,12 +38,17 @@ pub(super) fn study_text(state: &State) -> Result<String, ExploreError> {
     toml::to_string(&state.study()).map_err(|e| ExploreError::malformed("study", e))
 }
 
-/// Send the files that the page asks for.
-pub(super) fn export(state: &State, file: ExportFile, job: &Job) -> Result<(), Stop> {
-    let all = match file {
-        ExportFile::Study => vec![("study.toml".to_owned(), study_text(state)?)],
-        ExportFile::Csv => files(state)?,
-    };
+/// Send the study that reproduces what is shown.
+pub(super) fn study(state: &State, job: &Job) -> Result<(), Stop> {
+    send(vec![("study.toml".to_owned(), study_text(state)?)], job)
+}
+
+/// Send its tables.
+pub(super) fn tables(state: &State, job: &Job) -> Result<(), Stop> {
+    send(job.pools.work(|| files(state))?, job)
+}
+
+fn send(all: Vec<(String, String)>, job: &Job) -> Result<(), Stop> {
     let files: Vec<_> = all
         .into_iter()
         .filter(|(name, _)| !name.ends_with(".parquet"))

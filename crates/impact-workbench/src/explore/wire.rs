@@ -83,11 +83,10 @@ pub(super) enum Ask {
     Residuals {},
     /// Settings to measure next.
     Proposals {},
-    /// A file of what is shown.
-    Export {
-        /// What.
-        file: ExportFile,
-    },
+    /// The study that reproduces what is shown, as a file.
+    Study {},
+    /// The tables of that study, as files.
+    Tables {},
     /// A demo that comes with the program.
     Demo {
         /// Its name.
@@ -107,19 +106,9 @@ pub(super) enum Ask {
     },
 }
 
-/// A file that the page can ask for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum ExportFile {
-    /// The study that reproduces it.
-    Study,
-    /// Its tables.
-    Csv,
-}
-
 impl Kind {
     /// Jobs of one of these kinds replace each other: the newest counts. All others wait in a queue.
-    pub(super) const NEWEST: [Self; 8] = [
+    pub(super) const NEWEST: [Self; 10] = [
         Self::Map,
         Self::Boundaries,
         Self::Motion,
@@ -128,6 +117,8 @@ impl Kind {
         Self::Coexisting,
         Self::Record,
         Self::Residuals,
+        Self::Proposals,
+        Self::Tables,
     ];
 }
 
@@ -136,12 +127,17 @@ impl Ask {
     /// them; `None` of what is not simulated on the job's own thread or on those of its page.
     pub(super) fn longest(&self) -> Option<Duration> {
         match self {
-            Self::Motion { .. } | Self::Run { .. } | Self::Inset {} => Some(LONGEST_MOTION),
+            Self::Motion { .. } | Self::Run { .. } | Self::Inset {} | Self::Record {} => {
+                Some(LONGEST_MOTION)
+            }
             Self::Map {}
             | Self::Boundaries { .. }
             | Self::Line {}
             | Self::Basins {}
-            | Self::Coexisting {} => Some(LONGEST_PICTURE),
+            | Self::Coexisting {}
+            | Self::Residuals {}
+            | Self::Proposals {}
+            | Self::Tables {} => Some(LONGEST_PICTURE),
             _ => None,
         }
     }

@@ -12,6 +12,7 @@ use impact_campaign::pipeline::table::Table;
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactless};
 use impact_oscillator::model::Machine;
+use impact_oscillator::model::patience::carry;
 use impact_oscillator::model::simulate::Snapshot;
 
 /// Steps after which a sweep saves its points.
@@ -53,7 +54,10 @@ pub fn run(
         };
         walk.go(way, steps, &tick)
     };
-    let (forward, backward) = rayon::join(|| walk("forward", &steps), || walk("backward", &back));
+    let (forward, backward) = rayon::join(
+        carry(|| walk("forward", &steps)),
+        carry(|| walk("backward", &back)),
+    );
     let (forward, backward) = (forward?, backward?);
     let impactless: Vec<Impactless> = steps.iter().map(|s| impactless(machine, s.0)).collect();
     context.table(name, &characteristics(machine, &forward, &backward))?;

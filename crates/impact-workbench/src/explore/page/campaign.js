@@ -1,9 +1,7 @@
 // A campaign on the map: records, brackets, proposals; a record beside its simulation; residuals.
-import { Frame, around, colour, mark, number, FONT } from "./draw.js";
-import { make } from "./fields.js";
+import { Frame, around, colour, mark, named, number, FONT } from "./draw.js";
+import { button, element, make } from "./fields.js";
 import { facts } from "./plots.js";
-
-const element = (id) => document.getElementById(id);
 
 /** Records of sweeps up and down lie apart, as in the report, px. */
 const APART = { up: -4, down: 4 };
@@ -52,6 +50,22 @@ export class CampaignView {
     });
   }
 
+  /** Brackets of boundaries with their places, and whether the boundary is past them at the sliders. */
+  brackets(f) {
+    const place = (b, i) => {
+      const [low, rho] = this.at(b.low_hz, b), [high] = this.at(b.high_hz, b);
+      return { b, x0: f.px(low), x1: f.px(high), y: f.py(rho), past: this.residual?.brackets[i]?.past_hz > 0 };
+    };
+    return this.facts.brackets.map(place).filter(({ b }) => b.kind !== "other");
+  }
+
+  /** Boxes of what is drawn of the campaign: middle, half the width, half the height. */
+  boxes(f) {
+    const records = this.placed(f).map(({ r, x, y }) => [x, y, ...(r.id === this.app.state.record ? [11, 11] : [6, 6])]);
+    const brackets = this.brackets(f).map(({ x0, x1, y }) => [(x0 + x1) / 2, y, (x1 - x0) / 2 + 1, 5]);
+    return [...records, ...brackets, ...this.proposals.map((p) => [f.px(p.frequency_ratio), f.py(p.clearance_ratio), 11, 11])];
+  }
+
   near(f, p, q) {
     let best = null, least = 9;
     for (const { r, x, y } of this.placed(f)) {
@@ -68,10 +82,7 @@ export class CampaignView {
       mark(c, x, y, radius, r.motion, r.out !== null);
       if (r.id === chosen) { c.beginPath(); c.arc(x, y, radius + 5, 0, 7); c.lineWidth = 2.2; c.strokeStyle = colour("bad"); c.stroke(); }
     }
-    for (const [i, b] of this.facts.brackets.entries()) {
-      if (b.kind === "other") continue;
-      const [low, rho] = this.at(b.low_hz, b), [high] = this.at(b.high_hz, b);
-      const y = f.py(rho), x0 = f.px(low), x1 = f.px(high), past = this.residual?.brackets[i]?.past_hz > 0;
+    for (const { b, x0, x1, y, past } of this.brackets(f)) {
       c.strokeStyle = past ? colour("bad") : colour("ink"); c.lineWidth = past ? 2.4 : 1.6; c.globalAlpha = b.out === null ? 1 : 0.35;
       c.beginPath(); c.moveTo(x0, y - 5); c.lineTo(x0, y + 5); c.moveTo(x0, y); c.lineTo(x1, y); c.moveTo(x1, y - 5); c.lineTo(x1, y + 5); c.stroke();
       c.globalAlpha = 1;
@@ -88,11 +99,8 @@ export class CampaignView {
   head() {
     const box = element("record-head"), label = make("label", "Record ");
     this.select = make("select");
-    this.select.append(...this.facts.records.map((r) => {
-      const o = make("option", `${r.id} (${r.decay ? "free decay" : "z = " + r.motion.label}${r.out === null ? "" : ", left out"})`);
-      o.value = r.id;
-      return o;
-    }));
+    const text = (r) => `${r.id} (${r.decay ? "free decay" : named(r.motion)}${r.out === null ? "" : ", left out"})`;
+    this.select.append(...this.facts.records.map((r) => new Option(text(r), r.id)));
     this.select.addEventListener("change", () => this.app.choose(this.facts.records.find((r) => r.id === this.select.value)));
     label.append(this.select);
     this.title = make("span");
@@ -110,8 +118,8 @@ export class CampaignView {
     this.frame = frame;
     this.select.value = frame.record;
     const s = frame.stated, same = frame.simulated?.label === s.motion.label;
-    const measured = frame.shown === "decay" ? "free decay" : `measured z = ${s.motion.label} (confidence ${number(s.confidence, 2)})`;
-    const simulated = frame.simulated ? `, simulated z = ${frame.simulated.label}` : "";
+    const measured = frame.shown === "decay" ? "free decay" : `measured ${named(s.motion)} (confidence ${number(s.confidence, 2)})`;
+    const simulated = frame.simulated ? `, simulated ${named(frame.simulated)}` : "";
     this.title.textContent = measured + simulated;
     this.title.className = !frame.simulated ? "" : same ? "good" : "bad";
     this.traces();
@@ -178,7 +186,7 @@ export class CampaignView {
     const notes = [];
     if (e.undetermined && frame.shown !== "decay") notes.push(make("p", `Undetermined: ${e.undetermined}`, "bad"));
     for (const reason of e.left_out) notes.push(make("p", `Left out: ${reason}`, "bad"));
-    for (const flag of e.flags) notes.push(make("p", `${flag.message}. ${flag.remedy}.`, flag.excludes ? "bad" : "note"));
+    for (const flag of e.flags) notes.push(make("p", `${flag.message}; ${flag.remedy}.`, flag.excludes ? "bad" : "note"));
     const key = make("p", frame.shown === "decay" ? "Solid: measured; blue dashed: the fitted decay." : frame.shown === "nothing" ? "" : "Solid: measured; blue dashed: simulated at the sliders; thin red: their difference; ticks: impacts.", "note");
     box.replaceChildren(key, make("h2", frame.shown === "decay" ? "Fit" : "What the label rests on"), list, ...notes);
   }
@@ -202,11 +210,8 @@ export class CampaignView {
     if (frame.joint !== null) parts.unshift(item("Joint", frame.joint, "root mean square of all weighted residuals of the joint fit"));
     const known = frame.brackets.filter((b) => b.boundary_hz !== null), past = known.filter((b) => b.past_hz > 0);
     const most = Math.max(0, ...past.map((b) => b.past_hz));
-    const brackets = make("span", `Boundaries: ${past.length} of ${known.length} past their brackets${past.length ? `, by up to ${number(most, 3)} Hz` : ""}`);
-    const back = make("button", "Back to the fit (Z)");
-    back.type = "button"; back.disabled = !this.fit;
-    back.addEventListener("click", () => this.app.backToFit());
-    box.replaceChildren(make("span", "Residuals at the sliders:"), ...parts, brackets, back);
+    if (known.length) parts.push(make("span", `Boundaries: ${past.length} of ${known.length} past their brackets${past.length ? `, by up to ${number(most, 3)} Hz` : ""}`));
+    box.replaceChildren(make("span", "Residuals at the sliders:"), ...parts, button("Back to the fit (Z)", () => this.app.backToFit()));
     this.app.map.redraw();
   }
 }

@@ -1,7 +1,7 @@
 // Dialogs: initial conditions, parameters, R(v), exports, demos, keys.
 import { KEYS } from "./keys.js";
 import { copyAddress, exportFiles, png, svg } from "./exports.js";
-import { between, make, numberField, typed } from "./fields.js";
+import { between, button, element, make, numberField, typed } from "./fields.js";
 import { tableOf } from "./formula.js";
 import { turned } from "./plots.js";
 
@@ -26,23 +26,32 @@ function lawOf(form, text) {
   return { constant: a, table: { table: lines }, power_law: { power_law: { coefficient: a, exponent: b, floor: c } }, exponential: { exponential: { slow: a, fast: b, speed: c } } }[form];
 }
 
+/** The field of one end of a range, which rises. */
+function rangeEnd(name, limit, range, i, put) {
+  return [name, limit, () => range()[i], (v) => {
+    const next = range().with(i, v);
+    if (!(next[1] > next[0])) return i ? `above ${next[0]}` : `below ${next[1]}`;
+    return put(next);
+  }];
+}
+
 export class Dialogs {
   constructor(app) {
     this.app = app;
-    this.box = document.getElementById("dialog");
+    this.box = element("dialog");
     this.before = null;
     // the focus goes back at once, so that the next key counts
     this.box.addEventListener("close", () => {
       if (this.box.open) return; // another one is open by now
-      const back = this.before?.isConnected && this.before !== document.body ? this.before : document.getElementById("map");
+      const back = this.before?.isConnected && this.before !== document.body ? this.before : element("map");
       document.activeElement?.blur();
       back.focus({ preventScroll: true });
     });
   }
 
   open(title, ...content) {
-    document.getElementById("dialog-title").textContent = title;
-    document.getElementById("dialog-body").replaceChildren(...content);
+    element("dialog-title").textContent = title;
+    element("dialog-body").replaceChildren(...content);
     if (!this.box.open) { this.before = document.activeElement; this.box.showModal(); }
     this.box.querySelector("input, select, textarea, #dialog-body button, button")?.focus();
   }
@@ -77,11 +86,7 @@ export class Dialogs {
 
   picture() {
     const { app } = this, v = () => app.state.view;
-    const end = (name, key, i) => [name, key, () => v()[key][i], (x) => {
-      const r = [...v()[key]]; r[i] = x;
-      if (!(r[1] > r[0])) return i ? `above ${r[0]}` : `below ${r[1]}`;
-      app.look(...(key === "eta" ? [r, v().rho] : [v().eta, r]));
-    }];
+    const end = (name, key, i) => rangeEnd(name, key, () => v()[key], i, (r) => { app.look(...(key === "eta" ? [r, v().rho] : [v().eta, r])); });
     this.fields("Parameters of the picture (C)", [end("η from", "eta", 0), end("η to", "eta", 1), end("ρ from", "rho", 0), end("ρ to", "rho", 1), ["drive periods of the series", "periods", () => app.state.periods, (x) => { app.set({ periods: x }, ["motion"]); }]]);
   }
 
@@ -96,11 +101,7 @@ export class Dialogs {
   starts() {
     const { app } = this, b = () => app.state.basins ?? app.ownBasins();
     const change = (part) => { app.set({ basins: { ...b(), ...part }, panel: "basins" }, ["panel"]); app.restorePanel(); };
-    const end = (name, key, i) => [name, "start", () => b()[key][i], (x) => {
-      const r = [...b()[key]]; r[i] = x;
-      if (!(r[1] > r[0])) return i ? `above ${r[0]}` : `below ${r[1]}`;
-      change({ [key]: r });
-    }];
+    const end = (name, key, i) => rangeEnd(name, "start", () => b()[key], i, (r) => { change({ [key]: r }); });
     const masses = ["masses that take the start (1: X alone, 2)", "masses", () => (b().starts === "one_mass" ? 1 : 2), (v) => (Number.isInteger(v) ? change({ starts: v === 1 ? "one_mass" : "both_masses" }) : "1 or 2")];
     const size = (name, i) => [name, "cells", () => b().cells[i], (v) => { const cells = [...b().cells]; cells[i] = Math.round(v); change({ cells }); }];
     this.fields("Starts of the basins (N)", [end("X(0) from", "x", 0), end("X(0) to", "x", 1), end("X′(0) from", "vx", 0), end("X′(0) to", "vx", 1), size("columns", 0), size("rows", 1), masses]);
@@ -117,9 +118,7 @@ export class Dialogs {
       power_law: ["0.05 0.4 0", "coefficient, exponent, floor: R = max(floor, 1 − coefficient·v^exponent)."],
       exponential: ["0.95 0.8 3", "slow, fast, speed: R = fast + (slow − fast)·exp(−v/speed)."],
     };
-    for (const [name, label] of [["constant", "constant"], ["table", "table"], ["formula", "formula"], ["power_law", "power law"], ["exponential", "exponential"]]) {
-      const o = make("option", label); o.value = name; select.append(o);
-    }
+    select.append(...Object.keys(forms).map((name) => new Option(name.replace("_", " "), name)));
     note.id = "law-note"; note.setAttribute("role", "status"); text.setAttribute("aria-errormessage", note.id);
     const say = (of, why) => { note.textContent = (why ? `${why}. ` : "") + forms[of][1]; note.className = why ? "fault" : "note"; text.setAttribute("aria-invalid", String(Boolean(why))); };
     const fill = (name) => {
@@ -129,8 +128,7 @@ export class Dialogs {
     };
     select.value = kind; fill(kind);
     select.addEventListener("change", () => fill(select.value));
-    const apply = make("button", "Apply"); apply.type = "button";
-    apply.addEventListener("click", () => {
+    const apply = button("Apply", () => {
       try { app.parameters({ restitution: lawOf(select.value, text.value) }); this.box.close(); } catch (error) { say(select.value, error.message); text.focus(); }
     });
     const label = make("label", "R(v) as a "), area = make("label");
@@ -141,9 +139,7 @@ export class Dialogs {
   choices(title, list, note) {
     const box = make("div", undefined, "choices");
     for (const [name, action] of list) {
-      const b = make("button", name); b.type = "button";
-      b.addEventListener("click", () => { this.box.close(); action(); });
-      box.append(b);
+      box.append(button(name, () => { this.box.close(); action(); }));
     }
     this.open(title, ...(note ? [make("p", note, "note")] : []), box);
   }
@@ -153,7 +149,7 @@ export class Dialogs {
     this.choices("Export what is shown (X)", [
       ["PNG: the pictures of this page with their keys and numbers", () => png()],
       ["SVG: the same, drawn as lines", () => svg(app)],
-      ["CSV: the numbers of the map and of the panel; with a record, its traces and its simulation", () => exportFiles(app, "csv")],
+      ["CSV: the numbers of the map and of the panel; with a record, its traces and its simulation", () => exportFiles(app, "tables")],
       ["TOML: the study that reproduces them under `impactid study`", () => exportFiles(app, "study")],
       ["Address: copy it; it restores this page", () => copyAddress(app)],
     ], "Files go where your browser saves downloads.");
@@ -167,9 +163,8 @@ export class Dialogs {
   help() {
     const list = make("div", undefined, "keys");
     for (const [key, text, action] of KEYS) {
-      const row = make(action ? "button" : "div"), k = make("kbd", key.length === 1 ? key.toUpperCase() : key);
-      if (action) { row.type = "button"; row.addEventListener("click", () => { this.box.close(); action(this.app); }); }
-      row.append(k, make("span", text)); list.append(row);
+      const row = action ? button("", () => { this.box.close(); action(this.app); }) : make("div");
+      row.append(make("kbd", key.length === 1 ? key.toUpperCase() : key), make("span", text)); list.append(row);
     }
     this.open("Menu: everything, with its key (?)", make("p", "Drag on the map: the motion is carried along. Click a record: measured beside simulated. Tab reaches everything.", "note"), list);
   }

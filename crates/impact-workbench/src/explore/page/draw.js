@@ -33,6 +33,22 @@ export function tint(style) {
   });
 }
 
+/** A canvas beside the page, of one pixel a cell. */
+export const cellCanvas = (width, height) => Object.assign(document.createElement("canvas"), { width, height });
+
+/** Paint rows of cells, the lowest first, in the tint of each; cells without one stay clear. */
+export function paintCells(canvas, cells, tints, firstRow) {
+  const { width, height } = canvas, rows = cells.length / width, context = canvas.getContext("2d");
+  const image = context.createImageData(width, rows);
+  for (let k = 0; k < rows; k++) for (let i = 0; i < width; i++) {
+    const tint = tints[cells[k * width + i]], at = 4 * ((rows - 1 - k) * width + i);
+    if (!tint) continue;
+    const [r, g, b] = tint;
+    image.data[at] = r; image.data[at + 1] = g; image.data[at + 2] = b; image.data[at + 3] = 255;
+  }
+  context.putImageData(image, 0, height - firstRow - rows);
+}
+
 /** A context in which nothing is drawn. */
 const NOWHERE = document.createElement("canvas").getContext("2d");
 /** Where a canvas is drawn instead, for files. */
@@ -147,7 +163,7 @@ export class Frame {
     c.stroke();
     c.font = `14px ${FONT}`; c.textAlign = "center"; c.textBaseline = "alphabetic";
     // as long as the picture at most
-    const [across, down] = [b.left + b.width / 2, b.top + b.height / 2], room = (at, size) => 2 * Math.min(at, size - at);
+    const [across, down] = [b.left + b.width / 2, b.top + b.height / 2], room = (at, size) => 2 * Math.min(at, size - at) - 4;
     rich(c, this.titles[0], across, this.height - 5, room(across, this.width));
     c.save(); c.translate(12, down); c.rotate(-Math.PI / 2);
     rich(c, this.titles[1], 0, 0, room(down, this.height)); c.restore();

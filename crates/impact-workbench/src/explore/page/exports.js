@@ -16,12 +16,12 @@ export function download(name, content, type) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** The files that the server makes of what is shown, and the record's. */
-export async function exportFiles(app, file) {
+/** The files that the server makes of what is shown, its `study` or its `tables`, and the record's. */
+export async function exportFiles(app, kind) {
   app.said("computing the files");
   try {
-    const found = await app.wire.once({ kind: "export", file }, app.state);
-    const files = [...found.files, ...(file === "csv" && app.state.panel === "record" ? app.campaign.tables() : [])];
+    const found = await app.wire.once({ kind }, app.state);
+    const files = [...found.files, ...(kind === "tables" && app.state.panel === "record" ? app.campaign.tables() : [])];
     for (const f of files) download(f.name, f.text, "text/plain");
     app.said(files.map((f) => f.name).join(", "));
   } catch (error) { app.message(error.message, error.remedy); }
@@ -79,7 +79,7 @@ function drawSurroundings(c) {
 function sheet(context, picture) {
   const pictures = [...document.querySelectorAll("main canvas")].filter((e) => visible(e) && e.width > 1);
   const boxes = [...pictures, ...[...document.querySelectorAll(TEXTS)].filter(visible)].map((e) => e.getBoundingClientRect());
-  const [left, top] = ["left", "top"].map((side) => Math.min(...boxes.map((b) => b[side])) - MARGIN);
+  const [left, top] = ["left", "top"].map((side) => Math.floor(Math.min(...boxes.map((b) => b[side]))) - MARGIN);
   const [right, bottom] = ["right", "bottom"].map((side) => Math.max(...boxes.map((b) => b[side])) + MARGIN);
   return { width: right - left, height: bottom - top, draw: () => {
     const c = context();
@@ -100,7 +100,7 @@ export function png() {
     const c = canvas.getContext("2d");
     c.scale(ratio, ratio);
     return c;
-  }, (c, picture, b) => c.drawImage(picture, b.left, b.top, b.width, b.height));
+  }, (c, picture, b) => c.drawImage(picture, Math.round(b.left), Math.round(b.top), b.width, b.height));
   all.draw();
   canvas.toBlob((blob) => download("explorer.png", blob, "image/png"));
 }

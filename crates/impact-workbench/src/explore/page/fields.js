@@ -1,11 +1,19 @@
 // Fields for numbers: what is typed counts where it is in its range, else the field says why and what is shown stays.
-const element = (id) => document.getElementById(id);
+export const element = (id) => document.getElementById(id);
 export const make = (name, text, className) => {
   const e = document.createElement(name);
   if (text !== undefined) e.textContent = text;
   if (className) e.className = className;
   return e;
 };
+
+/** A button that does something where it is pressed. */
+export function button(text, action) {
+  const b = make("button", text);
+  b.type = "button";
+  b.addEventListener("click", action);
+  return b;
+}
 
 /** A range as text. */
 export const between = ([low, high]) => `${low} to ${high}`.replaceAll("-", "−");

@@ -1,6 +1,6 @@
 // Every key with what it does; the letters of NON-1-SIM are kept.
 
-/** [keys, text, action(app, event)] */
+/** [keys, text, action(app)] */
 export const KEYS = [
   ["0 … 9", "study pictures: the demos' first pictures", null],
   ["a", "initial conditions X, X′, Y, Y′, φ", (app) => app.dialogs.initial()],
@@ -38,11 +38,8 @@ export const KEYS = [
   ["Esc", "stop what runs; close", (app) => app.stop()],
 ];
 
-const SPECIAL = {
-  "=": (app) => app.zoom(1 / 1.25), "−": (app) => app.zoom(1.25),
-  Escape: (app) => app.stop(), Home: (app) => app.home(),
-  Enter: (app) => app.nearest(),
-};
+/** Keys by another name than in the list. */
+const ALIASES = { "=": "+", "−": "-", Escape: "Esc" };
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
@@ -51,9 +48,9 @@ export function press(app, key, event) {
   if (/^[0-9]$/.test(key)) { app.player.picture(Number(key)); return true; }
   const lower = key.length === 1 ? key.toLowerCase() : key;
   if (ARROWS[key]) { app.nudge(...ARROWS[key], event ?? {}); return true; }
-  const action = SPECIAL[lower] ?? KEYS.find(([k]) => k === lower)?.[2];
+  const action = KEYS.find(([k]) => k === (ALIASES[lower] ?? lower))?.[2];
   if (!action) return false;
-  action(app, event ?? {});
+  action(app);
   return true;
 }
 

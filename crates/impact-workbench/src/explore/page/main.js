@@ -7,10 +7,9 @@ import { Dialogs } from "./dialogs.js";
 import { listen, press } from "./keys.js";
 import { enter, lost } from "./door.js";
 import { Demos } from "./demos.js";
-import { Sliders } from "./fields.js";
+import { Sliders, button, element, make } from "./fields.js";
 import { number, named, colour, markColour } from "./draw.js";
 
-const element = (id) => document.getElementById(id);
 /** Points of a boundary. */
 const POINTS = 240;
 /** Boundaries asked for ahead that are kept. */
@@ -69,7 +68,7 @@ class App {
     this.buttons();
     this.restorePanel();
     this.refresh(["map", "boundaries", restored ? "motion" : "carried", "panel", "residuals"]);
-    for (const note of hello.notes) this.message(note, "");
+    if (hello.notes.length) this.message(hello.notes.join(" "), "");
     if (hello.demo) this.player.play(await this.player.read(hello.demo));
     this.ready = true;
     if (this.early) this.arrived(this.early);
@@ -214,9 +213,8 @@ class App {
 
   note() {
     const { cursor, restitution, damping_ratio } = this.state, z = this.shown?.motion;
-    const box = element("readout"), bold = document.createElement("span");
-    bold.className = "z";
-    if (z) { bold.textContent = named(z); bold.style.color = markColour(z); }
+    const box = element("readout"), bold = make("span", z && named(z), "z");
+    if (z) bold.style.color = markColour(z);
     const rig = this.scale();
     const hz = rig ? ` = ${number(cursor.eta * rig.natural_frequency_hz, 5)} Hz` : "", mm = rig ? ` = ${number(1e3 * cursor.rho * rig.static_deflection_m, 4)} mm` : "";
     const r = typeof restitution === "number" ? number(restitution, 4) : "R(v)";
@@ -447,7 +445,7 @@ class App {
 
   /** Draw every picture now. */
   paint() {
-    this.map.redrawNow(); this.motion.paint(); this.line.paint(); this.basins.draw(); this.campaign?.traces();
+    this.map.redrawNow(); this.motion.paint(); this.line.paint(); this.basins.paint(); this.campaign?.traces();
   }
 
   // ---- looks ---------------------------------------------------------------------
@@ -463,16 +461,14 @@ class App {
     const place = (s) => s.order[0] * 1e6 + s.order[1] * 1e3 + s.order[2];
     const items = [...styles].sort((a, b) => place(a) - place(b)).map((s) => swatch(s, named(s)));
     for (const kind of this.map.kinds()) {
-      const span = document.createElement("span"), canvas = document.createElement("span");
-      canvas.className = "sample"; canvas.style.cssText = `width:1.6rem;border-top:${kind.width}px ${kind.dash ? "dashed" : "solid"} ${colour(kind.colour)}`;
-      const text = document.createElement("span");
-      kind.text.split("*").forEach((t, i) => { const e = document.createElement(i % 2 ? "i" : "span"); e.textContent = t; text.append(e); });
-      text.style.gap = "0"; span.append(canvas, text); items.push(span);
+      const span = make("span"), sample = make("span", undefined, "sample"), text = make("span");
+      sample.style.cssText = `width:1.6rem;border-top:${kind.width}px ${kind.dash ? "dashed" : "solid"} ${colour(kind.colour)}`;
+      text.append(...kind.text.split("*").map((t, i) => make(i % 2 ? "i" : "span", t)));
+      text.style.gap = "0"; span.append(sample, text); items.push(span);
     }
-    const { vx } = this.state.map_start, from = document.createElement("span");
-    from.textContent = vx === 0 ? "cells: from rest" : `cells: from X′ = Y′ = ${number(vx)}`;
-    if (this.map.other && this.map.other.id === this.wire.newest.map) from.textContent += "; striped: another motion coexists";
-    element("legend").replaceChildren(...items, from);
+    const { vx } = this.state.map_start, from = vx === 0 ? "cells: from rest" : `cells: from X′ = Y′ = ${number(vx)}`;
+    const striped = this.map.other && this.map.other.id === this.wire.newest.map ? "; striped: another motion coexists" : "";
+    element("legend").replaceChildren(...items, make("span", from + striped));
   }
 
   /** Say something for a time; what a demo says has a row of its own, and belongs to the pictures. */
@@ -485,9 +481,7 @@ class App {
   }
 
   message(text, remedy, fixed = false) {
-    const box = element("message"), close = document.createElement("button");
-    close.textContent = "Close"; close.type = "button";
-    close.addEventListener("click", () => { box.hidden = true; });
+    const box = element("message"), close = button("Close", () => { box.hidden = true; });
     box.dataset.fixed = fixed ? "yes" : "no";
     box.replaceChildren(`${text} ${remedy ?? ""}`, close);
     box.hidden = false;

@@ -1,5 +1,5 @@
 // The (η, ρ) map: tiles, boundaries, records, brackets, bands, cursor, line.
-import { Frame, colour, markColour, named, rich, ticks, tint, FONT } from "./draw.js";
+import { Frame, cellCanvas, colour, markColour, named, paintCells, rich, ticks, tint, FONT } from "./draw.js";
 
 const KINDS = {
   s2: { text: "saddle-node *s*₂", colour: "ink", width: 1.6 },
@@ -19,10 +19,14 @@ const EMPTY = 0xffffffff;
 const STRIPES = 7;
 /** Names of boundaries on the map. */
 const NAMES = { s2: "s₂", s1: "s₁" };
-/** Half the width and half the height of such a name, px. */
-const NAME = [22, 8];
+/** How far beside a boundary its name is where it has no place on it, px. */
+const BESIDE = 13;
 /** Least length of a boundary that is named, px. */
 const ROOM_OF_A_NAME = 45;
+/** Side of the squares by which names find their room, px. */
+const GRAIN = 3;
+/** Places of a region that are tried for its name. */
+const MOST_PLACES = 400;
 
 /** The map's canvases, from below: only that which changes is drawn again. */
 const LAYERS = { tiles: "map-tiles", lines: "map", cursor: "map-cursor" };
@@ -37,7 +41,7 @@ export class MapView {
     this.styles = new Map(); // label → style, of what is in view
     this.due = new Set();    // layers to be drawn
     this.drawn = false;      // whether something was, for the next picture of the screen
-    this.labels = [];
+    this.regions = [];       // of what is in view, with places for their names
     this.finished = 0;       // id of the newest request whose map came to its end
     this.late = false;       // whether what is wanted has not come yet: what is older is faint
     this.unnamed = false;    // whether names and legend are those of a map before: hidden and faint
@@ -89,7 +93,7 @@ export class MapView {
   coexisting(frame) {
     const [columns, rows] = frame.size, known = this.cells128;
     if (known?.id !== frame.id) return;
-    if (frame.first_row === 0) this.building = { id: frame.id, size: frame.size, eta: frame.eta, rho: frame.rho, styles: [], known: new Map(), cells: new Uint32Array(columns * rows), canvas: Object.assign(document.createElement("canvas"), { width: columns, height: rows }) };
+    if (frame.first_row === 0) this.building = { id: frame.id, size: frame.size, eta: frame.eta, rho: frame.rho, styles: [], known: new Map(), cells: new Uint32Array(columns * rows), canvas: cellCanvas(columns, rows) };
     const b = this.building, c = b.canvas.getContext("2d"), first = frame.first_row * columns;
     frame.cell.forEach((cell, i) => {
       const at = first + i, here = known.styles[known.cells[at]], there = frame.motions[cell], both = here.label === there.label ? here.label : `${here.label} · ${there.label}`;
@@ -100,7 +104,7 @@ export class MapView {
     });
     if (first + frame.cell.length < b.cells.length) return;
     this.other = b;
-    this.labels = placeLabels(b, this.taken(b));
+    this.regions = regions(b);
     this.app.legend(this.app.legendStyles ?? []);
     this.redraw("tiles", "lines");
   }
@@ -122,9 +126,8 @@ export class MapView {
   hatching(f, c) {
     const { other } = this;
     if (!other || this.late || other.id !== this.app.wire.newest.map) return;
-    const stripes = document.createElement("canvas"), s = stripes.getContext("2d"), [x0, y0] = [f.px(other.eta[0]), f.py(other.rho[1])];
-    const [w, h] = [f.px(other.eta[1]) - x0, f.py(other.rho[0]) - y0];
-    stripes.width = Math.max(1, w); stripes.height = Math.max(1, h);
+    const [x0, y0] = [f.px(other.eta[0]), f.py(other.rho[1])], [w, h] = [f.px(other.eta[1]) - x0, f.py(other.rho[0]) - y0];
+    const stripes = cellCanvas(Math.max(1, w), Math.max(1, h)), s = stripes.getContext("2d");
     s.imageSmoothingEnabled = false;
     s.drawImage(other.canvas, 0, 0, w, h);
     s.globalCompositeOperation = "destination-in";
@@ -139,9 +142,7 @@ export class MapView {
     let tile = this.tiles.find((t) => t.id === frame.id && t.level === frame.level);
     if (!tile) {
       const [columns, rows] = frame.size;
-      const canvas = document.createElement("canvas");
-      canvas.width = columns; canvas.height = rows;
-      tile = { id: frame.id, level: frame.level, eta: frame.eta, rho: frame.rho, size: frame.size, canvas, styles: [], known: new Map(), cells: new Uint32Array(columns * rows).fill(EMPTY), filled: 0 };
+      tile = { id: frame.id, level: frame.level, eta: frame.eta, rho: frame.rho, size: frame.size, canvas: cellCanvas(columns, rows), styles: [], known: new Map(), cells: new Uint32Array(columns * rows).fill(EMPTY), filled: 0 };
       // what is older stays below until the first strip of the new one is there
       this.tiles = this.tiles.filter((t) => t.id === frame.id || t.level <= 1).slice(-3);
       this.tiles.push(tile);
@@ -159,7 +160,7 @@ export class MapView {
     this.fade(!tile.complete && this.tiles.some((t) => t.id !== tile.id));
     if (tile.complete) {
       this.tiles = this.tiles.filter((t) => t === tile || (t.id === tile.id && t.level > tile.level));
-      if (tile.level === 1) { this.labels = placeLabels(tile, this.taken(tile)); this.cells128 = tile; this.unname(false); }
+      if (tile.level === 1) { this.regions = regions(tile); this.cells128 = tile; this.unname(false); }
       if (tile.level >= 1) this.app.legend(commonest(tile));
     }
     if (frame.last) this.finished = frame.id;
@@ -168,20 +169,10 @@ export class MapView {
     return tile;
   }
 
+  /** Paint rows of a tile. */
   paint(tile, firstRow, count) {
-    const [columns, rows] = tile.size;
-    const tints = tile.styles.map(tint);
-    const image = tile.canvas.getContext("2d").createImageData(columns, count);
-    for (let k = 0; k < count; k++) {
-      for (let i = 0; i < columns; i++) {
-        const cell = tile.cells[(firstRow + k) * columns + i];
-        const at = 4 * ((count - 1 - k) * columns + i);
-        if (cell === EMPTY) continue;
-        const [r, g, b] = tints[cell];
-        image.data[at] = r; image.data[at + 1] = g; image.data[at + 2] = b; image.data[at + 3] = 255;
-      }
-    }
-    tile.canvas.getContext("2d").putImageData(image, 0, rows - firstRow - count);
+    const [columns] = tile.size;
+    paintCells(tile.canvas, tile.cells.subarray(firstRow * columns, (firstRow + count) * columns), tile.styles.map(tint), firstRow);
   }
 
   /** All boundaries, bare: where they exist is taken from those before until it is known. */
@@ -249,8 +240,7 @@ export class MapView {
       this.bands(f, c);
       this.boundaries(f);
       if (app.campaign) app.campaign.draw(f, c);
-      this.boundaryNames(f, c);
-      if (!this.unnamed) this.regionLabels(f, c);
+      this.writeNames(f, c);
     });
     f.axes();
     if (scale) this.rigAxes(f, scale);
@@ -288,18 +278,22 @@ export class MapView {
     }
   }
 
-  boundaryNames(f, c) {
-    const records = this.app.campaign?.placed(f) ?? [];
-    this.names = Object.entries(this.curves).flatMap(([name, curve]) => this.nameOf(f, name, curve, records));
-    for (const { text, x, y, paint } of this.names) {
-      c.font = `13px ${FONT}`; c.textAlign = "center"; c.textBaseline = "middle";
-      c.lineWidth = 4; c.strokeStyle = colour("paper"); c.strokeText(text, x, y);
+  /** Names of boundaries and regions, beside what the campaign has there; one without a place is left to the legend. */
+  writeNames(f, c) {
+    const room = new Room(f.box);
+    for (const box of this.app.campaign?.boxes(f) ?? []) if (f.holds(box[0], box[1])) room.take(...box);
+    this.names = Object.entries(this.curves).flatMap(([name, curve]) => this.boundaryName(f, name, curve, room));
+    this.labels = this.unnamed ? [] : this.regions.flatMap((region) => this.regionName(f, region, room));
+    c.textAlign = "center"; c.textBaseline = "middle"; c.strokeStyle = colour("paper");
+    for (const { text, x, y, font, paint, halo, alpha } of [...this.names, ...this.labels]) {
+      c.font = font; c.lineWidth = halo; c.globalAlpha = alpha;
+      c.strokeText(text, x, y); c.globalAlpha = 1;
       c.fillStyle = paint; c.fillText(text, x, y);
     }
   }
 
-  /** A boundary's name: near the middle of the longest stretch on which a stable motion ends, beside records. */
-  nameOf(f, name, { eta, rho, exists, stale }, records) {
+  /** A boundary's name on the longest stretch on which a stable motion ends: near its middle, on it or beside it. */
+  boundaryName(f, name, { eta, rho, exists, stale }, room) {
     const [kind, n] = name.split(":");
     if (stale || !exists || !NAMES[kind]) return [];
     let best = [0, 0];
@@ -308,40 +302,22 @@ export class MapView {
       if (i - from > best[1] - best[0]) best = [from, i];
       from = i + 1;
     }
-    const length = f.px(eta[best[1] - 1] ?? 0) - f.px(eta[best[0]]);
-    if (!(length > ROOM_OF_A_NAME)) return [];
-    const places = [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8].map((share) => Math.floor(best[0] + share * (best[1] - best[0]))).map((i) => [f.px(eta[i]), f.py(rho[i])]);
-    const free = ([x, y]) => records.every((r) => Math.abs(r.x - x) > NAME[0] + 5 || Math.abs(r.y - y) > NAME[1] + 5);
-    const [x, y] = places.find(free) ?? places[0];
-    return [{ text: `${NAMES[kind]}(${n === "1" ? "1" : `1/${n}`})`, x, y, paint: colour(KINDS[kind].colour) }];
+    const [from, end] = best, middle = (from + end) / 2;
+    if (!(f.px(eta[end - 1] ?? 0) - f.px(eta[from]) > ROOM_OF_A_NAME)) return [];
+    const outwards = Array.from({ length: end - from }, (_, i) => from + i).sort((i, k) => Math.abs(i - middle) - Math.abs(k - middle));
+    const beside = [0, -BESIDE, BESIDE].flatMap((by) => outwards.map((i) => [f.px(eta[i]), f.py(rho[i]) + by]));
+    const text = `${NAMES[kind]}(${n === "1" ? "1" : `1/${n}`})`;
+    return room.name(f, beside, text, { font: `13px ${FONT}`, size: 13, paint: colour(KINDS[kind].colour), halo: 4, alpha: 1 });
   }
 
-  regionLabels(f, c) {
-    c.textAlign = "center"; c.textBaseline = "middle";
-    for (const { eta, rho, text, share } of this.labels) {
-      const size = Math.round(13 + 14 * Math.min(1, Math.sqrt(share) * 2.2));
-      c.font = `bold ${size}px ${FONT}`;
-      const { left, top, width, height } = f.box, room = c.measureText(text).width / 2 + 2;
-      const inside = (v, from, length, half) => Math.max(from + half, Math.min(from + length - half, v));
-      const x = inside(f.px(eta), left, width, room), y = inside(f.py(rho), top, height, size / 2);
-      c.lineWidth = 3; c.strokeStyle = colour("paper"); c.globalAlpha = 0.75;
-      c.strokeText(text, x, y); c.globalAlpha = 1;
-      c.fillStyle = colour("ink"); c.fillText(text, x, y);
+  /** A region's name as large as the region allows, or small, as far inside as there is room. */
+  regionName(f, { places, text, share }, room) {
+    const largest = Math.round(13 + 14 * Math.min(1, Math.sqrt(share) * 2.2)), at = places.map(([eta, rho]) => [f.px(eta), f.py(rho)]);
+    for (const size of new Set([largest, 13])) {
+      const found = room.name(f, at, text, { font: `bold ${size}px ${FONT}`, size, paint: colour("ink"), halo: 3, alpha: 0.75 });
+      if (found.length) return found;
     }
-  }
-
-  /** Cells of a tile under the campaign's records, as 1, and under the names of boundaries, as 2. */
-  taken({ eta, rho, size: [w, h] }) {
-    const cells = new Uint8Array(w * h), { frame: f, app } = this;
-    if (!f) return cells;
-    const along = (v, [low, high], n) => Math.min(n - 1, Math.max(0, Math.round((v - low) / (high - low) * (n - 1))));
-    const boxes = [...(app.campaign?.placed(f) ?? []).map(({ x, y }) => [1, x, y, 6, 6]), ...(this.names ?? []).map(({ x, y }) => [2, x, y, ...NAME])];
-    for (const [what, x, y, wide, high] of boxes) {
-      if (!f.holds(x, y)) continue;
-      const [first, last] = [x - wide, x + wide].map((p) => along(f.ux(p), eta, w));
-      for (let k = along(f.uy(y + high), rho, h); k <= along(f.uy(y - high), rho, h); k++) cells.fill(what, k * w + first, k * w + last + 1);
-    }
-    return cells;
+    return [];
   }
 
   line(f, c) {
@@ -366,31 +342,25 @@ export class MapView {
 
   /** Frequency in Hz above, clearance in mm on the right. */
   rigAxes(f, scale) {
-    const { context: c, box: b } = f;
-    const hz = f.x.map((v) => v * scale.natural_frequency_hz), mm = f.y.map((v) => v * scale.static_deflection_m * 1e3);
-    const top = new Frame2(hz, mm, b);
+    const { context: c, box: b } = f, hz = scale.natural_frequency_hz, mm = 1e3 * scale.static_deflection_m;
+    const across = ticks(...f.x.map((v) => v * hz), b.width / 80), up = ticks(...f.y.map((v) => v * mm), b.height / 45);
     c.fillStyle = colour("ink"); c.strokeStyle = colour("frame"); c.font = `13px ${FONT}`;
     c.textAlign = "center"; c.textBaseline = "alphabetic"; c.beginPath(); c.lineWidth = 1;
-    for (const [v, text] of top.x()) { const p = top.px(v); c.moveTo(p, b.top); c.lineTo(p, b.top + 4); c.fillText(text, p, b.top - 4); }
+    for (const v of across.all) { const p = Math.round(f.px(v / hz)) + 0.5; c.moveTo(p, b.top); c.lineTo(p, b.top + 4); c.fillText(across.text(v), p, b.top - 4); }
     c.textAlign = "left"; c.textBaseline = "middle";
-    for (const [v, text] of top.y()) { const p = top.py(v); c.moveTo(b.left + b.width, p); c.lineTo(b.left + b.width - 4, p); c.fillText(text, b.left + b.width + 4, p); }
+    for (const v of up.all) { const p = Math.round(f.py(v / mm)) + 0.5; c.moveTo(b.left + b.width, p); c.lineTo(b.left + b.width - 4, p); c.fillText(up.text(v), b.left + b.width + 4, p); }
     c.stroke(); c.textAlign = "center"; c.textBaseline = "alphabetic"; c.font = `14px ${FONT}`;
     rich(c, "drive frequency, Hz", b.left + b.width / 2, b.top - 22);
     c.save(); c.translate(f.width - 6, b.top + b.height / 2); c.rotate(-Math.PI / 2); rich(c, "clearance *r*, mm", 0, 0); c.restore();
   }
 
   // ---- the pointer -------------------------------------------------------
-  place(event) {
-    const box = this.canvas.getBoundingClientRect();
-    return [event.clientX - box.left, event.clientY - box.top];
-  }
-
   pointer() {
     const { canvas, app } = this;
     let mode = null, from = null, view = null;
     canvas.addEventListener("pointerdown", (event) => {
       if (!this.frame) return;
-      const [p, q] = this.place(event);
+      const { offsetX: p, offsetY: q } = event;
       if (!this.frame.holds(p, q)) return;
       canvas.focus(); canvas.setPointerCapture(event.pointerId);
       from = [p, q]; view = app.state.view;
@@ -402,7 +372,7 @@ export class MapView {
       this.moved(mode, p, q, from, view);
     });
     canvas.addEventListener("pointermove", (event) => {
-      const [p, q] = this.place(event);
+      const { offsetX: p, offsetY: q } = event;
       if (mode) this.moved(mode, p, q, from, view);
       else if (this.frame) canvas.title = app.campaign?.near(this.frame, p, q)?.id ?? (this.frame.holds(p, q) ? this.named(this.frame.ux(p), this.frame.uy(q)) : "");
     });
@@ -416,7 +386,7 @@ export class MapView {
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       if (!this.frame) return;
-      const [p, q] = this.place(event);
+      const { offsetX: p, offsetY: q } = event;
       app.zoom(Math.exp(0.0015 * event.deltaY), this.frame.ux(p), this.frame.uy(q));
     }, { passive: false });
   }
@@ -443,17 +413,6 @@ export class MapView {
   }
 }
 
-/** Ticks of the rig's units over the map's box. */
-class Frame2 {
-  constructor(x, y, box) { Object.assign(this, { rx: x, ry: y, box }); }
-  px(v) { return Math.round(this.box.left + this.box.width * (v - this.rx[0]) / (this.rx[1] - this.rx[0])) + 0.5; }
-  py(v) { return Math.round(this.box.top + this.box.height * (1 - (v - this.ry[0]) / (this.ry[1] - this.ry[0]))) + 0.5; }
-  x() { const t = ticksOf(this.rx, this.box.width / 80); return t; }
-  y() { const t = ticksOf(this.ry, this.box.height / 45); return t; }
-}
-
-const ticksOf = (range, count) => { const t = ticks(range[0], range[1], count); return t.all.map((v) => [v, t.text(v)]); };
-
 /** The motions that take most of a tile. */
 function commonest(tile) {
   const counts = new Uint32Array(tile.styles.length);
@@ -462,9 +421,9 @@ function commonest(tile) {
   return order.slice(0, 9).filter((i) => counts[i] > 2e-4 * tile.cells.length).map((i) => tile.styles[i]);
 }
 
-/** A label in the middle of every large connected region, where it has room on cells that are not taken. */
-function placeLabels(tile, taken) {
-  const [w, h] = tile.size, seen = new Int32Array(w * h).fill(-1), labels = [];
+/** The large connected regions of a tile, with places from their innermost outwards. */
+function regions(tile) {
+  const [w, h] = tile.size, seen = new Int32Array(w * h).fill(-1), found = [];
   const stack = [];
   for (let start = 0; start < w * h; start++) {
     if (seen[start] >= 0) continue;
@@ -479,31 +438,64 @@ function placeLabels(tile, taken) {
     }
     const share = members.length / (w * h);
     if (share < 0.006) continue;
-    const inside = (x, y) => x >= 0 && y >= 0 && x < w && y < h && seen[y * w + x] === start;
-    // beside records and names, else beside names, else anywhere
-    const middle = [1, 2, 3].reduce((best, least) => (best?.depth >= 3 ? best : innermost(members, (x, y) => inside(x, y) && taken[y * w + x] < least, w, h)), null);
-    if (middle.depth < 3) continue;
-    const eta = tile.eta[0] + (tile.eta[1] - tile.eta[0]) * middle.x / (w - 1);
-    const rho = tile.rho[0] + (tile.rho[1] - tile.rho[0]) * middle.y / (h - 1);
-    labels.push({ eta, rho, text: tile.styles[label].label, share });
+    const depth = depths(members.sort((a, b) => a - b), (x, y) => x >= 0 && y >= 0 && x < w && y < h && seen[y * w + x] === start, w, h);
+    const inner = members.filter((at) => depth[at] >= 3).sort((a, b) => depth[b] - depth[a]), step = Math.ceil(inner.length / MOST_PLACES);
+    const value = ([low, high], i, count) => low + (high - low) * i / (count - 1);
+    const places = inner.filter((_, i) => i % step === 0).map((at) => [value(tile.eta, at % w, w), value(tile.rho, Math.floor(at / w), h)]);
+    found.push({ places, text: tile.styles[label].label, share });
   }
-  return labels;
+  return found.sort((a, b) => b.share - a.share);
 }
 
-/** The member that is furthest from the edge of what is inside. */
-function innermost(members, inside, w, h) {
+/** How far each of the members, which are sorted, is from the edge of what is inside. */
+function depths(members, inside, w, h) {
   const depth = new Int16Array(w * h);
-  const sorted = [...members].sort((a, b) => a - b);
   const relax = (at, dx, dy) => {
     const x = at % w, y = (at - x) / w, look = (a, b) => (inside(x + a, y + b) ? depth[(y + b) * w + x + a] : 0);
-    if (!inside(x, y)) return 0;
     return Math.min(look(dx, 0), look(0, dy), look(dx, dy), look(-dx, dy)) + 1;
   };
-  for (const at of sorted) depth[at] = relax(at, -1, -1);
-  let best = { depth: 0, x: 0, y: 0 };
-  for (const at of sorted.reverse()) {
-    depth[at] = Math.min(depth[at], relax(at, 1, 1));
-    if (depth[at] > best.depth) best = { depth: depth[at], x: at % w, y: Math.floor(at / w) };
+  for (const at of members) depth[at] = relax(at, -1, -1);
+  for (const at of [...members].reverse()) depth[at] = Math.min(depth[at], relax(at, 1, 1));
+  return depth;
+}
+
+/** What marks and names have taken of a picture's box, in squares. */
+class Room {
+  constructor({ left, top, width, height }) {
+    Object.assign(this, { left, top, columns: Math.ceil(width / GRAIN), rows: Math.ceil(height / GRAIN) });
+    this.taken = new Uint8Array(this.columns * this.rows);
   }
-  return best;
+
+  /** The squares under a box about a place: their columns and rows. */
+  squares(x, y, wide, high) {
+    const at = (v, from, count) => Math.min(count - 1, Math.max(0, Math.floor((v - from) / GRAIN)));
+    const [left, right] = [x - wide, x + wide].map((v) => at(v, this.left, this.columns));
+    const [top, bottom] = [y - high, y + high].map((v) => at(v, this.top, this.rows));
+    return { left, right, top, bottom };
+  }
+
+  take(...box) {
+    const { left, right, top, bottom } = this.squares(...box);
+    for (let row = top; row <= bottom; row++) this.taken.fill(1, row * this.columns + left, row * this.columns + right + 1);
+  }
+
+  isFree(...box) {
+    const { left, right, top, bottom } = this.squares(...box);
+    for (let row = top; row <= bottom; row++) for (let i = left; i <= right; i++) if (this.taken[row * this.columns + i]) return false;
+    return true;
+  }
+
+  /** A name at the first of some places at which it is free, moved into the box; it is taken then. */
+  name({ context: c, box }, places, text, style) {
+    c.font = style.font;
+    const wide = c.measureText(text).width / 2 + 2, high = style.size / 2 + 1;
+    const inside = (v, from, length, half) => Math.max(from + half, Math.min(from + length - half, v));
+    for (const place of places) {
+      const x = inside(place[0], box.left, box.width, wide), y = inside(place[1], box.top, box.height, high);
+      if (!this.isFree(x, y, wide, high)) continue;
+      this.take(x, y, wide, high);
+      return [{ text, x, y, ...style }];
+    }
+    return [];
+  }
 }

@@ -1,12 +1,17 @@
 // Beside the map: the motion, characteristics, basins.
-import { Frame, around, colour, fit, markColour, named, number, plusMinus, tint, FONT } from "./draw.js";
+import { Frame, around, cellCanvas, colour, fit, markColour, named, number, paintCells, plusMinus, tint, FONT } from "./draw.js";
+import { element, make } from "./fields.js";
 
-const element = (id) => document.getElementById(id);
 /** Cell of a start that is beyond the contact. */
 const BEYOND = 0xffff;
 
 /** A panel whose pictures are painted once a frame, however often they are asked for. */
 class Panel {
+  constructor(app, ...pictures) {
+    this.app = app;
+    for (const id of pictures) new ResizeObserver(() => this.draw()).observe(element(id));
+  }
+
   draw() {
     if (this.pending) return;
     this.pending = true;
@@ -20,14 +25,12 @@ class Panel {
 /** The motion at the cursor: series, phase portrait, Poincaré map, autocorrelation, numbers. */
 export class MotionPanel extends Panel {
   constructor(app) {
-    super();
-    this.app = app;
+    super(app, "series", "phase", "poincare", "autocorrelation");
     this.frame = null;
     this.hover = null; // where the pointer is over the series, px
     const series = element("series");
     series.addEventListener("pointermove", (event) => { this.hover = this.timeFrame?.holds(event.offsetX, event.offsetY) ? event.offsetX : null; this.draw(); });
     series.addEventListener("pointerleave", () => { this.hover = null; this.draw(); });
-    for (const id of ["series", "phase", "poincare", "autocorrelation"]) new ResizeObserver(() => this.draw()).observe(element(id));
   }
 
   show(frame) {
@@ -186,11 +189,7 @@ export function turned(phase) {
 
 /** Rows of a definition list. */
 export function facts(rows) {
-  return rows.flatMap(([name, value]) => {
-    const dt = document.createElement("dt"), dd = document.createElement("dd");
-    dt.textContent = name; dd.textContent = value;
-    return [dt, dd];
-  });
+  return rows.flatMap(([name, value]) => [make("dt", name), make("dd", value)]);
 }
 
 /** What the lowest picture of the characteristics can show: its name, axis, and how it is drawn. */
@@ -200,17 +199,17 @@ export const CHARACTERISTICS = {
   approach_of_x: { text: "X′ before impacts", axis: "*X*′ before impacts", dots: (d, key) => d.step.map((s) => d[key][s]), of: (d) => d.xSpeed },
   impactless_phase: { text: "phase without impacts", axis: "phase lag, °", range: [0, 180], of: (d) => d.phase },
 };
-/** Share of the uppermost picture that trajectories set into it take. */
-const INSETS = 0.42;
+/** Share of the uppermost picture that trajectories take above its box. */
+const INSETS = 0.36;
+/** Space about each of them, px. */
+const SPACE = 6;
 
 /** Characteristics along a line, up and down, as they arrive. */
 export class LinePanel extends Panel {
   constructor(app) {
-    super();
-    this.app = app;
+    super(app, "line-x", "line-v", "line-l");
     this.trajectories = new Map(); // of insets, by machine and cursor
     this.clear(0);
-    for (const id of ["line-x", "line-v", "line-l"]) new ResizeObserver(() => this.draw()).observe(element(id));
   }
 
   clear(id) { this.id = id; this.ways = {}; this.all = 0; }
@@ -247,19 +246,19 @@ export class LinePanel extends Panel {
     }
   }
 
-  /** Phase trajectories in a row above the curve, each with a line to its place. */
+  /** Phase trajectories in a row above the box, each with a line to its place. */
   insets(f, key) {
     const { state } = this.app;
     const found = (state.insets ?? []).map((cursor) => this.trajectories.get(LinePanel.insetKey(state, cursor))).filter((t) => t);
     const inside = found.filter((t) => f.x[0] <= t.cursor[key] && t.cursor[key] <= f.x[1]);
     inside.sort((a, b) => a.cursor[key] - b.cursor[key]);
-    const { context: c, box } = f, space = 6, room = (box.width - space) / Math.max(1, inside.length);
-    const width = Math.min(room - space, 84), height = INSETS * box.height - 2 * space;
-    let free = box.left + space;
+    const { context: c, box } = f, room = (box.width + SPACE) / Math.max(1, inside.length);
+    const width = Math.min(room - SPACE, 84), top = 1, height = box.top - SPACE - top;
+    let free = box.left;
     inside.forEach((t, i) => {
-      const at = f.px(t.cursor[key]), last = box.left + box.width - (inside.length - i) * (width + space);
-      const left = Math.max(free, Math.min(at - width / 2, last)), top = box.top + space;
-      free = left + width + space;
+      const at = f.px(t.cursor[key]), last = box.left + box.width + SPACE - (inside.length - i) * (width + SPACE);
+      const left = Math.max(free, Math.min(at - width / 2, last));
+      free = left + width + SPACE;
       c.strokeStyle = colour("quiet"); c.lineWidth = 1;
       c.beginPath(); c.moveTo(left + width / 2, top + height); c.lineTo(at, f.py(t.x_max)); c.stroke();
       c.beginPath(); c.arc(at, f.py(t.x_max), 3, 0, 7); c.fillStyle = markColour(t.motion); c.fill();
@@ -286,20 +285,19 @@ export class LinePanel extends Panel {
     const title = byEta ? "frequency ratio *η*" : "clearance ratio *ρ*";
     const ways = Object.entries(this.ways);
     const paint = { up: colour("blue"), down: colour("vermilion") };
-    const panel = (id, values, name, draw) => {
-      const f = new Frame(element(id), range, values, [title, name], { left: 62 }).axes();
+    const panel = (id, values, name, draw, above = 8) => {
+      const f = new Frame(element(id), range, values, [title, name], { left: 62, top: above }).axes();
       f.clip(() => { for (const [way, data] of ways) draw(f, data, paint[way]); });
       const at = this.app.state.cursor[key];
       f.clip(() => f.curve([at, at], f.y, { colour: colour("quiet"), dash: [3, 3], width: 1 }));
       return f;
     };
     const lists = (k) => ways.map(([, d]) => d[k]);
-    const top = around([...lists("x_max"), ...lists("x_min")]);
-    if (this.app.state.insets?.length) top[1] += (top[1] - top[0]) * INSETS / (1 - INSETS);
-    const greatest = panel("line-x", top, "*X* greatest and least", (f, d, ink) => {
+    const above = this.app.state.insets?.length ? INSETS * element("line-x").clientHeight : 8;
+    const greatest = panel("line-x", around([...lists("x_max"), ...lists("x_min")]), "*X* greatest and least", (f, d, ink) => {
       f.curve(d[key], d.impactless, { colour: colour("quiet"), width: 1, dash: [4, 3] });
       f.dots(d[key], d.x_max, 1.3, ink); f.dots(d[key], d.x_min, 0.8, ink);
-    });
+    }, above);
     this.insets(greatest, key);
     panel("line-v", around([...lists("speed"), [0]]), `approach speed *X*′₋${this.app.state.single ? "" : " + *Y*′₋"}`, (f, d, ink) => f.dots(d.step.map((s) => d[key][s]), d.speed, 1, ink));
     const name = this.app.state.characteristic ?? "lyapunov", shown = CHARACTERISTICS[name];
@@ -320,14 +318,12 @@ export class LinePanel extends Panel {
 }
 
 /** Basins of attraction over the start. */
-export class BasinsPanel {
+export class BasinsPanel extends Panel {
   constructor(app) {
-    this.app = app;
+    super(app, "basins");
     this.tile = null;
-    new ResizeObserver(() => this.draw()).observe(element("basins"));
     element("basins").addEventListener("click", (event) => {
-      const box = event.target.getBoundingClientRect(), f = this.frame;
-      const [p, q] = [event.clientX - box.left, event.clientY - box.top];
+      const { frame: f } = this, { offsetX: p, offsetY: q } = event;
       if (f?.holds(p, q)) this.choose(f.ux(p), f.uy(q));
     });
   }
@@ -348,26 +344,21 @@ export class BasinsPanel {
 
   add(frame) {
     if (!this.tile || this.tile.id !== frame.id || this.tile.level !== frame.level) {
-      const [w, h] = frame.size, canvas = document.createElement("canvas");
-      canvas.width = w; canvas.height = h;
       this.below = this.tile?.id === frame.id ? this.tile : null;
-      this.tile = { id: frame.id, level: frame.level, canvas, size: frame.size, x: frame.x, vx: frame.vx, counts: new Map(), total: 0 };
+      this.tile = { id: frame.id, level: frame.level, canvas: cellCanvas(...frame.size), size: frame.size, x: frame.x, vx: frame.vx, counts: new Map(), total: 0 };
     }
-    const t = this.tile, [w, h] = t.size, rows = frame.cell.length / w;
-    const image = t.canvas.getContext("2d").createImageData(w, rows), tints = frame.motions.map(tint);
-    for (let k = 0; k < rows; k++) for (let i = 0; i < w; i++) {
-      const cell = frame.cell[k * w + i], at = 4 * ((rows - 1 - k) * w + i);
+    const t = this.tile;
+    paintCells(t.canvas, frame.cell, frame.motions.map(tint), frame.first_row);
+    for (const cell of frame.cell) {
       if (cell === BEYOND) continue;
       const style = frame.motions[cell], seen = t.counts.get(style.label) ?? { style, count: 0 };
       seen.count++; t.total++; t.counts.set(style.label, seen);
-      image.data.set([...tints[cell], 255], at);
     }
-    t.canvas.getContext("2d").putImageData(image, 0, h - frame.first_row - rows);
-    t.filled = frame.first_row + rows;
+    t.filled = frame.first_row + frame.cell.length / t.size[0];
     this.draw();
   }
 
-  draw() {
+  paint() {
     if (!this.tile || element("panel-basins").hidden) return;
     const t = this.tile, f = this.frame = new Frame(element("basins"), t.x, t.vx, [`start *X*(0)${this.app.state.single ? "" : this.app.state.basins?.starts === "one_mass" ? " of X alone" : " of both masses"}`, "start *X*′(0)"]);
     f.clip((c) => {
@@ -384,8 +375,8 @@ export class BasinsPanel {
 
 /** A tint with a text. */
 export function swatch(style, text) {
-  const span = document.createElement("span"), box = document.createElement("span");
-  box.className = "swatch"; box.style.background = `rgb(${tint(style).join(",")})`; box.style.borderColor = markColour(style);
+  const span = make("span"), box = make("span", undefined, "swatch");
+  box.style.background = `rgb(${tint(style).join(",")})`; box.style.borderColor = markColour(style);
   span.append(box, text);
   return span;
 }

@@ -18,18 +18,18 @@ export function decode(buffer) {
 /** What is asked of a server that is gone. */
 const GONE = { message: "The server is gone.", remedy: "Start `impactid explore` again." };
 
+/** What is answered once, to the newest request alone. */
+const REPLACED = new Set(["proposals", "tables"]);
+
 export class Wire {
   /** `receive(frame, since, state)` is called with every frame that answers the newest request of its slot. */
   constructor(token, receive, closed) {
     this.receive = receive;
     this.next = 1;
     this.newest = {};      // slot → id of its newest request
-    this.slots = {};       // id → slot
+    this.asked = new Map(); // id → { slot, since, state, promise } of what may still be answered
     this.busy = {};        // slot → id that is waited for, of slots that ask one at a time
     this.waiting = {};     // slot → request to be sent then
-    this.promises = {};    // id → [resolve, reject]
-    this.sent = {};        // id → time it was asked for, ms
-    this.states = {};      // id → the state for which
     this.keyAt = 0;        // time of the last key, ms
     document.addEventListener("keydown", (event) => { this.keyAt = event.timeStamp; }, true);
     const protocols = ["impactid.1", "token." + token];
@@ -37,7 +37,7 @@ export class Wire {
     this.socket.binaryType = "arraybuffer";
     this.opened = new Promise((resolve) => { this.socket.onopen = resolve; });
     this.socket.onmessage = (event) => this.take(decode(event.data));
-    this.socket.onclose = () => { for (const [, refuse] of Object.values(this.promises)) refuse(GONE); closed(); };
+    this.socket.onclose = () => { for (const { promise } of this.asked.values()) promise?.reject(GONE); closed(); };
   }
 
   /** Now, or the key that led here. */
@@ -48,10 +48,9 @@ export class Wire {
 
   send(slot, ask, state, since) {
     const id = this.next++;
+    this.asked.delete(this.newest[slot]);
     this.newest[slot] = id;
-    this.slots[id] = slot;
-    this.sent[id] = since ?? this.clock();
-    this.states[id] = state;
+    this.asked.set(id, { slot, state, since: since ?? this.clock() });
     if (this.socket.readyState === 1) this.socket.send(JSON.stringify({ id, ask, state }));
     return id;
   }
@@ -73,30 +72,24 @@ export class Wire {
   /** Ask for what is answered once. */
   once(ask, state) {
     if (this.socket.readyState > 1) return Promise.reject(GONE);
-    const id = this.send("once" + this.next, ask, state);
-    return new Promise((resolve, reject) => { this.promises[id] = [resolve, reject]; });
+    const slot = REPLACED.has(ask.kind) ? ask.kind : "once" + this.next;
+    const id = this.send(slot, ask, state);
+    return new Promise((resolve, reject) => { this.asked.get(id).promise = { resolve, reject }; });
   }
 
   take(frame) {
-    const slot = this.slots[frame.id];
-    const promise = this.promises[frame.id];
-    if (promise) {
-      delete this.promises[frame.id];
-      if (frame.kind === "refused") promise[1](frame); else promise[0](frame);
+    const request = this.asked.get(frame.id), slot = request?.slot, refused = frame.kind === "refused";
+    if (request?.promise) {
+      this.asked.delete(frame.id);
+      if (refused) request.promise.reject(frame); else request.promise.resolve(frame);
       return;
     }
-    const since = this.sent[frame.id], state = this.states[frame.id];
     if (this.busy[slot] === frame.id) this.busy[slot] = 0;
-    if (frame.kind === "refused" || this.newest[slot] === frame.id || frame.id === 0) {
-      this.receive(frame, since, state);
-    }
+    if (refused || this.newest[slot] === frame.id || frame.id === 0) this.receive(frame, request?.since, request?.state);
     if (!this.busy[slot] && this.waiting[slot]) {
       const [make, asked] = this.waiting[slot];
       delete this.waiting[slot];
       this.busy[slot] = this.send(slot, ...make(), asked);
-    }
-    for (const id of Object.keys(this.slots)) {
-      if (this.newest[this.slots[id]] !== Number(id)) { delete this.slots[id]; delete this.sent[id]; delete this.states[id]; }
     }
   }
 }
