@@ -7,7 +7,7 @@ use crate::method::Method;
 use crate::parameters::Coordinate;
 use crate::parameters::effect::{Effect, EffectKind};
 use impact_records::message::{Message, boxed};
-use impact_records::motion::Undetermined;
+use impact_records::motion::{BoundaryKind, Undetermined};
 use impact_records::record::{FlagCode, Problem, Remedy, Role, problem};
 use impact_records::signal::decay::DampingLaw;
 
@@ -56,6 +56,7 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         .chain(boxed(Sentence::iter()))
         .chain(boxed([PairAgreement::default()].into_iter()))
         .chain(boxed(Item::iter()))
+        .chain(boxed(BoundaryKind::iter()))
         .chain(boxed(DampingLaw::iter()))
         .collect()
 }
