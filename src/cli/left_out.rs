@@ -60,6 +60,7 @@ fn line(group: &Group<'_>, records: usize, words: &dyn Print) -> String {
 mod tests {
     use super::*;
     use impact_records::message::Typed;
+    use impact_records::motion::Motion;
     use impact_records::record::Problem;
 
     #[test]
@@ -68,8 +69,7 @@ mod tests {
             reached_m: 0.03,
             clearance_m: 0.02,
         };
-        let mut of = Observation::default();
-        of.record = "r1".into();
+        let mut of = Observation::of("r1", 12.0, Motion::Impactless);
         of.flags = vec![Flag::new(Some("laser_x"), problem).excluding(false)];
         let named = faults(&[of]);
         let lines: Vec<String> = named.groups().iter().map(|g| line(g, 9, &Typed)).collect();
