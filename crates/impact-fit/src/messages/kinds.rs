@@ -160,7 +160,7 @@ mod tests {
         };
         assert_eq!(
             clearance.to_string(),
-            "the gap stated with a clearance of 1.0000 mm moves like one of 1.1000 mm: measure it \
+            "the gap stated with a clearance of 1.000 mm moves like one of 1.100 mm: measure it \
              again and correct the run table; its records stay out of the fit"
         );
         let json = serde_json::to_value(&clearance).expect("JSON");
