@@ -203,7 +203,7 @@ fn proposed_settings_lower_the_error_of_r_from_what_the_campaign_states() {
     assert_eq!(ran.code, 0, "{}", ran.said);
     let map = fs::read_to_string(rig.join("plan/plan.svg")).expect("the map");
     assert!(
-        map.contains(">not simulated<") && map.contains("#EEEEEE"),
+        map.contains(">not\u{a0}simulated<") && map.contains("#EEEEEE"),
         "what was not simulated is grey, with a key"
     );
     let plan = json(&rig.join("plan/plan.json"));

@@ -227,7 +227,7 @@ fn phrases_are_those_of_the_user_s_table() {
     assert!(page.contains("<html lang=\"de\">") && page.contains("Bewegungsgebiete"));
     for (german, english) in [
         ("Der Prüfstand hat", "The rig has"),
-        ("Die Antworten folgen", "The responses follow"),
+        ("Die Antworten sind die", "The responses are those"),
         ("Die Verfahren stimmen überein", "methods agree.</b>"),
     ] {
         assert!(page.contains(german) && !page.contains(english), "{german}");
