@@ -26,10 +26,10 @@ pub(super) struct Atlas {
           allow_hyphen_values = true)]
     rho: (f64, f64),
     /// Columns (η) of the grid
-    #[arg(long, value_name = "N", default_value_t = 200, value_parser = at_least::<2>())]
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = at_least::<2>)]
     columns: usize,
     /// Rows (ρ) of the grid
-    #[arg(long, value_name = "N", default_value_t = 120, value_parser = at_least::<2>())]
+    #[arg(long, value_name = "N", default_value_t = 120, value_parser = at_least::<2>)]
     rows: usize,
     /// Greatest number of impacts p per period of the motion
     #[arg(long, value_name = "P", default_value_t = 4)]

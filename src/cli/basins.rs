@@ -36,10 +36,10 @@ pub(super) struct Basins {
     #[arg(long, value_name = "LOW..HIGH", value_parser = range, allow_hyphen_values = true)]
     vx: (f64, f64),
     /// Columns: values of X(0)
-    #[arg(long, value_name = "N", default_value_t = 601, value_parser = at_least::<2>())]
+    #[arg(long, value_name = "N", default_value_t = 601, value_parser = at_least::<2>)]
     columns: usize,
     /// Rows: values of X'(0)
-    #[arg(long, value_name = "N", default_value_t = 451, value_parser = at_least::<2>())]
+    #[arg(long, value_name = "N", default_value_t = 451, value_parser = at_least::<2>)]
     rows: usize,
     /// Start X alone; Y starts at rest at zero (else both masses start alike)
     #[arg(long)]

@@ -20,7 +20,7 @@ use impact_records::language::Language;
 use impact_records::message::{Message, Value};
 use impact_records::message_table;
 use impact_report::catalog::Catalog;
-use impact_report::differences::{PrintedDifference, p_equals};
+use impact_report::differences::{PrintedDifference, p_equals, statistic};
 use impact_report::locale::Locale;
 use impact_report::{CampaignsContent, Format, Paper, ReportOptions};
 
@@ -264,10 +264,7 @@ fn decided_by(comparison: &Comparison, locale: Locale<'_>) -> String {
         }
     });
     let together = comparison.unchanged.filter(|_| count > 1).map(|test| {
-        let (f, p) = (
-            locale.fixed(test.statistic, 3),
-            p_equals(test.p_value, locale),
-        );
+        let (f, p) = (statistic(&test, locale), p_equals(test.p_value, locale));
         format!("{}: F = {f}, p {p}", word(Word::Together))
     });
     let all: Vec<String> = corrected.into_iter().chain(together).collect();

@@ -18,7 +18,7 @@ use simulated_rig::RigSpec;
 #[command(after_help = EXAMPLE)]
 pub(super) struct Coverage {
     /// Number of campaigns
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = at_least::<1>())]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = at_least::<1>)]
     campaigns: usize,
     /// Sweep past the end of z = 1 at several gaps in steps of this share of f0, for R from the measured
     /// boundaries [default: campaigns of every motion]

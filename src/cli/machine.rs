@@ -166,7 +166,8 @@ pub(super) fn range(text: &str) -> Result<(f64, f64), String> {
     }
 }
 
-/// A parser of whole numbers from `LEAST` on.
-pub(super) fn at_least<const LEAST: u64>() -> clap::builder::RangedU64ValueParser<usize> {
-    clap::builder::RangedU64ValueParser::new().range(LEAST..)
+/// A whole number from `LEAST` on.
+pub(super) fn at_least<const LEAST: usize>(text: &str) -> Result<usize, String> {
+    let number = text.parse().ok().filter(|n| *n >= LEAST);
+    number.ok_or_else(|| format!("write a whole number, {LEAST} or more"))
 }

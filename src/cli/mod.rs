@@ -103,7 +103,7 @@ pub(crate) struct Common {
     )]
     verbose: u8,
     /// Number of threads [default: all processors]
-    #[arg(long, short = 'j', global = true, help_heading = GENERAL, value_name = "N", value_parser = machine::at_least::<1>())]
+    #[arg(long, short = 'j', global = true, help_heading = GENERAL, value_name = "N", value_parser = machine::at_least::<1>)]
     threads: Option<usize>,
 }
 

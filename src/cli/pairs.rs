@@ -13,10 +13,10 @@ use simulated_rig::RigSpec;
 #[command(after_help = EXAMPLE)]
 pub(super) struct Pairs {
     /// Number of pairs
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = at_least::<1>())]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = at_least::<1>)]
     pairs: usize,
     /// Records of each campaign
-    #[arg(long, value_name = "N", default_value_t = 80, value_parser = at_least::<1>())]
+    #[arg(long, value_name = "N", default_value_t = 80, value_parser = at_least::<1>)]
     records: usize,
     /// Seed of everything random
     #[arg(long, value_name = "S", default_value_t = 1)]

@@ -22,7 +22,7 @@ pub(super) struct Plan {
     #[arg(value_name = "CAMPAIGN.TOML")]
     campaign: PathBuf,
     /// Number of settings to propose
-    #[arg(long, value_name = "N", default_value_t = 6, value_parser = at_least::<1>())]
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = at_least::<1>)]
     settings: usize,
     /// Folder for plan.json, plan.csv and the map
     #[arg(long, short, value_name = "DIR")]

@@ -175,7 +175,7 @@ pub(super) struct Campaign {
     #[arg(long, value_name = "X", default_value_t = 1e-3, value_parser = within(1e-9, 1.0))]
     pub static_deflection_m: f64,
     /// Number of records [default: 200]
-    #[arg(long, value_name = "N", value_parser = at_least::<1>())]
+    #[arg(long, value_name = "N", value_parser = at_least::<1>)]
     pub records: Option<usize>,
     /// Folder for the campaign
     #[arg(long, short, value_name = "DIR")]

@@ -105,6 +105,8 @@ pub(super) enum Output {
     OneLeftOut(LeftOutRecords),
     /// Several records.
     SomeLeftOut(LeftOutRecords),
+    /// Records that contradict what is stated of them and are not left out.
+    Contradicting(LeftOutRecords),
     /// How many records can be used, and of how many.
     Usable(usize, usize),
     /// What stops the campaign.
@@ -121,7 +123,7 @@ pub(super) enum Output {
     Notes(usize),
 }
 
-/// Records that are left out for one kind of fault.
+/// Records with one kind of fault.
 #[derive(Debug, Clone, Default)]
 pub(super) struct LeftOutRecords {
     /// How many.
@@ -137,7 +139,7 @@ pub(super) struct LeftOutRecords {
 message_table! { "output": Output;
     Self::Written(path) => path = Value::Name(path);
     Self::Report(format, path) => format = Value::Name(format), path = Value::Name(path);
-    Self::OneLeftOut(left) | Self::SomeLeftOut(left) =>
+    Self::OneLeftOut(left) | Self::SomeLeftOut(left) | Self::Contradicting(left) =>
         count = Value::Count(left.count),
         of = Value::Count(left.of),
         fault = Value::Name(&left.fault),

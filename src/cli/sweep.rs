@@ -20,7 +20,7 @@ pub(super) struct Sweep {
     #[arg(long, value_name = "FROM..TO|RHO", value_parser = ends, allow_hyphen_values = true)]
     rho: (f64, f64),
     /// Steps from end to end
-    #[arg(long, value_name = "N", default_value_t = 301, value_parser = at_least::<2>())]
+    #[arg(long, value_name = "N", default_value_t = 301, value_parser = at_least::<2>)]
     steps: usize,
     #[command(flatten)]
     start: StartArgs,

@@ -95,6 +95,32 @@ fn a_full_disk_is_reported_and_the_old_output_stays() {
     }
 }
 
+/// A description lies beside its records: `init` has no other folder to name.
+#[test]
+fn init_into_a_folder_that_is_read_only_names_what_can_be_done() {
+    let lab = Lab::new();
+    fs::create_dir(lab.path("sealed")).expect("a folder");
+    let Some(_disk) = SmallDisk::at(&lab.path("sealed"), 1024) else {
+        println!("skipped: this user may not mount a small disk");
+        return;
+    };
+    fs::copy(lab.path("r1.csv"), lab.path("sealed/r1.csv")).expect("a record");
+    lab.write("sealed/campaign.toml", "the description of yesterday");
+    let (code, said) = shell(&lab, "mount -o remount,ro sealed");
+    assert_eq!(code, Some(0), "{said}");
+    let (code, said) = shell(&lab, "impactid init sealed --force");
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("could not be written") && said.contains("copy the records into one"),
+        "{said}"
+    );
+    assert!(!said.contains("--out"), "{said}");
+    assert_eq!(
+        lab.read("sealed/campaign.toml"),
+        "the description of yesterday"
+    );
+}
+
 #[test]
 fn a_full_standard_output_is_reported() {
     if !Path::new("/dev/full").exists() {

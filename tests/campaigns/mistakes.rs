@@ -51,25 +51,28 @@ fn first_suspicion(found: &Value) -> &str {
     found["suspicions"][0]["kind"].as_str().unwrap_or("none")
 }
 
+/// A run table with its clearances changed.
+fn with_clearances(table: &str, change: &dyn Fn(f64) -> f64) -> String {
+    let mut lines = table.lines();
+    let heads = lines.next().expect("a head");
+    let column = heads.split(',').position(|h| h.starts_with("clearance"));
+    let column = column.expect("clearances");
+    let changed = lines.map(|line| {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if let Ok(clearance) = cells[column].parse() {
+            cells[column] = change(clearance).to_string();
+        }
+        cells.join(",")
+    });
+    let all: Vec<String> = std::iter::once(heads.to_owned()).chain(changed).collect();
+    all.join("\n") + "\n"
+}
+
 #[test]
 fn valid_clearances_that_are_off_alike_are_named_and_not_used() {
     let simulated = Simulated::of("realistic");
     let clearances = |change: &dyn Fn(f64) -> f64| {
-        simulated.found_with("runs.csv", |table| {
-            let mut lines = table.lines();
-            let heads = lines.next().expect("a head");
-            let column = heads.split(',').position(|h| h.starts_with("clearance"));
-            let column = column.expect("clearances");
-            let changed = lines.map(|line| {
-                let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
-                if let Ok(clearance) = cells[column].parse() {
-                    cells[column] = change(clearance).to_string();
-                }
-                cells.join(",")
-            });
-            let all: Vec<String> = std::iter::once(heads.to_owned()).chain(changed).collect();
-            all.join("\n") + "\n"
-        })
+        simulated.found_with("runs.csv", |table| with_clearances(table, change))
     };
     let whole = clearances(&|mm| 2.0 * mm);
     let inch = clearances(&|mm| mm / 25.4);
@@ -95,10 +98,51 @@ fn valid_clearances_that_are_off_alike_are_named_and_not_used() {
                 > 4
         );
     }
+    // as the finding of whole gaps says
+    let runs = simulated.path().join("rig/runs.csv");
+    let halves = fs::read_to_string(&runs).expect("the run table");
+    fs::write(&runs, with_clearances(&halves, &|mm| 2.0 * mm)).expect("whole gaps");
+    let stated = simulated.found_with("campaign.toml", |text| {
+        text.replacen("[records]", "[records]\nwhole_gaps = true", 1)
+    });
+    assert!(!stated["methods"]["trajectories"].is_null());
+    assert_eq!(stated["suspicions"], Value::Array(Vec::new()));
     let added = shifted["suspicions"][0]["added_m"]
         .as_f64()
         .expect("a length");
     assert!((added + 4e-3).abs() < 0.3e-3, "{added}");
+}
+
+/// A gap of 5 mm stated as one of 7 mm: the first order about a fit tells 5.7 mm.
+#[test]
+fn valid_a_gap_that_is_far_off_is_named_with_its_true_value() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("data-samples/double-oscillator");
+    for name in ["campaign.toml", "records.h5"] {
+        fs::copy(sample.join(name), folder.path().join(name)).expect("a copy");
+    }
+    let runs = fs::read_to_string(sample.join("runs.csv")).expect("the run table");
+    let wrong = runs.replace(",5,", ",7,");
+    assert_ne!(runs, wrong);
+    fs::write(folder.path().join("runs.csv"), wrong).expect("the run table");
+    let run = [
+        "-q",
+        "run",
+        "campaign.toml",
+        "--out",
+        "out",
+        "--format",
+        "csv",
+    ];
+    let ran = impactid(folder.path(), &run);
+    assert!(ran.code <= 1, "{}", ran.said);
+    let found = json(&folder.path().join("out/identification.json"));
+    let mut named = found["suspicions"].as_array().expect("a list").iter();
+    let gap = named
+        .find(|s| s["kind"] == "wrong_clearance")
+        .expect("the gap");
+    let fitting_m = gap["fitting_m"].as_f64().expect("a length");
+    assert!((fitting_m / 5e-3 - 1.0).abs() < 0.01, "{fitting_m}");
 }
 
 #[test]

@@ -127,6 +127,29 @@ fn valid_a_change_of_r_is_found_and_shared_errors_cancel() {
 }
 
 #[test]
+fn a_comparison_in_german_is_german_on_the_terminal_and_in_the_report() {
+    let rig = rig();
+    let compare = [
+        "compare",
+        "results",
+        "after/campaign.toml",
+        "--out",
+        "verglichen",
+    ];
+    let ran = impactid(rig, &[&compare[..], &["--language", "de"]].concat());
+    assert_eq!(ran.code, 0, "{}", ran.said);
+    for words in ["Geändert: R", "Geschrieben: ", "p < 0,001"] {
+        assert!(ran.said.contains(words), "{words}: {}", ran.said);
+    }
+    for words in ["Changed", "Written", "difference", "p < 0.001"] {
+        assert!(!ran.said.contains(words), "{words}: {}", ran.said);
+    }
+    let page = fs::read_to_string(rig.join("verglichen/comparison.html")).expect("a page");
+    assert!(page.contains("<html lang=\"de\">") && page.contains("Messreihen"));
+    assert!(!page.contains("Campaigns compared"));
+}
+
+#[test]
 fn campaigns_of_different_machines_are_refused() {
     let rig = rig();
     let other = rig.join("other");
@@ -178,6 +201,11 @@ fn proposed_settings_lower_the_error_of_r_from_what_the_campaign_states() {
         ],
     );
     assert_eq!(ran.code, 0, "{}", ran.said);
+    let map = fs::read_to_string(rig.join("plan/plan.svg")).expect("the map");
+    assert!(
+        map.contains(">not\u{a0}simulated<") && map.contains("#EEEEEE"),
+        "what was not simulated is grey, with a key"
+    );
     let plan = json(&rig.join("plan/plan.json"));
     let joint = &json(&rig.join("results/identification.json"))["joint"];
     let now = plan["restitution_error_now"].as_f64().expect("an error");

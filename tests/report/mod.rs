@@ -165,6 +165,50 @@ fn paper_logo_template_and_decimal_sign_are_the_user_s() {
     );
 }
 
+/// Each table as LaTeX, in a paper of its own.
+#[test]
+fn every_table_compiles_with_pdflatex() {
+    if said("pdflatex", &["--version"]).is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let published = root().join("data-samples/published-speeds/campaign.toml");
+    for (i, campaign) in [cut_campaign(folder.path(), 8, ""), published]
+        .iter()
+        .enumerate()
+    {
+        let out = folder.path().join(format!("out{i}"));
+        let run = ["-q", "run", &text(campaign), "--out", &text(&out)];
+        let (code, told) = impactid(&[&run[..], &["--format", "tex"]].concat());
+        assert!(code <= 1, "{told}");
+        let tables = stems(&out.join("tables"), "tex");
+        assert!(!tables.is_empty());
+        for name in tables {
+            compiles(&out, &name);
+        }
+    }
+}
+
+/// Sets a table in a paper; a small TeX has no booktabs, whose rules are lines then.
+fn compiles(out: &Path, name: &str) {
+    let paper = format!(
+        "\\documentclass{{article}}\\usepackage{{graphicx}}\\usepackage{{longtable}}
+\\IfFileExists{{booktabs.sty}}{{\\usepackage{{booktabs}}}}
+{{\\let\\toprule\\hline\\let\\midrule\\hline\\let\\bottomrule\\hline}}
+\\begin{{document}}\\input{{tables/{name}}}\\end{{document}}
+"
+    );
+    fs::write(out.join("paper.tex"), paper).expect("written");
+    let done = Command::new("pdflatex")
+        .args(["-interaction=nonstopmode", "-halt-on-error", "paper.tex"])
+        .current_dir(out)
+        .output()
+        .expect("pdflatex");
+    let told = String::from_utf8_lossy(&done.stdout).into_owned();
+    assert!(done.status.success(), "{name}: {told}");
+    assert!(!told.contains("Overfull \\hbox"), "{name}: {told}");
+}
+
 /// The words are those of a table that campaign.toml or the command line names.
 #[test]
 fn phrases_are_those_of_the_user_s_table() {
@@ -183,7 +227,7 @@ fn phrases_are_those_of_the_user_s_table() {
     assert!(page.contains("<html lang=\"de\">") && page.contains("Bewegungsgebiete"));
     for (german, english) in [
         ("Der Prüfstand hat", "The rig has"),
-        ("Die Antworten folgen", "The responses follow"),
+        ("Die Antworten sind die", "The responses are those"),
         ("Die Verfahren stimmen überein", "methods agree.</b>"),
     ] {
         assert!(page.contains(german) && !page.contains(english), "{german}");

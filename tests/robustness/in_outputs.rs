@@ -52,7 +52,19 @@ fn commands() -> Vec<Case> {
             "no thread",
             |_| {},
             &["-j", "0", "check"],
-            &["invalid value '0' for '--threads <N>'", "1.."],
+            &[
+                "invalid value '0' for '--threads <N>'",
+                "write a whole number, 1 or more",
+            ],
+        ),
+        case(
+            "a map of no column",
+            |_| {},
+            &["atlas", "--columns", "0", "--out", "atlas"],
+            &[
+                "invalid value '0' for '--columns <N>'",
+                "write a whole number, 2 or more",
+            ],
         ),
         case(
             "an unknown flag",

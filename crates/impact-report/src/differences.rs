@@ -2,7 +2,7 @@
 
 use super::locale::Locale;
 use super::parameters::{decimals_for, parameter};
-use impact_identification::compare::Difference;
+use impact_identification::compare::{Difference, EqualityTest};
 
 /// Smaller p-values are printed as smaller than this.
 const LEAST_P: f64 = 1e-3;
@@ -20,6 +20,11 @@ pub fn p_value(p: f64, locale: Locale<'_>) -> String {
 pub fn p_equals(p: f64, locale: Locale<'_>) -> String {
     let relation = if p < LEAST_P { "" } else { "= " };
     format!("{relation}{}", p_value(p, locale))
+}
+
+/// The statistic of the test that nothing has changed, as printed.
+pub fn statistic(test: &EqualityTest, locale: Locale<'_>) -> String {
+    locale.significant(test.statistic, 3)
 }
 
 /// A difference as printed, with markup, in the parameter's unit.
@@ -65,5 +70,21 @@ impl PrintedDifference {
             independent: with_unit(format!("± {apart}")),
             p_value: p_value(difference.p_value, locale),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_statistic_of_the_test_has_the_digits_that_it_has_in_the_report() {
+        let test = EqualityTest {
+            statistic: 2197.705,
+            differences: 4,
+            degrees_of_freedom: None,
+            p_value: 0.0,
+        };
+        assert_eq!(statistic(&test, Locale::default()), "2198");
     }
 }

@@ -42,6 +42,7 @@ impl Locale<'_> {
             Text::Phrase(phrase) => self.translate(*phrase),
             Text::Followed(phrase, rest) => self.translate(*phrase) + rest,
             Text::Role(role) => self.role(*role),
+            Text::Boundary(kind) => self.message(kind),
             Text::Plain(text) => text.clone(),
         }
     }
@@ -101,6 +102,11 @@ impl Locale<'_> {
         } else {
             text
         }
+    }
+
+    /// A clearance in mm, to the micrometre, without its unit.
+    pub(crate) fn clearance(self, clearance_m: f64) -> String {
+        self.fixed(1e3 * clearance_m, 3)
     }
 
     /// A number with a count of significant digits; powers of ten where it is very large or small.

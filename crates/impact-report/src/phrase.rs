@@ -4,7 +4,7 @@
 use strum::VariantArray;
 
 use impact_records::language::Language;
-use impact_records::motion::Motion;
+use impact_records::motion::{BoundaryKind, Motion};
 use impact_records::record::Role;
 
 /// A phrase of the report. Its name in small letters is the key of its text in `[text.phrase]` of each language's file.
@@ -90,6 +90,7 @@ pub enum Phrase {
     ImpactsUsed,
     Measured,
     MeasuredMotions,
+    SimulatedRegions,
     MeasuredBracket,
     MeasuredWithStandardError,
     NotModelled,
@@ -124,7 +125,6 @@ pub enum Phrase {
     Chaotic,
     Sticking,
     Undetermined,
-    Edge,
     CoefficientOfRestitution,
     DampingRatio,
     NaturalFrequency,
@@ -301,6 +301,8 @@ pub enum Text {
     Followed(Phrase, String),
     /// What a channel measures.
     Role(Role),
+    /// The symbol of a boundary.
+    Boundary(BoundaryKind),
     /// Symbols, names and the theory's figures, which are English.
     Plain(String),
 }
@@ -321,6 +323,12 @@ impl From<(Phrase, &str)> for Text {
 impl From<Role> for Text {
     fn from(role: Role) -> Self {
         Self::Role(role)
+    }
+}
+
+impl From<BoundaryKind> for Text {
+    fn from(kind: BoundaryKind) -> Self {
+        Self::Boundary(kind)
     }
 }
 

@@ -178,6 +178,150 @@ fn words_within_margins(name: &str, boxes: &str) {
     }
 }
 
+/// The share of the room between header and footer that each page's words reach down to.
+fn filled_pages(boxes: &str) -> Vec<f64> {
+    const TOP: f64 = 56.7;
+    const BOTTOM: f64 = 53.9;
+    let number = |line: &str, key: &str| -> Option<f64> {
+        let rest = line.split(&format!("{key}=\"")).nth(1)?;
+        rest.split('"').next()?.parse().ok()
+    };
+    let pages = boxes.split("<page ").skip(1);
+    let filled = pages.map(|page| {
+        let height = number(page, "height").expect("a height");
+        let words = page.lines().filter_map(|line| number(line, "yMax"));
+        let lowest = words.filter(|y| *y < height - BOTTOM).fold(0.0, f64::max);
+        (lowest - TOP) / (height - TOP - BOTTOM)
+    });
+    filled.collect()
+}
+
+#[test]
+fn no_page_but_the_last_is_more_than_half_empty() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, content) in kinds() {
+        for paper in [Paper::A4, Paper::UsLetter] {
+            let options = ReportOptions {
+                paper,
+                ..ReportOptions::default()
+            };
+            let pdf = pdf_of(content, &options).expect("a PDF");
+            let path = written(folder.path(), "report.pdf", &pdf);
+            let Some(boxes) = output("pdftotext", &["-bbox", &path, "-"]) else {
+                return;
+            };
+            let filled = filled_pages(&boxes);
+            let (_, but_last) = filled.split_last().expect("a page");
+            assert!(but_last.iter().all(|f| *f > 0.5), "{name}: {filled:?}");
+        }
+    }
+}
+
+#[test]
+fn figures_stay_in_their_section_and_are_numbered_as_they_follow() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, content) in kinds() {
+        let pdf = pdf_of(content, &ReportOptions::default()).expect("a PDF");
+        let path = written(folder.path(), "report.pdf", &pdf);
+        let Some(words) = output("pdftotext", &["-raw", &path, "-"]) else {
+            return;
+        };
+        let captions: Vec<(usize, usize)> = words
+            .match_indices("Figure ")
+            .filter_map(|(at, _)| {
+                let (number, _) = words[at + 7..].split_once(". ")?;
+                Some((at, number.parse().ok()?))
+            })
+            .collect();
+        let numbers: Vec<usize> = captions.iter().map(|c| c.1).collect();
+        let expected: Vec<usize> = (1..=numbers.len()).collect();
+        assert_eq!(numbers, expected, "{name}");
+        let after = words.rfind("\nUncertainty, and effects beyond the model\n");
+        let after = after
+            .or(words.rfind("\nAppendix A."))
+            .expect("what follows");
+        assert!(captions.iter().all(|c| c.0 < after), "{name}");
+    }
+}
+
+#[test]
+fn what_is_left_out_for_one_reason_is_one_row_with_symbols_set() {
+    use impact_fit::{Item, LeftOut, Method, Reason};
+    use impact_records::motion::BoundaryKind;
+    let mut content = kind("whole").clone();
+    content.compared.unusable.clear();
+    let record = |k: usize| LeftOut {
+        item: Item::Record {
+            index: k,
+            record: format!("r{k}"),
+        },
+        reason: Reason::Influential {
+            method: Method::default(),
+        },
+    };
+    let bracket = LeftOut {
+        item: Item::Bracket {
+            index: 0,
+            boundary: BoundaryKind::PeriodDoubling,
+            frequency_low_hz: 12.0,
+            frequency_high_hz: 12.5,
+            clearance_m: 5e-3,
+        },
+        reason: Reason::FarFromBoundary,
+    };
+    content.identification.left_out = (1..=5).map(record).chain([bracket]).collect();
+    let report = Report::new(&content, &ReportOptions::default());
+    let mut blocks = report.document.sections.iter().flat_map(|s| &s.blocks);
+    let table = blocks.find_map(|block| match block {
+        document::model::Block::Table(t) if t.name == "left_out" => Some(t),
+        _ => None,
+    });
+    let rows = &table.expect("a table").rows;
+    let cell = |i: usize, j: usize| rows[i][j].plain();
+    assert_eq!(rows.len(), 2);
+    assert_eq!(
+        (cell(0, 0), cell(0, 1)),
+        ("r1, r2, r3 …".into(), "5".into())
+    );
+    assert!(
+        cell(0, 2).contains("left out of the method “"),
+        "{}",
+        cell(0, 2)
+    );
+    assert_eq!(cell(1, 0), "bracket s1 12.00–12.50 Hz at 5.000 mm");
+    assert_eq!(rows[1][0].0[1].text, "s");
+}
+
+#[test]
+fn a_clearance_is_printed_alike_everywhere() {
+    let report = Report::new(kind("small"), &ReportOptions::default());
+    let blocks = report.document.sections.iter().flat_map(|s| &s.blocks);
+    let tables: Vec<_> = blocks
+        .filter_map(|block| match block {
+            document::model::Block::Table(t) => Some(t),
+            _ => None,
+        })
+        .collect();
+    let column = |name: &str| -> Vec<String> {
+        let table = tables.iter().find(|t| t.name == name).expect(name);
+        let column = table.heads.iter().position(|h| h.plain() == "r (mm)");
+        let column = column.expect("clearances");
+        table
+            .cells()
+            .iter()
+            .map(|row| row[column].plain())
+            .collect()
+    };
+    for name in ["brackets", "records"] {
+        let decimals = |c: &String| c.split_once('.').map(|(_, d)| d.len());
+        let found = column(name);
+        assert!(
+            found.iter().all(|c| decimals(c) == Some(3)),
+            "{name}: {found:?}"
+        );
+    }
+}
+
 #[test]
 fn regress_campaigns_compared_as_text() {
     let report = Report::of_campaigns(&contents::compared(), &ReportOptions::default());

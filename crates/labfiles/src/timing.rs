@@ -165,6 +165,8 @@ pub fn is_time_name(name: &str) -> bool {
         || words.iter().any(known)
         || alone
         || since
+        // a field of a struct
+        || name.ends_with(".t")
         || name.trim().eq_ignore_ascii_case("x_value")
 }
 
@@ -564,6 +566,7 @@ mod tests {
             "tout",
             "in s",
             "in ms",
+            "rec.t",
         ] {
             assert!(is_time_name(name), "{name}");
         }

@@ -73,6 +73,7 @@ changes! {
     ("records.time_unit", Classify, without_unit_of_time, Add("records", r#"time_unit = "ms""#));
     ("records.time", Classify, with_spare_channels, Add("records", r#"time = "clock""#));
     ("records.clearance", Classify, bare_table, Add("records", r#"clearance = "2 mm""#));
+    ("records.whole_gaps", Classify, as_is, Add("records", "whole_gaps = true"));
     ("records.drive_frequency", Classify, bare_table, Add("records", r#"drive_frequency = "11 Hz""#));
     ("records.drive_amplitude", Identify, synthetic, Add("records", "drive_amplitude = 1.002"));
     ("records.sweep", Classify, bare_table, Add("records", r#"sweep = "down""#));

@@ -165,7 +165,7 @@ fn records_of(sets: &[DatasetInfo], shared: Shared<'_>) -> Vec<usize> {
 /// One note on all datasets of a file that are no records.
 fn left_out(path: &Path, sets: &[DatasetInfo], used: &[usize]) -> Option<Diagnostic> {
     let others = (0..sets.len()).filter(|i| !used.contains(i));
-    let names: Vec<String> = others.map(|i| bare(&sets[i].name).to_owned()).collect();
+    let names: Vec<String> = others.map(|i| called(&sets[i])).collect();
     if names.is_empty() {
         return None;
     }
@@ -315,6 +315,17 @@ fn list_rows_of(
 }
 
 /// A dataset's name without the slash that HDF5 begins it with.
+/// The name of a dataset, or of one without a name, as MATLAB's variables are, those of its channels.
+pub(super) fn called(set: &DatasetInfo) -> String {
+    match bare(&set.name) {
+        "" => {
+            let channels: Vec<String> = set.channels.iter().map(|c| c.name.clone()).collect();
+            first_of(&channels)
+        }
+        name => name.to_owned(),
+    }
+}
+
 fn bare(name: &str) -> &str {
     name.trim_start_matches('/')
 }

@@ -5,7 +5,7 @@ use super::diagnostic::Code;
 use super::discovery::{self, Discovered, Opener, Shared};
 use super::names::{self, Known};
 use super::resolved::RecordEntry;
-use super::sections::records::{AttributesTable, RecordsTable, defaults};
+use super::sections::records::{RecordsTable, defaults};
 use super::settings::{Wanted, note_settings, setting};
 use impact_records::record::Setting;
 
@@ -51,18 +51,18 @@ pub(super) fn resolve(
         one.id = id;
     }
     discovery::note_flags(&listed, context);
-    let entries = entries(&listed, &records.attributes, &defaults, context);
+    let entries = entries(&listed, records, &defaults, context);
     note_settings(&entries, context);
     entries
 }
 
 fn entries(
     listed: &[Discovered],
-    attributes: &AttributesTable,
+    records: &RecordsTable,
     defaults: &Setting,
     context: &mut ResolveContext<'_>,
 ) -> Vec<RecordEntry> {
-    let wanted = Wanted::of(attributes, context);
+    let wanted = Wanted::of(records, context);
     listed
         .iter()
         .enumerate()

@@ -4,7 +4,7 @@ use super::context::ResolveContext;
 use super::diagnostic::{Code, Diagnostic, Place, Severity};
 use super::discovery::Discovered;
 use super::resolved::RecordEntry;
-use super::sections::records::AttributesTable;
+use super::sections::records::RecordsTable;
 use super::values::{Placed, value};
 use impact_records::record::{Setting, Sweep};
 use labfiles::units::{self, Dimension};
@@ -17,6 +17,7 @@ pub(super) struct Wanted {
     amplitude: Option<Attribute>,
     sweep: Option<String>,
     specimen: Option<String>,
+    whole_gaps: bool,
 }
 
 #[derive(Debug)]
@@ -35,8 +36,10 @@ impl Attribute {
 }
 
 impl Wanted {
-    pub(super) fn of(written: &AttributesTable, context: &mut ResolveContext<'_>) -> Self {
+    pub(super) fn of(records: &RecordsTable, context: &mut ResolveContext<'_>) -> Self {
+        let written = &records.attributes;
         Self {
+            whole_gaps: records.whole_gaps,
             clearance: attribute(&written.clearance, "clearance", Dimension::Length, context),
             frequency: attribute(
                 &written.drive_frequency,
@@ -117,15 +120,17 @@ pub(super) fn setting(
         .specimen
         .as_ref()
         .and_then(|name| one.attributes.get(name).cloned());
+    let stated_m = row
+        .and_then(|r| r.clearance_m)
+        .or(clearance)
+        .or(default.clearance_m);
+    let share = if wanted.whole_gaps { 0.5 } else { 1.0 };
     Setting {
         stated_frequency_hz: row
             .and_then(|r| r.drive_frequency_hz)
             .or(frequency)
             .or(default.stated_frequency_hz),
-        clearance_m: row
-            .and_then(|r| r.clearance_m)
-            .or(clearance)
-            .or(default.clearance_m),
+        clearance_m: stated_m.map(|m| share * m),
         sweep: row.and_then(|r| r.sweep).or(sweep).unwrap_or(default.sweep),
         drive_amplitude: row
             .and_then(|r| r.drive_amplitude)

@@ -49,17 +49,18 @@ fn has_role(found: &FolderContents, role: Role) -> bool {
     found.channels.iter().any(|c| c.role == Some(role))
 }
 
+/// Whether channels of two masses were found.
+fn is_double(found: &FolderContents) -> bool {
+    let two = [Role::VelocityY, Role::DisplacementY, Role::AccelerationY];
+    two.iter().any(|r| has_role(found, *r))
+}
+
 fn head(text: &mut String, name: &str, found: &FolderContents) -> std::fmt::Result {
     let flight = match found.experiment {
         Experiment::FreeFlight(_) | Experiment::Events(_) => "constant_force",
         Experiment::Driven | Experiment::FreeDecay => "harmonic",
     };
-    let two = [Role::VelocityY, Role::DisplacementY, Role::AccelerationY];
-    let machine = if two.iter().any(|r| has_role(found, *r)) {
-        "double"
-    } else {
-        "single"
-    };
+    let machine = if is_double(found) { "double" } else { "single" };
     writeln!(
         text,
         "# A campaign for impactid, inferred from {} ({}); check every line.\n\
@@ -142,6 +143,9 @@ fn records(text: &mut String, found: &FolderContents) -> std::fmt::Result {
         for (key, value) in &attributes {
             writeln!(text, "{key} = {}", quoted(value))?;
         }
+        if is_double(found) && attributes.iter().any(|(key, _)| *key == "clearance") {
+            text.write_str(CLEARANCE)?;
+        }
     }
     writeln!(text)
 }
@@ -162,7 +166,8 @@ fn attributes(found: &FolderContents) -> Vec<(&'static str, String)> {
         found.attributes.keys().find(|name| {
             let lower = name.to_lowercase();
             let sampling = motion_capture || lower.contains("sampl") || lower.contains("analog");
-            !sampling && stems.iter().any(|s| lower.contains(s))
+            let alone = stems == ["freq"] && ["f", "f_hz"].contains(&last_field(&lower));
+            !sampling && (alone || stems.iter().any(|s| lower.contains(s)))
         })
     };
     let asked = KEYS
@@ -171,6 +176,11 @@ fn attributes(found: &FolderContents) -> Vec<(&'static str, String)> {
     asked
         .filter_map(|(key, stems, usual)| Some((*key, with_unit(find(stems)?, usual))))
         .collect()
+}
+
+/// The name of a field without those of the structs that hold it.
+fn last_field(name: &str) -> &str {
+    name.rsplit('.').next().unwrap_or(name)
 }
 
 fn with_unit(name: &str, usual: &str) -> String {
@@ -400,6 +410,10 @@ fn threshold(
 const RUN_TABLE: &str = "\
 # run_table = \"runs.csv\"      # instead of files: one row per record, with the columns file, dataset,
 #                             # drive_frequency_hz, clearance_mm, sweep (up, down), drive_amplitude
+";
+
+const CLEARANCE: &str = "\
+#                              # r is half the gap between two masses; of whole gaps state whole_gaps = true in [records]
 ";
 
 const CHANNELS: &str = "\

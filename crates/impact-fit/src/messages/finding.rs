@@ -477,7 +477,7 @@ fn template_key(finding: &Finding) -> String {
 }
 
 fn millimetres(metres: f64) -> Value<'static> {
-    Value::Number(1e3 * metres, 4)
+    Value::Number(1e3 * metres, 3)
 }
 
 /// Rounded to two significant digits.

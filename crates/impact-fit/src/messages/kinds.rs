@@ -7,7 +7,7 @@ use crate::method::Method;
 use crate::parameters::Coordinate;
 use crate::parameters::effect::{Effect, EffectKind};
 use impact_records::message::{Message, boxed};
-use impact_records::motion::Undetermined;
+use impact_records::motion::{BoundaryKind, Undetermined};
 use impact_records::record::{FlagCode, Problem, Remedy, Role, problem};
 use impact_records::signal::decay::DampingLaw;
 
@@ -56,6 +56,7 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         .chain(boxed(Sentence::iter()))
         .chain(boxed([PairAgreement::default()].into_iter()))
         .chain(boxed(Item::iter()))
+        .chain(boxed(BoundaryKind::iter()))
         .chain(boxed(DampingLaw::iter()))
         .collect()
 }
@@ -159,7 +160,7 @@ mod tests {
         };
         assert_eq!(
             clearance.to_string(),
-            "the gap stated with a clearance of 1.0000 mm moves like one of 1.1000 mm: measure it \
+            "the gap stated with a clearance of 1.000 mm moves like one of 1.100 mm: measure it \
              again and correct the run table; its records stay out of the fit"
         );
         let json = serde_json::to_value(&clearance).expect("JSON");

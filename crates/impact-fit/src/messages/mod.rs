@@ -18,6 +18,7 @@ pub use kinds::{kinds, labels};
 pub use note::Note;
 pub use pair::PairAgreement;
 pub use reason::{Item, LeftOut, Reason};
+pub(crate) use remark::ONE_DEGREE_OF_FREEDOM;
 pub use remark::{GroupPoint, Remark, SpeedPoint};
 pub use sentence::{Sentence, StatedValue};
 

@@ -135,7 +135,7 @@ messages!(Item, Reason);
 message_table! { "item": Item;
     Self::Record { record, .. } => record = Value::Name(record);
     Self::Bracket { boundary, frequency_low_hz, frequency_high_hz, clearance_m, .. } =>
-        boundary = Value::Name(boundary.name()),
+        boundary = Value::Message(boundary),
         low = Value::Number(*frequency_low_hz, 2),
         high = Value::Number(*frequency_high_hz, 2),
         clearance = Value::Number(1e3 * clearance_m, 3);

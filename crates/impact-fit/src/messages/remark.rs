@@ -62,6 +62,9 @@ fn abridged(first: &[impl Message], count: usize) -> Value<'_> {
     Value::List(each)
 }
 
+/// Relative deviation of responses from which one degree of freedom does not fit.
+pub(crate) const ONE_DEGREE_OF_FREEDOM: f64 = 0.15;
+
 /// What a method noticed about its data. Shares and deviations are relative (0.01 is 1 %).
 #[derive(
     Debug, Default, Clone, PartialEq, Serialize, Deserialize, strum::EnumIter, strum::IntoStaticStr,
@@ -354,7 +357,9 @@ impl Remark {
 }
 
 message_table! { "remark": Remark;
-    Self::OneDegreeOfFreedom { deviation } => share = Value::Percent(*deviation, 2);
+    Self::OneDegreeOfFreedom { deviation } =>
+        share = Value::Percent(*deviation, 2),
+        most = Value::Percent(ONE_DEGREE_OF_FREEDOM, 0);
     Self::NotOneDegreeOfFreedom { deviation } => share = Value::Percent(*deviation, 0);
     Self::WaveformsUnexplained { share } => share = Value::Percent(*share, 2);
     Self::WaveformsThinned { fitted, periodic } =>

@@ -62,6 +62,13 @@ impl<'a> Selection<'a> {
         indexed.filter(|(_, o)| test(o)).map(|(i, _)| i).collect()
     }
 
+    /// The waveforms of one gap, those that fits have lost among them.
+    pub fn of_gap(&self, clearance_m: f64) -> Vec<TrajectoryRecord> {
+        let records = self.blocks.trajectory.records.iter().chain(&self.lost);
+        let own = records.filter(|r| r.clearance_m == clearance_m);
+        own.cloned().collect()
+    }
+
     /// Leave the records and brackets of one gap out; false where nothing would remain.
     pub fn leave_out_gap(&mut self, clearance_m: f64) -> bool {
         let records = &mut self.blocks.trajectory.records;

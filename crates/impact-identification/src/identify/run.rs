@@ -46,6 +46,7 @@ use impact_fit::methods::influence::Places;
 use impact_fit::methods::joint::{self, Weights};
 use impact_fit::methods::registry::{BY_RECORD, REGISTRY};
 use impact_fit::methods::selection::Selection;
+use impact_fit::methods::trajectories::record::TrajectoryRecord;
 use impact_fit::parameters::effect::{Effect, EffectKind};
 use impact_fit::parameters::{Coordinate, Parameters};
 use impact_fit::solver::{Precision, Prior, Problem};
@@ -169,6 +170,9 @@ fn without_clearances(evidence: &Evidence<'_>, contradicted: Finding) -> Identif
 /// Gaps that may be found wrong before the campaign as a whole is at fault.
 const MOST_ODD_GAPS: usize = 2;
 
+/// Relative deviation of a gap from which the first order about a fit does not tell it.
+const FAR_OFF: f64 = 0.02;
+
 /// Delay of a channel, in half samples, that multiple shooting does not notice.
 const ON_TIME: f64 = 0.05;
 
@@ -274,11 +278,35 @@ impl<'a> IdentificationRun<'a> {
             let Some(odd) = self.odd_gap() else {
                 break;
             };
-            self.odd_gaps.push(Finding::from(odd).into());
-            if !self.selection.leave_out_gap(odd.stated_m) {
+            let records = self.selection.of_gap(odd.stated_m);
+            let others = self.selection.leave_out_gap(odd.stated_m);
+            if others {
+                self.fit();
+            }
+            let found = self.searched(odd, records);
+            self.odd_gaps.push(Finding::from(found).into());
+            if !others {
                 break;
             }
-            self.fit();
+        }
+    }
+
+    /// A gap that is far off with the clearance with which its records fit what all others say: to first order about a
+    /// fit that it bends it is not that.
+    fn searched(&self, odd: OddGap, records: Vec<TrajectoryRecord>) -> OddGap {
+        let is_far = (odd.fitting_m / odd.stated_m - 1.0).abs() > FAR_OFF;
+        let found = self
+            .found
+            .together()
+            .filter(|_| is_far && !records.is_empty());
+        let fitting_m = found.and_then(|joint| {
+            let block = &self.selection.blocks.trajectory;
+            let typical = self.selection.typical;
+            suspicion::fitting_clearance(block, records, &joint.fit.parameters, typical)
+        });
+        OddGap {
+            fitting_m: fitting_m.unwrap_or(odd.fitting_m),
+            ..odd
         }
     }
 

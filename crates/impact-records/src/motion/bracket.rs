@@ -7,8 +7,21 @@ use crate::motion::observation::Observation;
 use crate::record::Sweep;
 
 /// Which boundary of motion a bracket holds.
-#[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(
+    Debug,
+    Default,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Hash,
+    Serialize,
+    Deserialize,
+    strum::EnumIter,
+    strum::IntoStaticStr,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum BoundaryKind {
     /// Saddle-node boundary s2: z = 1/n vanishes.
     #[default]
@@ -32,6 +45,8 @@ impl BoundaryKind {
         }
     }
 }
+
+crate::message_table! { "boundary": BoundaryKind; }
 
 /// Two records next to each other in a sweep, with different motions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

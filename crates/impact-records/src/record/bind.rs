@@ -354,6 +354,12 @@ fn wrong_quantity(
             expected,
             unit: wanted.si_symbol().replace('²', "2"),
         },
+        (Dimension::Voltage, None) if role.is_frame() => Problem::VoltageOfMotion {
+            channel,
+            role,
+            expected,
+            unit: "m/s2".to_owned(),
+        },
         _ => Problem::WrongQuantity {
             channel,
             role,
@@ -450,6 +456,13 @@ mod tests {
             "{}",
             flag.message()
         );
+        assert!(
+            flag.remedy().ends_with("scale = \"0.05 m/s2 per V\""),
+            "{}",
+            flag.remedy()
+        );
+        let frame = ChannelSetup::plain(Role::FrameX, ChannelKey::Name("gyro".into()));
+        let flag = bind(&frame, &volts).unwrap_err();
         assert!(
             flag.remedy().ends_with("scale = \"0.05 m/s2 per V\""),
             "{}",

@@ -6,7 +6,7 @@ use super::model::{Answer, Block, Document, Front, Rich, Section};
 use super::sections::{paragraph, section};
 use super::tables;
 use crate::content::CampaignsContent;
-use crate::differences::p_equals;
+use crate::differences::{p_equals, statistic};
 use crate::kit::Figure;
 use crate::locale::Locale;
 use crate::parameters::{self, PARAMETERS};
@@ -74,7 +74,7 @@ fn summary(comparison: &Comparison, locale: Locale<'_>) -> String {
 
 fn all_together(test: &EqualityTest, locale: Locale<'_>) -> String {
     let count = test.differences.to_string();
-    let statistic = locale.significant(test.statistic, 3);
+    let statistic = statistic(test, locale);
     let p = p_equals(test.p_value, locale);
     let values = [("count", &*count), ("statistic", &*statistic), ("p", &*p)];
     locale.translate_with(Phrase::TestOfNoChange, &values)

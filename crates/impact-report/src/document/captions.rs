@@ -15,26 +15,25 @@ use impact_records::motion::Motion;
 /// A figure's name and its caption.
 type Captioned = (String, String);
 
-/// Groups of figures; narrow ones of one group are side by side.
-pub(super) fn method_figures(content: &ReportContent, locale: Locale<'_>) -> Vec<Vec<Captioned>> {
-    let boundary_fit = (
+/// The figures of the methods; narrow ones that follow each other are side by side.
+pub(super) fn method_figures(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
+    let mut figures = vec![(
         "boundary_fit".into(),
         locale.translate(Phrase::CaptionBoundaryFit),
-    );
-    let mut groups = vec![vec![boundary_fit]];
+    )];
     // of the four parameters alone it is narrow
-    let wide = has_others(content).then(|| correlation(content, locale));
-    if wide.is_none() {
-        groups[0].push(correlation(content, locale));
+    let wide = has_others(content);
+    let correlation = correlation(content, locale);
+    if !wide {
+        figures.push(correlation.clone());
     }
-    groups.push(vec![profiles(locale)]);
-    let alone = |captioned: Vec<Captioned>| captioned.into_iter().map(|c| vec![c]);
-    groups.extend(alone(impacts(content, locale)));
-    groups.extend(alone(resonance(content, locale)));
-    groups.extend(alone(free_decays(content, locale)));
-    groups.extend(alone(wide.into_iter().collect()));
-    groups.extend(alone(residuals(content, locale)));
-    groups
+    figures.push(profiles(locale));
+    figures.extend(impacts(content, locale));
+    figures.extend(resonance(content, locale));
+    figures.extend(free_decays(content, locale));
+    figures.extend(wide.then_some(correlation));
+    figures.extend(residuals(content, locale));
+    figures
 }
 
 /// The caption of a comparison, with markup.

@@ -116,7 +116,7 @@ fn clearances(overview: &Overview, locale: Locale<'_>) -> String {
     let all: Vec<String> = overview
         .clearances_m
         .iter()
-        .map(|r| locale.significant(1e3 * r, 3))
+        .map(|r| locale.clearance(*r))
         .collect();
     match all.as_slice() {
         [] => String::new(),

@@ -207,8 +207,8 @@ pub(crate) enum Block {
 pub(crate) enum Placement {
     /// Where the text has them.
     InText,
-    /// At the top or the bottom of the next page with room, so that the text that follows fills the page.
-    Floating,
+    /// In the order that fills the pages: of those that are left the first that has room.
+    Filling,
 }
 
 /// A convention: a formula and its meaning.

@@ -196,17 +196,12 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
         });
     blocks.extend(remarks);
     blocks.extend(tables::further(content, drawn.locale).map(|t| t.block("further")));
-    // the figures of the methods follow each other: those after the first let the text go on
-    let placements =
-        std::iter::once(Placement::InText).chain(std::iter::repeat(Placement::Floating));
-    let groups = captions::method_figures(content, drawn.locale);
-    for (group, placement) in groups.into_iter().zip(placements) {
-        let named: Vec<(&str, &str)> = group
-            .iter()
-            .map(|(n, c)| (n.as_str(), c.as_str()))
-            .collect();
-        blocks.extend(drawn.placed(&named, placement));
-    }
+    let captioned = captions::method_figures(content, drawn.locale);
+    let named: Vec<(&str, &str)> = captioned
+        .iter()
+        .map(|(n, c)| (n.as_str(), c.as_str()))
+        .collect();
+    blocks.extend(drawn.placed(&named, Placement::Filling));
     // Three comparisons fill a page; below one or two there is room. Pages that begin anew are set beside
     // each other.
     let comparisons = content.compared.comparisons.len();

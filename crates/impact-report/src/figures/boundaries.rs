@@ -2,7 +2,6 @@
 
 use crate::kit::canvas::Stroke;
 use crate::kit::look;
-use crate::phrase::{Phrase, Text};
 use impact_records::motion::BoundaryKind;
 
 /// The boundaries in the order in which brackets are stacked.
@@ -18,16 +17,6 @@ pub(crate) fn name(kind: BoundaryKind) -> &'static str {
     match kind {
         BoundaryKind::Other => "edge",
         kind => kind.name(),
-    }
-}
-
-/// The paper's symbol, with markup.
-pub(crate) fn symbol(kind: BoundaryKind) -> Text {
-    match kind {
-        BoundaryKind::PeriodDoubling => "$s_1$".into(),
-        BoundaryKind::SaddleNode => "$s_2$".into(),
-        BoundaryKind::Grazing => "$ρ$′".into(),
-        BoundaryKind::Other => Phrase::Edge.into(),
     }
 }
 

@@ -104,9 +104,7 @@ fn keys(rows: &[(&BracketRow, f64, f64)]) -> Vec<Key> {
     let met = kinds
         .into_iter()
         .filter(|k| rows.iter().any(|r| r.0.kind == *k));
-    let mut keys: Vec<Key> = met
-        .map(|k| Key::new(Sign::Bracket(colour(k)), boundaries::symbol(k)))
-        .collect();
+    let mut keys: Vec<Key> = met.map(|k| Key::new(Sign::Bracket(colour(k)), k)).collect();
     if rows.iter().any(|r| r.0.left_out.is_some()) {
         keys.push(Key::new(
             Sign::Bracket(marks::mix(look::INK, 0.35)),

@@ -17,7 +17,7 @@ use impact_records::signal::robust::range;
 use labfiles::units::Dimension;
 
 /// How many decays one figure holds.
-pub(crate) const PER_FIGURE: usize = 12;
+pub(crate) const PER_FIGURE: usize = 6;
 
 /// Panels in a row.
 const COLUMNS: usize = 3;

@@ -1,6 +1,6 @@
 //! Keys of a figure, set in lines outside the plotted area.
 
-use super::canvas::{Anchor, Canvas, Colour, Stroke, TextLook};
+use super::canvas::{Anchor, Canvas, Colour, Point, Stroke, TextLook};
 use super::fonts::Face;
 use super::look;
 use super::marks::{self, MotionLook, Shape};
@@ -134,10 +134,17 @@ fn sign(canvas: &mut Canvas, (x, y): (f64, f64), sign: Sign) {
     match sign {
         Sign::Mark(mark) => marks::draw(canvas, (x + 3.5, y), 2.6, mark),
         Sign::Line(stroke) => canvas.segment((x, y), (end, y), stroke),
-        Sign::Patch(colour) => canvas.rectangle((x, y - 3.5), (end, y + 3.5), colour),
+        Sign::Patch(colour) => patch(canvas, ((x, y - 3.5), (end, y + 3.5)), colour),
         Sign::Bracket(colour) => bracket(canvas, (x, end), y, colour),
         Sign::Nothing => {}
     }
+}
+
+/// A patch of colour with a hair line about it, so that a white one is seen.
+fn patch(canvas: &mut Canvas, (from, to): (Point, Point), colour: Colour) {
+    canvas.rectangle(from, to, colour);
+    let corners = [from, (to.0, from.1), to, (from.0, to.1), from];
+    canvas.line(&corners, Stroke::solid(look::FRAME, 0.3));
 }
 
 /// A measured bracket: a bar with ends.

@@ -3,6 +3,7 @@
 use super::ENGLISH;
 use impact_identification::replay::RegionMap;
 use impact_records::motion::Motion;
+use impact_report::figures::regions::commonest;
 use impact_report::kit::canvas::Canvas;
 use impact_report::kit::legend::{self, Key, Sign};
 use impact_report::kit::look;
@@ -17,30 +18,15 @@ pub(super) fn sheet(left: f64, keys: &[Key], height: f64) -> (Canvas, f64) {
     (canvas, top)
 }
 
-/// Keys of the motions that a map shows, each with its tint; the rare ones last and left out
-/// beyond a number.
+/// Keys of the motions that a map shows, each with its tint; the rare ones left out beyond a number.
 pub(super) fn tint_keys(map: &RegionMap, most: usize) -> Vec<Key> {
-    let mut counts = vec![0_usize; map.motions.len()];
-    for &cell in map.cells.iter().chain(&map.second) {
-        counts[usize::from(cell)] += 1;
-    }
-    let mut order: Vec<usize> = (0..counts.len()).collect();
-    order.sort_by_key(|&i| std::cmp::Reverse(counts[i]));
-    order.truncate(most);
-    order.sort_by_key(|&i| marks::order(&map.motions[i]));
-    let key = |i: &usize| {
-        let motion = &map.motions[*i];
+    let key = |motion: &Motion| {
         let text = match motion {
             Motion::Undetermined { reason } => reason.to_string(),
             Motion::Beat | Motion::Chaotic | Motion::Sticking => motion.label(),
             _ => format!("$z$ = {}", motion.label()),
         };
-        let tint = marks::of(motion).tint;
-        if tint == look::PAPER {
-            Key::new(Sign::Nothing, format!("white: {text}"))
-        } else {
-            Key::new(Sign::Patch(tint), text)
-        }
+        Key::new(Sign::Patch(marks::of(motion).tint), text)
     };
-    order.iter().map(key).collect()
+    commonest(map, most).into_iter().map(key).collect()
 }

@@ -13,7 +13,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::discovery::Opener;
+use super::discovery::{Opener, called};
 use super::resolved::RESOLVED;
 use super::run_table;
 use impact_records::record::time_axis;
@@ -87,7 +87,7 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
         let sets = source.datasets().iter().enumerate();
         let lists = |set: &DatasetInfo| Some((slashed(path), set.name.clone())) == run_sheet;
         let others = sets.filter(|(i, set)| !used.contains(i) && !lists(set));
-        let named = others.map(|(_, set)| format!("{}: {}", slashed(path), set.name));
+        let named = others.map(|(_, set)| format!("{}: {}", slashed(path), called(set)));
         found.others.extend(named);
     }
     let table = found.run_table.clone();
@@ -1119,10 +1119,14 @@ mod tests {
             roles_of(&[("x", "", 1.0), ("y", "px", 800.0)]),
             [None, Some(Role::DisplacementX)]
         );
-        assert_eq!(
-            roles_of(&[("vx", "m/s", 0.5), ("vy", "m/s", 0.4)]),
-            [Some(Role::VelocityX), Some(Role::VelocityY)]
-        );
+        for [x, y] in [["vx", "vy"], ["v x", "v y"], ["Laser x", "v_y"]] {
+            let unit = if x == "vx" { "m/s" } else { "V" };
+            assert_eq!(
+                roles_of(&[(x, unit, 0.5), (y, unit, 0.4)]),
+                [Some(Role::VelocityX), Some(Role::VelocityY)],
+                "{x} {y}"
+            );
+        }
     }
 
     #[test]

@@ -332,6 +332,10 @@ fn kind(channel: &InferredChannel) -> Kind {
     match () {
         () if has(&DRIVES) => Kind::Drive,
         () if has(&["vel", "speed", "laser", "ldv", "vib", "vx", "vy"]) => Kind::Velocity,
+        // v_x, v y
+        () if matches!(&words[..], [v, side] if v == "v" && ["x", "y"].contains(&&**side)) => {
+            Kind::Velocity
+        }
         () if has(&["disp", "pos", "dx", "dy", "angle", "winkel"]) => Kind::Displacement,
         () if has(&["acc"]) => Kind::Acceleration,
         () if channel.levels.is_some() && channel.changes > OF_TRIGGER => Kind::Contact,

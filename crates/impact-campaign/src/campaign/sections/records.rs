@@ -28,6 +28,9 @@ keys! {
         /// rests on the speeds at impacts alone, whose interval is then about ± 0.006 wide: how long the contacts last
         /// is not known
         clearance: Placed<WrittenQuantity>;
+        /// whether the clearances that are stated, here, in the run table or in attributes, are whole gaps between two
+        /// masses: half of each is used
+        whole_gaps: bool, default "`false`";
         /// of records that state none, relative to the nominal one
         drive_amplitude: Placed<f64>;
         /// of records that state none: `"up"`, `"down"` or `"unknown"`

@@ -32,7 +32,7 @@ keys! {
         /// LaTeX, in `tables/`), `"csv"` (the data of the figures alone, no document); the data of the figures are
         /// always written as CSV
         formats: Placed<Vec<Format>>, default "`[\"pdf\"]`",
-            init r#"formats = ["pdf"]            # any of pdf, html, svg, png, figure-pdf, tex; the data of the figures are always written as CSV"#;
+            init r#"formats = ["pdf"]            # any of pdf, html, svg, png, figure-pdf, tex, csv (the data of the figures alone, which are always written)"#;
         /// records whose time series and phase portraits are drawn
         points: Placed<Vec<String>>, default "the best record of each type of motion, at most eight",
             init r#"# points = ["record_12"]     # records to draw; chosen by the program if not given"#;

@@ -1,6 +1,6 @@
 //! What the resonance curve gives, and whether it is that of one degree of freedom.
 
-use crate::messages::Remark;
+use crate::messages::{ONE_DEGREE_OF_FREEDOM, Remark};
 use crate::methods::answer::MethodResult;
 use crate::methods::blocks::Blocks;
 use crate::methods::fit::{self, FitResult};
@@ -8,9 +8,6 @@ use crate::methods::resonance::block::ResonanceBlock;
 use crate::methods::resonance::fit::TELLS;
 use crate::parameters::Parameters;
 use impact_records::signal::robust;
-
-/// Relative deviation of responses from which one degree of freedom does not fit.
-const RESONANCE_DEVIATION: f64 = 0.15;
 
 /// f0, β and `x_st` from the impactless records.
 pub(super) fn result(blocks: &Blocks, fitted: &FitResult) -> MethodResult {
@@ -37,8 +34,8 @@ fn judge(result: &mut MethodResult, block: &ResonanceBlock, fitted: &Parameters)
         }
     }
     let deviation = robust::rms(&deviations);
-    result.fits = Some(deviation < RESONANCE_DEVIATION);
-    result.remarks.push(if deviation < RESONANCE_DEVIATION {
+    result.fits = Some(deviation < ONE_DEGREE_OF_FREEDOM);
+    result.remarks.push(if deviation < ONE_DEGREE_OF_FREEDOM {
         Remark::OneDegreeOfFreedom { deviation }
     } else {
         Remark::NotOneDegreeOfFreedom { deviation }

@@ -251,26 +251,9 @@ pub(super) fn recover(
     typical: f64,
 ) -> Option<OddGap> {
     let stated = records[0].clearance_m;
-    let mut moved = block.with_records(records);
-    let mut cost = |factor: f64| -> f64 {
-        for record in &mut moved.records {
-            record.clearance_m = stated * factor;
-        }
-        let scores = mean_squares(&moved, parameters);
-        let capped = scores
-            .iter()
-            .map(|score| score.map_or(CAP, |s| (s / typical).min(CAP)));
-        capped.sum::<f64>() / scores.len() as f64
-    };
-    let (mut centre, mut width) = (1.0, 0.34);
-    for _ in 0..4 {
-        let (best, _) = (-60..=60)
-            .map(|i| centre + width * f64::from(i) / 60.0)
-            .map(|factor| (factor, cost(factor)))
-            .min_by(|a, b| a.1.total_cmp(&b.1))?;
-        (centre, width) = (best, width / 20.0);
-    }
-    let (before, after) = (cost(1.0), cost(centre));
+    let mut moved = Moved::of(block, records, parameters, typical);
+    let centre = moved.best()?;
+    let (before, after) = (moved.cost(1.0), moved.cost(centre));
     let z_score = (before - after).max(0.0).sqrt() * (centre - 1.0).signum();
     let better = after < 0.25 * before && after < 0.25 * CAP;
     (better && (centre - 1.0).abs() > GAP_LIMIT).then_some(OddGap {
@@ -278,6 +261,69 @@ pub(super) fn recover(
         fitting_m: stated * centre,
         z_score,
     })
+}
+
+/// The clearance, within a third of the stated one, with which records of one gap fit best at given parameters.
+pub fn fitting_clearance(
+    block: &TrajectoryBlock,
+    records: Vec<TrajectoryRecord>,
+    parameters: &Parameters,
+    typical: f64,
+) -> Option<f64> {
+    let stated = records.first()?.clearance_m;
+    let mut moved = Moved::of(block, records, parameters, typical);
+    let best = moved.best()?;
+    (moved.cost(best) < CAP).then_some(stated * best)
+}
+
+/// Records of one gap at given parameters, whose clearance is moved.
+struct Moved<'a> {
+    block: TrajectoryBlock,
+    parameters: &'a Parameters,
+    typical: f64,
+    stated_m: f64,
+}
+
+impl<'a> Moved<'a> {
+    /// There is one record or more.
+    fn of(
+        block: &TrajectoryBlock,
+        records: Vec<TrajectoryRecord>,
+        parameters: &'a Parameters,
+        typical: f64,
+    ) -> Self {
+        Self {
+            stated_m: records[0].clearance_m,
+            block: block.with_records(records),
+            parameters,
+            typical,
+        }
+    }
+
+    /// The mean of the capped mean squares over the typical one with the stated clearance times a factor.
+    fn cost(&mut self, factor: f64) -> f64 {
+        for record in &mut self.block.records {
+            record.clearance_m = self.stated_m * factor;
+        }
+        let scores = mean_squares(&self.block, self.parameters);
+        let capped = scores
+            .iter()
+            .map(|score| score.map_or(CAP, |s| (s / self.typical).min(CAP)));
+        capped.sum::<f64>() / scores.len() as f64
+    }
+
+    /// The factor within a third of one at which the cost is least.
+    fn best(&mut self) -> Option<f64> {
+        let (mut centre, mut width) = (1.0, 0.34);
+        for _ in 0..4 {
+            let (best, _) = (-60..=60)
+                .map(|i| centre + width * f64::from(i) / 60.0)
+                .map(|factor| (factor, self.cost(factor)))
+                .min_by(|a, b| a.1.total_cmp(&b.1))?;
+            (centre, width) = (best, width / 20.0);
+        }
+        Some(centre)
+    }
 }
 
 #[cfg(test)]

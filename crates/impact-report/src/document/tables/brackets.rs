@@ -3,7 +3,6 @@
 use super::column::{Column, arrow, table};
 use crate::content::ReportContent;
 use crate::document::model::{Rich, Table};
-use crate::figures::boundaries::symbol;
 use crate::locale::Locale;
 use crate::phrase::{Phrase, Text};
 use impact_identification::replay::BracketRow;
@@ -51,9 +50,9 @@ pub(crate) fn brackets(content: &ReportContent, locale: Locale<'_>) -> Option<Ta
 fn bracket_row(b: &BracketRow, many: bool, locale: Locale<'_>) -> Vec<Rich> {
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
     vec![
-        Rich::from(locale.text(&symbol(b.kind))),
+        Rich::from(locale.message(&b.kind)),
         Rich::from(locale.motion(&b.motion)),
-        Rich::from(locale.significant(1e3 * b.clearance_m, 3)),
+        Rich::from(locale.clearance(b.clearance_m)),
         Rich::from(b.rho.map_or("–".into(), |r| locale.fixed(r, 3))),
         Rich::from(arrow(b.sweep)),
         Rich::from(format!(

@@ -139,7 +139,7 @@ fn source(source: UncertaintySource, locale: Locale<'_>) -> String {
             clearance_m: Some(m),
             ..
         } => {
-            let clearance = locale.significant(1e3 * m, 3);
+            let clearance = locale.clearance(m);
             locale.translate_with(Phrase::StatedClearance, &[("clearance", &clearance)])
         }
         UncertaintySource::Stated { coordinate, .. } => name(coordinate, locale),

@@ -50,21 +50,15 @@ pub(super) fn left_out(content: &ReportContent, locale: Locale<'_>) -> Option<Ta
     let records = content.compared.unusable.iter().map(|u| {
         let count = Some(u.records.len()).filter(|n| *n > 1);
         (
-            first_few(&u.records),
+            Rich::verbatim(first_few(&u.records)),
             count,
             Rich::verbatim(unusable(u, locale)),
         )
     });
-    // impacts are in a remark of their method
-    let fits = content.identification.left_out.iter();
-    let fits = fits.filter(|l| !matches!(l.item, Item::Impact { .. }));
-    let fits = fits.map(|l| {
-        let why = Rich::from(locale.message(&l.reason));
-        (locale.message(&l.item), None, why)
-    });
+    let fits = fits_left_out(content, locale);
     let rows = records.chain(fits).map(|(what, count, why)| {
         let count = count.map_or(String::new(), |c| c.to_string());
-        vec![Rich::verbatim(what), Rich::from(count), why]
+        vec![what, Rich::from(count), why]
     });
     let columns = vec![
         Column::wide(Phrase::LeftOut, 2),
@@ -72,6 +66,25 @@ pub(super) fn left_out(content: &ReportContent, locale: Locale<'_>) -> Option<Ta
         Column::wide(Phrase::Why, 5),
     ];
     table("", columns, rows.collect(), locale)
+}
+
+/// What the fits left out: items with one reason in one row.
+fn fits_left_out(content: &ReportContent, locale: Locale<'_>) -> Vec<(Rich, Option<usize>, Rich)> {
+    let mut groups: Vec<(String, Vec<String>)> = Vec::new();
+    // impacts are in a remark of their method
+    let items = content.identification.left_out.iter();
+    for one in items.filter(|l| !matches!(l.item, Item::Impact { .. })) {
+        let (item, why) = (locale.message(&one.item), locale.message(&one.reason));
+        match groups.iter_mut().find(|group| group.0 == why) {
+            Some((_, items)) => items.push(item),
+            None => groups.push((why, vec![item])),
+        }
+    }
+    let row = |(why, items): (String, Vec<String>)| {
+        let count = Some(items.len()).filter(|n| *n > 1);
+        (Rich::from(first_few(&items)), count, Rich::from(why))
+    };
+    groups.into_iter().map(row).collect()
 }
 
 /// The first few names.

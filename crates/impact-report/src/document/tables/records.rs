@@ -150,8 +150,7 @@ fn record_row(r: &RecordRow, planar: bool, many: bool, locale: Locale<'_>) -> Ve
         r.specimen.clone().unwrap_or_default(),
         arrow(r.sweep).into(),
         number(r.frequency_hz, 3),
-        r.clearance_m
-            .map_or("–".into(), |c| locale.fixed(1e3 * c, 3)),
+        r.clearance_m.map_or("–".into(), |c| locale.clearance(c)),
     ];
     if planar {
         row.extend([number(r.eta, 4), number(r.rho, 3)]);

@@ -18,7 +18,7 @@ pub(super) fn describe(record: &RecordRow, locale: Locale<'_>) -> String {
         parts.push(format!("f = {} Hz", locale.fixed(f, 3)));
     }
     if let Some(r) = record.clearance_m {
-        parts.push(format!("r = {} mm", locale.significant(1e3 * r, 4)));
+        parts.push(format!("r = {} mm", locale.clearance(r)));
     }
     if let (Some(eta), Some(rho)) = (record.eta, record.rho) {
         parts.push(format!(

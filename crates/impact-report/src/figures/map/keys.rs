@@ -3,12 +3,13 @@
 use crate::content::ReportContent;
 use crate::figures::boundaries;
 use crate::figures::plane::{Plane, edges};
+use crate::figures::regions::commonest;
 use crate::kit::axis::Axis;
 use crate::kit::legend::{Key, Sign};
 use crate::kit::{look, marks};
 use crate::phrase::{Phrase, motion_text};
-use impact_identification::replay::Compared;
-use impact_records::motion::BoundaryKind;
+use impact_identification::replay::{Compared, RegionMap};
+use impact_records::motion::{BoundaryKind, Motion};
 
 /// Keys of the motions that were measured.
 pub(super) fn motions(compared: &Compared) -> Vec<Key> {
@@ -16,6 +17,13 @@ pub(super) fn motions(compared: &Compared) -> Vec<Key> {
     met.into_iter()
         .map(|m| Key::new(Sign::Mark(marks::of(m)), motion_text(m)))
         .collect()
+}
+
+/// The tints of the regions; those of the rarest motions, a few cells here and there, have no key.
+fn regions(map: &RegionMap) -> Vec<Key> {
+    const MOST: usize = 14;
+    let key = |m: &Motion| Key::new(Sign::Patch(marks::of(m).tint), motion_text(m));
+    commonest(map, MOST).into_iter().map(key).collect()
 }
 
 /// All keys of the large map.
@@ -34,6 +42,10 @@ pub(super) fn full(content: &ReportContent, plane: Plane) -> Vec<Key> {
     }
     if plane.dimensionless {
         keys.extend(curve_keys(compared));
+        if let Some(map) = &compared.region_map {
+            keys.push(Key::new(Sign::Nothing, Phrase::SimulatedRegions));
+            keys.extend(regions(map));
+        }
     }
     if is_wider(content, plane) {
         keys.push(Key::new(Sign::Patch(look::BLANK), Phrase::NotComputed));
@@ -77,4 +89,30 @@ fn curve_keys(compared: &Compared) -> Vec<Key> {
         keys.push(Key::new(Sign::Patch(look::BOUNDARY_BAND), Phrase::Band95));
     }
     keys
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_region_of_the_map_has_a_key_of_its_tint() {
+        let motions = [
+            Motion::Impactless,
+            Motion::periodic(1, 1),
+            Motion::periodic(1, 2),
+            Motion::Chaotic,
+        ];
+        let map = RegionMap {
+            x: vec![0.5, 1.0],
+            y: vec![1.0, 2.0],
+            motions: motions.to_vec(),
+            cells: vec![0, 1, 1, 3],
+            second: vec![0, 1, 0, 3],
+        };
+        let keys = regions(&map);
+        let signs: Vec<Sign> = keys.iter().map(|k| k.sign).collect();
+        let tint = |k: usize| Sign::Patch(marks::of(&motions[k]).tint);
+        assert_eq!(signs, [tint(0), tint(1), tint(3)]);
+    }
 }

@@ -2,7 +2,6 @@
 //! units.
 
 use super::{Map, STRIP_HALF, STRIP_STEP};
-use crate::figures::boundaries::symbol;
 use crate::kit::axis::Axis;
 use crate::kit::canvas::{Anchor, Point, Stroke, TextLook};
 use crate::kit::fonts::{self, Face};
@@ -31,7 +30,7 @@ impl Map<'_> {
         if length(piece) < 30.0 {
             return;
         }
-        let symbol = locale.text(&symbol(curve.kind));
+        let symbol = locale.message(&curve.kind);
         let text = match curve.periods_n {
             1 => symbol,
             n => format!("{symbol} (1/{n})"),

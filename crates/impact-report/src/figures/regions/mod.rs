@@ -16,10 +16,26 @@ use crate::kit::marks;
 use crate::kit::panel::Panel;
 use crate::kit::path;
 use impact_identification::replay::RegionMap;
+use impact_records::motion::Motion;
 use impact_records::signal::whole;
 
 /// Regions smaller than this share of the map get no label and no outline.
 const LEAST_SHARE: f64 = 0.0025;
+
+/// The motions of a map in the order of legends; the rarest left out beyond a number.
+pub fn commonest(map: &RegionMap, most: usize) -> Vec<&Motion> {
+    let mut counts = vec![0_usize; map.motions.len()];
+    for &cell in map.cells.iter().chain(&map.second) {
+        if let Some(count) = counts.get_mut(usize::from(cell)) {
+            *count += 1;
+        }
+    }
+    let mut order: Vec<usize> = (0..counts.len()).filter(|&k| counts[k] > 0).collect();
+    order.sort_by_key(|&k| std::cmp::Reverse(counts[k]));
+    order.truncate(most);
+    order.sort_by_key(|&k| marks::order(&map.motions[k]));
+    order.into_iter().map(|k| &map.motions[k]).collect()
+}
 
 /// A map laid on a panel, with its connected regions.
 pub struct Regions<'a> {
