@@ -165,8 +165,6 @@ pub fn is_time_name(name: &str) -> bool {
         || words.iter().any(known)
         || alone
         || since
-        // a field of a struct
-        || name.ends_with(".t")
         || name.trim().eq_ignore_ascii_case("x_value")
 }
 

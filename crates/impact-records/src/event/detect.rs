@@ -146,10 +146,9 @@ pub struct Detection {
 pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detection {
     let (drive, mut flags) = drive::measure(record, settings.drive_tolerance);
     let stride = stride(record, drive.as_ref(), settings.flight);
-    let mut kinematics = Kinematics::of(record, rig, stride);
-    let rate_hz = kinematics.rate_hz;
     let contact = record.channel(Role::Contact);
     if let Some(channel) = contact.filter(|c| c.dimension == Dimension::Time) {
+        let kinematics = Kinematics::of(record, rig, stride);
         return listed(kinematics, &channel.values, record.listed);
     }
     let closed = contact.map_or_else(Vec::new, |channel| {
@@ -159,8 +158,10 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
         )
     });
     if settings.flight == FlightKind::ConstantForce {
-        return freely(record, kinematics, rig, &closed);
+        return freely(record, rig, &closed);
     }
+    let mut kinematics = Kinematics::of(record, rig, stride);
+    let rate_hz = kinematics.rate_hz;
     let closed_samples: usize = closed.iter().map(Closed::samples).sum();
     let closed: Vec<Closed> = closed.iter().map(|c| c.every(stride)).collect();
     let dead_from = samples_of(settings.dead_zone_s, rate_hz).max(4);
@@ -211,13 +212,36 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
     }
 }
 
-/// Impacts between flights under a constant force, without a drive.
-fn freely(record: &Record, kinematics: Kinematics, rig: RigKind, closed: &[Closed]) -> Detection {
+/// Slowest rate at which impacts between flights are looked for, Hz: that of a common camera.
+const SLOWEST_HZ: f64 = 25.0;
+
+/// Impacts between flights under a constant force, without a drive. Differences of displacements that were taken often
+/// may be nothing but noise; then fewer of the samples show the speeds.
+fn freely(record: &Record, rig: RigKind, closed: &[Closed]) -> Detection {
+    let fine = freely_every(record, rig, closed, 1);
+    let mut moving = record.channels.iter().filter(|c| c.role.is_motion());
+    let placed = moving.all(|c| matches!(c.dimension, Dimension::Length | Dimension::Angle));
+    if !fine.impacts.is_empty() || !placed || fine.kinematics.relative.velocity.is_none() {
+        return fine;
+    }
+    let strides = [2, 4, 8, 16].into_iter();
+    let strides = strides.filter(|s| record.sample_rate_hz / *s as f64 >= SLOWEST_HZ);
+    let coarser = strides.map(|stride| freely_every(record, rig, closed, stride));
+    // the finest of those that show the most
+    let most = coarser.rev().max_by_key(|found| found.impacts.len());
+    most.filter(|found| !found.impacts.is_empty())
+        .unwrap_or(fine)
+}
+
+/// The same, one sample of every so many looked at.
+fn freely_every(record: &Record, rig: RigKind, closed: &[Closed], stride: usize) -> Detection {
+    let kinematics = Kinematics::of(record, rig, stride);
+    let closed: Vec<Closed> = closed.iter().map(|c| c.every(stride)).collect();
     let found = match kinematics.relative.velocity {
-        Some(_) => free_flight::detect(&kinematics, rig, closed),
+        Some(_) => free_flight::detect(&kinematics, rig, &closed),
         None => free_flight::FreeFlights {
             impacts: without_speeds(
-                &from_contact_alone(closed, usize::MAX).candidates,
+                &from_contact_alone(&closed, usize::MAX).candidates,
                 None,
                 kinematics.rate_hz,
             ),
@@ -226,6 +250,7 @@ fn freely(record: &Record, kinematics: Kinematics, rig: RigKind, closed: &[Close
         },
     };
     let mut found = found;
+    let samples = record.samples() / stride;
     if found.impacts.is_empty() && !found.flags.iter().any(|f| f.excludes) {
         found.flags.push(no_impact());
     }
@@ -237,7 +262,7 @@ fn freely(record: &Record, kinematics: Kinematics, rig: RigKind, closed: &[Close
         unsupported_pulses: 0,
         missed_pulses: 0,
         unsupported_touches: 0,
-        closed_fraction: closed_samples as f64 / record.samples().max(1) as f64,
+        closed_fraction: closed_samples as f64 / samples.max(1) as f64,
         kinematics,
         lags: Vec::new(),
         directions: Vec::new(),
@@ -664,7 +689,9 @@ fn wrong_way(found: &Fused, record: &Record) -> Option<Flag> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::FlagCode;
+    use crate::record::{Channel, Excitation, FlagCode, Setting, Sweep};
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
 
     /// A velocity that climbs from −1 to 1 within 100 samples and falls back at 99.5, 199.5, …
     fn sawtooth(samples: usize) -> Vec<f64> {
@@ -801,5 +828,77 @@ mod tests {
         let found = detect(&record, RigKind::Single, &DetectSettings::default());
         assert!(found.flags.is_empty());
         assert_eq!(found.impacts.len(), 7);
+    }
+
+    /// Heights of a ball of R = 0.8 that is dropped from 1 m, sampled so often that their differences are noise.
+    fn bounces(rate_hz: f64, noise_m: f64, seed: u64) -> Record {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+        let first = (2.0 / 9.81f64).sqrt();
+        let height = |t: f64| {
+            let (mut at, mut speed) = (first, 0.8 * 9.81 * first);
+            if t < at {
+                return 1.0 - 0.5 * 9.81 * t * t;
+            }
+            while t > at + 2.0 * speed / 9.81 {
+                at += 2.0 * speed / 9.81;
+                speed *= 0.8;
+            }
+            speed * (t - at) - 0.5 * 9.81 * (t - at).powi(2)
+        };
+        let count = whole::index(2.2 * rate_hz);
+        let values = (0..count).map(|i| {
+            let shock: f64 = StandardNormal.sample(&mut rng);
+            -height(i as f64 / rate_hz) + noise_m * shock
+        });
+        Record {
+            id: "ball".into(),
+            sample_rate_hz: rate_hz,
+            channels: vec![Channel {
+                role: Role::DisplacementX,
+                name: "y".into(),
+                dimension: Dimension::Length,
+                values: values.collect(),
+                high_pass_hz: None,
+                low_pass: None,
+                threshold: None,
+            }],
+            setting: Setting {
+                stated_frequency_hz: None,
+                clearance_m: None,
+                sweep: Sweep::Unknown,
+                drive_amplitude: 1.0,
+                sequence: 0,
+                specimen: None,
+                excitation: Excitation::Harmonic,
+            },
+            listed: ListedTimes::default(),
+            flags: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn valid_a_finely_sampled_track_shows_its_impacts_though_its_differences_are_noise() {
+        let settings = DetectSettings {
+            flight: FlightKind::ConstantForce,
+            ..DetectSettings::default()
+        };
+        for seed in 0..4 {
+            let found = detect(&bounces(500.0, 4e-3, seed), RigKind::Single, &settings);
+            assert!(found.impacts.len() > 1, "{seed}: {:?}", found.flags);
+            for impact in &found.impacts {
+                let speeds = [
+                    impact.approach_speed_before_m_s,
+                    impact.approach_speed_after_m_s,
+                ];
+                let [Some(before), Some(after)] = speeds else {
+                    panic!("{impact:?}");
+                };
+                let error = impact.speed_error_m_s.unwrap() * 1.3 / before;
+                assert!(
+                    (-after / before - 0.8).abs() < 4.0 * error.max(0.01),
+                    "{seed} {impact:?}"
+                );
+            }
+        }
     }
 }

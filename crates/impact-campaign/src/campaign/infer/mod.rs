@@ -657,7 +657,10 @@ mod tests {
             }
         }
         // one marker beside the time alone is one mass
-        assert_eq!(roles_of(&[("marker x", "m", 0.5)]), [Some(Role::DisplacementX)]);
+        assert_eq!(
+            roles_of(&[("marker x", "m", 0.5)]),
+            [Some(Role::DisplacementX)]
+        );
     }
 
     #[test]

@@ -108,7 +108,11 @@ impl Shared {
         let [low, high] = self.interval();
         let (viscous, spread) = self.viscous;
         // noise that leaves less than nothing tells no more of β than one that leaves nothing
-        let high = if viscous < 0.0 { high.max(spread.half95()) } else { high };
+        let high = if viscous < 0.0 {
+            high.max(spread.half95())
+        } else {
+            high
+        };
         let value = self.value();
         let error = 0.5 * (high - low) / self.quantile();
         let most = estimate::limits(Coordinate::Damping).0;

@@ -86,7 +86,10 @@ fn a_tone_before_which_another_motion_died_is_not_surely_the_rig() {
     tone.before = 3.0;
     let found = pooled(&[observation(vec![tone])], Effects::none()).unwrap();
     let f0 = found.parameters.natural_frequency_hz.unwrap();
-    assert_eq!((f0.status, f0.note), (Status::Weak, Some(Note::MayBeForced)));
+    assert_eq!(
+        (f0.status, f0.note),
+        (Status::Weak, Some(Note::MayBeForced))
+    );
 }
 
 #[test]

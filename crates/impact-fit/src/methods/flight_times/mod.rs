@@ -411,7 +411,10 @@ mod tests {
         assert_eq!(found.parameters.restitution, None);
         let text = found.remarks.iter().map(ToString::to_string);
         let text = text.collect::<Vec<_>>().join("\n");
-        assert!(text.contains("impacts missing among the times: 1, the first in a at about 1.896 s"), "{text}");
+        assert!(
+            text.contains("impacts missing among the times: 1, the first in a at about 1.896 s"),
+            "{text}"
+        );
     }
 
     #[test]
@@ -428,9 +431,13 @@ mod tests {
     fn prop_intervals_of_short_throws_hold_r() {
         use rand::SeedableRng;
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(20_261_128);
-        for (impacts, throws, scatter_s) in
-            [(4, 1, 3e-4), (4, 1, 1e-5), (3, 3, 3e-4), (5, 1, 3e-4), (4, 3, 1e-4)]
-        {
+        for (impacts, throws, scatter_s) in [
+            (4, 1, 3e-4),
+            (4, 1, 1e-5),
+            (3, 3, 3e-4),
+            (5, 1, 3e-4),
+            (4, 3, 1e-4),
+        ] {
             let held = (0..200).filter(|_| {
                 let mut throw = |k: usize| {
                     let times = row(0.78, impacts - 1);

@@ -60,7 +60,8 @@ pub(super) fn rows(records: &[(usize, &Observation)]) -> Rows {
         let ratios = ratios(o);
         let two = (1..flights.len()).filter_map(|k| Some((k, two_in_one(&ratios, k, median)?)));
         let two: Vec<(usize, f64)> = two.collect();
-        let first = |(k, r): &(usize, f64)| (*record, o.impacts[*k].time_s + flights[*k] / (1.0 + r));
+        let first =
+            |(k, r): &(usize, f64)| (*record, o.impacts[*k].time_s + flights[*k] / (1.0 + r));
         found.missed.extend(two.iter().map(first));
         let missed: Vec<usize> = two.iter().map(|(k, _)| *k).collect();
         let mut begin = 0;

@@ -305,7 +305,10 @@ fn of_part(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {
 
 /// Greatest excursion of samples from an offset.
 fn greatest(samples: &[f64], offset: f64) -> f64 {
-    samples.iter().map(|v| (v - offset).abs()).fold(0.0, f64::max)
+    samples
+        .iter()
+        .map(|v| (v - offset).abs())
+        .fold(0.0, f64::max)
 }
 
 /// The decay of a part of a record with one blow or release.

@@ -582,11 +582,19 @@ fn valid_rest_after_a_mass_sticks_is_no_part_of_its_decay() {
 fn valid_a_hum_that_outlasts_a_decay_is_not_taken_for_it() {
     let own = decay(15.0, 0.03, 0.4);
     for (hum_hz, share) in [(97.0, 0.62), (26.4, 0.6)] {
-        let mut samples = sampled(1400, 1000.0, |t| own(t) + share * (TAU * hum_hz * t + 5.6).cos());
+        let mut samples = sampled(1400, 1000.0, |t| {
+            own(t) + share * (TAU * hum_hz * t + 5.6).cos()
+        });
         white(&mut samples, 2e-3, 4);
         let found = fit(&samples, 1000.0).unwrap();
-        assert!((found.natural_frequency_hz / 15.0 - 1.0).abs() < 2e-3, "{hum_hz}: {found:?}");
-        assert!((found.damping_ratio - 0.03).abs() < 1e-3, "{hum_hz}: {found:?}");
+        assert!(
+            (found.natural_frequency_hz / 15.0 - 1.0).abs() < 2e-3,
+            "{hum_hz}: {found:?}"
+        );
+        assert!(
+            (found.damping_ratio - 0.03).abs() < 1e-3,
+            "{hum_hz}: {found:?}"
+        );
     }
 }
 
@@ -597,5 +605,8 @@ fn valid_a_drift_does_not_hide_a_decay_that_is_over() {
     white(&mut samples, 1e-2, 6);
     let found = fit(&samples, 1000.0).unwrap();
     let off = (found.damping_ratio - 0.05) / found.damping_ratio_error;
-    assert!((found.natural_frequency_hz / 20.0 - 1.0).abs() < 5e-3 && off.abs() < 3.5, "{found:?}");
+    assert!(
+        (found.natural_frequency_hz / 20.0 - 1.0).abs() < 5e-3 && off.abs() < 3.5,
+        "{found:?}"
+    );
 }
