@@ -110,18 +110,3 @@ fn stages_go_on_from_another_directory() {
     assert_eq!(code, 2);
     assert!(said.contains("out/ingested.h5: it is not there"), "{said}");
 }
-
-#[test]
-fn explore_names_the_records_that_are_gone() {
-    let lab = Lab::new();
-    let done = run(&lab, &[]);
-    assert!(done.code < 2, "{}", done.said);
-    for name in ["r1.csv", "r2.csv", "r3.csv"] {
-        lab.remove(name);
-    }
-    let ran = lab.run(&["explore", "--no-browser", "out"]);
-    assert_eq!(ran.code, 2, "{}", ran.said);
-    for words in ["none of the 3 records can be used", "No such file", "r1"] {
-        assert!(ran.said.contains(words), "{words}: {}", ran.said);
-    }
-}

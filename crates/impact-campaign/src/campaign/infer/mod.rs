@@ -656,6 +656,8 @@ mod tests {
                 assert_eq!(roles, both, "{one} {unit}");
             }
         }
+        let one_mass = roles_of(&[("velocity x", "mm/s", 0.5), ("displacement x", "mm", 0.4)]);
+        assert_eq!(one_mass, [Role::VelocityX, Role::DisplacementX].map(Some));
         // one marker beside the time alone is one mass
         assert_eq!(
             roles_of(&[("marker x", "m", 0.5)]),

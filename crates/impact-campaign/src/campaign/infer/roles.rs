@@ -368,7 +368,7 @@ struct Groups {
     second: Option<String>,
     /// All groups with a motion, also one at rest.
     all: Vec<String>,
-    /// Whether all motions are along one axis, so that its letter tells no more than a quantity does: "cart A x", "cart B x".
+    /// Whether all motions are of one quantity along one axis, so that its letter tells no more than a quantity does: "cart A x", "cart B x".
     of_one_axis: bool,
 }
 
@@ -378,10 +378,11 @@ impl Groups {
         let alive = |c: &InferredChannel| c.range.is_some_and(|[low, high]| high > low);
         let moves = |c: &&InferredChannel| matches!(kind(c), Kind::Velocity | Kind::Displacement);
         let moving = || channels.iter().filter(moves);
-        let mut letters = moving().filter_map(|c| Some(axis(c)?.1));
-        let letter = letters.next();
+        // of one quantity: a velocity and a displacement may be of one mass
+        let mut along = moving().filter_map(|c| Some((axis(c)?.1, kind(c))));
+        let first = along.next();
         let mut groups = Self {
-            of_one_axis: letter.is_some() && letters.all(|l| Some(l) == letter),
+            of_one_axis: first.is_some() && along.all(|other| Some(other) == first),
             ..Self::default()
         };
         groups.all = moving().filter_map(|c| groups.of_channel(c)).collect();
