@@ -10,6 +10,7 @@
 
 use impact_records::signal::decay::{BesideFriction, Decay};
 
+use super::upper_end;
 use crate::estimate::{self, Estimate, Status};
 use crate::messages::{Note, Remark};
 use crate::parameters::Coordinate;
@@ -107,12 +108,7 @@ impl Shared {
     pub(super) fn estimate(&self, periods: f64) -> Estimate {
         let [low, high] = self.interval();
         let (viscous, spread) = self.viscous;
-        // noise that leaves less than nothing tells no more of β than one that leaves nothing
-        let high = if viscous < 0.0 {
-            high.max(spread.half95())
-        } else {
-            high
-        };
+        let high = upper_end(viscous, high, spread);
         let value = self.value();
         let error = 0.5 * (high - low) / self.quantile();
         let most = estimate::limits(Coordinate::Damping).0;

@@ -52,13 +52,11 @@ impl Scatter {
         let least_s = stated_s.unwrap_or(0.0);
         let Some(mixed) = mix(false) else {
             // three times in each row: what a source prints is the least that they may be off
-            return match fits.len() {
-                1 => Self::by_times(fits, &ratios, least_s.max(USUAL_ERROR_S)),
-                rows => Self {
-                    freedom: (rows - 1) as f64,
-                    ..Self::by_times(fits, &ratios, least_s)
-                },
+            let known = match fits.len() {
+                1 => (least_s.max(USUAL_ERROR_S), f64::INFINITY),
+                rows => (least_s, (rows - 1) as f64),
             };
+            return Self::by_times(fits, &ratios, known);
         };
         let known = fits.iter().enumerate().all(|(i, (_, fit))| {
             let (_, error) = mixed.logarithm(i);
@@ -66,10 +64,7 @@ impl Scatter {
         });
         if known {
             // digits are the least that the times may be off, and a scatter within them may be one by chance
-            return Self {
-                freedom: mixed.freedom,
-                ..Self::by_times(fits, &ratios, least_s)
-            };
+            return Self::by_times(fits, &ratios, (least_s, mixed.freedom));
         }
         let rows = fits.iter().enumerate().map(|(i, (_, fit))| {
             let (mean, error) = mixed.logarithm(i);
@@ -93,8 +88,8 @@ impl Scatter {
         }
     }
 
-    /// With known errors of the times and one R.
-    fn by_times(fits: &[(&Row, Fitted)], ratios: &Ratios, error_s: f64) -> Self {
+    /// With errors of the times of so many degrees of freedom and one R.
+    fn by_times(fits: &[(&Row, Fitted)], ratios: &Ratios, (error_s, freedom): (f64, f64)) -> Self {
         let rows = fits.iter().enumerate().map(|(i, (_, fit))| RowEstimate {
             restitution: fit.restitution,
             error: fit.error_per_s * error_s,
@@ -107,7 +102,7 @@ impl Scatter {
         });
         Self {
             rows: rows.collect(),
-            freedom: f64::INFINITY,
+            freedom,
             times_s: Some(error_s),
             own: None,
         }

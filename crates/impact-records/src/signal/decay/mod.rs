@@ -223,8 +223,8 @@ fn of_values(channel: Watched<'_>, rate_hz: f64) -> Vec<Decay> {
         let omega = std::f64::consts::TAU * d.natural_frequency_hz / rate_hz;
         cleared.is_tone([omega, 0.0], d.samples) && d.is_undamped()
     };
-    let better = left(&decays, rate_hz) > MORE_LEFT * left(&plain, rate_hz);
-    if better && !plain.iter().all(is_tone) {
+    let leaves_more = left(&decays, rate_hz) > MORE_LEFT * left(&plain, rate_hz);
+    if leaves_more && !plain.iter().all(is_tone) {
         plain
     } else {
         decays
