@@ -91,6 +91,16 @@ impl Spread {
     pub fn half95(self) -> f64 {
         student_975(self.freedom) * self.error
     }
+
+    /// Upper end of the interval of a quantity that is not negative: noise that leaves less than nothing of it tells
+    /// no more than noise that leaves nothing.
+    pub fn upper_end(&self, value: f64, high: f64) -> f64 {
+        if value < 0.0 {
+            high.max(self.half95())
+        } else {
+            high
+        }
+    }
 }
 
 /// Fewest groups whose scatter says something.

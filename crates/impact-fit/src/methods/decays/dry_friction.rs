@@ -10,7 +10,6 @@
 
 use impact_records::signal::decay::{BesideFriction, Decay};
 
-use super::upper_end;
 use crate::estimate::{self, Estimate, Status};
 use crate::messages::{Note, Remark};
 use crate::parameters::Coordinate;
@@ -108,7 +107,7 @@ impl Shared {
     pub(super) fn estimate(&self, periods: f64) -> Estimate {
         let [low, high] = self.interval();
         let (viscous, spread) = self.viscous;
-        let high = upper_end(viscous, high, spread);
+        let high = spread.upper_end(viscous, high);
         let value = self.value();
         let error = 0.5 * (high - low) / self.quantile();
         let most = estimate::limits(Coordinate::Damping).0;

@@ -16,7 +16,6 @@ use crate::methods::selection::Selection;
 use crate::parameters::Coordinate;
 use crate::parameters::effect::{Effect, Effects};
 use crate::statistics::quantile::NORMAL_975;
-use crate::statistics::scatter::Spread;
 use crate::statistics::weighted::{self, Measured};
 use impact_records::motion::Observation;
 use impact_records::signal::decay::{DampingLaw, Decay, LEAST_TESTED, RESOLVED};
@@ -218,16 +217,6 @@ fn leave_weak(result: &mut MethodResult, why: Note) {
     }
 }
 
-/// Upper end of an interval of β from decays that have a damping ratio with its spread: noise that leaves less than
-/// nothing tells no more than noise that leaves nothing.
-fn upper_end(damping_ratio: f64, high: f64, spread: Spread) -> f64 {
-    if damping_ratio < 0.0 {
-        high.max(spread.half95())
-    } else {
-        high
-    }
-}
-
 /// β of viscous decays with its interval, which begins at zero where an undamped motion is within it.
 fn damping_estimate(decays: &[&Decay]) -> Estimate {
     let measured = |d: &&Decay| Measured {
@@ -238,7 +227,7 @@ fn damping_estimate(decays: &[&Decay]) -> Estimate {
     let dampings: Vec<Measured> = decays.iter().map(measured).collect();
     let (value, spread) = weighted::mean(&dampings, &weighted::by_errors(&dampings));
     let half = spread.half95();
-    let most = upper_end(value, value + half, spread);
+    let most = spread.upper_end(value, value + half);
     let undamped = value <= half;
     let status = if undamped || is_open(value, spread.error) {
         Status::Weak
