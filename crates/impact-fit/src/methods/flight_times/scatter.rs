@@ -42,15 +42,17 @@ pub(super) struct RowEstimate {
     pub(super) error: f64,
     /// Relative standard error of each ratio.
     pub(super) ratio_errors: Vec<f64>,
+    /// Weights of the ratios' logarithms in that of R; their sum is one.
+    pub(super) weights: Vec<f64>,
 }
 
 impl Scatter {
     /// Of rows with their fits; `stated_s`: the times' standard error as their source states it.
     pub(super) fn of(fits: &[(&Row, Fitted)], stated_s: Option<f64>) -> Self {
         let ratios = Ratios::of(fits.iter().map(|(row, _)| *row));
-        let mix = |with_slope| ratios.mixed(with_slope, stated_s);
+        let mix = |along| ratios.mixed(along, stated_s);
         let least_s = stated_s.unwrap_or(0.0);
-        let Some(mixed) = mix(false) else {
+        let Some(mixed) = mix(None) else {
             // three times in each row: what a source prints is the least that they may be off
             let known = match fits.len() {
                 1 => (least_s.max(USUAL_ERROR_S), f64::INFINITY),
@@ -74,10 +76,11 @@ impl Scatter {
                 restitution,
                 error: (restitution * error).max(fit.error_per_s * least_s),
                 ratio_errors: mixed.ratio_errors(&ratios, i),
+                weights: mixed.weights(i),
             }
         });
         // a change along the bounces is neither
-        let beside = mix(true);
+        let beside = mix(Some(Along::Bounces));
         let beside = beside.as_ref().unwrap_or(&mixed);
         let own = beside.own();
         Self {
@@ -99,6 +102,7 @@ impl Scatter {
                 .iter()
                 .map(|v| error_s * v.sqrt())
                 .collect(),
+            weights: ratios.rows[i].weights_by_times().data.into(),
         });
         Self {
             rows: rows.collect(),
@@ -128,7 +132,7 @@ pub(super) struct Trend {
 pub(super) fn trend(fits: &[(&Row, Fitted)], stated_s: Option<f64>) -> Option<Trend> {
     let ratios = Ratios::of(fits.iter().map(|(row, _)| *row));
     let mixed = ratios
-        .mixed(true, stated_s)
+        .mixed(Some(Along::Bounces), stated_s)
         .filter(|m| m.freedom >= ENOUGH)?;
     let (slope, error) = mixed.average(|share| share.slope);
     let longest = ratios.rows.iter().map(|r| r.values.len()).max()?;
@@ -140,9 +144,55 @@ pub(super) fn trend(fits: &[(&Row, Fitted)], stated_s: Option<f64>) -> Option<Tr
     })
 }
 
+/// The length of the contacts as the ratios of flights show it, where times are those at which contacts begin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ContactLength {
+    /// Estimate, s; below zero where shorter flights lose more of their speed.
+    pub(super) value_s: f64,
+    /// Standard error, s.
+    pub(super) error_s: f64,
+    /// Degrees of freedom of that error.
+    pub(super) freedom: f64,
+}
+
+impl ContactLength {
+    /// How likely a length is by it alone, of Student's distribution without its factor.
+    pub(super) fn likelihood(&self, length_s: f64) -> f64 {
+        let deviates = (length_s - self.value_s) / self.error_s;
+        (1.0 + deviates * deviates / self.freedom).powf(-0.5 * (self.freedom + 1.0))
+    }
+}
+
+/// The length c of contacts, one for all: what lies between two beginnings is a contact and a flight, so that the
+/// logarithm of the ratio of T' to T is ln R + c (1/T' − 1/T) to first order. `None` where the ratios are too few.
+pub(super) fn contact_length(
+    fits: &[(&Row, Fitted)],
+    stated_s: Option<f64>,
+) -> Option<ContactLength> {
+    let ratios = Ratios::of(fits.iter().map(|(row, _)| *row));
+    let mixed = ratios.mixed(Some(Along::Contacts), stated_s)?;
+    let (value_s, error_s) = mixed.average(|share| share.slope);
+    Some(ContactLength {
+        value_s,
+        error_s,
+        freedom: mixed.freedom,
+    })
+}
+
+/// What the logarithms of ratios may be a line over, with one slope for all rows.
+#[derive(Debug, Clone, Copy)]
+enum Along {
+    /// The number of the bounce.
+    Bounces,
+    /// The difference of the reciprocal flights, 1/s: the slope is the length of a contact.
+    Contacts,
+}
+
 /// The logarithms of a row's ratios, with their covariance for independent errors of 1 s of each time.
 struct RatioRow {
     values: DVector<f64>,
+    /// Difference of the reciprocals of each ratio's flights, 1/s.
+    reciprocals: DVector<f64>,
     by_times: DMatrix<f64>,
 }
 
@@ -170,25 +220,21 @@ impl Ratios {
 
     /// The mean of a row's logarithms as errors of the times weigh them.
     fn by_times(&self, row: usize) -> f64 {
-        let RatioRow { values, by_times } = &self.rows[row];
-        let mean = by_times.clone().cholesky().map(|c| {
-            let weights = c.solve(&DVector::from_element(values.len(), 1.0));
-            weights.dot(values) / weights.sum()
-        });
-        mean.unwrap_or_else(|| values.mean())
+        let row = &self.rows[row];
+        row.weights_by_times().dot(&row.values)
     }
 
     /// The estimates for each ratio of the variances; `None` without one that can be computed. Errors of the times far
     /// beyond those that their source states are less likely: by Cauchy's distribution about these.
-    fn mixed(&self, with_slope: bool, stated_s: Option<f64>) -> Option<Mixed> {
+    fn mixed(&self, along: Option<Along>, stated_s: Option<f64>) -> Option<Mixed> {
         let [least, median, greatest] = self.variances;
         let [low, high] = [least / BEYOND / median, greatest * BEYOND / median].map(f64::log10);
         let count = self.rows.iter().map(|r| r.values.len()).sum::<usize>();
-        let freedom = count.checked_sub(self.rows.len() + usize::from(with_slope))?;
+        let freedom = count.checked_sub(self.rows.len() + usize::from(along.is_some()))?;
         let steps = whole_steps(low, high);
         let shares = (0..=steps).filter_map(|k| {
             let own = 10f64.powf(low + k as f64 / PER_DECADE);
-            Share::of(self, own, (freedom as f64, with_slope))
+            Share::of(self, own, (freedom as f64, along))
         });
         let mut shares: Vec<Share> = shares.collect();
         for share in &mut shares {
@@ -229,7 +275,22 @@ impl RatioRow {
             let shared = |n: usize| (n + i).checked_sub(k).and_then(|m| b.get(m)).copied();
             (0..3).map(|n| a[n] * shared(n).unwrap_or(0.0)).sum::<f64>()
         });
-        Self { values, by_times }
+        let reciprocals =
+            DVector::from_fn(count, |k, _| flights[k + 1].recip() - flights[k].recip());
+        Self {
+            values,
+            reciprocals,
+            by_times,
+        }
+    }
+
+    /// The weights of its logarithms in their mean as errors of the times weigh them.
+    fn weights_by_times(&self) -> DVector<f64> {
+        let ones = DVector::from_element(self.values.len(), 1.0);
+        let weights = self.by_times.clone().cholesky().map(|c| c.solve(&ones));
+        let weights = weights.unwrap_or(ones);
+        let all = weights.sum();
+        weights / all
     }
 }
 
@@ -243,18 +304,20 @@ struct Share {
     scale: f64,
     /// Mean of each row and its variance.
     means: Vec<[f64; 2]>,
-    /// Slope of all rows over the bounces and its variance; zeros without one.
+    /// Weights of the logarithms in these means.
+    weights: Vec<DVector<f64>>,
+    /// Slope of all rows and its variance; zeros without one.
     slope: [f64; 2],
 }
 
 impl Share {
-    fn of(ratios: &Ratios, own: f64, (freedom, with_slope): (f64, bool)) -> Option<Self> {
+    fn of(ratios: &Ratios, own: f64, (freedom, along): (f64, Option<Along>)) -> Option<Self> {
         let each = ratios.rows.iter();
         let parts: Vec<Part> = each
-            .map(|row| Part::of(row, ratios.variances[1], own))
+            .map(|row| Part::of(row, along, [ratios.variances[1], own]))
             .collect::<Option<_>>()?;
         let information: f64 = parts.iter().map(|p| p.slopes).sum();
-        let slope = if with_slope && information > 0.0 {
+        let slope = if along.is_some() && information > 0.0 {
             parts.iter().map(|p| p.products).sum::<f64>() / information
         } else {
             0.0
@@ -262,7 +325,7 @@ impl Share {
         let squares: f64 = parts.iter().map(|p| p.squares).sum();
         let squares = (squares - slope * slope * information).max(f64::MIN_POSITIVE);
         let mut weight: f64 = parts.iter().map(|p| p.weight).sum();
-        if with_slope {
+        if along.is_some() {
             weight -= 0.5 * information.ln();
         }
         let scale = squares / freedom;
@@ -275,6 +338,7 @@ impl Share {
                 .map(|p| [p.mean, scale / p.information])
                 .collect(),
             slope: [slope, scale / information],
+            weights: parts.into_iter().map(|p| p.weights).collect(),
         })
     }
 }
@@ -282,9 +346,10 @@ impl Share {
 /// What a row adds to the normal equations, its own mean eliminated.
 struct Part {
     mean: f64,
+    weights: DVector<f64>,
     information: f64,
     squares: f64,
-    /// Bounces' squares and their products with the values.
+    /// Squares of what the line is over, and their products with the values.
     slopes: f64,
     products: f64,
     /// −½ ln of the determinants.
@@ -292,25 +357,29 @@ struct Part {
 }
 
 impl Part {
-    fn of(row: &RatioRow, median: f64, own: f64) -> Option<Self> {
+    fn of(row: &RatioRow, along: Option<Along>, [median, own]: [f64; 2]) -> Option<Self> {
         let count = row.values.len();
         let covariance = &row.by_times / median + DMatrix::identity(count, count) * own;
         let factor: Cholesky<f64, Dyn> = covariance.cholesky()?;
         let weights = factor.solve(&DVector::from_element(count, 1.0));
         let information = weights.sum();
         let mean = weights.dot(&row.values) / information;
-        let bounces = DVector::from_fn(count, |k, _| k as f64);
-        let bounces = bounces.add_scalar(-weights.dot(&bounces) / information);
+        let line = match along {
+            Some(Along::Contacts) => row.reciprocals.clone(),
+            _ => DVector::from_fn(count, |k, _| k as f64),
+        };
+        let line = line.add_scalar(-weights.dot(&line) / information);
         let values = row.values.add_scalar(-mean);
-        let (of_bounces, of_values) = (factor.solve(&bounces), factor.solve(&values));
+        let (of_line, of_values) = (factor.solve(&line), factor.solve(&values));
         let halves: f64 = factor.l().diagonal().iter().map(|d| d.ln()).sum();
         Some(Self {
             mean,
             information,
             squares: values.dot(&of_values),
-            slopes: bounces.dot(&of_bounces),
-            products: bounces.dot(&of_values),
+            slopes: line.dot(&of_line),
+            products: line.dot(&of_values),
             weight: -halves - 0.5 * information.ln(),
+            weights: weights / information,
         })
     }
 }
@@ -337,6 +406,12 @@ impl Mixed {
     /// The logarithm of a row's R and its standard error.
     fn logarithm(&self, row: usize) -> (f64, f64) {
         self.average(|share| share.means[row])
+    }
+
+    /// Weights of a row's logarithms in its mean.
+    fn weights(&self, row: usize) -> Vec<f64> {
+        let weight = |k: usize| self.average(|share| [share.weights[row][k], 0.0]).0;
+        (0..self.shares[0].weights[row].len()).map(weight).collect()
     }
 
     /// Relative standard error of each ratio of a row.

@@ -176,6 +176,7 @@ fn is_plain(remark: &Remark) -> bool {
         remark,
         Remark::TimesScatter { .. }
             | Remark::RestitutionScatters { .. }
+            | Remark::ContactLengthOpen { .. }
             | Remark::MassRatio { .. }
             | Remark::FlightsLeftOut { .. }
     )
