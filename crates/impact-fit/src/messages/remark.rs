@@ -191,8 +191,8 @@ pub enum Remark {
         /// Standard error of a time, s.
         error_s: f64,
     },
-    /// The times are those at which contacts begin; how long these last is open, and leaves R open.
-    ContactLengthOpen {
+    /// How long contacts last and how much the air slows the flights is not known, and leaves R open.
+    FlightTimesOpen {
         /// Half the 95 % interval that it leaves of R.
         half_width: f64,
     },
@@ -409,7 +409,7 @@ message_table! { "remark": Remark;
         value = Value::Number(*ratio, 3),
         half = Value::Number(*half_width, 3);
     Self::TimesScatter { error_s } => error = Value::Number(1e3 * error_s, 2);
-    Self::ContactLengthOpen { half_width } => half = Value::Number(*half_width, 4);
+    Self::FlightTimesOpen { half_width } => half = Value::Number(*half_width, 4);
     Self::RestitutionScatters { share } => share = Value::Number(1e2 * share, 1);
     Self::OddRecord { record, restitution, others } =>
         record = Value::Name(record),

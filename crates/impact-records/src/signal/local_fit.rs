@@ -36,10 +36,14 @@ impl LocalFit {
     /// ```
     pub fn new(samples: &[f64], first: usize, last: usize, degree: usize) -> Option<Self> {
         let last = last.min(samples.len());
-        let count = last.checked_sub(first).filter(|n| *n > 0)?;
+        Self::through(samples.get(first..last)?, first, degree)
+    }
+
+    /// The same of samples of which the first is at a time.
+    pub fn through(values: &[f64], first: usize, degree: usize) -> Option<Self> {
+        let count = Some(values.len()).filter(|n| *n > 0)?;
         let degree = degree.min(count.saturating_sub(2)).min(MOST);
         let basis = basis(count, degree)?;
-        let values = &samples[first..last];
         let mut right = Row::default();
         for (powers, value) in basis.powers.iter().zip(values) {
             for (sum, power) in right.iter_mut().zip(powers) {
@@ -54,7 +58,7 @@ impl LocalFit {
         Some(Self {
             coefficients,
             basis,
-            origin: 0.5 * (first + last - 1) as f64,
+            origin: 0.5 * (2 * first + count - 1) as f64,
             samples: count,
             residual_squares,
         })

@@ -4,18 +4,18 @@
 //! The times of a record are a geometric row, `t_k = t_0 + T_0 (1 + R + … + R^(k−1))` ([`rows`]). What scatters about
 //! it are errors of the times and R itself, from impact to impact ([`scatter`]).
 
-mod contacts;
 mod rows;
 mod scatter;
+mod unlisted;
 
 use crate::estimate::{self, Status};
 use crate::messages::{Note, Remark};
 use crate::method::Method;
 use crate::methods::answer::MethodResult;
 use crate::methods::fits::Fits;
-use crate::methods::flight_times::contacts::ByContacts;
 use crate::methods::flight_times::rows::{Fitted, Row, Rows, fitted, rows};
 use crate::methods::flight_times::scatter::{RowEstimate, Scatter};
+use crate::methods::flight_times::unlisted::Unlisted;
 use crate::methods::identifier::Identifier;
 use crate::methods::impacts::structure::{self, GroupedRatio, Grouping, ImpactGroup, ImpactGroups};
 use crate::methods::selection::Selection;
@@ -90,8 +90,8 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     let rows: Vec<(&Row, Fitted)> = indices.iter().map(|i| fits[*i]).collect();
     let (value, error) = weighted(&groups);
     let estimates: Vec<&RowEstimate> = indices.iter().map(|i| &scatter.rows[*i]).collect();
-    let contacts = ByContacts::of(&rows, &estimates, observations, stated_s);
-    let value = value + contacts.change;
+    let unlisted = Unlisted::of(&rows, &estimates, observations, stated_s);
+    let value = value + unlisted.change;
     let ratios: Vec<GroupedRatio> = indices
         .iter()
         .flat_map(|i| ratios(fits[*i].0, &scatter.rows[*i]))
@@ -107,7 +107,7 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         ..Spread::known(error)
     };
     let restitution = estimate::estimate_within(Coordinate::Restitution, value, spread, None);
-    let mut restitution = estimate::wider(Coordinate::Restitution, &restitution, contacts.error);
+    let mut restitution = estimate::wider(Coordinate::Restitution, &restitution, unlisted.error);
     if let Some(error_s) = scatter.times_s.filter(|_| !scatter.is_told()) {
         restitution.status = Status::Weak;
         restitution.note = Some(Note::TimesNotTold { error_s });
@@ -123,13 +123,13 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     let own = scatter
         .own
         .map(|share| Remark::RestitutionScatters { share });
-    let decides = contacts.is_open && contacts.error > error;
-    let length = decides.then_some(Remark::ContactLengthOpen {
-        half_width: NORMAL_975 * contacts.error,
+    let decides = unlisted.error > error;
+    let open = decides.then_some(Remark::FlightTimesOpen {
+        half_width: NORMAL_975 * unlisted.error,
     });
     result
         .remarks
-        .extend(times.into_iter().chain(own).chain(length));
+        .extend(times.into_iter().chain(own).chain(open));
     result
         .remarks
         .extend(not_used(left_out, &missed, observations));
@@ -352,7 +352,7 @@ mod tests {
         let found = pooled(&[timed("a", &times)]).expect("a result");
         let r = found.parameters.restitution.clone();
         let r = r.and_then(|r| r.value).expect("R");
-        assert!((r - 0.8).abs() < 1e-4, "{r}");
+        assert!((r - 0.8).abs() < 1e-3, "{r}");
         assert!(
             found.remarks.contains(&Remark::FlightsLeftOut { count: 2 }),
             "{:?}",
@@ -467,14 +467,11 @@ mod tests {
     }
 
     #[test]
-    fn a_length_of_contacts_that_decides_the_interval_is_named() {
+    fn what_times_do_not_contain_is_named_where_it_decides_the_interval() {
         let found = pooled(&[timed("a", &row(0.5, 4))]).expect("a result");
         let text = found.remarks.iter().map(ToString::to_string);
         let text = text.collect::<Vec<_>>().join("\n");
-        assert!(
-            text.contains("contacts of 0.05 to 20 ms leave R open by ± 0.0"),
-            "{text}"
-        );
+        assert!(text.contains("leave R open by ± 0.0"), "{text}");
     }
 
     #[test]
@@ -536,6 +533,29 @@ mod tests {
             pooled(&[timed("a", &steady)]).expect("a result").fits,
             Some(true)
         );
+    }
+
+    #[test]
+    fn valid_r_of_a_ball_that_the_air_slows_is_in_the_interval() {
+        // a ball that loses R at the floor and c v² on its way, c from a tennis to a table tennis ball
+        let g = 9.81_f64;
+        for (r, drag_per_m) in [(0.72_f64, 0.018_f64), (0.83, 0.03), (0.75, 0.12)] {
+            // up from u: h = ln(1 + c u²/g)/2c; down through h: w² = g (1 − exp(−2ch))/c
+            let (rate, end) = ((g * drag_per_m).sqrt(), (g / drag_per_m).sqrt());
+            let mut times = vec![0.5];
+            let mut up = 4.4_f64;
+            for _ in 0..7 {
+                let height = (1.0 + (up / end).powi(2)).ln() / (2.0 * drag_per_m);
+                let down = end * (1.0 - (-2.0 * drag_per_m * height).exp()).sqrt();
+                let flight = ((up / end).atan() + (down / end).atanh()) / rate;
+                times.push(times[times.len() - 1] + flight);
+                up = r * down;
+            }
+            let found = pooled(&[timed("a", &times)]).expect("a result");
+            let estimate = found.parameters.restitution.expect("R");
+            let [low, high] = estimate.interval95.expect("an interval");
+            assert!(low < r && r < high, "{r}, {drag_per_m}: {low} to {high}");
+        }
     }
 
     #[test]

@@ -50,9 +50,9 @@ impl Scatter {
     /// Of rows with their fits; `stated_s`: the times' standard error as their source states it.
     pub(super) fn of(fits: &[(&Row, Fitted)], stated_s: Option<f64>) -> Self {
         let ratios = Ratios::of(fits.iter().map(|(row, _)| *row));
-        let mix = |along| ratios.mixed(along, stated_s);
+        let mix = |with_slope| ratios.mixed(with_slope, stated_s);
         let least_s = stated_s.unwrap_or(0.0);
-        let Some(mixed) = mix(None) else {
+        let Some(mixed) = mix(false) else {
             // three times in each row: what a source prints is the least that they may be off
             let known = match fits.len() {
                 1 => (least_s.max(USUAL_ERROR_S), f64::INFINITY),
@@ -80,7 +80,7 @@ impl Scatter {
             }
         });
         // a change along the bounces is neither
-        let beside = mix(Some(Along::Bounces));
+        let beside = mix(true);
         let beside = beside.as_ref().unwrap_or(&mixed);
         let own = beside.own();
         Self {
@@ -132,7 +132,7 @@ pub(super) struct Trend {
 pub(super) fn trend(fits: &[(&Row, Fitted)], stated_s: Option<f64>) -> Option<Trend> {
     let ratios = Ratios::of(fits.iter().map(|(row, _)| *row));
     let mixed = ratios
-        .mixed(Some(Along::Bounces), stated_s)
+        .mixed(true, stated_s)
         .filter(|m| m.freedom >= ENOUGH)?;
     let (slope, error) = mixed.average(|share| share.slope);
     let longest = ratios.rows.iter().map(|r| r.values.len()).max()?;
@@ -144,67 +144,21 @@ pub(super) fn trend(fits: &[(&Row, Fitted)], stated_s: Option<f64>) -> Option<Tr
     })
 }
 
-/// The length of the contacts as the ratios of flights show it, where times are those at which contacts begin.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ContactLength {
-    /// Estimate, s; below zero where shorter flights lose more of their speed.
-    pub(super) value_s: f64,
-    /// Standard error, s.
-    pub(super) error_s: f64,
-    /// Degrees of freedom of that error.
-    pub(super) freedom: f64,
-}
-
-impl ContactLength {
-    /// How likely a length is by it alone, of Student's distribution without its factor.
-    pub(super) fn likelihood(&self, length_s: f64) -> f64 {
-        let deviates = (length_s - self.value_s) / self.error_s;
-        (1.0 + deviates * deviates / self.freedom).powf(-0.5 * (self.freedom + 1.0))
-    }
-}
-
-/// The length c of contacts, one for all: what lies between two beginnings is a contact and a flight, so that the
-/// logarithm of the ratio of T' to T is ln R + c (1/T' − 1/T) to first order. `None` where the ratios are too few.
-pub(super) fn contact_length(
-    fits: &[(&Row, Fitted)],
-    stated_s: Option<f64>,
-) -> Option<ContactLength> {
-    let ratios = Ratios::of(fits.iter().map(|(row, _)| *row));
-    let mixed = ratios.mixed(Some(Along::Contacts), stated_s)?;
-    let (value_s, error_s) = mixed.average(|share| share.slope);
-    Some(ContactLength {
-        value_s,
-        error_s,
-        freedom: mixed.freedom,
-    })
-}
-
-/// What the logarithms of ratios may be a line over, with one slope for all rows.
-#[derive(Debug, Clone, Copy)]
-enum Along {
-    /// The number of the bounce.
-    Bounces,
-    /// The difference of the reciprocal flights, 1/s: the slope is the length of a contact.
-    Contacts,
-}
-
 /// The logarithms of a row's ratios, with their covariance for independent errors of 1 s of each time.
-struct RatioRow {
-    values: DVector<f64>,
-    /// Difference of the reciprocals of each ratio's flights, 1/s.
-    reciprocals: DVector<f64>,
+pub(super) struct RatioRow {
+    pub(super) values: DVector<f64>,
     by_times: DMatrix<f64>,
 }
 
 /// Those of all rows.
-struct Ratios {
-    rows: Vec<RatioRow>,
+pub(super) struct Ratios {
+    pub(super) rows: Vec<RatioRow>,
     /// Least, median and greatest variance of a logarithm for errors of 1 s.
     variances: [f64; 3],
 }
 
 impl Ratios {
-    fn of<'a>(rows: impl Iterator<Item = &'a Row>) -> Self {
+    pub(super) fn of<'a>(rows: impl Iterator<Item = &'a Row>) -> Self {
         let rows: Vec<RatioRow> = rows.map(|row| RatioRow::of(&row.times_s)).collect();
         let diagonals = rows
             .iter()
@@ -224,22 +178,45 @@ impl Ratios {
         row.weights_by_times().dot(&row.values)
     }
 
-    /// The estimates for each ratio of the variances; `None` without one that can be computed. Errors of the times far
-    /// beyond those that their source states are less likely: by Cauchy's distribution about these.
-    fn mixed(&self, along: Option<Along>, stated_s: Option<f64>) -> Option<Mixed> {
+    /// Degrees of freedom about one R of each row.
+    pub(super) fn freedom(&self) -> f64 {
+        let count: usize = self.rows.iter().map(|r| r.values.len()).sum();
+        count.saturating_sub(self.rows.len()) as f64
+    }
+
+    /// Variances of R's logarithm that are tried, over that of the median logarithm by errors of the times.
+    pub(super) fn own_variances(&self) -> impl Iterator<Item = f64> + use<> {
         let [least, median, greatest] = self.variances;
         let [low, high] = [least / BEYOND / median, greatest * BEYOND / median].map(f64::log10);
-        let count = self.rows.iter().map(|r| r.values.len()).sum::<usize>();
-        let freedom = count.checked_sub(self.rows.len() + usize::from(along.is_some()))?;
         let steps = whole_steps(low, high);
-        let shares = (0..=steps).filter_map(|k| {
-            let own = 10f64.powf(low + k as f64 / PER_DECADE);
-            Share::of(self, own, (freedom as f64, along))
-        });
+        (0..=steps).map(move |k| 10f64.powf(low + k as f64 / PER_DECADE))
+    }
+
+    /// Covariance of a row's logarithms over the variance of the median one by errors of the times.
+    pub(super) fn covariance(&self, row: &RatioRow, own: f64) -> DMatrix<f64> {
+        let count = row.values.len();
+        &row.by_times / self.variances[1] + DMatrix::identity(count, count) * own
+    }
+
+    /// Variance of the median logarithm for so large an error of each time, s.
+    pub(super) fn of_times(&self, error_s: f64) -> f64 {
+        self.variances[1] * error_s * error_s
+    }
+
+    /// −ln of how likely a variance of the median logarithm is: errors of the times far beyond those that their source
+    /// states are less so, by Cauchy's distribution about these.
+    pub(super) fn beyond(&self, variance: f64, stated_s: Option<f64>) -> f64 {
+        stated_s.map_or(0.0, |s| (variance / self.of_times(s)).ln_1p())
+    }
+
+    /// The estimates for each ratio of the variances; `None` without one that can be computed.
+    fn mixed(&self, with_slope: bool, stated_s: Option<f64>) -> Option<Mixed> {
+        let freedom = self.freedom() - f64::from(u8::from(with_slope));
+        let own = self.own_variances();
+        let shares = own.filter_map(|own| Share::of(self, own, (freedom, with_slope)));
         let mut shares: Vec<Share> = shares.collect();
         for share in &mut shares {
-            let beyond = stated_s.map_or(0.0, |s| share.scale / (median * s * s));
-            share.weight -= beyond.ln_1p();
+            share.weight -= self.beyond(share.scale, stated_s);
         }
         let best = shares
             .iter()
@@ -248,10 +225,7 @@ impl Ratios {
         for share in &mut shares {
             share.weight = (share.weight - best).exp();
         }
-        (best.is_finite() && freedom > 0).then_some(Mixed {
-            shares,
-            freedom: freedom as f64,
-        })
+        (best.is_finite() && freedom > 0.0).then_some(Mixed { shares, freedom })
     }
 }
 
@@ -275,13 +249,7 @@ impl RatioRow {
             let shared = |n: usize| (n + i).checked_sub(k).and_then(|m| b.get(m)).copied();
             (0..3).map(|n| a[n] * shared(n).unwrap_or(0.0)).sum::<f64>()
         });
-        let reciprocals =
-            DVector::from_fn(count, |k, _| flights[k + 1].recip() - flights[k].recip());
-        Self {
-            values,
-            reciprocals,
-            by_times,
-        }
+        Self { values, by_times }
     }
 
     /// The weights of its logarithms in their mean as errors of the times weigh them.
@@ -306,18 +274,18 @@ struct Share {
     means: Vec<[f64; 2]>,
     /// Weights of the logarithms in these means.
     weights: Vec<DVector<f64>>,
-    /// Slope of all rows and its variance; zeros without one.
+    /// Slope of all rows over the bounces and its variance; zeros without one.
     slope: [f64; 2],
 }
 
 impl Share {
-    fn of(ratios: &Ratios, own: f64, (freedom, along): (f64, Option<Along>)) -> Option<Self> {
+    fn of(ratios: &Ratios, own: f64, (freedom, with_slope): (f64, bool)) -> Option<Self> {
         let each = ratios.rows.iter();
         let parts: Vec<Part> = each
-            .map(|row| Part::of(row, along, [ratios.variances[1], own]))
+            .map(|row| Part::of(row, ratios.covariance(row, own)))
             .collect::<Option<_>>()?;
         let information: f64 = parts.iter().map(|p| p.slopes).sum();
-        let slope = if along.is_some() && information > 0.0 {
+        let slope = if with_slope && information > 0.0 {
             parts.iter().map(|p| p.products).sum::<f64>() / information
         } else {
             0.0
@@ -325,7 +293,7 @@ impl Share {
         let squares: f64 = parts.iter().map(|p| p.squares).sum();
         let squares = (squares - slope * slope * information).max(f64::MIN_POSITIVE);
         let mut weight: f64 = parts.iter().map(|p| p.weight).sum();
-        if along.is_some() {
+        if with_slope {
             weight -= 0.5 * information.ln();
         }
         let scale = squares / freedom;
@@ -349,7 +317,7 @@ struct Part {
     weights: DVector<f64>,
     information: f64,
     squares: f64,
-    /// Squares of what the line is over, and their products with the values.
+    /// Bounces' squares and their products with the values.
     slopes: f64,
     products: f64,
     /// −½ ln of the determinants.
@@ -357,27 +325,23 @@ struct Part {
 }
 
 impl Part {
-    fn of(row: &RatioRow, along: Option<Along>, [median, own]: [f64; 2]) -> Option<Self> {
+    fn of(row: &RatioRow, covariance: DMatrix<f64>) -> Option<Self> {
         let count = row.values.len();
-        let covariance = &row.by_times / median + DMatrix::identity(count, count) * own;
         let factor: Cholesky<f64, Dyn> = covariance.cholesky()?;
         let weights = factor.solve(&DVector::from_element(count, 1.0));
         let information = weights.sum();
         let mean = weights.dot(&row.values) / information;
-        let line = match along {
-            Some(Along::Contacts) => row.reciprocals.clone(),
-            _ => DVector::from_fn(count, |k, _| k as f64),
-        };
-        let line = line.add_scalar(-weights.dot(&line) / information);
+        let bounces = DVector::from_fn(count, |k, _| k as f64);
+        let bounces = bounces.add_scalar(-weights.dot(&bounces) / information);
         let values = row.values.add_scalar(-mean);
-        let (of_line, of_values) = (factor.solve(&line), factor.solve(&values));
+        let (of_bounces, of_values) = (factor.solve(&bounces), factor.solve(&values));
         let halves: f64 = factor.l().diagonal().iter().map(|d| d.ln()).sum();
         Some(Self {
             mean,
             information,
             squares: values.dot(&of_values),
-            slopes: line.dot(&of_line),
-            products: line.dot(&of_values),
+            slopes: bounces.dot(&of_bounces),
+            products: bounces.dot(&of_values),
             weight: -halves - 0.5 * information.ln(),
             weights: weights / information,
         })

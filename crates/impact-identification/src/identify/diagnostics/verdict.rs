@@ -176,7 +176,7 @@ fn is_plain(remark: &Remark) -> bool {
         remark,
         Remark::TimesScatter { .. }
             | Remark::RestitutionScatters { .. }
-            | Remark::ContactLengthOpen { .. }
+            | Remark::FlightTimesOpen { .. }
             | Remark::MassRatio { .. }
             | Remark::FlightsLeftOut { .. }
     )

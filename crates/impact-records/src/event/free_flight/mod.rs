@@ -4,6 +4,7 @@
 //! that the law of free flight explains, so that a push by hand before, or a catch after, does not
 //! enter the speeds.
 
+mod drag;
 mod fall;
 mod orientation;
 mod search;

@@ -7,8 +7,9 @@ use crate::record::{Flag, Problem};
 use crate::signal::local_fit::crossing;
 use crate::signal::{robust, whole};
 
+use super::drag::Drag;
 use super::fall::{self, Fall};
-use super::stretch::{self, Side, Stretch};
+use super::stretch::{self, Scale, Side, Stretch};
 
 /// Speed at an impact above the fastest sample of its flight that is refused, relative.
 const BEYOND: f64 = 0.1;
@@ -28,6 +29,8 @@ struct Ringing {
 }
 
 const RINGING: Ringing = Ringing { long: 2, rings: 3 };
+/// Times that drag is fitted: a flight that drag bends is found whole with it alone.
+const DRAG_FITS: usize = 3;
 /// Fewest samples of a mean of the separation speed.
 const LEAST_MEAN: usize = 3;
 /// Greatest ratio of separation to approach speed that an impact can have.
@@ -66,6 +69,7 @@ pub(super) struct Search<'a> {
     relative: &'a [f64],
     greatest_m_s: f64,
     ringing: Ringing,
+    drag: Drag,
 }
 
 /// What a flight shows of the force on the bodies.
@@ -128,8 +132,12 @@ impl<'a> Search<'a> {
             relative,
             greatest_m_s,
             ringing,
+            drag: Drag::default(),
         };
         search.falls = search.after_flights();
+        for _ in 0..DRAG_FITS {
+            search.drag = search.drag_shown();
+        }
         search
     }
 
@@ -157,6 +165,25 @@ impl<'a> Search<'a> {
             .filter(|i| !rings(*i))
             .map(|i| self.falls[i])
             .collect()
+    }
+
+    /// Drag that the flights of one body show, each flight once. What acts on two bodies is not told apart.
+    fn drag_shown(&self) -> Drag {
+        if self.bodies.len() > 1 {
+            return Drag::default();
+        }
+        let sides = (0..self.falls.len()).map(|i| (i, Side::After));
+        let sides = std::iter::once((0, Side::Before)).chain(sides);
+        let flights = sides.filter(|(i, _)| *i < self.falls.len());
+        let flights = flights.filter_map(|(i, side)| self.stretches(i, side));
+        let shown = flights.flatten().filter_map(|flight| flight.shown);
+        let drag = Drag::of(&shown.collect::<Vec<_>>());
+        // its error is one for all impacts, in whose mean it must be whole, and for both speeds of each: it moves
+        // one up and the other down
+        Drag {
+            error_per_m: drag.error_per_m * (2.0 * self.falls.len() as f64).sqrt(),
+            ..drag
+        }
     }
 
     pub(super) fn impacts(&self, closed: &[Closed]) -> FreeFlights {
@@ -218,7 +245,11 @@ impl<'a> Search<'a> {
     }
 
     fn stretches(&self, index: usize, side: Side) -> Option<Vec<Stretch>> {
-        let scale = (self.rate_hz, self.greatest_m_s);
+        let scale = Scale {
+            rate_hz: self.rate_hz,
+            greatest_m_s: self.greatest_m_s,
+            drag: self.drag,
+        };
         let bounds = self.bounds(index);
         self.bodies
             .iter()

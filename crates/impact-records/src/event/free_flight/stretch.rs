@@ -1,5 +1,6 @@
 //! The stretch of a record beside an impact that free flight explains.
 
+use crate::event::free_flight::drag::{self, Drag, Loss, Shown};
 use crate::event::free_flight::fall::Fall;
 use crate::event::kinematics::{Body, Series};
 use crate::signal::local_fit::LocalFit;
@@ -25,8 +26,21 @@ const NEAREST: [f64; 4] = [0.5, 0.25, 0.125, 0.0625];
 const MOVES: f64 = 4.0;
 /// Samples by which a stretch is shortened: one in this many.
 const STEP: usize = 8;
+/// Samples from which a flight shows how its velocity bends.
+const MANY: usize = 16;
 /// Standard error of a speed beside all others, relative.
 const SPEED_SCATTER: f64 = 1e-3;
+
+/// What all flights of a record have in common.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scale {
+    /// Samples per second, Hz.
+    pub rate_hz: f64,
+    /// The greatest speed, m/s.
+    pub greatest_m_s: f64,
+    /// Drag of the air.
+    pub drag: Drag,
+}
 
 /// Which flight beside a fall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,6 +62,12 @@ pub(super) struct Stretch {
     /// Standard deviation of the speed beside the fall between stretches that begin elsewhere, beyond their
     /// errors, m/s.
     unlike: f64,
+    /// What drag takes, per unit of it, and the drag.
+    loss: (Loss, Drag),
+    /// Velocity beside the fall over the drag that is assumed, m/s for 1/m.
+    by_drag: f64,
+    /// What it shows of the drag.
+    pub shown: Option<Shown>,
     /// First sample and the one after the last.
     pub samples: (usize, usize),
 }
@@ -55,11 +75,13 @@ pub(super) struct Stretch {
 impl Stretch {
     /// Velocity at a time in samples, m/s.
     pub(super) fn speed(&self, time: f64) -> f64 {
-        if self.of_displacement {
+        let fitted = if self.of_displacement {
             self.fit.slope(time) * self.rate_hz
         } else {
             self.fit.value(time)
-        }
+        };
+        let (loss, drag) = self.loss;
+        fitted - drag.per_m * loss.of_velocity(time) * self.rate_hz
     }
 
     /// Change of the velocity per sample.
@@ -99,7 +121,8 @@ impl Stretch {
 
     /// Standard error of the velocity at a time, m/s.
     pub(super) fn error(&self, time: f64) -> f64 {
-        self.own_error(time).hypot(self.unlike)
+        let by_drag = self.by_drag * self.loss.1.error_per_m;
+        self.own_error(time).hypot(self.unlike).hypot(by_drag)
     }
 
     /// The same without what other stretches leave open.
@@ -122,11 +145,19 @@ struct Signal<'a> {
     noise: f64,
     of_displacement: bool,
     rate_hz: f64,
+    /// Middle of the fall, samples.
+    middle: f64,
+    drag: Drag,
 }
 
 impl<'a> Signal<'a> {
     /// The velocity as measured; a displacement where the velocity was derived from it.
-    fn of(body: &'a Body, (rate_hz, greatest_m_s): (f64, f64)) -> Option<Self> {
+    fn of(body: &'a Body, middle: f64, scale: Scale) -> Option<Self> {
+        let Scale {
+            rate_hz,
+            greatest_m_s,
+            drag,
+        } = scale;
         let velocity = body.velocity.as_ref()?;
         let derived = |d: &&Series| d.role == velocity.role;
         Some(match body.displacement.as_ref().filter(derived) {
@@ -137,6 +168,8 @@ impl<'a> Signal<'a> {
                 noise: displacement.noise,
                 of_displacement: true,
                 rate_hz,
+                middle,
+                drag,
             },
             None => Self {
                 values: &velocity.values,
@@ -145,6 +178,8 @@ impl<'a> Signal<'a> {
                 noise: velocity.noise.max(UNEVEN * greatest_m_s),
                 of_displacement: false,
                 rate_hz,
+                middle,
+                drag,
             },
         })
     }
@@ -189,17 +224,83 @@ impl<'a> Signal<'a> {
         Some(self.fitted(stretch.samples, self.degree + 1)?.stretch(self))
     }
 
-    /// A polynomial through samples; `None` of too few.
+    /// A polynomial through samples as they would be without drag; `None` of too few.
     fn fitted(&self, samples: (usize, usize), degree: usize) -> Option<Fitted> {
         let (first, last) = samples;
-        let fit = LocalFit::new(self.values, first, last, degree)?;
-        let freedom = (last - first).checked_sub(degree + 1)?;
+        let freedom = (last.min(self.values.len()) - first).checked_sub(degree + 1)?;
+        let loss = self.loss(samples)?;
+        let fit = if self.drag == Drag::default() {
+            LocalFit::new(self.values, first, last, degree)?
+        } else {
+            LocalFit::through(&self.without_drag(samples, &loss), first, degree)?
+        };
         (freedom > 0).then(|| Fitted {
             scatter: (fit.residual_squares / freedom as f64).sqrt(),
             freedom: freedom as f64,
             fit,
+            loss,
             samples,
         })
+    }
+
+    /// What drag takes from a flight from the fall on, by the parabola of its velocity, of few samples the line.
+    fn loss(&self, (first, last): (usize, usize)) -> Option<Loss> {
+        let more = usize::from(last - first >= MANY);
+        let fit = LocalFit::new(self.values, first, last, self.degree + more)?;
+        let middle = 0.5 * (first + last) as f64;
+        let velocity = |time: f64| {
+            if self.of_displacement {
+                fit.slope(time)
+            } else {
+                fit.value(time) / self.rate_hz
+            }
+        };
+        let [before, at, after] = [-1.0, 0.0, 1.0].map(|by| velocity(middle + by));
+        let derivatives = [at, 0.5 * (after - before), after - 2.0 * at + before];
+        Some(Loss::new(self.middle, middle, derivatives))
+    }
+
+    /// What drag of 1/m takes from the signal at a time.
+    fn lost(&self, loss: &Loss, time: f64) -> f64 {
+        if self.of_displacement {
+            loss.of_displacement(time)
+        } else {
+            loss.of_velocity(time) * self.rate_hz
+        }
+    }
+
+    fn without_drag(&self, (first, last): (usize, usize), loss: &Loss) -> Vec<f64> {
+        let range = first..last.min(self.values.len());
+        let without = |i: usize| self.values[i] + self.drag.per_m * self.lost(loss, i as f64);
+        range.map(without).collect()
+    }
+
+    /// A stretch with what it shows of the drag, and what that changes of it.
+    fn with_drag(&self, stretch: Stretch) -> Stretch {
+        let (loss, _) = stretch.loss;
+        let (first, last) = stretch.samples;
+        let lost = (first..last).map(|i| self.lost(&loss, i as f64));
+        let lost: Vec<f64> = lost.collect();
+        let values = self.without_drag(stretch.samples, &loss);
+        let residuals = values.iter().zip(first..);
+        let residuals = residuals.map(|(value, i)| value - stretch.fit.value(i as f64));
+        let residuals: Vec<f64> = residuals.collect();
+        let shown = drag::shown(&residuals, &lost, self.degree, stretch.deviation);
+        let by_drag = LocalFit::through(&lost, first, self.degree).map_or(0.0, |fit| {
+            if self.of_displacement {
+                fit.slope(self.middle) * self.rate_hz
+            } else {
+                fit.value(self.middle)
+            }
+        });
+        Stretch {
+            by_drag,
+            shown: shown.map(|shown| Shown {
+                per_m: shown.per_m + self.drag.per_m,
+                ..shown
+            }),
+            ..stretch
+        }
     }
 
     /// A fit of samples that free flight explains; `None` where it does not.
@@ -225,19 +326,24 @@ struct Fitted {
     /// Standard deviation about it.
     scatter: f64,
     freedom: f64,
+    loss: Loss,
     samples: (usize, usize),
 }
 
 impl Fitted {
     fn stretch(self, of: &Signal<'_>) -> Stretch {
-        let (first, last) = self.samples;
-        let correlated = correlation(of.values, &self.fit, first, last);
+        let (first, _) = self.samples;
+        let values = of.without_drag(self.samples, &self.loss);
+        let correlated = correlation(&values, &self.fit, first);
         Stretch {
             fit: self.fit,
             of_displacement: of.of_displacement,
             rate_hz: of.rate_hz,
             deviation: self.scatter.max(0.5 * of.noise) * correlated,
             unlike: 0.0,
+            loss: (self.loss, of.drag),
+            by_drag: 0.0,
+            shown: None,
             samples: self.samples,
         }
     }
@@ -273,11 +379,10 @@ impl Kink {
 }
 
 /// Factor on a standard error for residuals that are correlated with their neighbours.
-fn correlation(values: &[f64], fit: &LocalFit, first: usize, last: usize) -> f64 {
-    let residual = |i: usize| values[i] - fit.value(i as f64);
-    let products: f64 = (first + 1..last)
-        .map(|i| residual(i) * residual(i - 1))
-        .sum();
+fn correlation(values: &[f64], fit: &LocalFit, first: usize) -> f64 {
+    let residuals = values.iter().zip(first..);
+    let residuals: Vec<f64> = residuals.map(|(v, i)| v - fit.value(i as f64)).collect();
+    let products: f64 = residuals.windows(2).map(|w| w[0] * w[1]).sum();
     let share = products / fit.residual_squares.max(f64::MIN_POSITIVE);
     let share = share.clamp(0.0, 0.8);
     ((1.0 + share) / (1.0 - share)).sqrt()
@@ -286,7 +391,7 @@ fn correlation(values: &[f64], fit: &LocalFit, first: usize, last: usize) -> f64
 /// The longest stretch beside a fall that free flight explains: a line of the velocity or a parabola
 /// of the displacement.
 ///
-/// `rings`: samples after the fall in which its bumpers may ring; `bounds`: samples between the neighbouring falls; `greatest_m_s`: the scale of the speeds. Samples
+/// `rings`: samples after the fall in which its bumpers may ring; `bounds`: samples between the neighbouring falls. Samples
 /// beside the fall that still belong to the contact are left out; of the possible stretches the one
 /// with the least error at the fall's middle is taken.
 pub(super) fn find(
@@ -294,11 +399,12 @@ pub(super) fn find(
     (side, rings): (Side, usize),
     fall: Fall,
     bounds: (usize, usize),
-    (rate_hz, greatest_m_s): (f64, f64),
+    scale: Scale,
 ) -> Option<Stretch> {
-    let signal = Signal::of(body, (rate_hz, greatest_m_s))?;
-    let velocity = body.velocity.as_ref()?;
     let middle = 0.5 * (fall.first + fall.last) as f64;
+    let signal = Signal::of(body, middle, scale)?;
+    let velocity = body.velocity.as_ref()?;
+    let greatest_m_s = scale.greatest_m_s;
     let beside = BESIDE + (fall.last - fall.first) / 2;
     // what rings after the contact goes on for several times as long
     let ringing = match side {
@@ -321,10 +427,10 @@ pub(super) fn find(
         Side::Before => fall.first,
         Side::After => fall.last,
     };
-    Some(Stretch {
+    Some(signal.with_drag(Stretch {
         unlike: best.unlike.hypot(unlike(&stretches, best, edge as f64)),
         ..best.clone()
-    })
+    }))
 }
 
 /// How far the speeds of the stretches that overlap the best one are from its own beyond their errors: bumpers that

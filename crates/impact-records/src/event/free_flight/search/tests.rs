@@ -136,6 +136,85 @@ fn valid_a_ball_followed_by_a_camera_gives_its_restitution() {
     }
 }
 
+/// Heights of a ball in air, m, from the exact flights under g and drag c v², with the times of its impacts.
+fn in_air(restitution: f64, drag_per_m: f64, rate_hz: f64, count: usize) -> Vec<f64> {
+    let g = 9.81f64;
+    let (rate, end) = ((g * drag_per_m).sqrt(), (g / drag_per_m).sqrt());
+    let rise_s = |up: f64| (up / end).atan() / rate;
+    let top = |up: f64| (1.0 + (up / end).powi(2)).ln() / (2.0 * drag_per_m);
+    let fall_s = |height: f64| (drag_per_m * height).exp().acosh() / rate;
+    // height over the floor so long after an impact or, before the first one, after the release
+    let falling = |from: f64, s: f64| from - (rate * s).cosh().ln() / drag_per_m;
+    let rising = |up: f64, s: f64| {
+        let angle = (up / end).atan();
+        ((angle - rate * s).cos() / angle.cos()).ln() / drag_per_m
+    };
+    let down = |height: f64| end * (1.0 - (-2.0 * drag_per_m * height).exp()).sqrt();
+    let height = |t: f64| {
+        let (mut begin, mut up) = (fall_s(1.2), restitution * down(1.2));
+        if t < begin {
+            return falling(1.2, t);
+        }
+        loop {
+            let flight = rise_s(up) + fall_s(top(up));
+            if t < begin + flight {
+                let s = t - begin;
+                return if s < rise_s(up) {
+                    rising(up, s)
+                } else {
+                    falling(top(up), s - rise_s(up))
+                };
+            }
+            (begin, up) = (begin + flight, restitution * down(top(up)));
+        }
+    };
+    (0..count).map(|i| height(i as f64 / rate_hz)).collect()
+}
+
+#[test]
+fn valid_a_ball_that_the_air_slows_gives_the_restitution_of_its_impacts() {
+    use rand::Rng;
+    use rand::SeedableRng;
+    use rand_distr::StandardNormal;
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(20_261_130);
+    // steel, a tennis ball, a table tennis ball
+    for drag_per_m in [1e-3, 0.02, 0.12] {
+        for rate_hz in [120.0, 480.0] {
+            let heights = in_air(0.8, drag_per_m, rate_hz, whole::index(2.2 * rate_hz));
+            let noise = |_: &f64| -> f64 { 5e-4 * rng.sample::<f64, _>(StandardNormal) };
+            let values: Vec<f64> = heights
+                .iter()
+                .map(noise)
+                .zip(&heights)
+                .map(|(n, h)| h + n)
+                .collect();
+            let record = Record::of(rate_hz, &[(Role::DisplacementX, &values)]);
+            let kinematics = Kinematics::of(&record, RigKind::Single, 1);
+            let found = detect(&kinematics, RigKind::Single, &[]);
+            assert!(found.impacts.len() > 2, "{found:?}");
+            let ratios = found.impacts.iter().map(|impact| {
+                let [before, after] = [
+                    impact.approach_speed_before_m_s,
+                    impact.approach_speed_after_m_s,
+                ];
+                let (before, after) = (before.unwrap(), after.unwrap());
+                let error = impact.speed_error_m_s.unwrap() / before;
+                (-after / before, 1.28 * error)
+            });
+            let weights = |(ratio, error): (f64, f64)| [ratio / error.powi(2), error.powi(-2)];
+            let [sum, all] = ratios
+                .map(weights)
+                .fold([0.0, 0.0], |s, w| [s[0] + w[0], s[1] + w[1]]);
+            let (mean, error) = (sum / all, all.powf(-0.5));
+            assert!(
+                (mean - 0.8).abs() < 2.0 * error,
+                "{drag_per_m} {rate_hz}: {mean} ± {error}"
+            );
+            assert!(error < 0.01, "{drag_per_m} {rate_hz}: {error}");
+        }
+    }
+}
+
 /// Two riders with bumpers that last and ring, friction, and a noise, drawn at random.
 struct Bumpers {
     restitution: f64,
