@@ -206,8 +206,9 @@ fn valid_a_ball_that_the_air_slows_gives_the_restitution_of_its_impacts() {
                 .map(weights)
                 .fold([0.0, 0.0], |s, w| [s[0] + w[0], s[1] + w[1]]);
             let (mean, error) = (sum / all, all.powf(-0.5));
+            // without drag in the flights R of the last would be 0.02 less
             assert!(
-                (mean - 0.8).abs() < 2.0 * error,
+                (mean - 0.8).abs() < 6e-3,
                 "{drag_per_m} {rate_hz}: {mean} ± {error}"
             );
             assert!(error < 0.01, "{drag_per_m} {rate_hz}: {error}");
