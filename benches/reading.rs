@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use labfiles::Samples;
-use labfiles::convert::{Options, Target, convert};
-use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
 use labfiles::open;
+use labfiles_write::convert::{Options, Target, convert};
+use labfiles_write::hdf5::{CampaignWriter, ColumnToWrite, RecordTable};
 
 const RECORDS: usize = 200;
 const CHANNELS: usize = 16;

@@ -10,7 +10,7 @@ use super::{Exit, Failure, Verbosity, interrupt};
 use impact_oscillator::atlas::map::{Kernel, MapSettings};
 use impact_workbench::theory::Study;
 use impact_workbench::theory::plan::RegionsPlan;
-use labfiles::output::{Lock, write_json_line};
+use labfiles_write::output::{Lock, write_json_line};
 
 /// Arguments of `impactid atlas`.
 #[derive(Debug, Args)]
@@ -140,7 +140,7 @@ impl Atlas {
             .out
             .folder()
             .join(format!("part-{number}-of-{of}.json"));
-        labfiles::output::make_folder(self.out.folder())?;
+        labfiles_write::output::make_folder(self.out.folder())?;
         interrupt::watch(self.out.folder().to_path_buf());
         // many parts of an array of jobs may share the folder: the lock is the part's own
         let _lock = Lock::take(&self.out.folder().join(format!(".part-{number}")))?;

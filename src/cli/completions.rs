@@ -11,7 +11,7 @@ use super::exit::Exit;
 use super::failure::Failure;
 use super::stdout::print;
 use super::verbosity::Verbosity;
-use labfiles::output;
+use labfiles_write::output;
 
 /// Arguments of `impactid completions`, of the program whose command line is `P`.
 #[derive(Debug, Args)]

@@ -10,7 +10,7 @@ use super::read_log::ReadLog;
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_records::message::counted;
 use labfiles::ReadError;
-use labfiles::convert::{self, ConvertError, Options, Target};
+use labfiles_write::convert::{self, ConvertError, Options, Target};
 
 /// Arguments of `impactid convert`.
 #[derive(Debug, Args)]

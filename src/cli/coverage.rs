@@ -10,7 +10,7 @@ use super::stdout::{print, print_json};
 use super::{Exit, Failure, Progress, Verbosity};
 use impact_identification::identify::uncertainty::coverage::Score;
 use impact_workbench::coverage::{self, CoveragePlan, MotionTally, Tallies, Tally};
-use labfiles::output::write_bytes;
+use labfiles_write::output::write_bytes;
 use simulated_rig::RigSpec;
 
 /// Arguments of `impactid study coverage`.

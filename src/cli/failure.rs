@@ -9,8 +9,8 @@ use impact_campaign::campaign::diagnostic::{Code, Diagnostic, Diagnostics, Place
 use impact_campaign::pipeline::{PipelineError, RefusedRecord};
 use impact_records::message::{Print, Typed};
 use labfiles::ReadError;
-use labfiles::output::OutputError;
 use labfiles::panic_is_caught;
+use labfiles_write::output::OutputError;
 
 /// Print no text for a panic of a library that a reader turns into an error: the error is printed.
 pub(super) fn hush_caught_panics() {

@@ -9,7 +9,7 @@ use impact_campaign::campaign::infer::{self, FolderContents, InferredChannel};
 use impact_campaign::campaign::template;
 use impact_records::message::counted;
 use labfiles::open;
-use labfiles::output;
+use labfiles_write::output;
 
 /// Arguments of `impactid init`.
 #[derive(Debug, Args)]

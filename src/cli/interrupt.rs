@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use labfiles::output::{Lock, OutputError};
+use labfiles_write::output::{Lock, OutputError};
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 /// Exit code of a program that the user interrupted (128 + SIGINT).
@@ -102,7 +102,7 @@ fn end() {
     ENDING.store(true, Ordering::SeqCst);
     let folders = FOLDERS.lock().map(|f| f.clone()).unwrap_or_default();
     for folder in &folders {
-        labfiles::output::clear_own_parts(folder);
+        labfiles_write::output::clear_own_parts(folder);
     }
     let first = folders.first().map(PathBuf::as_path);
     eprintln!(

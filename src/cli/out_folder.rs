@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::{Failure, interrupt};
 use impact_campaign::pipeline::{campaigns, identify, plan};
-use labfiles::output::Lock;
+use labfiles_write::output::Lock;
 
 /// Work that writes into a folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

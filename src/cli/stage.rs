@@ -20,7 +20,7 @@ use super::{Exit, Failure, Verbosity, interrupt, out_folder};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
 use impact_campaign::pipeline::{self, store};
 use impact_report::catalog::Catalog;
-use labfiles::output::Lock;
+use labfiles_write::output::Lock;
 
 /// Arguments of `impactid ingest`.
 #[derive(Debug, Args)]

@@ -11,7 +11,7 @@ use super::pairs::Pairs;
 use super::theory::in_folder;
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_workbench::theory::{self, Study as Written};
-use labfiles::output::write_bytes;
+use labfiles_write::output::write_bytes;
 
 /// Arguments of `impactid study`.
 #[derive(Debug, Args)]

@@ -10,7 +10,7 @@ use super::out_folder::{self, COPY, Work};
 use super::{Exit, Failure, Progress, Verbosity};
 use impact_campaign::pipeline::block_cache::BlockCache;
 use impact_workbench::theory::{Pictures, Study, StudyContext, run};
-use labfiles::output::write_bytes;
+use labfiles_write::output::write_bytes;
 
 /// Where results go.
 #[derive(Debug, Clone, Args)]
@@ -112,8 +112,8 @@ pub(super) fn in_folder(
     verbosity: Verbosity,
     work: impl FnOnce(&StudyContext<'_>) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    labfiles::output::make_folder(folder)?;
-    labfiles::output::clear_parts(folder);
+    labfiles_write::output::make_folder(folder)?;
+    labfiles_write::output::clear_parts(folder);
     let blocks = BlockCache::open(folder, key, resume)?;
     let progress = Progress::new(verbosity, what, 1);
     let messages = Mutex::new(Vec::new());

@@ -21,7 +21,7 @@ use impact_campaign::pipeline::watch::{
 };
 use impact_campaign::pipeline::{Completed, Destination, layout};
 use impact_report::Format;
-use labfiles::output::Lock;
+use labfiles_write::output::Lock;
 
 /// Arguments of `impactid watch`.
 #[derive(Debug, Args)]

@@ -32,8 +32,9 @@ const MODULES: [(&str, &[&str]); 5] = [
 ];
 
 /// The packages in order: a package uses only those before it.
-const PACKAGES: [&str; 10] = [
+const PACKAGES: [&str; 11] = [
     "labfiles",
+    "labfiles-write",
     "impact-oscillator",
     "impact-records",
     "simulated-rig",

@@ -47,7 +47,7 @@ fn uff_of(points: &str) -> String {
 
 /// An HDF5 file with a record at the bottom of so many groups.
 fn nested_groups(path: &std::path::Path, depth: usize) {
-    use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
+    use labfiles_write::hdf5::{CampaignWriter, ColumnToWrite, RecordTable};
     // who writes so deep a tree needs a deep stack
     let path = path.to_path_buf();
     let write = move || {

@@ -49,8 +49,8 @@ pub struct CampaignFacts {
     pub name: String,
     /// What was measured.
     pub subject: Subject,
-    /// Who measured, and in which laboratory.
-    pub laboratory: Option<String>,
+    /// What it states in words, by the label under which the first page prints it.
+    pub stated: Vec<(Phrase, String)>,
     /// First and last day of the acquisition, as the files state them.
     pub dates: Option<[String; 2]>,
     /// Number of input files.

@@ -14,7 +14,6 @@ use std::path::Path;
 
 use crate::bytes::to_usize;
 use crate::csv::front::Front;
-pub(crate) use crate::csv::front::TEXTS_KEY;
 use crate::csv::header::Header;
 use crate::csv::parts::{Block, Makeup, Part};
 use crate::csv::time_axis::TimeAxis;

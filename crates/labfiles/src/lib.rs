@@ -1,4 +1,4 @@
-//! Readers and writers of the files that vibration laboratories keep: HDF5, MATLAB (v4 to v7.3),
+//! Readers of the files that vibration laboratories keep: HDF5, MATLAB (v4 to v7.3),
 //! TDMS, UFF 58, LVM, WAV, Parquet, Excel, CSV and other text tables.
 //!
 //! [`open`] recognises a file by its first bytes and gives a [`Source`]: *datasets* (records), each
@@ -30,9 +30,8 @@
 //! was expected, what was found, at which byte, and the remedy), neither a panic nor an allocation
 //! far beyond the file's own size.
 //!
-//! Records are written by [`convert::convert`] (any format to HDF5, Parquet, CSV or UFF 58) and by
-//! [`hdf5_write::CampaignWriter`]; [`output`] holds what both rest on: files that appear under their
-//! names when they are complete, or not at all. [`units`] converts to SI.
+//! [`units`] converts to SI. Files are written by `labfiles-write`; what such files state beyond their formats is in
+//! [`conventions`].
 
 #![cfg_attr(
     test,
@@ -48,21 +47,18 @@
 pub mod attribute;
 mod bytes;
 mod channel;
-mod clocks;
-pub mod convert;
+pub mod conventions;
 mod csv;
 mod excel;
 mod hdf5;
-pub mod hdf5_write;
 mod inflate;
 mod lvm;
 mod mat;
 mod numbers;
 mod open;
-pub mod output;
 mod parquet;
 mod plain;
-mod rate;
+pub mod rate;
 mod source;
 pub mod summary;
 mod system;
@@ -73,6 +69,7 @@ mod uff;
 pub mod units;
 mod wav;
 
+pub use csv::header::name_and_unit;
 pub use csv::parts::without_run;
 pub use excel::workbook_tables;
 pub use open::{format_titles, open};

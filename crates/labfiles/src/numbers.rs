@@ -71,15 +71,6 @@ pub(crate) struct Spacing {
     pub count: usize,
 }
 
-/// A number in the single precision that was asked for.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "rounding is what the caller asks for"
-)]
-pub(crate) fn to_f32(value: f64) -> f32 {
-    value as f32
-}
-
 /// Numbers one after the other.
 pub(crate) fn decode(number: Number, order: ByteOrder, bytes: &[u8], out: &mut Vec<f64>) {
     let stride = to_usize(number.bytes());

@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::attribute;
+use crate::conventions::RECORDS_KEY;
 use crate::csv::header::name_and_unit;
 use crate::parquet::columns::Columns;
 pub(crate) use crate::parquet::columns::SIGNATURE;
@@ -21,8 +22,6 @@ use crate::source::{
 };
 use crate::timing::{self, AxisUnit};
 
-/// The key under which a footer keeps each record's attributes, as JSON.
-pub(crate) const RECORDS_KEY: &str = "impactid_records";
 struct ParquetReader {
     columns: Columns,
     plans: Vec<Vec<Origin>>,

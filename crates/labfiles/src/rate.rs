@@ -1,7 +1,7 @@
 //! The rate at which samples follow, from a time axis.
 
 /// How many values at the front of a time axis give its usual step.
-pub(crate) const HEAD_SAMPLES: usize = 256;
+pub const HEAD_SAMPLES: usize = 256;
 
 /// Samples per second of an axis whose unit has so many seconds: from its ends where the samples
 /// between them are complete or many share a printed time, else from the usual steps of its head, so that
@@ -9,7 +9,7 @@ pub(crate) const HEAD_SAMPLES: usize = 256;
 ///
 /// `head` are the first values, `end` is the last of `count`. `None`: the axis does not climb or
 /// has fewer than two values.
-pub(crate) fn from_axis(head: &[f64], end: Option<f64>, count: u64, unit_s: f64) -> Option<f64> {
+pub fn from_axis(head: &[f64], end: Option<f64>, count: u64, unit_s: f64) -> Option<f64> {
     let between = count.checked_sub(1).filter(|n| *n > 0)? as f64;
     if shares_stamps(head) {
         let (last, steps) = match end {

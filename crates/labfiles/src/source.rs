@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 pub use crate::channel::{ChannelInfo, Clock, StoredType};
-use crate::clocks;
+use crate::conventions;
 use crate::system::said;
 
 /// A dataset (one record) as its file describes it, before its samples are read.
@@ -237,7 +237,7 @@ pub(crate) fn opened<R: Reader + 'static>(
     reader: R,
 ) -> Result<Box<dyn Source>, ReadError> {
     for dataset in &mut datasets {
-        clocks::apply(&mut dataset.channels, &dataset.attributes);
+        conventions::apply_clocks(&mut dataset.channels, &dataset.attributes);
     }
     Ok(Box::new(Opened {
         format,

@@ -134,7 +134,7 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
     let record = calibrate::calibrate(source, &campaign.setup_of(entry));
     // What `run` would do with it: a record that it refuses is refused here, for the same reason.
     let (detect, classify) = (campaign.detect_settings(), campaign.classify_settings());
-    let observed = observe(&record, campaign.machine, &detect, &classify);
+    let observed = observe(&record, campaign.about.machine, &detect, &classify);
     let telling = tells(&observed);
     let mut flags = observed.flags;
     if campaign.driven(entry) && !flags.iter().any(|f| f.excludes) {

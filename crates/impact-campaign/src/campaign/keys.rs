@@ -14,7 +14,7 @@ pub struct KeyRow {
     pub meaning: &'static [&'static str],
     /// What holds without it, in Markdown; `None` where its meaning states that.
     pub default: Option<&'static str>,
-    /// What `impactid init` writes, if it does.
+    /// The line that `impactid init` writes, if it does; `{}` is the value that it infers.
     pub init: Option<&'static str>,
 }
 
@@ -73,10 +73,13 @@ macro_rules! optional {
 
 pub(super) use {keys, optional};
 
-/// The lines of `impactid init` for the keys of a section.
-pub(super) fn init_lines(keys: &[KeyRow]) -> String {
+/// The lines of `impactid init` for the keys of a section, with the values that it inferred, by key.
+pub(super) fn init_lines(keys: &[KeyRow], inferred: &[(&str, &str)]) -> String {
     let mut text = String::new();
-    for line in keys.iter().filter_map(|key| key.init) {
+    for key in keys {
+        let Some(line) = key.init else { continue };
+        let value = inferred.iter().find(|(name, _)| *name == key.name);
+        let line = line.replacen("{}", value.map_or("", |(_, value)| value), 1);
         // writing to a String cannot fail
         let _ = writeln!(text, "{line}");
     }

@@ -11,7 +11,7 @@ use super::records;
 use super::resolved::{RecordEntry, ResolvedCampaign};
 use super::sections::{about, analysis, channels, report, rig};
 use super::sources::Sources;
-use super::values::{Flight, Placed, value};
+use super::values::{Placed, value};
 use super::written::WrittenCampaign;
 
 /// A campaign as far as it could be resolved, and everything that is wrong with it.
@@ -59,14 +59,13 @@ fn resolve(
     (open, taken): (Opener<'_>, Option<Taken<'_>>),
     context: &mut ResolveContext<'_>,
 ) -> ResolvedCampaign {
-    let machine = about::machine(&written.campaign.machine, context);
-    let flight = value(&written.campaign.flight).unwrap_or(Flight::Harmonic);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let about = about::resolve(&written.campaign, folder, context);
     let channels = match written.published {
         Some(_) => Vec::new(),
-        None => channels::resolve(&written.channels, (machine, flight), context),
+        None => channels::resolve(&written.channels, (about.machine, about.flight), context),
     };
     let time = value(&written.records.time).map(|t| t.0);
-    let folder = path.parent().unwrap_or(Path::new(""));
     let sources = Sources::default();
     let shared = Shared {
         folder,
@@ -82,9 +81,9 @@ fn resolve(
     let all = taken.is_none();
     exclude(&mut records, (&written.analysis.exclude, all), context);
     channels::refuse_long_delays(&channels, &records, &written.channels, context);
-    let name = about::name(&written.campaign.name, folder);
     let run_table = value(&written.records.run_table).map(|t| folder.join(t));
     let names: Vec<&str> = records.iter().map(|r| r.id.as_str()).collect();
+    let name = about.name.clone();
     let around = report::Around {
         name: &name,
         folder,
@@ -92,19 +91,14 @@ fn resolve(
         all,
     };
     ResolvedCampaign {
+        about,
         run_table,
-        machine,
-        flight,
         rig: rig::resolve(&written.rig, context),
         time_unit_s: written.records.time_unit_s(context),
         sample_rate_hz: written.records.sample_rate_hz(context),
         analysis: analysis::resolve(&written.analysis, context),
         report: report::resolve(&written.report, &around, context),
-        synthetic: written.campaign.synthetic,
-        laboratory: value(&written.campaign.laboratory),
-        measured: value(&written.campaign.measured),
         file: path.to_path_buf(),
-        name,
         channels,
         time,
         records,

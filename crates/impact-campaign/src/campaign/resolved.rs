@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::sections::about::About;
 use super::sections::analysis::Analysis;
 use super::sections::published::Published;
 use super::sections::report::ReportSettings;
 use super::sections::rig::NominalValues;
 use super::slashes;
 use super::sources::Sources;
-use super::values::{Excitation, Flight, Machine};
+use super::values::{Excitation, Flight};
 use impact_records::event::DetectSettings;
 use impact_records::motion::{ClassifySettings, LateChannel};
 use impact_records::record::Setting;
@@ -23,21 +24,9 @@ pub(crate) const RESOLVED: &str = "campaign.resolved.json";
 /// A campaign ready to be analysed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ResolvedCampaign {
-    /// Name on the report's first page.
-    pub name: String,
-    /// Two masses, or one against a stop.
-    pub machine: Machine,
-    /// What acts between impacts.
-    pub flight: Flight,
-    /// Whether its records are simulated.
-    #[serde(default)]
-    pub synthetic: bool,
-    /// Who measured, and where.
-    #[serde(default)]
-    pub laboratory: Option<String>,
-    /// When it was measured, in words.
-    #[serde(default)]
-    pub measured: Option<String>,
+    /// What the campaign is.
+    #[serde(flatten)]
+    pub about: About,
     /// campaign.toml itself.
     #[serde(serialize_with = "slashes::serialize")]
     pub file: PathBuf,
@@ -93,13 +82,13 @@ impl ResolvedCampaign {
 
     /// Whether a record must contain a harmonic drive.
     pub fn driven(&self, entry: &RecordEntry) -> bool {
-        self.flight == Flight::Harmonic && entry.setting.excitation == Excitation::Harmonic
+        self.about.flight == Flight::Harmonic && entry.setting.excitation == Excitation::Harmonic
     }
 
     /// Settings of the detection of impacts.
     pub fn detect_settings(&self) -> DetectSettings {
         DetectSettings {
-            flight: self.flight,
+            flight: self.about.flight,
             ..DetectSettings::default()
         }
     }

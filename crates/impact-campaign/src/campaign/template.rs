@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::diagnostic::first_of;
 use super::infer::{self, Experiment, FolderContents, InferredChannel};
 use super::keys::{KeyRow, init_lines};
+use super::sections::about::AboutTable;
 use super::sections::analysis::AnalysisTable;
 use super::sections::records::RecordsTable;
 use super::sections::report::ReportTable;
@@ -20,13 +21,7 @@ pub fn campaign_toml(name: &str, found: &FolderContents) -> String {
     // writing to a String cannot fail
     let _ = head(&mut text, name, found)
         .and_then(|()| records(&mut text, found))
-        .and_then(|()| {
-            section(
-                &mut text,
-                "# Nominal values of the rig, all optional: where the fit starts\n[rig]",
-                RigTable::KEYS,
-            )
-        })
+        .and_then(|()| section(&mut text, RIG, RigTable::KEYS))
         .and_then(|()| writeln!(text))
         .and_then(|()| channels(&mut text, found))
         .and_then(|()| section(&mut text, "[analysis]", AnalysisTable::KEYS))
@@ -34,10 +29,10 @@ pub fn campaign_toml(name: &str, found: &FolderContents) -> String {
     text
 }
 
-/// A section whose lines are those of its keys.
+/// A section whose lines are those of its keys, none of which is inferred.
 fn section(text: &mut String, head: &str, keys: &[KeyRow]) -> std::fmt::Result {
     writeln!(text, "{head}")?;
-    text.write_str(&init_lines(keys))
+    text.write_str(&init_lines(keys, &[]))
 }
 
 /// A text in TOML's quotes.
@@ -61,19 +56,21 @@ fn head(text: &mut String, name: &str, found: &FolderContents) -> std::fmt::Resu
         Experiment::Driven | Experiment::FreeDecay => "harmonic",
     };
     let machine = if is_double(found) { "double" } else { "single" };
+    let name = quoted(name);
+    let inferred = [
+        ("name", name.as_str()),
+        ("machine", machine),
+        ("flight", flight),
+    ];
     writeln!(
         text,
         "# A campaign for impactid, inferred from {} ({}); check every line.\n\
          # Every quantity with a dimension is written with its unit in quotes: \"1.0 mm\".\n\
          # Then: impactid check campaign.toml; impactid run campaign.toml --out results\n\n\
-         [campaign]\n\
-         name = {}\n\
-         machine = \"{machine}\"            # \"double\": two masses; \"single\": one mass against a stop\n\
-         flight = \"{flight}\"           # \"harmonic\": springs and a drive; \"constant_force\": free flights, \
-         as of balls and carts\n",
+         [campaign]\n{}",
         counted(found.files, "file"),
         found.format,
-        quoted(name)
+        init_lines(AboutTable::KEYS, &inferred)
     )
 }
 
@@ -132,7 +129,7 @@ fn records(text: &mut String, found: &FolderContents) -> std::fmt::Result {
             "excitation = \"free_decay\"    # the records look like free decays after a release or a blow"
         )?;
     } else {
-        text.write_str(&init_lines(RecordsTable::KEYS))?;
+        text.write_str(&init_lines(RecordsTable::KEYS, &[]))?;
     }
     if !attributes.is_empty() && found.run_table.is_none() {
         writeln!(
@@ -411,6 +408,10 @@ const RUN_TABLE: &str = "\
 # run_table = \"runs.csv\"      # instead of files: one row per record, with the columns file, dataset,
 #                             # drive_frequency_hz, clearance_mm, sweep (up, down), drive_amplitude
 ";
+
+const RIG: &str = "\
+# Nominal values of the rig, all optional: where the fit starts
+[rig]";
 
 const CLEARANCE: &str = "\
 #                              # r is half the gap between two masses; of whole gaps state whole_gaps = true in [records]

@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 
 use crate::pipeline::gzip_json;
 use crate::pipeline::inputs::hexadecimal;
-use labfiles::output::{self, OutputError};
+use labfiles_write::output::{self, OutputError};
 
 /// Folder of the blocks in the output folder; it is removed when the work is done.
 const FOLDER: &str = ".impactid-blocks";

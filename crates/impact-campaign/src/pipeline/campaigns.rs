@@ -83,10 +83,10 @@ pub fn campaigns(
             Campaign {
                 name,
                 measurement,
-                machine: campaign.machine,
-                flight: campaign.flight,
-                measured: campaign.measured.clone(),
-                synthetic: campaign.synthetic,
+                machine: campaign.about.machine,
+                flight: campaign.about.flight,
+                measured: campaign.about.measured.clone(),
+                synthetic: campaign.about.synthetic,
                 verdict,
                 parameters,
                 fit,
@@ -96,13 +96,13 @@ pub fn campaigns(
             }
         };
     if found.specimens.is_empty() {
-        let (name, joint) = (campaign.name.clone(), found.joint.parameters);
+        let (name, joint) = (campaign.about.name.clone(), found.joint.parameters);
         return vec![one(name, found.verdict.kind, joint, found.joint_fit)];
     }
     let specimens = found.specimens.into_iter();
     specimens
         .map(|(specimen, result)| {
-            let name = format!("{}, {specimen}", campaign.name);
+            let name = format!("{}, {specimen}", campaign.about.name);
             let joint = result.joint.parameters;
             one(name, result.verdict.kind, joint, result.joint_fit)
         })

@@ -13,7 +13,7 @@ use sha2::{Digest, Sha256};
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::pipeline::block_cache::BlockCache;
 use crate::pipeline::inputs::hexadecimal;
-use labfiles::output::OutputError;
+use labfiles_write::output::OutputError;
 
 /// Folder of the chunks in the output folder; it is removed when the run is done.
 const FOLDER: &str = ".impactid-observed";

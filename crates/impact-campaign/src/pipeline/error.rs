@@ -6,7 +6,7 @@ use impact_identification::identify::Identification;
 use impact_oscillator::model::ModelError;
 use impact_records::record::Flag;
 use labfiles::ReadError;
-use labfiles::output::OutputError;
+use labfiles_write::output::OutputError;
 
 /// Called with the stage, the steps done and the total steps.
 pub type Progress<'a> = &'a (dyn Fn(&'static str, u64, u64) + Sync);
@@ -105,7 +105,7 @@ pub enum PipelineError {
     },
     /// The HDF5 writer failed.
     #[error(transparent)]
-    Hdf5(#[from] labfiles::hdf5_write::WriteError),
+    Hdf5(#[from] labfiles_write::hdf5::WriteError),
 }
 
 impl PipelineError {

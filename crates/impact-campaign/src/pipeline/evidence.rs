@@ -27,7 +27,7 @@ fn nominal(campaign: &ResolvedCampaign, observations: &[Observation]) -> Nominal
             Some(kinds) => Effects::of(kinds),
             None => Effects::all(),
         },
-        flight: campaign.flight,
+        flight: campaign.about.flight,
         ..delays(campaign, observations)
     }
 }
@@ -78,7 +78,7 @@ pub(super) fn evidence<'a>(
     brackets: &'a [Bracket],
 ) -> Evidence<'a> {
     Evidence {
-        rig: campaign.machine,
+        rig: campaign.about.machine,
         observations,
         brackets,
         nominal: nominal(campaign, observations),

@@ -10,7 +10,7 @@ use flate2::write::GzEncoder;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use labfiles::output::{OutputError, write_whole};
+use labfiles_write::output::{OutputError, write_whole};
 
 /// Bytes that are compressed together.
 const BUFFER_BYTES: usize = 1 << 16;

@@ -7,16 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::pipeline::json::write_json;
-use crate::pipeline::{Observed, PipelineError, inputs};
+use crate::pipeline::{Observed, PipelineError, budget, inputs};
 use impact_fit::evidence::Evidence;
 use impact_fit::solver::FitProgress;
 use impact_identification::identify::{Identification, Provenance, identify_campaign};
-use labfiles::output::write_bytes;
+use labfiles_write::output::write_bytes;
 
 /// Name of the result's file.
 pub const FILE: &str = "identification.json";
-/// Name of the table of the joint estimate's uncertainty budget.
-pub const BUDGET: &str = "uncertainty_budget.csv";
 
 /// An identification with its provenance: identification.json.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -91,7 +89,7 @@ pub fn versions() -> BTreeMap<String, String> {
 pub fn write(identification: &IdentificationFile, out: &Path) -> Result<(), PipelineError> {
     let budget = &identification.identification.uncertainty.budget;
     if !budget.rows.is_empty() {
-        write_bytes(&out.join(BUDGET), budget.table().as_bytes())?;
+        write_bytes(&out.join(budget::FILE), budget::csv(budget).as_bytes())?;
     }
     write_json(&out.join(FILE), identification)
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::error::PipelineError;
-use labfiles::output::write_bytes;
+use labfiles_write::output::write_bytes;
 
 pub(super) fn store_error(path: &Path, reason: impl std::fmt::Display) -> PipelineError {
     PipelineError::Store {

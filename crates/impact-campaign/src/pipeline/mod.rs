@@ -4,6 +4,7 @@
 //! use [`store`].
 
 pub mod block_cache;
+pub mod budget;
 pub mod campaign_folders;
 pub mod campaigns;
 pub mod checkpoint;

@@ -12,7 +12,7 @@ use impact_records::motion::{Observation, observe};
 use impact_records::record::calibrate::{calibrate, unreadable};
 use impact_records::record::{Flag, Problem, Record};
 use labfiles::Source;
-use labfiles::output::OutputError;
+use labfiles_write::output::OutputError;
 
 /// Most records of a campaign whose folded waveforms are kept. Of more records those of every
 /// second, third … are kept, so that memory does not grow with them: thousands of waveforms
@@ -72,7 +72,7 @@ fn observe_some(
 /// Observe one record that was read.
 pub(super) fn observe_record(campaign: &ResolvedCampaign, record: &Record) -> Observation {
     let (detect, settings) = (campaign.detect_settings(), campaign.classify_settings());
-    observe(record, campaign.machine, &detect, &settings)
+    observe(record, campaign.about.machine, &detect, &settings)
 }
 
 /// Whether the folded waveform of a record is kept.

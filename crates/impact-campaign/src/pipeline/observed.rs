@@ -13,7 +13,7 @@ use impact_fit::methods::resonance::late_drive::late_drive;
 use impact_records::motion::{
     Bracket, LateChannel, Observation, brackets, inverted_channels, late_channels, scale_drives,
 };
-use labfiles::output::OutputError;
+use labfiles_write::output::OutputError;
 
 /// All records as observed.
 #[derive(Debug, Clone)]

@@ -12,7 +12,7 @@ use impact_identification::identify::plan::{Obstacle, Proposal, propose};
 use impact_records::message::plain;
 use impact_records::motion::Motion;
 use impact_report::kit::csv::Csv;
-use labfiles::output::write_together;
+use labfiles_write::output::write_together;
 
 /// What is written as plan.json.
 #[derive(Debug, Clone, Serialize)]

@@ -33,7 +33,7 @@ pub fn run(
     let content = ReportContent {
         title: campaign.report.title.clone(),
         campaign: CampaignFacts {
-            name: campaign.name.clone(),
+            name: campaign.about.name.clone(),
             subject: Subject::PublishedSpeeds,
             ..CampaignFacts::default()
         },

@@ -18,7 +18,7 @@ use impact_report::{
     CampaignFacts, Format, LivePage, Logo, NominalValue, Report, ReportContent, ReportOptions,
     Subject,
 };
-use labfiles::output::write_together;
+use labfiles_write::output::write_together;
 
 /// Name of the report's file.
 pub const FILE: &str = "report.pdf";
@@ -128,7 +128,7 @@ pub fn content(
         Some(read_one(&aligned, entry))
     };
     let compared = replay::replay(&Input {
-        rig: campaign.machine,
+        rig: campaign.about.machine,
         observations: &observed.observations,
         brackets: &observed.brackets,
         identification: &found.identification,
@@ -203,19 +203,19 @@ fn options(stated: &StatedOptions) -> Result<ReportOptions, PipelineError> {
 fn facts(campaign: &ResolvedCampaign) -> CampaignFacts {
     let files: BTreeSet<_> = campaign.records.iter().map(|r| &r.file).collect();
     CampaignFacts {
-        name: campaign.name.clone(),
-        subject: match campaign.machine {
+        name: campaign.about.name.clone(),
+        subject: match campaign.about.machine {
             RigKind::Double => Subject::TwoMasses,
             RigKind::Single => Subject::OneMass,
         },
-        laboratory: campaign.laboratory.clone(),
+        stated: campaign.about.stated(),
         dates: dates(campaign),
         files: files.len(),
         rig: campaign.rig.name.clone(),
         shared: campaign.rig.shared.clone(),
         nominal: nominal(campaign),
         channels: campaign.channels.clone(),
-        synthetic: campaign.synthetic,
+        synthetic: campaign.about.synthetic,
     }
 }
 
@@ -243,7 +243,7 @@ fn nominal(campaign: &ResolvedCampaign) -> Vec<NominalValue> {
 /// When it was measured: as stated in campaign.toml, else the days of the first and the last record,
 /// if their files state them.
 fn dates(campaign: &ResolvedCampaign) -> Option<[String; 2]> {
-    if let Some(words) = &campaign.measured {
+    if let Some(words) = &campaign.about.measured {
         return Some([words.clone(), words.clone()]);
     }
     let ends = [campaign.records.first(), campaign.records.last()];

@@ -13,8 +13,8 @@ use impact_identification::identify::residuals::MethodResiduals;
 use impact_records::motion::{Folded, Observation, brackets};
 use impact_records::record::calibrate::{ChannelKey, ChannelSetup, TIMES_CONTACT, TIMES_ERROR};
 use impact_records::record::{ContactContent, Flag, Record, Role};
-use labfiles::hdf5_write::{AttributeValue, CampaignWriter, ColumnToWrite, RecordTable};
 use labfiles::units::{Dimension, Quantity, Unit};
+use labfiles_write::hdf5::{AttributeValue, CampaignWriter, ColumnToWrite, RecordTable};
 
 const INGESTED: &str = "ingested.h5";
 const INGESTED_CAMPAIGN: &str = "ingested.json";

@@ -11,7 +11,7 @@ use super::{Completed, PipelineError};
 use impact_fit::parameters::Coordinate;
 use impact_fit::{Estimate, ParameterSet, VerdictKind};
 use impact_report::kit::csv::Csv;
-use labfiles::output::write_bytes;
+use labfiles_write::output::write_bytes;
 
 /// Name of the summary as a table.
 pub const CSV: &str = "summary.csv";

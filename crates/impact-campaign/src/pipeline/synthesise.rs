@@ -8,8 +8,9 @@ use serde::Serialize;
 use crate::pipeline::PipelineError;
 use crate::pipeline::json::write_json;
 use crate::pipeline::store::RECORDS_A_FILE;
-use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Stored};
-use labfiles::output::write_bytes;
+use impact_report::kit::csv::Csv;
+use labfiles_write::hdf5::{CampaignWriter, ColumnToWrite, RecordTable, Stored};
+use labfiles_write::output::write_bytes;
 use simulated_rig::acquisition::{FULL_SCALE_V, converter_step};
 use simulated_rig::rig::{ROLES, sensitivities};
 use simulated_rig::run::RATE_HZ;
@@ -117,7 +118,7 @@ pub fn write_campaign(recipe: &Recipe, out: &Path) -> Result<usize, PipelineErro
         rig_seed,
         seed: recipe.seed,
     };
-    labfiles::output::make_folder(out)?;
+    labfiles_write::output::make_folder(out)?;
     let keep = |raw| kept(raw, &recipe.faults);
     let files: Vec<RecordsFile> = if laboratory.plan.steps.len() <= RECORDS_A_FILE {
         let whole = |_: usize, block: Vec<KeptRecord>| Ok::<_, PipelineError>(block);
@@ -227,19 +228,23 @@ fn stored(volts: &[f64], faults: &Faults) -> Stored {
 }
 
 fn run_table(files: &[RecordsFile]) -> String {
-    let mut text = String::from("file,dataset,drive_frequency_hz,clearance_mm,sweep\n");
+    let mut csv = Csv::new(&[
+        "file",
+        "dataset",
+        "drive_frequency_hz",
+        "clearance_mm",
+        "sweep",
+    ]);
     for file in files {
         for r in &file.truths {
             let clearance_mm = (r.clearance_m * 1e6).round() / 1e3;
-            // Writing to a String cannot fail.
-            let _ = writeln!(
-                text,
-                "{},{},{},{clearance_mm},{}",
-                file.name, r.record, r.frequency_hz, r.sweep
-            );
+            csv.row()
+                .texts(&[&file.name, &r.record])
+                .exact(&[Some(r.frequency_hz), Some(clearance_mm)])
+                .texts(&[r.sweep]);
         }
     }
-    text
+    csv.finish()
 }
 
 fn truth_file<'a>(

@@ -8,7 +8,7 @@ use crate::pipeline::{Observed, PipelineError};
 use impact_records::event::{Impact, MassSpeeds};
 use impact_records::motion::{Bracket, Motion, Observation};
 use impact_records::record::Role;
-use labfiles::output::write_together;
+use labfiles_write::output::write_together;
 
 fn amplitude(o: &Observation, role: Role) -> Option<f64> {
     o.amplitudes

@@ -25,10 +25,9 @@ pub(super) fn facts(content: &ReportContent, locale: Locale<'_>) -> Vec<(Rich, R
     add(Phrase::Rig, rig.join(", "));
     let shared: Vec<&str> = campaign.shared.iter().map(|c| c.name()).collect();
     add(Phrase::ErrorsOfTheRig, shared.join(", "));
-    add(
-        Phrase::Laboratory,
-        campaign.laboratory.clone().unwrap_or_default(),
-    );
+    for (label, words) in &campaign.stated {
+        add(*label, words.clone());
+    }
     add(Phrase::Measured, dates(campaign, locale));
     add(Phrase::ReportOf, content.date.clone().unwrap_or_default());
     add(Phrase::Records, records(overview, campaign.files, locale));

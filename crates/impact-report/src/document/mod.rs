@@ -20,12 +20,15 @@ pub(super) use campaigns::campaigns;
 pub(super) use pdf::pdf;
 pub use tables::budget_source;
 
+use std::iter;
+
 use drawn::Drawn;
 use model::{Document, Rich};
 
 use crate::content::ReportContent;
 use crate::kit::Figure;
 use crate::locale::Locale;
+use crate::phrase::Phrase;
 
 /// Builds the document's data.
 pub(super) fn document(
@@ -48,14 +51,11 @@ pub(super) fn document(
 fn subtitle(content: &ReportContent, locale: Locale<'_>) -> String {
     let campaign = &content.campaign;
     let dates = facts::dates(campaign, locale);
-    let parts = [
-        Some(campaign.name.clone()),
-        campaign.laboratory.clone(),
-        Some(dates),
-    ];
-    let parts: Vec<String> = parts
-        .into_iter()
-        .flatten()
+    let stated = campaign.stated.iter();
+    let laboratory = stated.filter(|(label, _)| *label == Phrase::Laboratory);
+    let parts: Vec<String> = iter::once(campaign.name.clone())
+        .chain(laboratory.map(|(_, words)| words.clone()))
+        .chain([dates])
         .filter(|p| !p.is_empty() && *p != content.title)
         .collect();
     parts.join(" · ")

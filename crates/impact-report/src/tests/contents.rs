@@ -71,7 +71,7 @@ fn whole() -> ReportContent {
         ..ChannelSetup::plain(role, ChannelKey::Name(role.name().to_owned()))
     };
     content.campaign = CampaignFacts {
-        laboratory: Some("Laboratory of Impact Dynamics".into()),
+        stated: vec![(Phrase::Laboratory, "Laboratory of Impact Dynamics".into())],
         dates: Some(["2024-06-11".into(), "2024-06-13".into()]),
         nominal: vec![
             NominalValue {

@@ -115,7 +115,7 @@ impl OpenCampaign {
     /// Call a function of the comparison.
     pub(super) fn with_input<T>(&self, of: impl FnOnce(&Input<'_>) -> T) -> T {
         of(&Input {
-            rig: self.resolved.machine,
+            rig: self.resolved.about.machine,
             observations: &self.observed.observations,
             brackets: &self.observed.brackets,
             identification: &self.identification,
@@ -222,7 +222,7 @@ impl OpenCampaign {
         State {
             restitution: RestitutionLaw::Constant(restitution.unwrap_or(0.9).clamp(0.0, 1.0)),
             damping_ratio: damping.unwrap_or(0.05).clamp(0.0, 0.9),
-            single: self.resolved.machine == RigKind::Single,
+            single: self.resolved.about.machine == RigKind::Single,
             cursor: self.first_cursor(scale, view),
             view,
             panel: Panel::Motion,
@@ -328,9 +328,9 @@ impl OpenCampaign {
         });
         let sentences = &self.identification.verdict.sentences;
         json!({
-            "name": self.resolved.name,
-            "synthetic": self.resolved.synthetic,
-            "single": self.resolved.machine == RigKind::Single,
+            "name": self.resolved.about.name,
+            "synthetic": self.resolved.about.synthetic,
+            "single": self.resolved.about.machine == RigKind::Single,
             "verdict": sentences.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "fit": self.identification.joint_fit.as_ref().map(|j| fitted(&j.fit.parameters)),
             "intervals": self.identification.joint.parameters,

@@ -185,7 +185,7 @@ pub(super) fn residuals(campaign: &OpenCampaign, state: &State, job: &Job) -> Re
             "without": found.without,
         }));
     }
-    let rig = campaign.resolved.machine;
+    let rig = campaign.resolved.about.machine;
     let predicted = campaign.observed.brackets.iter().map(|b| {
         let closed_form = b.kind != BoundaryKind::Other;
         let boundary_hz = closed_form.then(|| predicted_hz(b, &at, rig)).flatten();

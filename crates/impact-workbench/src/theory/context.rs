@@ -5,7 +5,7 @@ use impact_campaign::pipeline::block_cache::BlockCache;
 use impact_campaign::pipeline::table::Table;
 use impact_report::kit::Figure;
 use impact_report::picture::pictures;
-use labfiles::output::OutputError;
+use labfiles_write::output::OutputError;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::ops::Range;

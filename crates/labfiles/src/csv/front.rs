@@ -1,5 +1,6 @@
 //! The lines before a text table, and the beginning of the table.
 
+use crate::conventions::TEXTS_KEY;
 use crate::csv::columns::{self, HeadRows};
 use crate::csv::dialect::{self, Dialect};
 use crate::csv::header::{self, Header};
@@ -7,9 +8,6 @@ use crate::source::ReadError;
 use crate::text::TextFile;
 use crate::text::cells::{Lines, Separator, is_row};
 use crate::text::table::{Kind, Layout};
-
-/// The remark that numbers the columns of texts, in what this program writes.
-pub(crate) const TEXTS_KEY: &str = "impactid_texts";
 
 /// The lines before the table, and the beginning of the table.
 pub(super) struct Front {

@@ -373,7 +373,7 @@ fn unwrapped(text: &str) -> &str {
 /// A heading such as `velocity_x [mm/s]`, `Position (m) Run 1`, `x / mm`, `Zeit in s` or `Load, lbf` as name and unit.
 ///
 /// Empty brackets at its end state that there is no unit: `mass (kg) []`.
-pub(crate) fn name_and_unit(heading: &str) -> (String, Option<String>) {
+pub fn name_and_unit(heading: &str) -> (String, Option<String>) {
     let heading = heading.trim();
     if let Some(name) = heading.strip_suffix("[]") {
         return (name.trim_end().to_owned(), None);

@@ -5,9 +5,8 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use super::header::{Freedom, Header};
 use super::samples::{self, Side};
 use super::sets::{Function, Sets};
-use super::span::Span;
 use crate::bytes::FileBytes;
-use crate::clocks::STARTS_KEY;
+use crate::conventions::{STARTS_KEY, Span};
 use crate::source::{ChannelInfo, Clock, DatasetInfo, StoredType};
 
 /// The datasets of a file and the origins of their channels.
@@ -122,7 +121,7 @@ fn record_names(sets: &Sets, groups: &[Vec<usize>]) -> Vec<String> {
     }
 }
 
-/// The second lines as names, where they are names as [`crate::convert`] writes them: one for all functions
+/// The second lines as names, where they are names as `labfiles-write` writes them: one for all functions
 /// of a record and no other, beside the record's number as load case.
 fn stated_names(sets: &Sets, groups: &[Vec<usize>]) -> Option<Vec<String>> {
     let mut seen = HashSet::new();

@@ -4,10 +4,10 @@
 //!
 //! - Every function is a channel. Functions that follow each other with the same abscissa (an
 //!   uneven one is compared value by value), or at even times of which they have half in common, form
-//!   one dataset, and so do those of [`crate::convert`] whose lines state the starts of a record's
+//!   one dataset, and so do those of `labfiles-write` whose lines state the starts of a record's
 //!   channels; a channel that comes again with the same names, or at another time (third line) or load
 //!   case, begins the next. A file of one record has a dataset without a name, else datasets are
-//!   numbered from 1, but for those of [`crate::convert`], which are named by their second lines.
+//!   numbered from 1, but for those of `labfiles-write`, which are named by their second lines.
 //! - A channel is named by the response's entity name, else node and direction (`3:+Z`), else the
 //!   first line, else the ordinate's label: the first of these that distinguishes the channels of the
 //!   dataset apart. All header fields are properties.
@@ -24,7 +24,6 @@ mod ascii;
 mod header;
 mod samples;
 mod sets;
-mod span;
 #[cfg(test)]
 mod tests;
 
@@ -32,7 +31,6 @@ use std::path::Path;
 
 use samples::Side;
 use sets::Sets;
-pub(crate) use span::Span;
 
 use super::bytes::FileBytes;
 use super::source::{ReadError, Reader, Samples, Source, opened};

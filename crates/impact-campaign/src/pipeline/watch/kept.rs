@@ -153,18 +153,13 @@ fn fingerprint(record: &Record) -> [u8; 32] {
 /// Everything of a campaign but its records that observations depend on, or may depend on.
 fn settings(campaign: &ResolvedCampaign) -> String {
     let ResolvedCampaign {
-        machine,
-        flight,
+        about,
         rig,
         channels,
         time,
         time_unit_s,
         sample_rate_hz,
         analysis,
-        name: _,
-        synthetic: _,
-        laboratory: _,
-        measured: _,
         file: _,
         run_table: _,
         records: _,
@@ -172,7 +167,8 @@ fn settings(campaign: &ResolvedCampaign) -> String {
         published: _,
         sources: _,
     } = campaign;
+    let about = about.observed();
     format!(
-        "{machine:?} {flight:?} {rig:?} {channels:?} {time:?} {time_unit_s:?} {sample_rate_hz:?} {analysis:?}"
+        "{about:?} {rig:?} {channels:?} {time:?} {time_unit_s:?} {sample_rate_hz:?} {analysis:?}"
     )
 }

@@ -12,7 +12,7 @@ use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs, report};
 use impact_identification::identify::plan::{Proposal, propose};
 use impact_report::LivePage;
-use labfiles::output::write_bytes;
+use labfiles_write::output::write_bytes;
 
 /// The records taken so far with their fit.
 #[derive(Debug, Clone)]

@@ -16,8 +16,9 @@ use impact_fit::solver::Problem;
 use impact_fit::statistics::quantile::NORMAL_975;
 
 /// Where an uncertainty comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case", tag = "kind")]
+#[strum(serialize_all = "snake_case")]
 pub enum UncertaintySource {
     /// Noise of what a method measures.
     Noise {
@@ -302,64 +303,4 @@ fn contributions(
         }
     });
     each.collect()
-}
-
-impl Budget {
-    /// As CSV: a line for each source and parameter, then one for each parameter's sum.
-    pub fn table(&self) -> String {
-        let mut text = String::from(
-            "source,item,type,standard_uncertainty,degrees_of_freedom,parameter,sensitivity,\
-             contribution,coverage_factor,expanded_uncertainty\n",
-        );
-        let number = |v: Option<f64>| v.map(|v| format!("{v:.6e}")).unwrap_or_default();
-        for row in &self.rows {
-            let (source, item) = match row.source {
-                UncertaintySource::Noise { method } => ("noise", method.name().to_owned()),
-                UncertaintySource::BetweenGroups { groups } => {
-                    ("between_groups", groups.to_string())
-                }
-                UncertaintySource::FirstOrder => ("first_order", String::new()),
-                UncertaintySource::SharedGains => ("shared_gains", String::new()),
-                UncertaintySource::RestitutionOverSpeed => {
-                    ("restitution_over_speed", String::new())
-                }
-                UncertaintySource::BetweenMethods => ("between_methods", String::new()),
-                UncertaintySource::Clock => ("clock", String::new()),
-                UncertaintySource::InstrumentOff => ("instrument_off", String::new()),
-                UncertaintySource::Stated {
-                    coordinate,
-                    clearance_m: Some(m),
-                } => (
-                    "stated",
-                    format!("{} at {:.6} mm", coordinate.name(), 1e3 * m),
-                ),
-                UncertaintySource::Stated { coordinate, .. } => {
-                    ("stated", coordinate.name().to_owned())
-                }
-            };
-            for c in &row.contributions {
-                text += &format!(
-                    "{source},{item},{:?},{},{},{},{},{:.6e},,\n",
-                    row.evaluation,
-                    number(row.standard_uncertainty),
-                    number(row.degrees_of_freedom),
-                    c.parameter.name(),
-                    number(c.sensitivity),
-                    c.uncertainty,
-                );
-            }
-        }
-        for c in &self.combined {
-            text += &format!(
-                "combined,,,{:.6e},{},{},,{:.6e},{:.6},{:.6e}\n",
-                c.standard_uncertainty,
-                number(c.degrees_of_freedom),
-                c.parameter.name(),
-                c.standard_uncertainty,
-                c.coverage_factor,
-                c.expanded_uncertainty,
-            );
-        }
-        text
-    }
 }

@@ -1,7 +1,7 @@
 //! Records of any format to HDF5, Parquet, CSV or universal files, self-describing.
 //!
 //! ```
-//! use labfiles::convert::{Options, Target, convert};
+//! use labfiles_write::convert::{Options, Target, convert};
 //! # let folder = tempfile::tempdir()?;
 //! # let path = folder.path().join("run.csv");
 //! # std::fs::write(&path, "t [s],x [mm]\n0,1\n0.5,2\n1,3\n")?;
@@ -25,16 +25,16 @@ mod uff;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crate::clocks;
 use crate::convert::item::{Item, grouped, once};
-use crate::source::{ReadError, Source, StoredType};
+use labfiles::conventions;
+use labfiles::{ReadError, Source, StoredType};
 
 pub use crate::convert::item::{ConvertError, Options};
 
 /// What to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
-    /// One HDF5 file in the layout of [`crate::hdf5_write`].
+    /// One HDF5 file in the layout of [`crate::hdf5`].
     Hdf5,
     /// One Parquet file: wide for one record, long by record for several.
     Parquet,
@@ -50,7 +50,7 @@ impl Target {
     /// The target of a path's extension.
     ///
     /// ```
-    /// use labfiles::convert::Target;
+    /// use labfiles_write::convert::Target;
     /// assert_eq!(Target::of("all.H5".as_ref()), Some(Target::Hdf5));
     /// assert_eq!(Target::of("all.xlsx".as_ref()), None);
     /// ```
@@ -198,7 +198,7 @@ fn items<'a>(sources: &'a [Box<dyn Source>], options: &Options) -> Vec<Item<'a>>
                 dataset,
                 attributes,
             };
-            let clocks = clocks::attributes(&item.names(), &info.channels);
+            let clocks = conventions::attributes_of_clocks(&item.names(), &info.channels);
             item.attributes.extend(clocks);
             items.push(item);
         }

@@ -2,11 +2,11 @@
 //!
 //! Each record is a two-dimensional dataset samples × channels with the attributes `channels`,
 //! `units`, `sample_rate_hz` and those of the record. Tables of converter counts are stored as
-//! 16-bit integers with `scale` and `offset`: value = count · scale + offset. [`crate::open`] reads
+//! 16-bit integers with `scale` and `offset`: value = count · scale + offset. [`labfiles::open`] reads
 //! the layout back, as h5py and MATLAB do.
 //!
 //! ```
-//! use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
+//! use labfiles_write::hdf5::{CampaignWriter, ColumnToWrite, RecordTable};
 //! let folder = tempfile::tempdir()?;
 //! let path = folder.path().join("campaign.h5");
 //! let mut writer = CampaignWriter::create(&path);
@@ -37,11 +37,11 @@ use std::path::{Path, PathBuf};
 
 use ::hdf5::{AttrValue, FileBuilder};
 
-use crate::hdf5_write::record::Folder;
+use crate::hdf5::record::Folder;
 use crate::output::write_whole_or;
-use crate::system::said;
+use labfiles::said;
 
-pub use crate::hdf5_write::record::{AttributeValue, ColumnToWrite, RecordTable, Stored};
+pub use crate::hdf5::record::{AttributeValue, ColumnToWrite, RecordTable, Stored};
 
 /// Version of the layout, written as `impactid_layout` into the file.
 const LAYOUT_VERSION: i64 = 1;
@@ -206,8 +206,7 @@ impl CampaignWriter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hdf5;
-    use crate::source::Samples;
+    use labfiles::Samples;
 
     fn counts(name: &str, counts: Vec<i16>) -> ColumnToWrite {
         let samples = Stored::Counts {
@@ -263,7 +262,7 @@ mod tests {
         assert!(writer.add(record("a//b", vec![numbers("x")])).is_err());
         assert!(!path.exists());
         writer.finish().unwrap();
-        let source = hdf5::open(&path).unwrap();
+        let source = labfiles::open(&path).unwrap();
         let names: Vec<&str> = source.datasets().iter().map(|d| d.name.as_str()).collect();
         assert_eq!(names, ["run2", "run3", "up/run1"]);
         for info in source.datasets() {

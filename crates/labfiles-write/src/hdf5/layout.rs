@@ -4,8 +4,8 @@ use std::convert::identity;
 
 use ::hdf5::{AttrValue, DatasetBuilder, FinishedGroup, GroupBuilder};
 
-use crate::hdf5_write::record::{AttributeValue, ColumnToWrite, Folder, RecordTable, Stored};
-use crate::numbers::to_f32;
+use crate::hdf5::record::{AttributeValue, ColumnToWrite, Folder, RecordTable, Stored};
+use crate::to_f32;
 
 /// Rows of a chunk.
 const CHUNK_ROWS: u64 = 4096;

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use crate::convert::file_names;
 use crate::convert::item::{Column, ConvertError, Item, io};
-use crate::csv::TEXTS_KEY;
 use crate::output::{write_folder_whole_or, write_whole_or};
-use crate::source::Samples;
+use labfiles::Samples;
+use labfiles::conventions::TEXTS_KEY;
 
 /// Write one record to a file, or several to the files of a folder.
 pub(super) fn write(items: &[Item<'_>], out: &Path) -> Result<(), ConvertError> {

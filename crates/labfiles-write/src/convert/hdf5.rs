@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::convert::item::{Column, ConvertError, Item, Options};
-use crate::hdf5_write::{AttributeValue, CampaignWriter, ColumnToWrite, RecordTable};
+use crate::hdf5::{AttributeValue, CampaignWriter, ColumnToWrite, RecordTable};
 
 /// Write all records; texts are left out, complex numbers become two channels.
 pub(super) fn write(items: &[Item<'_>], out: &Path, options: &Options) -> Result<(), ConvertError> {

@@ -1,9 +1,9 @@
 //! When the samples of a record's channels were taken, as universal files state it: by start and step.
 
 use crate::convert::item::{ConvertError, Item};
-use crate::rate;
-use crate::source::{Clock, DatasetInfo, ReadError, Samples};
-use crate::timing::AxisUnit;
+use labfiles::rate;
+use labfiles::timing::AxisUnit;
+use labfiles::{Clock, DatasetInfo, ReadError, Samples};
 
 /// Even times.
 #[derive(Debug, Clone, Copy, PartialEq)]

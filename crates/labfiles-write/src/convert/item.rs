@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use crate::attribute;
-use crate::csv::TEXTS_KEY;
-use crate::csv::header::name_and_unit;
-use crate::hdf5_write::WriteError;
-use crate::source::{ChannelInfo, ReadError, Samples, Source, StoredType};
+use crate::hdf5::WriteError;
+use labfiles::attribute;
+use labfiles::conventions::{RECORDS_KEY, TEXTS_KEY};
+use labfiles::name_and_unit;
+use labfiles::{ChannelInfo, ReadError, Samples, Source, StoredType};
 
 /// Why records could not be converted.
 #[derive(Debug, thiserror::Error)]
@@ -138,7 +138,7 @@ impl Item<'_> {
             "names",
             "columns",
             "start_time",
-            crate::parquet::RECORDS_KEY,
+            RECORDS_KEY,
             TEXTS_KEY,
         ];
         self.attributes

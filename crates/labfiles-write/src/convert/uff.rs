@@ -12,14 +12,14 @@ use std::path::Path;
 
 use chrono::{Datelike, NaiveDateTime};
 
-use crate::clocks;
 use crate::convert::even::{self, Even};
 use crate::convert::item::{ConvertError, Item, Options, grouped, io};
-use crate::numbers::to_f32;
 use crate::output::write_whole_or;
-use crate::source::{ChannelInfo, Clock, Samples};
-use crate::uff::Span;
-use crate::units::{Dimension, parse_unit};
+use crate::to_f32;
+use labfiles::conventions;
+use labfiles::conventions::Span;
+use labfiles::units::{Dimension, parse_unit};
+use labfiles::{ChannelInfo, Clock, Samples};
 
 /// Columns of a line of identification.
 const LINE: usize = 80;
@@ -128,7 +128,7 @@ impl Record<'_> {
         let stated = self
             .attributes()
             .iter()
-            .any(|l| l.contains(clocks::STARTS_KEY));
+            .any(|l| l.contains(conventions::STARTS_KEY));
         for (channel, (times, samples)) in timed {
             let Some(times) = times else { continue };
             let kept = fitted(times.start_s, NARROW).trim().parse::<f64>();
@@ -290,13 +290,14 @@ impl Record<'_> {
         };
         let channels = self.item.channels().iter().zip(&self.times);
         let channels: Vec<ChannelInfo> = channels.map(written).collect();
-        clocks::attributes(&self.item.names(), &channels)
+        conventions::attributes_of_clocks(&self.item.names(), &channels)
     }
 
     /// The record's attributes in two lines, as far as they go in.
     fn attributes(&self) -> [String; 2] {
         let mut lines = [String::new(), String::new()];
-        let of_clocks = |name: &str| [clocks::STARTS_KEY, clocks::CLOCKS_KEY].contains(&name);
+        let of_clocks =
+            |name: &str| [conventions::STARTS_KEY, conventions::CLOCKS_KEY].contains(&name);
         let others = self.item.described().filter(|(name, _)| !of_clocks(name));
         let others = others.map(|(name, value)| (name.clone(), value.clone()));
         for (name, value) in self.clocks().into_iter().chain(others) {

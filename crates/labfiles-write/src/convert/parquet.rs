@@ -9,11 +9,11 @@ use polars::prelude::{Column, DataFrame, DataType, Schema};
 use polars_io::parquet::write::{KeyValueMetadata, ParquetCompression, ParquetWriter};
 
 use crate::convert::item::{ConvertError, Item, Options, heading, io};
-use crate::hdf5_write::WriteError;
-use crate::numbers::to_f32;
+use crate::hdf5::WriteError;
 use crate::output::write_whole_or;
-use crate::parquet::RECORDS_KEY;
-use crate::source::{Samples, StoredType};
+use crate::to_f32;
+use labfiles::conventions::RECORDS_KEY;
+use labfiles::{Samples, StoredType};
 
 /// Write all records; with several there is a column `record`, and channels that a record lacks
 /// are empty.

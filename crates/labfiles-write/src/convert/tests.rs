@@ -1,9 +1,22 @@
 use super::*;
-use crate::conformance::{named as samples, own};
-use crate::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
-use crate::open::open;
-use crate::source::{ChannelInfo, Clock, DatasetInfo, Samples};
+use crate::hdf5::{CampaignWriter, ColumnToWrite, RecordTable};
+use labfiles::open;
+use labfiles::{ChannelInfo, Clock, DatasetInfo, Samples};
 use std::collections::BTreeMap;
+
+/// The files of the readers' tests.
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../labfiles/tests/data");
+
+fn own(name: &str) -> PathBuf {
+    Path::new(DATA).join("formats").join(name)
+}
+
+/// The samples of a channel by its name.
+#[track_caller]
+fn samples(source: &dyn Source, dataset: usize, name: &str) -> Samples {
+    let channel = source.datasets()[dataset].channel_index(name).unwrap();
+    source.read(dataset, &[channel]).unwrap().remove(0)
+}
 
 fn same(a: &DatasetInfo, b: &DatasetInfo) {
     assert_eq!(
@@ -545,7 +558,7 @@ fn universal_files_keep_every_bit_in_binary_and_thirteen_digits_as_text() {
 fn valid_universal_files_are_those_that_pyuff_has_read() {
     let dir = tempfile::tempdir().unwrap();
     let sources = bits(dir.path());
-    let goldens = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/goldens");
+    let goldens = Path::new(DATA).join("goldens");
     for (target, name) in [
         (Target::Uff, "written_binary.uff"),
         (Target::UffText, "written_text.uff"),
@@ -626,4 +639,47 @@ fn a_rate_that_the_columns_do_not_hold_is_named_once() {
     assert!(one.starts_with("record 'd': "), "{one}");
     let rate = open(&out).unwrap().datasets()[0].sample_rate_hz().unwrap();
     assert!((rate / 44_100.0 - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn channels_of_a_tidy_table_may_have_times_of_their_own() {
+    let dir = tempfile::tempdir().unwrap();
+    let table = dir.path().join("tidy.csv");
+    let row = |channel: &str, i: u32, start: f64, step: f64| {
+        format!("{channel},{:.4},{i}\n", start + f64::from(i) * step)
+    };
+    let mut text = String::from("channel,time [s],value\n");
+    for (channel, start, step) in [("x", 0.0, 1e-3), ("y", 0.0, 1e-3), ("slow", 0.3, 2e-3)] {
+        text += &(0..30)
+            .map(|i| row(channel, i, start, step))
+            .collect::<String>();
+    }
+    std::fs::write(&table, text).unwrap();
+    let out = dir.path().join("tidy.parquet");
+    let sources = [open(&table).unwrap()];
+    convert(
+        &sources,
+        Target::of(&out).unwrap(),
+        &out,
+        &Options::default(),
+    )
+    .unwrap();
+    let source = open(&out).unwrap();
+    let channels = &source.datasets()[0].channels;
+    let clocks: Vec<(&str, Clock)> = channels
+        .iter()
+        .map(|c| (c.name.as_str(), c.clock))
+        .collect();
+    assert_eq!(
+        clocks,
+        [
+            ("time", Clock::Shared),
+            ("x", Clock::Shared),
+            ("y", Clock::Shared),
+            ("slow", Clock::Axis(4)),
+            ("time of slow", Clock::Shared),
+        ]
+    );
+    let times = source.read(0, &[4]).unwrap().remove(0).into_real().unwrap();
+    assert_eq!((times[0], times[1]), (0.3, 0.302));
 }

@@ -1,16 +1,21 @@
-//! How files that this crate writes keep the clocks of channels: as attributes of the record.
+//! What files that `labfiles-write` writes state beyond their formats, so that records come back as they were: reader and
+//! writer agree on it here.
 
 use std::collections::BTreeMap;
 
 use crate::channel::{ChannelInfo, Clock};
 
+/// The remark of a text table that numbers its columns of texts.
+pub const TEXTS_KEY: &str = "impactid_texts";
+/// The key under which the footer of a Parquet file keeps each record's attributes, as JSON.
+pub const RECORDS_KEY: &str = "impactid_records";
 /// When channels begin, s, as `contact=0.3|x=0`.
-pub(crate) const STARTS_KEY: &str = "channel_starts_s";
+pub const STARTS_KEY: &str = "channel_starts_s";
 /// The time axes and rates of channels that have their own, as `slow=axis:X_Value 2|gauge=rate:500`.
-pub(crate) const CLOCKS_KEY: &str = "channel_clocks";
+pub const CLOCKS_KEY: &str = "channel_clocks";
 
 /// The attributes that keep the clocks of channels under their names in the output; none where they are all alike.
-pub(crate) fn attributes(names: &[String], channels: &[ChannelInfo]) -> Vec<(String, String)> {
+pub fn attributes_of_clocks(names: &[String], channels: &[ChannelInfo]) -> Vec<(String, String)> {
     let named = || names.iter().zip(channels);
     let mut starts = named()
         .filter_map(|(name, c)| Some((name, c.start_s?)))
@@ -36,7 +41,7 @@ pub(crate) fn attributes(names: &[String], channels: &[ChannelInfo]) -> Vec<(Str
 }
 
 /// Give channels the clocks that the attributes keep.
-pub(crate) fn apply(channels: &mut [ChannelInfo], attributes: &BTreeMap<String, String>) {
+pub(crate) fn apply_clocks(channels: &mut [ChannelInfo], attributes: &BTreeMap<String, String>) {
     let pairs = |key: &str| {
         let text = attributes.get(key).map_or("", String::as_str);
         text.split('|')
@@ -65,5 +70,24 @@ pub(crate) fn apply(channels: &mut [ChannelInfo], attributes: &BTreeMap<String, 
             channels[channel].clock = Clock::Rate;
             channels[channel].sample_rate_hz = Some(rate);
         }
+    }
+}
+
+/// The time that a function of a universal file covers: functions at one time are channels of one record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// Of its first sample, s.
+    pub start_s: f64,
+    /// From it to the end, s.
+    pub length_s: f64,
+}
+
+impl Span {
+    /// Whether two have half of the time of the shorter in common: they then belong to one record, even where one
+    /// begins later or has another rate.
+    pub fn overlaps(self, other: Self) -> bool {
+        let end = |span: Self| span.start_s + span.length_s;
+        let common = end(self).min(end(other)) - self.start_s.max(other.start_s);
+        common >= 0.5 * self.length_s.min(other.length_s) && common > 0.0
     }
 }

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use crate::system::said;
+use labfiles::said;
 
 /// Name of the lock in an output folder.
 const LOCK_NAME: &str = ".impactid.lock";
@@ -157,7 +157,7 @@ fn sync_folder(folder: &Path) -> io::Result<()> {
 ///
 /// ```
 /// use std::io::{Error, Write};
-/// use labfiles::output::write_whole;
+/// use labfiles_write::output::write_whole;
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("result.txt");
 /// write_whole(&path, |file| writeln!(file, "R = 0.9"))?;
@@ -243,7 +243,7 @@ impl Drop for PartFolder {
 /// ```
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("a.bin");
-/// labfiles::output::write_bytes(&path, b"abc")?;
+/// labfiles_write::output::write_bytes(&path, b"abc")?;
 /// assert_eq!(std::fs::read(&path)?, b"abc");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -258,7 +258,7 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
 /// one cannot be written there, none appears.
 ///
 /// ```
-/// use labfiles::output::write_together;
+/// use labfiles_write::output::write_together;
 /// let folder = tempfile::tempdir()?;
 /// let too_long = "b".repeat(300);
 /// assert!(write_together(folder.path(), &[("a.txt", b"a"), (&too_long, b"b")]).is_err());
@@ -315,7 +315,7 @@ pub fn make_folder(path: &Path) -> Result<(), OutputError> {
 /// Exclusive right to write into a folder, until it is dropped or the process ends.
 ///
 /// ```
-/// use labfiles::output::{Lock, OutputError};
+/// use labfiles_write::output::{Lock, OutputError};
 /// let folder = tempfile::tempdir()?;
 /// let held = Lock::take(folder.path())?;
 /// assert!(matches!(Lock::take(folder.path()), Err(OutputError::Locked { .. })));
