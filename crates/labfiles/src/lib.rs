@@ -1,5 +1,5 @@
-//! Readers of the files that vibration laboratories keep: HDF5, MATLAB (v4 to v7.3),
-//! TDMS, UFF 58, LVM, WAV, Parquet, Excel, CSV and other text tables.
+//! Readers of the files that vibration laboratories keep, from HDF5, MATLAB and TDMS to text tables; each format is a
+//! module of `formats`.
 //!
 //! [`open`] recognises a file by its first bytes and gives a [`Source`]: *datasets* (records), each
 //! a table of *channels* with name, unit, sample rate and attributes. Opening reads metadata only;
@@ -48,32 +48,23 @@ pub mod attribute;
 mod bytes;
 mod channel;
 pub mod conventions;
-mod csv;
-mod excel;
-mod hdf5;
+mod formats;
 mod inflate;
-mod lvm;
-mod mat;
 mod numbers;
-mod open;
-mod parquet;
 mod plain;
 pub mod rate;
 mod source;
 pub mod summary;
 mod system;
-mod tdms;
 mod text;
 pub mod timing;
-mod uff;
 pub mod units;
-mod wav;
 
-pub use csv::header::name_and_unit;
-pub use csv::parts::without_run;
-pub use excel::workbook_tables;
-pub use open::{format_titles, open};
-pub use parquet::guard::is_caught as panic_is_caught;
+pub use formats::csv::header::name_and_unit;
+pub use formats::csv::parts::without_run;
+pub use formats::excel::workbook_tables;
+pub use formats::parquet::guard::is_caught as panic_is_caught;
+pub use formats::{format_titles, open};
 pub use plain::read_text;
 pub use source::{ChannelInfo, Clock, DatasetInfo, ReadError, Samples, Source, StoredType};
 pub use system::said;
