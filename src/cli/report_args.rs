@@ -244,7 +244,8 @@ pub(super) fn refuse_formats(campaigns: &[std::path::PathBuf]) -> Result<(), Fai
 
 /// Print the paths of a campaign's report in a folder.
 pub(super) fn print_report_paths(
-    (campaign, out): (&ResolvedCampaign, &Path),
+    campaign: &ResolvedCampaign,
+    out: &Path,
     speech: &Speech,
     verbosity: Verbosity,
 ) {

@@ -212,7 +212,7 @@ impl Report {
         pipeline::report::write(&report, &folder)?;
         drop(bar);
         let speech = Speech::of(&campaign.report)?;
-        print_report_paths((&campaign, &folder), &speech, verbosity);
+        print_report_paths(&campaign, &folder, &speech, verbosity);
         Ok(Exit::Done)
     }
 }

@@ -1,10 +1,8 @@
 //! What the documents point to is there: the file and the heading of a link, the module or the item
-//! of a path like `model::orbit`, the file of a path; and they list every format and every language.
+//! of a path like `model::orbit`, the file of a path; and they list every format.
 
 use std::fs;
 use std::path::{Path, PathBuf};
-
-use impact_records::language::Language;
 
 use super::sources::{packages, root};
 
@@ -243,18 +241,12 @@ fn every_path_that_the_pages_for_contributors_name_exists() {
 }
 
 #[test]
-fn pages_name_every_format_that_is_read_and_every_language_with_texts() {
+fn pages_name_every_format_that_is_read() {
     let read = |page: &str| fs::read_to_string(root().join(page)).expect("a page");
-    for page in ["README.md", "docs/formats.md", "crates/labfiles/README.md"] {
+    for page in ["docs/formats.md", "crates/labfiles/README.md"] {
         let text = read(page);
         for title in labfiles::format_titles() {
             assert!(text.contains(title), "{title} is not in {page}");
         }
     }
-    let codes: Vec<&str> = Language::all().map(Language::code).collect();
-    let option = format!("`--language {}`", codes.join("|"));
-    assert!(
-        read("README.md").contains(&option),
-        "{option} is not in README.md"
-    );
 }

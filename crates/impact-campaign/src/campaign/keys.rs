@@ -5,6 +5,17 @@
 
 use std::fmt::Write;
 
+use impact_records::language::Language;
+
+/// What stands in a row for the codes of the languages with texts.
+const LANGUAGES: &str = "{languages}";
+
+/// The codes of the languages with texts, each as `printed` gives it.
+fn languages(printed: impl Fn(&str) -> String) -> String {
+    let codes = Language::all().map(|language| printed(language.code()));
+    codes.collect::<Vec<_>>().join(" or ")
+}
+
 /// What is known of a key apart from its value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct KeyRow {
@@ -80,6 +91,7 @@ pub(super) fn init_lines(keys: &[KeyRow], inferred: &[(&str, &str)]) -> String {
         let Some(line) = key.init else { continue };
         let value = inferred.iter().find(|(name, _)| *name == key.name);
         let line = line.replacen("{}", value.map_or("", |(_, value)| value), 1);
+        let line = line.replace(LANGUAGES, &languages(str::to_owned));
         // writing to a String cannot fail
         let _ = writeln!(text, "{line}");
     }
@@ -96,7 +108,8 @@ pub fn markdown(keys: &[KeyRow], heading: &str) -> String {
     for key in keys {
         let name = format!("`{}`", key.name);
         let meaning: Vec<&str> = key.meaning.iter().map(|line| line.trim()).collect();
-        let meaning = meaning.join(" ");
+        let codes = languages(|code| format!("`\"{code}\"`"));
+        let meaning = meaning.join(" ").replace(LANGUAGES, &codes);
         text += &row(&[&name, &meaning, key.default.unwrap_or("none")][..width]);
     }
     text

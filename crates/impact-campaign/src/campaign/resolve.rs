@@ -25,16 +25,16 @@ pub struct LoadOutcome {
 
 /// Read campaign.toml and list its records, opening files by `open`.
 pub fn load(path: &Path, open: Opener<'_>) -> LoadOutcome {
-    load_listed(path, (open, None))
+    load_listed(path, open, None)
 }
 
 /// As [`load`], while records are still arriving: only the files that are taken are listed, none at
 /// all is no fault, and records that campaign.toml names may not be there yet.
 pub fn load_taken(path: &Path, open: Opener<'_>, taken: Taken<'_>) -> LoadOutcome {
-    load_listed(path, (open, Some(taken)))
+    load_listed(path, open, Some(taken))
 }
 
-fn load_listed(path: &Path, files: (Opener<'_>, Option<Taken<'_>>)) -> LoadOutcome {
+fn load_listed(path: &Path, open: Opener<'_>, taken: Option<Taken<'_>>) -> LoadOutcome {
     let mut faults = FaultCollector::new(path);
     let text = read::text(path, &mut faults);
     let text = text.as_deref();
@@ -43,7 +43,7 @@ fn load_listed(path: &Path, files: (Opener<'_>, Option<Taken<'_>>)) -> LoadOutco
         text: Text::new(text.unwrap_or_default()),
         faults,
     };
-    let campaign = written.map(|written| resolve(path, &written, files, &mut context));
+    let campaign = written.map(|written| resolve(path, &written, open, taken, &mut context));
     let blocks = context.faults.blocks();
     let mut diagnostics = context.faults.into_diagnostics();
     diagnostics.sort();
@@ -56,7 +56,8 @@ fn load_listed(path: &Path, files: (Opener<'_>, Option<Taken<'_>>)) -> LoadOutco
 fn resolve(
     path: &Path,
     written: &WrittenCampaign,
-    (open, taken): (Opener<'_>, Option<Taken<'_>>),
+    open: Opener<'_>,
+    taken: Option<Taken<'_>>,
     context: &mut ResolveContext<'_>,
 ) -> ResolvedCampaign {
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -79,7 +80,7 @@ fn resolve(
         None => records::resolve(&written.records, shared, open, context),
     };
     let all = taken.is_none();
-    exclude(&mut records, (&written.analysis.exclude, all), context);
+    exclude(&mut records, &written.analysis.exclude, all, context);
     channels::refuse_long_delays(&channels, &records, &written.channels, context);
     let run_table = value(&written.records.run_table).map(|t| folder.join(t));
     let names: Vec<&str> = records.iter().map(|r| r.id.as_str()).collect();
@@ -94,13 +95,11 @@ fn resolve(
         about,
         run_table,
         rig: rig::resolve(&written.rig, context),
-        time_unit_s: written.records.time_unit_s(context),
-        sample_rate_hz: written.records.sample_rate_hz(context),
+        times: written.records.times(context),
         analysis: analysis::resolve(&written.analysis, context),
         report: report::resolve(&written.report, &around, context),
         file: path.to_path_buf(),
         channels,
-        time,
         records,
         published: written.published.clone(),
         sources,
@@ -109,7 +108,8 @@ fn resolve(
 
 fn exclude(
     records: &mut [RecordEntry],
-    (placed, all): (&Placed<Vec<String>>, bool),
+    placed: &Placed<Vec<String>>,
+    all: bool,
     context: &mut ResolveContext<'_>,
 ) {
     let Some(placed) = placed else { return };

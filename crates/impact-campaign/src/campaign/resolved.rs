@@ -16,7 +16,7 @@ use super::values::{Excitation, Flight};
 use impact_records::event::DetectSettings;
 use impact_records::motion::{ClassifySettings, LateChannel};
 use impact_records::record::Setting;
-use impact_records::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup};
+use impact_records::record::calibrate::{ChannelSetup, RecordSetup, StatedTimes};
 
 /// Its name in a folder of results, which every one has.
 pub(crate) const RESOLVED: &str = "campaign.resolved.json";
@@ -37,13 +37,9 @@ pub struct ResolvedCampaign {
     pub rig: NominalValues,
     /// The channels by role, in the order of the roles.
     pub channels: Vec<ChannelSetup>,
-    /// The channel with the time, if the reader of the files cannot find it.
-    pub time: Option<ChannelKey>,
-    /// Seconds in the unit of the time axes that state none.
-    #[serde(default)]
-    pub time_unit_s: Option<f64>,
-    /// Samples per second, Hz, for files that state none.
-    pub sample_rate_hz: Option<f64>,
+    /// What is stated of the times of its records.
+    #[serde(flatten)]
+    pub times: StatedTimes,
     /// The records in the order of acquisition.
     pub records: Vec<RecordEntry>,
     /// Settings of the analysis.
@@ -132,9 +128,7 @@ impl ResolvedCampaign {
             id: &entry.id,
             dataset: entry.dataset.unwrap_or(0),
             channels: &self.channels,
-            time: self.time.as_ref(),
-            time_unit_s: self.time_unit_s,
-            sample_rate_hz: self.sample_rate_hz,
+            times: &self.times,
             setting: &entry.setting,
             driven: self.driven(entry),
             skip_s: self.analysis.skip_s,

@@ -54,7 +54,8 @@ impl Observed {
     /// As [`Observed::of`], and if a checkpoint cannot be written.
     pub(super) fn resumable(
         campaign: &ResolvedCampaign,
-        (out, resume): (&Path, bool),
+        out: &Path,
+        resume: bool,
         progress: Progress<'_>,
     ) -> Result<Self, PipelineError> {
         let kept = checkpoint::open(campaign, out, resume)?;
@@ -136,15 +137,15 @@ fn aligned(
     progress: Progress<'_>,
 ) -> Result<Vec<Observation>, OutputError> {
     let found = inverted_channels(&observations);
-    let observations = corrected(campaign, (observations, found), progress)?;
+    let observations = corrected(campaign, observations, found, progress)?;
     let found = late_channels(&observations);
-    let mut observations = corrected(campaign, (observations, found), progress)?;
+    let mut observations = corrected(campaign, observations, found, progress)?;
     // of a drive of the other sign the delay is told once its sign is right
     for _ in 0..2 {
         scale_drives(&mut observations);
         let found = late_drive(&evidence::evidence(campaign, &observations, &[]));
         let Some(found) = found else { break };
-        observations = corrected(campaign, (observations, vec![found]), progress)?;
+        observations = corrected(campaign, observations, vec![found], progress)?;
         if !found.inverted {
             break;
         }
@@ -155,7 +156,8 @@ fn aligned(
 /// The observations with what was found of channels corrected too; the same where nothing was.
 fn corrected(
     campaign: &ResolvedCampaign,
-    (observations, found): (Vec<Observation>, Vec<LateChannel>),
+    observations: Vec<Observation>,
+    found: Vec<LateChannel>,
     progress: Progress<'_>,
 ) -> Result<Vec<Observation>, OutputError> {
     if found.is_empty() {

@@ -61,9 +61,9 @@ pub fn run(
     let observed = if campaign.records.len() < destination.keep_from {
         Observed::of(campaign, progress)?
     } else {
-        Observed::resumable(campaign, (out, destination.resume), progress)?
+        Observed::resumable(campaign, out, destination.resume, progress)?
     };
-    complete(campaign, (observed, None), destination, progress)
+    complete(campaign, observed, None, destination, progress)
 }
 
 /// Everything after observing: fits, unless they are made already, report, and all outputs.
@@ -72,7 +72,8 @@ pub fn run(
 /// As [`run`].
 pub(super) fn complete(
     campaign: &ResolvedCampaign,
-    (mut observed, found): (Observed, Option<IdentificationFile>),
+    mut observed: Observed,
+    found: Option<IdentificationFile>,
     destination: &Destination<'_>,
     progress: Progress<'_>,
 ) -> Result<Completed, PipelineError> {

@@ -11,7 +11,9 @@ use crate::pipeline::observe::each_record;
 use crate::pipeline::{Observed, PipelineError, Progress, RefusedRecord, gzip_json};
 use impact_identification::identify::residuals::MethodResiduals;
 use impact_records::motion::{Folded, Observation, brackets};
-use impact_records::record::calibrate::{ChannelKey, ChannelSetup, TIMES_CONTACT, TIMES_ERROR};
+use impact_records::record::calibrate::{
+    ChannelKey, ChannelSetup, StatedTimes, TIMES_CONTACT, TIMES_ERROR,
+};
 use impact_records::record::{ContactContent, Flag, Record, Role};
 use labfiles::units::{Dimension, Quantity, Unit};
 use labfiles_write::hdf5::{AttributeValue, CampaignWriter, ColumnToWrite, RecordTable};
@@ -93,9 +95,7 @@ pub fn ingest(
     let ingested = Ingested {
         campaign: ResolvedCampaign {
             channels: roles,
-            time: None,
-            time_unit_s: None,
-            sample_rate_hz: None,
+            times: StatedTimes::default(),
             records: entries,
             ..campaign.clone()
         },

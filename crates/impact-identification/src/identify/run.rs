@@ -611,7 +611,8 @@ impl<'a> IdentificationRun<'a> {
         found.extend(late_channel::late_channels(
             observations,
             self.found.together(),
-            (&self.selection.blocks, &self.evidence.nominal),
+            &self.selection.blocks,
+            &self.evidence.nominal,
         ));
         found.extend(self.other_suspicions());
         let of_masses = Impacts::contradicted_masses(&self.selection);

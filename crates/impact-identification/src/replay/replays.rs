@@ -101,7 +101,7 @@ pub(super) fn comparisons(input: &Input<'_>, chosen: &[usize]) -> Vec<ReplayedRe
     lettered
         .filter_map(|(i, letter)| {
             let o = &input.observations[*i];
-            comparison(input, o, &(input.read)(*i)?, (letter, input.parameters()))
+            comparison(input, o, &(input.read)(*i)?, letter, input.parameters())
         })
         .collect()
 }
@@ -111,7 +111,8 @@ pub(super) fn comparison(
     input: &Input<'_>,
     o: &Observation,
     record: &Record,
-    (letter, parameters): (char, Option<&Parameters>),
+    letter: char,
+    parameters: Option<&Parameters>,
 ) -> Option<ReplayedRecord> {
     let drive = o.drive?;
     let detection = detect(record, input.rig, &DetectSettings::default());

@@ -54,7 +54,7 @@ pub fn beside(input: &Input<'_>, index: usize, parameters: &Parameters) -> Besid
     if let Some(decay) = free_decay(o, &record, None) {
         return BesideRecord::Decay(Box::new(decay));
     }
-    match comparison(input, o, &record, ('A', Some(parameters))) {
+    match comparison(input, o, &record, 'A', Some(parameters)) {
         Some(found) => BesideRecord::Motion(Box::new(found)),
         None => BesideRecord::Nothing(WhyNot::NeitherDriveNorDecay),
     }

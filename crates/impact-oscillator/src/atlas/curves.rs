@@ -43,7 +43,8 @@ pub struct Curve {
 /// All boundaries as curves.
 pub(super) fn curves(
     machine: &Machine,
-    (etas, range): (&[f64], (f64, f64)),
+    etas: &[f64],
+    range: (f64, f64),
     largest_n: u32,
     columns: &[Vec<Slice>],
     resting: &[Vec<RestingSlice>],

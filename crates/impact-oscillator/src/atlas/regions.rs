@@ -108,8 +108,8 @@ pub fn assemble(
         rows.0.copied().unwrap_or(0.0),
         rows.1.copied().unwrap_or(0.0),
     );
-    let along = (grid.eta.as_slice(), range);
-    let curves = curves(machine, along, settings.largest_n, &columns, &resting);
+    let largest_n = settings.largest_n;
+    let curves = curves(machine, &grid.eta, range, largest_n, &columns, &resting);
     let slices: Vec<Slice> = columns.into_iter().flatten().collect();
     let resting: Vec<RestingSlice> = resting.into_iter().flatten().collect();
     let agreement = compare(machine, settings, maps, &slices, &resting);

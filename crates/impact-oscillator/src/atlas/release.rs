@@ -166,12 +166,12 @@ impl<'a> Releases<'a> {
         }
         if there.is_empty() {
             let released = self.start(at, Difference::zeros());
-            let found = released.and_then(|(s, initial)| self.settled(at, (initial, s.phase)));
+            let found = released.and_then(|(s, initial)| self.settled(at, initial, s.phase));
             there.extend(found.filter(Rest::is_stable));
         }
         for &(label, initial, phase) in starts {
             if label.1 <= self.longest && !there.iter().any(|r| r.label == label) {
-                let found = self.settled(at, (initial, phase)).filter(Rest::is_stable);
+                let found = self.settled(at, initial, phase).filter(Rest::is_stable);
                 there.extend(found.filter(|f| f.label == label));
             }
         }
@@ -245,7 +245,7 @@ impl<'a> Releases<'a> {
     }
 
     /// The resting motion near to which a start settles.
-    fn settled(&self, at: Place, (initial, phase): (Initial, f64)) -> Option<Rest> {
+    fn settled(&self, at: Place, initial: Initial, phase: f64) -> Option<Rest> {
         let setting = Setting::new(at.0, at.1).at_phase(phase);
         let mut simulator = Simulator::new(self.machine, setting, initial).ok()?;
         let mut seen = Seen::default();

@@ -382,6 +382,18 @@ fn serves(role: Role, found: Dimension) -> bool {
 
 pub(super) type BoundRole<'a> = (&'a ChannelSetup, BoundChannel);
 
+/// What is stated of the times of records whose files do not state it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct StatedTimes {
+    /// The channel with the time, if the reader of the files cannot find it.
+    pub time: Option<ChannelKey>,
+    /// Seconds in the unit of time axes that state none.
+    #[serde(default)]
+    pub time_unit_s: Option<f64>,
+    /// Samples per second, Hz, for files that state none.
+    pub sample_rate_hz: Option<f64>,
+}
+
 /// Everything that turns one dataset into one record.
 #[derive(Debug, Clone)]
 pub struct RecordSetup<'a> {
@@ -391,12 +403,8 @@ pub struct RecordSetup<'a> {
     pub dataset: usize,
     /// The channels by role.
     pub channels: &'a [ChannelSetup],
-    /// The channel with the time, if the file's reader cannot find it.
-    pub time: Option<&'a ChannelKey>,
-    /// Seconds in the unit of a time axis that states none.
-    pub time_unit_s: Option<f64>,
-    /// Samples per second, Hz, for files that do not state it.
-    pub sample_rate_hz: Option<f64>,
+    /// What is stated of its times.
+    pub times: &'a StatedTimes,
     /// The setting as the laboratory states it.
     pub setting: &'a Setting,
     /// Whether a harmonic drive must be seen.

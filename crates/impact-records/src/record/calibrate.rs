@@ -3,7 +3,7 @@
 
 use super::bind::BoundRole;
 use super::bind::flag;
-pub use super::bind::{BoundChannel, ChannelKey, ChannelSetup, RecordSetup, bind};
+pub use super::bind::{BoundChannel, ChannelKey, ChannelSetup, RecordSetup, StatedTimes, bind};
 use super::times::Clocks;
 use super::{Channel, ContactContent, Flag, FlagCode, ListedTimes, Problem, Record, Role, Setting};
 use super::{changes, condition, consistency, contact_levels, events, late};
@@ -45,7 +45,7 @@ fn empty(id: &str, setting: &Setting) -> Record {
 /// and a channel that cannot be used is left out.
 ///
 /// ```
-/// use impact_records::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
+/// use impact_records::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, StatedTimes, calibrate};
 /// use impact_records::record::{Excitation, Role, Setting, Sweep};
 ///
 /// let folder = tempfile::tempdir()?;
@@ -71,9 +71,7 @@ fn empty(id: &str, setting: &Setting) -> Record {
 ///         id: "run",
 ///         dataset: 0,
 ///         channels: &channels,
-///         time: None,
-///         time_unit_s: None,
-///         sample_rate_hz: None,
+///         times: &StatedTimes::default(),
 ///         setting: &setting,
 ///         driven: false,
 ///         skip_s: 0.0,
@@ -306,9 +304,7 @@ mod tests {
             id: "run",
             dataset: 0,
             channels: &channels,
-            time: None,
-            time_unit_s: None,
-            sample_rate_hz: None,
+            times: &StatedTimes::default(),
             setting: &Setting::default(),
             driven: false,
             skip_s,
@@ -342,9 +338,7 @@ mod tests {
             id: "digital",
             dataset: 0,
             channels: &[contact],
-            time: None,
-            time_unit_s: None,
-            sample_rate_hz: None,
+            times: &StatedTimes::default(),
             setting: &Setting::default(),
             driven: false,
             skip_s: 0.0,

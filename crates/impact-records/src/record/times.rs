@@ -26,7 +26,7 @@ fn axis_of(
 ) -> Option<usize> {
     match dataset.channels[channel].clock {
         // what campaign.toml names is the time of all
-        _ if setup.time.is_some() => shared,
+        _ if setup.times.time.is_some() => shared,
         Clock::Shared => shared,
         Clock::Axis(axis) => Some(axis),
         Clock::Rate => None,
@@ -35,13 +35,13 @@ fn axis_of(
 
 /// The axis that all channels share which have none of their own.
 fn shared_axis(setup: &RecordSetup<'_>, dataset: &DatasetInfo) -> Result<Option<usize>, Flag> {
-    let found = time_axis::find(setup.time, dataset)?;
+    let found = time_axis::find(setup.times.time.as_ref(), dataset)?;
     Ok(found.or_else(|| frames(setup, dataset)))
 }
 
 /// A column that counts a camera's frames, if the rate of the frames is stated: it shows lost ones.
 fn frames(setup: &RecordSetup<'_>, dataset: &DatasetInfo) -> Option<usize> {
-    setup.sample_rate_hz?;
+    setup.times.sample_rate_hz?;
     (0..dataset.channels.len()).find(|i| time_axis::counts_frames(dataset, *i))
 }
 
@@ -135,7 +135,9 @@ impl Clocks {
             let own = axis.and_then(|axis| times[axis].as_deref());
             let own = own.map(|t| &t[first.min(t.len())..last.min(t.len())]);
             let measured = own.and_then(|own| time_axis::inspect(own, &mut record.flags));
-            let rate = measured.or(info.sample_rate_hz).or(setup.sample_rate_hz);
+            let rate = measured
+                .or(info.sample_rate_hz)
+                .or(setup.times.sample_rate_hz);
             let Some(rate_hz) = rate.filter(|r| r.is_finite() && *r > 0.0) else {
                 no_rate(record);
                 return;
@@ -183,17 +185,17 @@ fn seconds(
         return None;
     };
     let info = &dataset.channels[axis];
-    let stated_hz = setup.sample_rate_hz.or(info.sample_rate_hz);
+    let stated_hz = setup.times.sample_rate_hz.or(info.sample_rate_hz);
     let factor = match (
         time_axis::counts_frames(dataset, axis),
-        setup.sample_rate_hz,
+        setup.times.sample_rate_hz,
     ) {
         (true, Some(rate_hz)) => rate_hz.recip(),
         // points in time are read as s since the first
         _ if info.stored == StoredType::Time => 1.0,
         _ => {
             let unit = AxisUnit::of(info.unit.as_deref(), &info.name, &times);
-            match unit_s(&unit, &info.name, setup.time_unit_s, flags) {
+            match unit_s(&unit, &info.name, setup.times.time_unit_s, flags) {
                 Some(factor) => factor,
                 // counts of samples at a rate that is stated
                 None => match (stated_hz, time_axis::usual_step(&times)) {
@@ -274,8 +276,8 @@ fn settle_rate(
     let coarse = record.flags.iter().any(|f| f.code == FlagCode::TimeCoarse);
     let rate = match coarse {
         // the file's rate is that of the same stamps
-        true => setup.sample_rate_hz,
-        false => measured.or(stated).or(setup.sample_rate_hz),
+        true => setup.times.sample_rate_hz,
+        false => measured.or(stated).or(setup.times.sample_rate_hz),
     };
     if rate.is_some() {
         record.flags.retain(|f| f.code != FlagCode::TimeCoarse);

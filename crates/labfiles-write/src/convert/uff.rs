@@ -171,7 +171,7 @@ impl Record<'_> {
                 info,
                 times: *times,
             };
-            self.function(&channel, (&values, complex), out)?;
+            self.function(&channel, &values, complex, out)?;
         }
         Ok(())
     }
@@ -179,7 +179,8 @@ impl Record<'_> {
     fn function(
         &self,
         channel: &Channel<'_>,
-        (values, complex): (&[f64], bool),
+        values: &[f64],
+        complex: bool,
         out: &mut dyn Write,
     ) -> std::io::Result<()> {
         writeln!(out, "    -1")?;

@@ -6,7 +6,9 @@ use super::{drive, lists};
 use impact_records::event::{
     DetectSettings, Detection, FlightKind, Impact, MassSpeeds, RigKind, detect,
 };
-use impact_records::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
+use impact_records::record::calibrate::{
+    ChannelKey, ChannelSetup, RecordSetup, StatedTimes, calibrate,
+};
 use impact_records::record::{ContactContent, FlagCode, Record, Role, Setting};
 use impact_records::signal::columns::dot;
 use impact_records::signal::decay::{self, Decay, Watched};
@@ -265,10 +267,11 @@ fn read(place: Place<'_>, channels: &[InferredChannel]) -> Record {
         id: "",
         dataset: place.dataset,
         channels: &setups,
-        time: None,
-        time_unit_s: None,
-        // of a camera: neither decays nor flights depend on it
-        sample_rate_hz: Some(USUAL_FRAMES_HZ),
+        times: &StatedTimes {
+            // of a camera: neither decays nor flights depend on it
+            sample_rate_hz: Some(USUAL_FRAMES_HZ),
+            ..StatedTimes::default()
+        },
         setting: &Setting::default(),
         driven: false,
         skip_s: 0.0,

@@ -7,6 +7,7 @@ use crate::campaign::values::{
     Excitation, OneOrMany, Placed, Sweep, WrittenKey, WrittenQuantity, value,
 };
 use impact_records::record::Setting;
+use impact_records::record::calibrate::StatedTimes;
 use labfiles::units::{self, Dimension};
 
 keys! {
@@ -66,14 +67,18 @@ keys! {
 }
 
 impl RecordsTable {
-    /// Samples per second of files that state none.
-    pub(crate) fn sample_rate_hz(&self, context: &mut ResolveContext<'_>) -> Option<f64> {
-        let key = "records.sample_rate";
-        context.positive(&self.sample_rate, key, Dimension::Frequency)
+    /// What it states of the times of records.
+    pub(crate) fn times(&self, context: &mut ResolveContext<'_>) -> StatedTimes {
+        let (key, rate) = ("records.sample_rate", Dimension::Frequency);
+        StatedTimes {
+            time: value(&self.time).map(|t| t.0),
+            time_unit_s: self.time_unit_s(context),
+            sample_rate_hz: context.positive(&self.sample_rate, key, rate),
+        }
     }
 
     /// Seconds in the stated unit of time.
-    pub(crate) fn time_unit_s(&self, context: &mut ResolveContext<'_>) -> Option<f64> {
+    fn time_unit_s(&self, context: &mut ResolveContext<'_>) -> Option<f64> {
         let placed = self.time_unit.as_ref()?;
         let unit = units::parse_unit(placed.get_ref()).filter(|u| u.dimension == Dimension::Time);
         if unit.is_none() {

@@ -156,9 +156,7 @@ fn settings(campaign: &ResolvedCampaign) -> String {
         about,
         rig,
         channels,
-        time,
-        time_unit_s,
-        sample_rate_hz,
+        times,
         analysis,
         file: _,
         run_table: _,
@@ -168,7 +166,5 @@ fn settings(campaign: &ResolvedCampaign) -> String {
         sources: _,
     } = campaign;
     let about = about.observed();
-    format!(
-        "{about:?} {rig:?} {channels:?} {time:?} {time_unit_s:?} {sample_rate_hz:?} {analysis:?}"
-    )
+    format!("{about:?} {rig:?} {channels:?} {times:?} {analysis:?}")
 }

@@ -344,6 +344,6 @@ impl Watcher {
             }),
             None => None,
         };
-        complete(campaign, (observed, found), destination, progress)
+        complete(campaign, observed, found, destination, progress)
     }
 }

@@ -18,7 +18,8 @@ const SURE: f64 = 4.0;
 pub fn late_channels(
     observations: &[Observation],
     found: Option<&MethodFit>,
-    (blocks, nominal): (&Blocks, &Nominal),
+    blocks: &Blocks,
+    nominal: &Nominal,
 ) -> Vec<Suspicion> {
     let moved = observations.first().map_or(&[][..], |o| &o.late[..]);
     let of = |(i, channel): (usize, &_)| {

@@ -16,7 +16,8 @@ impl Map<'_> {
     /// Names a curve beside the middle of its longest visible piece.
     pub(super) fn curve_label(
         &mut self,
-        (curve, pieces): (&BoundaryCurve, &[Vec<Point>]),
+        curve: &BoundaryCurve,
+        pieces: &[Vec<Point>],
         locale: Locale<'_>,
     ) {
         let length = |p: &[Point]| -> f64 {

@@ -224,7 +224,7 @@ impl<'a> Map<'a> {
             let data = curve.points.iter().map(|p| (p[0], p[1]));
             let pieces = self.panel.curve(&mut self.canvas, data, stroke);
             if self.full() {
-                self.curve_label((curve, &pieces), locale);
+                self.curve_label(curve, &pieces, locale);
             }
         }
     }

@@ -69,7 +69,7 @@ impl Regions<'_> {
         for (index, _) in here {
             let at = self.centre((index % columns) as isize, (index / columns) as isize);
             let least = best.map_or(f64::NEG_INFINITY, |(room, _)| room);
-            if let Some(room) = self.room((region, at), half, taken, least) {
+            if let Some(room) = self.room(region, at, half, taken, least) {
                 best = Some((room, at));
             }
         }
@@ -90,7 +90,8 @@ impl Regions<'_> {
     /// or if the area is below the least.
     fn room(
         &self,
-        (region, at): (usize, Point),
+        region: usize,
+        at: Point,
         half: Point,
         taken: &Occupancy,
         least: f64,
