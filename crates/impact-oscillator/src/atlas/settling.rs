@@ -5,7 +5,7 @@ use crate::model::recurrence::observe;
 use crate::model::{Impact, Machine, Setting, SettledMotion, Simulator, Watch};
 
 /// How often a motion that is no chaos settles on, each time twice as long as before.
-const MOST_ROUNDS: i32 = 5;
+pub(super) const MOST_ROUNDS: i32 = 5;
 
 /// Drive periods that the exponent of a motion is followed that may be chaotic.
 pub(super) const CHAOTIC_PERIODS: f64 = 1000.0;
@@ -54,7 +54,7 @@ pub(super) fn settle_on(
 }
 
 /// What becomes of a motion's variations while it is watched, and longer where that leaves it open.
-fn variations(
+pub(super) fn variations(
     machine: &Machine,
     mut from: Simulator,
     setting: Setting,

@@ -4,8 +4,8 @@
 use super::grid::MapSettings;
 use super::kernel::{Cell, Course, Feed, Outcome, Strike, run};
 use super::lyapunov::{Lyapunov, Variations};
-use super::settling::{CHAOTIC_PERIODS, settle_on};
-use super::threads::{Shared, available, on_all_threads};
+use super::settling::{CHAOTIC_PERIODS, MOST_ROUNDS, variations};
+use super::threads::{Shared, available, march_all, on_all_threads};
 use super::unit_mass::UnitMass;
 use crate::model::recurrence::{Return, observe, of_returns};
 use crate::model::{
@@ -151,7 +151,7 @@ pub(super) fn watch_again(
 ) {
     let is_open = |o: &Outcome| o.motion == SettledMotion::Chaotic;
     let mut open: Vec<&mut Outcome> = outcomes.iter_mut().filter(|o| is_open(o)).collect();
-    let (machine, watch) = (unit.machine(), settings.watch);
+    let watch = settings.watch;
     let mut inexact: Vec<&mut Outcome> = Vec::new();
     let rounds: &[f64] = match follow {
         Follow::Watch => &[0.0],
@@ -182,10 +182,48 @@ pub(super) fn watch_again(
         }
         Follow::Decision => inexact.append(&mut open),
     }
-    let ends: Vec<Cell> = inexact.iter().map(|o| o.end).collect();
-    let motion = |end: &Cell| observed(&machine, end, &watch, follow);
-    for (outcome, motion) in inexact.iter_mut().zip(parallel::map(&ends, motion)) {
-        outcome.motion = motion;
+    observe_exactly(unit, inexact, settings, follow);
+}
+
+/// Observe motions in the exact simulator from where they end; up to a decision those that are no chaos settle on in the
+/// kernel between, as one does in [`settle_on`](super::settling::settle_on).
+fn observe_exactly(
+    unit: &UnitMass,
+    mut open: Vec<&mut Outcome>,
+    settings: &MapSettings,
+    follow: Follow,
+) {
+    let (machine, watch) = (unit.machine(), settings.watch);
+    let observe = |open: &mut Vec<&mut Outcome>, may_be_chaos: bool| {
+        let ends: Vec<Cell> = open.iter().map(|o| o.end).collect();
+        let motions = parallel::map(&ends, |end| observed(&machine, end, &watch, may_be_chaos));
+        for (outcome, motion) in open.iter_mut().zip(motions) {
+            outcome.motion = motion;
+        }
+        open.retain(|o| o.motion == SettledMotion::NotSettled);
+    };
+    observe(&mut open, false);
+    if follow == Follow::Watch {
+        return;
+    }
+    if watch.settle_periods == 0.0 {
+        // a watch of what is now is not judged
+        open.iter_mut().for_each(|o| o.motion = SettledMotion::Chaotic);
+        return;
+    }
+    for round in 0..=MOST_ROUNDS {
+        let course = Course {
+            settle_periods: watch.settle_periods * 2_f64.powi(round),
+            watch_periods: 0.0,
+            leave_early: false,
+            ..unit.course(settings)
+        };
+        let ends: Vec<Cell> = open.iter().map(|o| o.end).collect();
+        let settled = march_all(&course, &ends, settings.kernel);
+        for (outcome, settled) in open.iter_mut().zip(settled) {
+            outcome.end = settled.end;
+        }
+        observe(&mut open, true);
     }
 }
 
@@ -214,30 +252,46 @@ fn watched(unit: &UnitMass, ends: &[Cell], settings: &MapSettings) -> Vec<Seen> 
     })
 }
 
-/// The motion from a cell's end on, in the exact simulator; up to a decision it settles on where it is no chaos.
-fn observed(machine: &Machine, end: &Cell, watch: &Watch, follow: Follow) -> SettledMotion {
+/// The motion from a cell's end on, in the exact simulator: without recurrence it has not settled, or is chaos where
+/// that is judged and variations grow.
+fn observed(machine: &Machine, end: &Cell, watch: &Watch, may_be_chaos: bool) -> SettledMotion {
     let setting = Setting::new(end.eta, end.rho).at_phase(end.phase);
     let start = Initial {
         x: end.x.min(end.rho),
         vx: end.v,
         ..Initial::rest()
     };
-    let Ok(mut simulator) = Simulator::new(machine, setting, start) else {
+    let Ok(begin) = Simulator::new(machine, setting, start) else {
         return SettledMotion::NotSettled;
     };
-    match (observe(&mut simulator, setting, watch).0, follow) {
-        (SettledMotion::Chaotic, Follow::Watch) => SettledMotion::NotSettled,
-        (SettledMotion::Chaotic, Follow::Decision) => {
-            settle_on(machine, &mut simulator, setting, watch).motion
-        }
-        (motion, _) => motion,
+    let motion = observe(&mut begin.clone(), setting, watch).0;
+    let grows = || variations(machine, begin, setting, watch) == Variations::Grow;
+    if motion == SettledMotion::Chaotic && !(may_be_chaos && grows()) {
+        return SettledMotion::NotSettled;
     }
+    motion
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::atlas::map::{Kernel, MapGrid, Start, march_all};
+    use crate::atlas::map::{Kernel, MapGrid, Start};
+    use crate::atlas::settling::settle_on;
+
+    /// The motion from a cell's end on, by the exact simulator alone.
+    fn settled(machine: &Machine, end: &Cell, watch: &Watch) -> SettledMotion {
+        let setting = Setting::new(end.eta, end.rho).at_phase(end.phase);
+        let start = Initial {
+            x: end.x.min(end.rho),
+            vx: end.v,
+            ..Initial::rest()
+        };
+        let mut simulator = Simulator::new(machine, setting, start).expect("a simulator");
+        match observe(&mut simulator, setting, watch).0 {
+            SettledMotion::Chaotic => settle_on(machine, &mut simulator, setting, watch).motion,
+            motion => motion,
+        }
+    }
 
     /// Where cells of a map end, taken for unrecognised whatever they are.
     fn ends(unit: &UnitMass, settings: &MapSettings) -> Vec<Outcome> {
@@ -274,7 +328,7 @@ mod tests {
             let mut outcomes = ends(&unit, &settings);
             let exact: Vec<SettledMotion> = outcomes
                 .iter()
-                .map(|o| observed(&machine, &o.end, &settings.watch, Follow::Decision))
+                .map(|o| settled(&machine, &o.end, &settings.watch))
                 .collect();
             watch_again(&unit, &mut outcomes, &settings, Follow::Decision);
             let mut kinds = [0; 3];

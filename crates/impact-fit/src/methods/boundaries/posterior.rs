@@ -17,6 +17,7 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::methods::boundaries::block::{BoundaryBlock, predicted_hz};
@@ -264,8 +265,12 @@ fn summed_over_scales(
         .iter()
         .map(|(h, _)| h.boundary.direction.clone())
         .collect();
-    let length = boundaries.positive();
-    directions.extend(length.clone());
+    directions.extend(boundaries.positive());
+    if directions.is_empty() {
+        return 0.0;
+    }
+    let directions = DMatrix::from_columns(&directions);
+    let covariance = directions.tr_mul(&directions);
     let mut from: Option<Propagation> = None;
     let mut of = |chosen: &[f64]| {
         let jumps: Vec<Jump> = held
@@ -277,7 +282,7 @@ fn summed_over_scales(
             None => positive(mean, variance),
         };
         let factors = Factors {
-            directions: &directions,
+            covariance: &covariance,
             tilt,
         };
         let found = Propagation::of(&factors, from.as_ref());
@@ -292,11 +297,12 @@ fn summed_over_scales(
     let mut best = of(&chosen);
     let mut beyond = 0.0;
     for (family, scales) in families.iter().enumerate() {
+        let before = chosen[family];
         let logs: Vec<f64> = scales
             .iter()
             .map(|scale| {
                 chosen[family] = *scale;
-                of(&chosen)
+                if *scale == before { best } else { of(&chosen) }
             })
             .collect();
         let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);

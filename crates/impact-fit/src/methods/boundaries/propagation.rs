@@ -1,25 +1,25 @@
-//! Expectation propagation: the probability that several sums of independent standard normal deviates fall where
-//! each of them is likely, and their distribution then.
+//! Expectation propagation: the probability that several normally distributed numbers of mean zero fall where each of
+//! them is likely, and their distribution then.
 //!
-//! A factor that depends on one sum is replaced by the normal one with the same mass, mean and variance beside
+//! A factor that depends on one number is replaced by the normal one with the same mass, mean and variance beside
 //! all others, in turn until none changes (Minka 2001; of truncated normal distributions Cunningham, Hennig and
 //! Lacoste-Julien 2011).
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::methods::boundaries::jump::Tilt;
+use impact_records::signal::columns::subtract;
 
 /// Most rounds over all factors.
 const MOST_ROUNDS: usize = 40;
-/// Greatest change of a sum's mean, in its deviations, and of its relative variance in one round below which all has
-/// settled.
+/// Greatest change of a mean, in its deviations, and of a relative variance in one round below which all has settled.
 const SETTLED: f64 = 1e-4;
 
-/// Factors that each depend on one sum of standard normal deviates.
+/// Factors that each depend on one of several normally distributed numbers.
 pub struct Factors<'a, F> {
-    /// Of each factor the weights of the deviates in its sum.
-    pub directions: &'a [DVector<f64>],
-    /// Logarithm of a factor's mean over its sum, of a normal one with this mean and variance, over the mean.
+    /// Covariance of the numbers before any factor.
+    pub covariance: &'a DMatrix<f64>,
+    /// Logarithm of a factor's mean over its number, of a normal one with this mean and variance, over the mean.
     pub tilt: F,
 }
 
@@ -30,7 +30,7 @@ pub struct Propagation {
     sites: Vec<[f64; 2]>,
     mean: DVector<f64>,
     covariance: DMatrix<f64>,
-    /// Logarithm of the determinant of the covariance.
+    /// Logarithm of the determinant of the covariance over what it was before any factor.
     log_determinant: f64,
     /// Logarithm of the mass of the product of all factors.
     pub log: f64,
@@ -38,11 +38,12 @@ pub struct Propagation {
 
 impl Propagation {
     /// Before any factor.
-    fn new(factors: usize, deviates: usize) -> Self {
+    fn new(covariance: &DMatrix<f64>) -> Self {
+        let factors = covariance.nrows();
         Self {
             sites: vec![[0.0; 2]; factors],
-            mean: DVector::zeros(deviates),
-            covariance: DMatrix::identity(deviates, deviates),
+            mean: DVector::zeros(factors),
+            covariance: covariance.clone(),
             log_determinant: 0.0,
             log: f64::NEG_INFINITY,
         }
@@ -53,13 +54,12 @@ impl Propagation {
         factors: &Factors<'_, F>,
         from: Option<&Self>,
     ) -> Self {
-        let deviates = factors.directions.first().map_or(0, DVector::len);
         let mut found = match from {
             Some(from) => from.clone(),
-            None => Self::new(factors.directions.len(), deviates),
+            None => Self::new(factors.covariance),
         };
         for _ in 0..MOST_ROUNDS {
-            let changes = (0..factors.directions.len()).map(|k| found.replace(k, factors));
+            let changes = (0..found.sites.len()).map(|k| found.replace(k, factors));
             if changes.fold(0.0, f64::max) < SETTLED {
                 break;
             }
@@ -68,17 +68,14 @@ impl Propagation {
         found
     }
 
-    /// Mean and variance of a sum without a factor: `None` where nothing of it is open.
-    fn without(&self, k: usize, direction: &DVector<f64>) -> Option<Cavity> {
-        let spread = &self.covariance * direction;
-        let (variance, mean) = (spread.dot(direction), self.mean.dot(direction));
+    /// Mean and variance of a number without its factor: `None` where nothing of it is open.
+    fn without(&self, k: usize) -> Option<Cavity> {
+        let (variance, mean) = (self.covariance[(k, k)], self.mean[k]);
         let [precision, shift] = self.sites[k];
         let left = variance.recip() - precision;
         (variance > f64::MIN_POSITIVE && left.is_finite() && left > 0.0).then(|| Cavity {
             mean: (mean / variance - shift) / left,
             variance: left.recip(),
-            together: [mean, variance],
-            spread,
         })
     }
 
@@ -88,7 +85,7 @@ impl Propagation {
         k: usize,
         factors: &Factors<'_, F>,
     ) -> f64 {
-        let Some(cavity) = self.without(k, &factors.directions[k]) else {
+        let Some(cavity) = self.without(k) else {
             return 0.0;
         };
         let tilt = (factors.tilt)(k, cavity.mean, cavity.variance);
@@ -101,16 +98,18 @@ impl Propagation {
             mean / variance - cavity.mean / cavity.variance,
         ];
         let [more, shift] = [0, 1].map(|i| site[i] - self.sites[k][i]);
-        let [own_mean, own_variance] = cavity.together;
+        let (own_mean, own_variance) = (self.mean[k], self.covariance[(k, k)]);
         let grown = 1.0 + more * own_variance;
         if !(grown > 0.0 && grown.is_finite() && shift.is_finite()) {
             return 0.0;
         }
         self.sites[k] = site;
         let moved = (shift - more * own_mean) / grown;
-        self.mean.axpy(moved, &cavity.spread, 1.0);
-        self.covariance
-            .ger(-more / grown, &cavity.spread, &cavity.spread, 1.0);
+        let spread = self.covariance.column(k).clone_owned();
+        self.mean.axpy(moved, &spread, 1.0);
+        for (mut column, other) in self.covariance.column_iter_mut().zip(&spread) {
+            subtract(column.as_mut_slice(), more / grown * other, spread.as_slice());
+        }
         self.log_determinant -= grown.ln();
         (moved * own_variance.sqrt())
             .abs()
@@ -120,11 +119,10 @@ impl Propagation {
     /// Logarithm of the mass of the product of what the factors are.
     fn mass<F: Fn(usize, f64, f64) -> Tilt>(&self, factors: &Factors<'_, F>) -> f64 {
         let mut log = 0.5 * self.log_determinant;
-        for (k, direction) in factors.directions.iter().enumerate() {
-            let [precision, shift] = self.sites[k];
-            log += 0.5 * shift * direction.dot(&self.mean);
-            let Some(c) = self.without(k, direction) else {
-                log += (factors.tilt)(k, direction.dot(&self.mean), 0.0).log;
+        for (k, [precision, shift]) in self.sites.iter().enumerate() {
+            log += 0.5 * shift * self.mean[k];
+            let Some(c) = self.without(k) else {
+                log += (factors.tilt)(k, self.mean[k], 0.0).log;
                 continue;
             };
             let own = c.mean / c.variance;
@@ -136,14 +134,10 @@ impl Propagation {
     }
 }
 
-/// A sum beside all factors but one.
+/// A number beside all factors but its own.
 struct Cavity {
     mean: f64,
     variance: f64,
-    /// Mean and variance beside all of them.
-    together: [f64; 2],
-    /// Covariance of the deviates with the sum.
-    spread: DVector<f64>,
 }
 
 #[cfg(test)]
@@ -162,13 +156,9 @@ mod tests {
     fn valid_the_orthant_of_two_normal_deviates() {
         // P(x > 0, y > 0) = 1/4 + arcsin(ρ)/(2π)
         for correlation in [-0.6, 0.0, 0.5, 0.9f64] {
-            let other = (1.0 - correlation * correlation).sqrt();
-            let directions = [
-                DVector::from_vec(vec![1.0, 0.0]),
-                DVector::from_vec(vec![correlation, other]),
-            ];
+            let covariance = DMatrix::from_row_slice(2, 2, &[1.0, correlation, correlation, 1.0]);
             let factors = Factors {
-                directions: &directions,
+                covariance: &covariance,
                 tilt: |_, mean, variance| positive(mean, variance),
             };
             let exact = 0.25 + correlation.asin() / std::f64::consts::TAU;
@@ -183,9 +173,9 @@ mod tests {
     #[test]
     fn valid_normal_factors_give_the_normal_integral() {
         // x = 1 ± 1 of a standard deviate x: mass of N(0, 2) at 1, mean 1/2, variance 1/2
-        let directions = [DVector::from_vec(vec![1.0])];
+        let covariance = DMatrix::identity(1, 1);
         let factors = Factors {
-            directions: &directions,
+            covariance: &covariance,
             tilt: |_, mean: f64, variance: f64| {
                 let all = 1.0 + variance;
                 Tilt {
