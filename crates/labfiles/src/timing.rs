@@ -51,7 +51,7 @@ const SHORT: [(&str, f64); 8] = [
 ];
 
 /// Units of a second and longer, spelled out; the first of them name a time axis by themselves.
-const LONG: [(&str, f64); 23] = [
+const LONG: [(&str, f64); 29] = [
     ("seconds", 1.0),
     ("second", 1.0),
     ("secs", 1.0),
@@ -69,7 +69,13 @@ const LONG: [(&str, f64); 23] = [
     ("minuti", 60.0),
     ("minuty", 60.0),
     ("min", 60.0),
+    ("minute", 60.0),
+    ("mins", 60.0),
     ("hours", 3600.0),
+    ("hour", 3600.0),
+    ("hrs", 3600.0),
+    ("hr", 3600.0),
+    ("stunde", 3600.0),
     ("stunden", 3600.0),
     ("heures", 3600.0),
     ("horas", 3600.0),
@@ -284,8 +290,26 @@ pub(crate) fn stated_unit(unit: Option<&str>, name: &str) -> StatedUnit {
             Some(unit) => StatedUnit::Known(unit),
             None => StatedUnit::Other(text.to_owned()),
         },
-        None => unit_in_name(name).map_or(StatedUnit::Nothing, StatedUnit::Known),
+        None => match (unit_in_name(name), unknown_in_name(name)) {
+            (Some(unit), _) => StatedUnit::Known(unit),
+            (None, Some(text)) => StatedUnit::Other(text),
+            (None, None) => StatedUnit::Nothing,
+        },
     }
+}
+
+/// Words in brackets behind a time that are no units.
+const NO_UNITS: [&str; 10] = [
+    "rel", "abs", "raw", "utc", "gmt", "sim", "exp", "run", "loc", "num",
+];
+
+/// What a name has in brackets as a unit, and is none that is known: `t (jiff)`.
+fn unknown_in_name(name: &str) -> Option<String> {
+    let text = name.split_once(['(', '['])?.1.split([')', ']']).next()?.trim();
+    let letters = text.chars().all(char::is_alphabetic);
+    let short = (1..=4).contains(&text.chars().count());
+    let unit = letters && short && !NO_UNITS.contains(&text.to_lowercase().as_str());
+    unit.then(|| text.to_owned())
 }
 
 /// The unit of a time axis, as it is stated, or as its values leave it.
@@ -675,6 +699,14 @@ mod tests {
         }
         assert_eq!(unit(None, "Time (s)"), Some(1.0));
         assert_eq!(unit(None, "time_min"), Some(60.0));
+        assert_eq!(unit(None, "t (hrs)"), Some(3600.0));
+        assert_eq!(
+            stated_unit(None, "t (jif)"),
+            StatedUnit::Other("jif".into())
+        );
+        for name in ["Time (UTC)", "Time (Run 1)", "Time [3]"] {
+            assert_eq!(stated_unit(None, name), StatedUnit::Nothing, "{name}");
+        }
         assert_eq!(
             stated_unit(Some("ticks"), "Time"),
             StatedUnit::Other("ticks".into())

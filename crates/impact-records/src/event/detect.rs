@@ -252,7 +252,10 @@ fn freely_every(record: &Record, rig: RigKind, closed: &[Closed], stride: usize)
     let mut found = found;
     let samples = record.samples() / stride;
     if found.impacts.is_empty() && !found.flags.iter().any(|f| f.excludes) {
-        found.flags.push(no_impact());
+        // what was left out is why there is none
+        let hidden = found.flags.iter().position(is_without_flight);
+        let why = hidden.map_or_else(no_impact, |i| found.flags.remove(i));
+        found.flags.push(why.excluding(true));
     }
     let closed_samples: usize = closed.iter().map(Closed::samples).sum();
     Detection {
@@ -289,6 +292,13 @@ fn listed(kinematics: Kinematics, times_s: &[f64], known: ListedTimes) -> Detect
         directions: Vec::new(),
         flags: Vec::new(),
     }
+}
+
+fn is_without_flight(flag: &Flag) -> bool {
+    matches!(
+        flag.problem,
+        Problem::NoFlightBefore { .. } | Problem::NoFlightAfter { .. }
+    )
 }
 
 fn no_impact() -> Flag {

@@ -50,9 +50,10 @@ fn leave_out_beside_rates(channels: &mut [InferredChannel]) {
     }
 }
 
-/// Whether a channel may be a signal: neither the time nor a single number, which is an attribute of its record.
+/// Whether a channel may be a signal: neither the time nor a single number, which is an attribute of its record, nor
+/// without any value.
 fn is_signal(channel: &InferredChannel) -> bool {
-    !channel.is_time && channel.samples > 1
+    !channel.is_time && channel.samples > 1 && channel.range.is_some()
 }
 
 /// Axes of one sensor, or coordinates of one point: two of them are not two masses.
