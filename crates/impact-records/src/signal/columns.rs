@@ -83,6 +83,17 @@ pub fn subtract(from: &mut [f64], share: f64, column: &[f64]) {
     }
 }
 
+/// Subtract a multiple of the product of a column with itself, each with each, from a square matrix given column by column.
+#[multiversion(targets("x86_64+avx2"))]
+pub fn subtract_outer(from: &mut [f64], share: f64, column: &[f64]) {
+    for (to, own) in from.chunks_exact_mut(column.len().max(1)).zip(column) {
+        let share = share * own;
+        for (x, y) in to.iter_mut().zip(column) {
+            *x -= share * y;
+        }
+    }
+}
+
 /// Add a multiple of the difference of two columns.
 #[multiversion(targets("x86_64+avx2"))]
 pub(crate) fn add_difference(to: &mut [f64], share: f64, [more, less]: [&[f64]; 2]) {

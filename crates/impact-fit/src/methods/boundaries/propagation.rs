@@ -8,7 +8,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::methods::boundaries::jump::Tilt;
-use impact_records::signal::columns::subtract;
+use impact_records::signal::columns::subtract_outer;
 
 /// Most rounds over all factors.
 const MOST_ROUNDS: usize = 40;
@@ -107,9 +107,11 @@ impl Propagation {
         let moved = (shift - more * own_mean) / grown;
         let spread = self.covariance.column(k).clone_owned();
         self.mean.axpy(moved, &spread, 1.0);
-        for (mut column, other) in self.covariance.column_iter_mut().zip(&spread) {
-            subtract(column.as_mut_slice(), more / grown * other, spread.as_slice());
-        }
+        subtract_outer(
+            self.covariance.as_mut_slice(),
+            more / grown,
+            spread.as_slice(),
+        );
         self.log_determinant -= grown.ln();
         (moved * own_variance.sqrt())
             .abs()

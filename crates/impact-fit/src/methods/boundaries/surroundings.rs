@@ -178,7 +178,14 @@ impl Surroundings {
         let over_frequency = (place.excess(frequency_hz + step_hz)
             - place.excess(frequency_hz - step_hz))
             / (2.0 * step_hz);
+        let acts = |deviate: &Deviate| match deviate {
+            Deviate::Coordinates(_) => true,
+            Deviate::Clearance { clearance_m, .. } => *clearance_m == bracket.clearance_m,
+        };
         let moved = |deviate: &Deviate| {
+            if !acts(deviate) {
+                return 0.0;
+            }
             let excess = |by: f64| match deviate {
                 Deviate::Coordinates(list) => {
                     let shifted = list.iter().fold(*about, |p, (coordinate, per_unit)| {
@@ -186,11 +193,9 @@ impl Surroundings {
                     });
                     BoundaryPlace::of(bracket, &shifted, block.rig).excess(frequency_hz)
                 }
-                Deviate::Clearance { clearance_m, by_m } => {
+                Deviate::Clearance { by_m, .. } => {
                     let mut place = BoundaryPlace::of(bracket, about, block.rig);
-                    if *clearance_m == bracket.clearance_m {
-                        place.clearance_error_m = by * by_m;
-                    }
+                    place.clearance_error_m = by * by_m;
                     place.excess(frequency_hz)
                 }
             };
