@@ -120,6 +120,9 @@ pub(super) fn kept(
     coordinates: &[Coordinate],
     touched: impl Fn(Coordinate) -> bool,
 ) -> (Vec<usize>, Vec<Coordinate>) {
-    let places = coordinates.iter().copied().enumerate();
-    places.filter(|(_, c)| touched(*c)).unzip()
+    let room = coordinates.len();
+    let mut kept = (Vec::with_capacity(room), Vec::with_capacity(room));
+    let touched = |(_, c): &(usize, Coordinate)| touched(*c);
+    kept.extend(coordinates.iter().copied().enumerate().filter(touched));
+    kept
 }
