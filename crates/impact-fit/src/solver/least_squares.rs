@@ -130,6 +130,9 @@ struct DampedSteps<'a> {
     sure: bool,
     /// Length of the last step, in standard errors for residuals of unit variance; zero before the first.
     length: f64,
+    /// Steps in a row that lowered the cost by more than predicted, and how much longer the next is made.
+    short: u32,
+    stretch: f64,
     /// Scales of the unknowns: the norms of their slopes, falling slowly. A slope that vanishes
     /// suddenly does not set its unknown free (Moré 1978), and an old one is forgotten.
     scales: Vec<f64>,
@@ -143,6 +146,11 @@ const REFUSED_DAMPING: f64 = 1e-10;
 const MOST_TRIALS: usize = 40;
 /// Steps in a row that were as good as linear, from which on the problem is taken to be.
 const LINEAR: u32 = 3;
+/// Share of the predicted reduction from which a step counts as short, as those of residuals that are bounded do; steps in
+/// a row from which the next is made longer, and how many times at most.
+const SHORT: f64 = 1.2;
+const SHORT_STEPS: u32 = 2;
+const MOST_STRETCH: f64 = 8.0;
 /// How far from 1 the share of the predicted reduction may be where steps shrink steadily, and how much
 /// shorter each step must then be.
 const STEADY: f64 = 0.2;
@@ -169,8 +177,22 @@ impl<'a> DampedSteps<'a> {
             linear: 0,
             sure: true,
             length: 0.0,
+            short: 0,
+            stretch: 1.0,
             scales: Vec::new(),
         }
+    }
+
+    /// Make the next step as much longer as the last one was too short: of a parabola of the cost along it whose
+    /// curvature is 2 − share of what was expected, as far as its minimum.
+    fn adapt_stretch(&mut self, share: f64) {
+        let longer = self.stretch / (2.0 - share).max(MOST_STRETCH.recip());
+        self.short = if longer > SHORT { self.short + 1 } else { 0 };
+        self.stretch = if self.short < SHORT_STEPS {
+            1.0
+        } else {
+            longer.min(MOST_STRETCH)
+        };
     }
 
     fn update_scales(&mut self, factor: &Factor) {
@@ -201,6 +223,7 @@ impl<'a> DampedSteps<'a> {
 
     fn increase_damping(&mut self) {
         self.sure = false;
+        (self.short, self.stretch) = (0, 1.0);
         self.damping = (self.damping * 4.0).max(REFUSED_DAMPING);
     }
 
@@ -241,15 +264,17 @@ impl<'a> DampedSteps<'a> {
                 self.increase_damping();
                 continue;
             };
+            let step: Vec<f64> = step.iter().map(|s| self.stretch * s).collect();
             let length = factor.length(&step);
             let to = problem.problem(STEP, |p| Ok(p.moved(from, &step)))?;
             let found = self.evaluate(problem, &to, self.sure)?;
             match found {
                 Some((cost, there)) if cost < factor.cost() => {
                     let predicted = self.predicted_reduction(&step, length);
-                    let share = (factor.cost() - cost) / predicted;
+                    let share = self.stretch * (factor.cost() - cost) / predicted;
                     let negligible = self.is_last(length, share, negligible);
                     self.decrease_damping(share);
+                    self.adapt_stretch(share);
                     (self.sure, self.length) = (true, length);
                     let factor = match there {
                         Some(factor) => factor,
