@@ -168,8 +168,10 @@ impl<'a> Search<'a> {
         let tried = groups(observations).into_iter().filter_map(|of| {
             let inside = observations.iter().map(|o| usize::from(of.holds(o, 0)));
             let inside: Vec<usize> = inside.collect();
-            let (chi2, _) = self.by_rows(&inside)?;
-            explains_more_than_speed(&inside, pairs).then_some((chi2, of))
+            if !explains_more_than_speed(&inside, pairs) {
+                return None;
+            }
+            self.by_rows(&inside).map(|(chi2, _)| (chi2, of))
         });
         let (_, of) = tried.max_by(|a, b| a.0.total_cmp(&b.0))?;
         self.apart(of)
@@ -225,6 +227,7 @@ impl<'a> Search<'a> {
             .collect();
         let mut all = problem.priors_normal(self.fitted.at);
         records.iter().for_each(|(_, rows)| all.inform(rows));
+        let whole = Whole::of(&all)?;
         let mut after = Normal::zeros(problem.free.len());
         let mut best: Option<(f64, usize)> = None;
         for (k, (rank, rows)) in records.iter().enumerate().rev() {
@@ -233,7 +236,7 @@ impl<'a> Search<'a> {
             // records of one rank stay together
             let begins = k > 0 && records[k - 1].0 < *rank;
             if let Some(chi2) = (enough && begins)
-                .then(|| gain(&all, &after, &places))
+                .then(|| whole.gain(&after, &places))
                 .flatten()
                 && best.is_none_or(|(most, _)| chi2 > most)
             {
@@ -305,26 +308,27 @@ fn ranks(observations: &[Observation]) -> Vec<usize> {
     ranks
 }
 
-/// χ² of a change of some coordinates in the records of `after`, all others being fitted to all.
-fn gain(all: &Normal, after: &Normal, places: &[usize]) -> Option<f64> {
-    let (n, m) = (all.gradient.len(), places.len());
-    let entry = |i: usize, k: usize| match (i < n, k < n) {
-        (true, true) => all.matrix[(i, k)],
-        (true, false) => after.matrix[(i, places[k - n])],
-        (false, true) => after.matrix[(places[i - n], k)],
-        (false, false) => after.matrix[(places[i - n], places[k - n])],
-    };
-    let covariance = inverse(&DMatrix::from_fn(n + m, n + m, entry))?;
-    let gradient = DVector::from_fn(n + m, |i, _| {
-        if i < n {
-            all.gradient[i]
-        } else {
-            after.gradient[places[i - n]]
-        }
-    });
-    let change = (&covariance * gradient).rows(n, m).into_owned();
-    let own = covariance.view((n, n), (m, m)).into_owned();
-    Some((change.transpose() * inverse(&own)? * &change)[(0, 0)])
+/// What all records say: the inverse of their information and the step to their optimum.
+struct Whole {
+    inverse: DMatrix<f64>,
+    step: DVector<f64>,
+}
+
+impl Whole {
+    fn of(all: &Normal) -> Option<Self> {
+        let inverse = inverse(&all.matrix)?;
+        let step = -(&inverse * &all.gradient);
+        Some(Self { inverse, step })
+    }
+
+    /// χ² of a change of the coordinates at these places in the records of `after`, all others being fitted to all:
+    /// with S = C − BᵀA⁻¹B of what is left of their information, δ = −S⁻¹(h − BᵀA⁻¹g) and χ² = δᵀSδ.
+    fn gain(&self, after: &Normal, places: &[usize]) -> Option<f64> {
+        let columns = after.matrix.select_columns(places);
+        let own = columns.select_rows(places) - columns.tr_mul(&(&self.inverse * &columns));
+        let gradient = after.gradient.select_rows(places) + columns.tr_mul(&self.step);
+        Some(gradient.dot(&(inverse(&own)? * &gradient)))
+    }
 }
 
 /// The rank from which on most of the periodic records are lost, or before which they are.
@@ -573,7 +577,8 @@ mod tests {
             after.inform(&row);
         }
         // Two measurements in each of 8 and of 12, their difference 3: 9/(1/16 + 1/24).
-        let chi2 = gain(&all, &after, &[0]).expect("regular");
+        let whole = Whole::of(&all).expect("regular");
+        let chi2 = whole.gain(&after, &[0]).expect("regular");
         assert!(
             (chi2 - 9.0 / (1.0 / 16.0 + 1.0 / 24.0)).abs() < 1e-9,
             "{chi2}"
