@@ -586,12 +586,13 @@ impl<'a> IdentificationRun<'a> {
         let uncertainty_m = self.evidence.nominal.clearance_uncertainty_m;
         let start = self.found.begin;
         let both = joint::curve_and_waveforms();
-        let fit = |blocks: &Blocks| {
-            let found = joint::rough(blocks, start, &both, &self.evidence.nominal)?;
+        let fit = |blocks: &Blocks, start: &Parameters| {
+            let found = joint::rough(blocks, *start, &both, &self.evidence.nominal)?;
             let mean_square = found.cost / found.residuals.max(1) as f64;
             Some((found.parameters, mean_square))
         };
-        let contradicting = contradicting_gap(blocks, lost, &start, &fit);
+        let starts = [&start, &joint.fit.parameters];
+        let contradicting = contradicting_gap((blocks, lost), starts, &fit);
         let lost = suspicion::lost_gap(&blocks.trajectory, lost, &joint.fit.parameters, *typical);
         let allowed = |odd: &OddGap| (odd.fitting_m - odd.stated_m).abs() > 4.0 * uncertainty_m;
         contradicting

@@ -23,12 +23,12 @@ const FEWEST_GAPS: usize = 3;
 pub type FittedWithMeanSquare = (Parameters, f64);
 
 /// The gap without which all other records fit far better, by `fit`, where that is so of one gap alone;
-/// `lost` are records that the blocks have no more, `start` is where fits start.
+/// `lost` are records that the blocks have no more. The fit of all starts at what was `found` of them, the others at
+/// `start`, which no gap has led astray.
 pub fn contradicting_gap(
-    blocks: &Blocks,
-    lost: &[TrajectoryRecord],
-    start: &Parameters,
-    fit: &dyn Fn(&Blocks) -> Option<FittedWithMeanSquare>,
+    (blocks, lost): (&Blocks, &[TrajectoryRecord]),
+    [start, found]: [&Parameters; 2],
+    fit: &dyn Fn(&Blocks, &Parameters) -> Option<FittedWithMeanSquare>,
 ) -> Option<OddGap> {
     let records = of_each_gap(blocks.trajectory.records.iter().chain(lost).collect());
     let mut few = blocks.with_trajectory(blocks.trajectory.with_records(records));
@@ -40,7 +40,7 @@ pub fn contradicting_gap(
         .map(|r| r.clearance_m)
         .collect();
     gaps.dedup();
-    let (_, all) = fit(&few)?;
+    let (_, all) = fit(&few, found)?;
     if gaps.len() < FEWEST_GAPS || all < MISFIT {
         return None;
     }
@@ -49,7 +49,7 @@ pub fn contradicting_gap(
         .filter_map(|gap| {
             let mut others = few.clone();
             others.trajectory.records.retain(|r| r.clearance_m != gap);
-            let (parameters, remains) = fit(&others)?;
+            let (parameters, remains) = fit(&others, start)?;
             Some((remains, parameters, gap))
         })
         .collect();
