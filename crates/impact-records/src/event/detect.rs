@@ -570,6 +570,9 @@ fn rings_for(velocity: &Series, all: &[Candidate]) -> f64 {
     let strong = STRONG * heights.fold(0.0, f64::max);
     let strong = all.iter().filter(|c| c.jump.height.abs() > strong);
     let times: Vec<f64> = strong.map(|c| c.jump.middle()).collect();
+    if times.len() < ringing::FEWEST {
+        return 0.0;
+    }
     let size = robust::robust_deviation(&velocity.values).unwrap_or(0.0);
     let [_, after] = ringing::beside_impacts(&velocity.values, &times, size);
     after

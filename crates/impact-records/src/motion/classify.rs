@@ -179,9 +179,10 @@ impl View {
         let reach = whole::count((periods - 3.0).max(0.5 * periods).floor().max(1.0));
         let most = settings.most_periods.min(reach);
         let size = |guard| closure::size(&velocity.values, (&times, guard));
-        let [before, after] = ringing::beside_impacts(&velocity.values, &times, size(of_jump));
+        let first = size(of_jump);
+        let [before, after] = ringing::beside_impacts(&velocity.values, &times, first);
         let guard = [of_jump[0].max(before), of_jump[1].max(after)];
-        let level = size(guard);
+        let level = if guard == of_jump { first } else { size(guard) };
         Self {
             closures: closures_beside_hum(
                 &velocity.values,

@@ -17,7 +17,7 @@ use crate::motion::response::{Response, responses};
 use crate::motion::undetermined::Undetermined;
 use crate::record::{Excitation, Flag, FlagCode, Problem, Record, Role, Setting};
 use crate::signal::decay::{self, Decay, Watched};
-use crate::signal::robust;
+use crate::signal::{columns, robust};
 
 /// Greatest and least value of a motion channel, SI, about its mean.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -401,8 +401,7 @@ fn amplitudes(record: &Record) -> Vec<Amplitude> {
         .iter()
         .filter(|c| !matches!(c.role, Role::Drive | Role::Contact) && !c.values.is_empty())
         .map(|c| {
-            let low = c.values.iter().copied().fold(f64::INFINITY, f64::min);
-            let high = c.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let (low, high) = columns::extremes(&c.values);
             let mean = crate::signal::robust::mean(&c.values);
             let centred: Vec<f64> = c.values.iter().map(|v| v - mean).collect();
             Amplitude {

@@ -239,36 +239,34 @@ const BY_CHANCE: f64 = 1e-3;
 /// the converter makes a sample repeat the one before by chance, but a short way as often as none: of the steps up to half
 /// of the motion's, one in as many as there are digits in that is none.
 fn frozen_stretches(values: &[f64]) -> Vec<(usize, usize)> {
-    let step = |i: usize| values[i + 1] - values[i];
-    let (low, high) = columns::extremes(values);
-    let moving = STEPS_A_SAMPLE * columns::least_step(values, 1e-12 * (high - low));
-    let (mut found, mut short_ways) = (Vec::new(), Vec::new());
-    let mut i = 1;
-    while i + 1 < values.len() {
-        let still = (i..values.len() - 1)
-            .take_while(|k| step(*k) == 0.0)
-            .count();
-        // a short step is looked at as one that might have been none
-        let length = still.max(1);
-        let after = i + length;
-        if after + 2 < values.len() {
-            let (before, jump, next) = (step(i - 1), step(after), step(after + 1));
-            let way = before.abs().min(next.abs());
-            let unseen = UNSEEN_PART * (length + 1) as f64 * way;
-            let fast = way >= moving && before * next > 0.0;
-            let short = step(i).abs() <= 0.5 * way;
-            if fast && short && before * jump > 0.0 && jump.abs() >= unseen {
-                short_ways.push((way, length));
-                if still > 0 {
-                    found.push((i, still));
-                }
-            }
-        }
-        i += still + 1;
-    }
+    let mut found: Vec<(usize, usize)> = stretches(values).filter(|(_, n)| *n > 0).collect();
     if found.is_empty() {
         return found;
     }
+    let step = |i: usize| values[i + 1] - values[i];
+    let (low, high) = columns::extremes(values);
+    let moving = STEPS_A_SAMPLE * columns::least_step(values, 1e-12 * (high - low));
+    // the motion's way a sample where it goes on by what was not seen, and the number of steps
+    let short_way = |(i, still): (usize, usize)| {
+        // a short step is looked at as one that might have been none
+        let length = still.max(1);
+        let after = i + length;
+        if after + 2 >= values.len() {
+            return None;
+        }
+        let (before, jump, next) = (step(i - 1), step(after), step(after + 1));
+        let way = before.abs().min(next.abs());
+        let unseen = UNSEEN_PART * (length + 1) as f64 * way;
+        let fast = way >= moving && before * next > 0.0;
+        let short = step(i).abs() <= 0.5 * way;
+        let goes_on = before * jump > 0.0 && jump.abs() >= unseen;
+        (fast && short && goes_on).then_some((way, length))
+    };
+    found.retain(|stretch| short_way(*stretch).is_some());
+    if found.is_empty() {
+        return found;
+    }
+    let short_ways = stretches(values).filter_map(short_way);
     // of values that are no multiples of a digit none equals another by chance
     let digit = columns::digit(values);
     let digit = if are_multiples(values, digit) {
@@ -280,11 +278,22 @@ fn frozen_stretches(values: &[f64]) -> Vec<(usize, usize)> {
         let each = (digit / way).min(1.0);
         each.powi(i32::try_from(length).unwrap_or(i32::MAX))
     };
-    let expected = short_ways.into_iter().map(chance).sum();
+    let expected = short_ways.map(chance).sum();
     if at_least(found.len(), expected) > BY_CHANCE {
         found.clear();
     }
     found
+}
+
+/// Every sample but the first and the last at which values do not stand still, or begin to, with the number of steps for
+/// which they do.
+fn stretches(values: &[f64]) -> impl Iterator<Item = (usize, usize)> {
+    let stretch = |i: usize| {
+        let pairs = values.get(i..)?.windows(2);
+        let still = pairs.clone().take_while(|pair| pair[0] == pair[1]);
+        (pairs.len() > 0).then(|| (i, still.count()))
+    };
+    std::iter::successors(stretch(1), move |(i, still)| stretch(i + still + 1))
 }
 
 /// Whether values are apart by multiples of a digit, but for some.

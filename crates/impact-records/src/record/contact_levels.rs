@@ -66,8 +66,7 @@ fn turned_around(record: &mut Record) -> Option<Flag> {
     let closed = |v: &f64| if level >= 0.0 { *v > level } else { *v < level };
     let closed: Vec<bool> = channel.values.iter().map(closed).collect();
     let share = closed.iter().filter(|c| **c).count() as f64 / closed.len().max(1) as f64;
-    let motion = motion_together(record)?;
-    if share <= MOSTLY || !moves_while_closed(&motion, &closed) {
+    if share <= MOSTLY || !moves_while_closed(&motion_together(record)?, &closed) {
         return None;
     }
     let channel = contact(record)?;

@@ -5,7 +5,7 @@ use crate::signal::robust;
 use crate::signal::whole;
 
 /// Impacts of which the ringing is known.
-const FEWEST: usize = 3;
+pub(crate) const FEWEST: usize = 3;
 /// Share of the usual time between impacts up to which ringing is looked for.
 const REACH: f64 = 0.2;
 /// Third difference from which a waveform rings, over its size.
@@ -31,8 +31,11 @@ pub(crate) fn beside_impacts(values: &[f64], times: &[f64], size: f64) -> [f64; 
     let limit = (RINGS * size).max(STANDS_OUT * quiet);
     let most = whole::index(REACH * usual);
     let rings = |first: &dyn Fn(f64) -> Option<usize>| {
-        let beside = times.iter().filter_map(|t| thirds.get(first(*t)?).copied());
-        robust::median(&beside.collect::<Vec<f64>>()).is_some_and(|third| third > limit)
+        let beside = times.iter().filter_map(|t| thirds.get(first(*t)?));
+        let (known, ringing) = beside.fold((0, 0), |(known, ringing), third| {
+            (known + 1, ringing + usize::from(*third > limit))
+        });
+        2 * ringing > known
     };
     // of a difference the sample next to the impact
     let after = (1..=most).rfind(|k| rings(&|t| Some(whole::index(t.floor()) + k)));
