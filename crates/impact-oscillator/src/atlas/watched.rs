@@ -208,7 +208,8 @@ fn observe_exactly(
     }
     if watch.settle_periods == 0.0 {
         // a watch of what is now is not judged
-        open.iter_mut().for_each(|o| o.motion = SettledMotion::Chaotic);
+        open.iter_mut()
+            .for_each(|o| o.motion = SettledMotion::Chaotic);
         return;
     }
     for round in 0..=MOST_ROUNDS {
