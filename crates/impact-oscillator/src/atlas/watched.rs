@@ -213,6 +213,9 @@ fn observe_exactly(
         return;
     }
     for round in 0..=MOST_ROUNDS {
+        if open.is_empty() {
+            return;
+        }
         let course = Course {
             settle_periods: watch.settle_periods * 2_f64.powi(round),
             watch_periods: 0.0,
