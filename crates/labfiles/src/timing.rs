@@ -305,7 +305,12 @@ const NO_UNITS: [&str; 10] = [
 
 /// What a name has in brackets as a unit, and is none that is known: `t (jiff)`.
 fn unknown_in_name(name: &str) -> Option<String> {
-    let text = name.split_once(['(', '['])?.1.split([')', ']']).next()?.trim();
+    let text = name
+        .split_once(['(', '['])?
+        .1
+        .split([')', ']'])
+        .next()?
+        .trim();
     let letters = text.chars().all(char::is_alphabetic);
     let short = (1..=4).contains(&text.chars().count());
     let unit = letters && short && !NO_UNITS.contains(&text.to_lowercase().as_str());

@@ -111,6 +111,11 @@ impl ResolvedCampaign {
     #[must_use]
     pub fn with_late(&self, late: &[LateChannel]) -> Self {
         let mut campaign = self.clone();
+        let left_out = |role| {
+            late.iter()
+                .any(|l| l.role == role && l.unsteady_s.is_some())
+        };
+        campaign.channels.retain(|setup| !left_out(setup.role));
         for setup in &mut campaign.channels {
             let found = late.iter().find(|l| l.role == setup.role);
             setup.delay_s += found.map_or(0.0, |l| l.delay_s);

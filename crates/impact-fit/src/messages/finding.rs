@@ -72,6 +72,13 @@ pub enum Finding {
         /// How sure.
         z_score: f64,
     },
+    /// A channel has another delay in each record, and is left out.
+    UnsteadyChannel {
+        /// The channel.
+        channel: Role,
+        /// Median difference of its delays from their median, ms.
+        scatter_ms: f64,
+    },
     /// The sign of a channel is the opposite of the stated one.
     InvertedChannel {
         /// The channel.
@@ -323,6 +330,7 @@ impl Finding {
             | Self::GainsOrClearances { .. }
             | Self::GainsApart { .. }
             | Self::LateChannel { .. }
+            | Self::UnsteadyChannel { .. }
             | Self::InvertedChannel { .. }
             | Self::UndeclaredLowPass { .. }
             | Self::WrongCorner { .. }
@@ -358,6 +366,9 @@ message_table! { "finding": Finding, key = template_key;
         channel = Value::Message(channel),
         key = Value::Name(channel.name()),
         time = Value::Number(later_ms.abs(), 2);
+    Self::UnsteadyChannel { channel, scatter_ms } =>
+        channel = Value::Message(channel),
+        time = Value::Number(*scatter_ms, 1);
     Self::InvertedChannel { channel } =>
         channel = Value::Message(channel),
         key = Value::Name(channel.name());

@@ -57,6 +57,8 @@ pub enum Note {
     WithoutImpact,
     /// No record shows its drive or states its frequency.
     NoFrequency,
+    /// No record without impacts and no nominal value tells where the fits start.
+    GuessedStart,
     /// A cause that the findings name bends the fits that it rests on.
     Bent,
     /// It is that of one method, which a cause that the findings name does not reach.

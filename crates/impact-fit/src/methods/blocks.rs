@@ -313,13 +313,15 @@ impl Blocks {
         })
     }
 
-    /// How two masses may differ, whether both are measured or the motion of one shows the other.
+    /// How two masses may differ, whether both are measured or the motion of one shows the other. Drive, stiffness and
+    /// damping are per unit of mass: where masses are stated that differ, those may differ as much.
     pub fn asymmetries(&self, nominal: &Nominal) -> impl Iterator<Item = Prior> {
         let [centre, deviation] = nominal.mass_asymmetry.unwrap_or([0.0, MASS_ASYMMETRY]);
+        let others = ASYMMETRY.hypot(centre);
         let all = [
-            Prior::new(Coordinate::DriveAsymmetry, 0.0, ASYMMETRY),
-            Prior::new(Coordinate::StiffnessAsymmetry, 0.0, ASYMMETRY),
-            Prior::new(Coordinate::DampingAsymmetry, 0.0, ASYMMETRY),
+            Prior::new(Coordinate::DriveAsymmetry, 0.0, others),
+            Prior::new(Coordinate::StiffnessAsymmetry, 0.0, others),
+            Prior::new(Coordinate::DampingAsymmetry, 0.0, others),
             Prior::new(Coordinate::MassAsymmetry, centre, deviation),
         ];
         let two = self.resonance.rig == RigKind::Double;

@@ -527,6 +527,7 @@ impl<'a> IdentificationRun<'a> {
         if let Some(change) = change.filter(|_| leading == Some(Cause::Change)) {
             replaced.extend(change.tell(joint));
         }
+        cause::doubt_without_one_degree_of_freedom(joint, methods);
         suspicions.retain(|finding| !leading.is_some_and(|c| cause::explains(c, finding)));
         (leading, replaced)
     }

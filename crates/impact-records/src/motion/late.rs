@@ -10,6 +10,8 @@ use crate::signal::robust;
 const UNNOTICED: f64 = 1.5;
 /// Impacts from which a delay is told.
 const FEWEST_IMPACTS: usize = 8;
+/// Impactless records from which the phases of a displacement and a velocity tell a delay.
+const FEWEST_RECORDS: usize = 3;
 /// Greatest median difference of the records' lags from their median, in the steps in which they are found.
 const ALIKE: f64 = 0.75;
 /// Steps beyond which a jump takes time: an instant takes one, or two where readings are averaged or shifted
@@ -52,7 +54,8 @@ pub fn late_channels(observations: &[Observation]) -> Vec<LateChannel> {
         let same = same.filter(|(_, l)| l.role == role && l.behind_contact == by_contact);
         told(role, &same.collect::<Vec<_>>())
     };
-    let told: Vec<Told> = roles.into_iter().filter_map(of).collect();
+    let told: Vec<Told> = roles.iter().copied().filter_map(of).collect();
+    let steady = !told.is_empty();
     let reference_s = if by_contact {
         beside_contact(&told)
     } else {
@@ -74,7 +77,54 @@ pub fn late_channels(observations: &[Observation]) -> Vec<LateChannel> {
     // all are earlier than the contact
     let by_s = -reference_s;
     let contact = (by_contact && by_s > 0.0).then(|| LateChannel::by(Role::Contact, by_s));
-    late.chain(contact).collect()
+    let mut found: Vec<LateChannel> = late.chain(contact).collect();
+    // beside a channel whose delay behind the contact is the same in all records
+    if by_contact && steady {
+        found.extend(roles.iter().filter_map(|role| unsteady(*role, &all)));
+    }
+    let displacements = late_displacements(observations, &found);
+    found.extend(displacements);
+    found
+}
+
+/// A channel that is at another time behind the contact in each record, as from a recorder of its own.
+fn unsteady(role: Role, all: &[(&Observation, &ChannelLag)]) -> Option<LateChannel> {
+    let same = all
+        .iter()
+        .filter(|(_, l)| l.role == role && l.behind_contact);
+    let (lags_s, steps_s): (Vec<f64>, Vec<f64>) = same.map(|(_, l)| (l.lag_s, l.step_s)).unzip();
+    let middle_s = robust::median(&lags_s)?;
+    let apart: Vec<f64> = lags_s.iter().map(|lag| (lag - middle_s).abs()).collect();
+    let apart_s = robust::median(&apart)?;
+    // the impacts of a record agree on one lag within this
+    let unlike = apart_s > UNNOTICED * robust::median(&steps_s)?;
+    (lags_s.len() >= FEWEST_IMPACTS && unlike).then(|| LateChannel::unsteady(role, apart_s))
+}
+
+/// Displacements that are later or earlier than the velocity of the same mass, by their phases at the drive's frequency
+/// in impactless records; `found`: what is known of the velocities.
+fn late_displacements(observations: &[Observation], found: &[LateChannel]) -> Vec<LateChannel> {
+    let pairs = [
+        (Role::DisplacementX, Role::VelocityX),
+        (Role::DisplacementY, Role::VelocityY),
+    ];
+    let of = |(displacement, velocity): (Role, Role)| {
+        // what is known of a filter is in the phases already
+        let usable = observations.iter().filter(|o| !o.excluded() && !o.low_pass);
+        let lags =
+            usable.filter_map(|o| Some((o.lag_s(displacement, velocity)?, o.sample_rate_hz)));
+        let (lags_s, rates_hz): (Vec<f64>, Vec<f64>) = lags.unzip();
+        let step_s = robust::median(&rates_hz)?.recip();
+        let behind_s = robust::median(&lags_s)?;
+        let apart: Vec<f64> = lags_s.iter().map(|lag| (lag - behind_s).abs()).collect();
+        let alike = lags_s.len() >= FEWEST_RECORDS && robust::median(&apart)? <= ALIKE * step_s;
+        let of_velocity = found.iter().find(|late| late.role == velocity);
+        let filtered = of_velocity.is_some_and(|late| late.low_pass.is_some());
+        let delay_s = behind_s + of_velocity.map_or(0.0, |late| late.delay_s);
+        let noticed = delay_s.abs() > UNNOTICED * step_s;
+        (alike && noticed && !filtered).then(|| LateChannel::by(displacement, delay_s))
+    };
+    pairs.into_iter().filter_map(of).collect()
 }
 
 /// The lag of the earliest channel.
@@ -150,7 +200,8 @@ fn told(role: Role, lags: &[(&Observation, &ChannelLag)]) -> Option<Told> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::Motion;
+    use crate::event::DriveTone;
+    use crate::motion::{Motion, Response};
 
     fn observed(lags_ms: [f64; 2], behind_contact: bool) -> Vec<Observation> {
         let [x, y] = lags_ms;
@@ -188,6 +239,75 @@ mod tests {
             panic!("one channel is late");
         };
         assert_eq!(y.role, Role::VelocityY);
+    }
+
+    #[test]
+    fn a_channel_at_another_time_in_each_record_is_told_beside_one_that_is_not() {
+        let observed = |y_ms: &dyn Fn(u32) -> f64, x_ms: &dyn Fn(u32) -> f64| {
+            let one = |i: u32| observed([x_ms(i), y_ms(i)], true).swap_remove(0);
+            late_channels(&(0..12).map(one).collect::<Vec<_>>())
+        };
+        let own = |i: u32| 1.7 * f64::from(i * 5 % 12);
+        let found = observed(&own, &|_| 0.0);
+        assert_eq!(found.len(), 1);
+        assert_eq!(found[0].role, Role::VelocityY);
+        assert!((found[0].unsteady_s.expect("a scatter") - 5.1e-3).abs() < 1e-9);
+        // of both it may be the contact
+        assert_eq!(observed(&own, &own), []);
+        // within what impacts of one lag differ
+        assert_eq!(observed(&|i| 0.1 * f64::from(i % 3), &|_| 0.0), []);
+    }
+
+    #[test]
+    fn a_displacement_is_late_against_the_velocity_of_the_same_mass() {
+        // a velocity of 1 in phase with the drive, and its displacement, late by `late_s`, or behind a high-pass
+        let observed = |late_s: f64, high_pass_hz: f64| {
+            [10.0, 12.0, 14.0, 20.0].map(|frequency_hz| {
+                let rate = std::f64::consts::TAU * frequency_hz;
+                let turned = -0.5 * std::f64::consts::PI - rate * late_s
+                    + (high_pass_hz / frequency_hz).atan();
+                let response = |role, amplitude: f64, turned: f64| Response {
+                    role,
+                    real: amplitude * turned.cos(),
+                    imaginary: amplitude * turned.sin(),
+                    error: 0.0,
+                    residual_rms: 0.0,
+                    high_pass_hz: None,
+                };
+                let mut o = Observation::of("r", frequency_hz, Motion::Impactless);
+                o.drive = Some(DriveTone {
+                    frequency_hz,
+                    frequency_error_hz: 0.0,
+                    amplitude: 1.0,
+                    phase_rad: 0.0,
+                    residual_ratio: 0.0,
+                });
+                o.response = vec![
+                    response(Role::VelocityX, 1.0, 0.0),
+                    response(Role::DisplacementX, 1.0 / rate, turned),
+                ];
+                o
+            })
+        };
+        let step_s = observed(0.0, 0.0)[0].sample_rate_hz.recip();
+        for samples in [-4.0, 0.0, 1.0, 4.0] {
+            let late = late_channels(&observed(samples * step_s, 0.0));
+            if samples.abs() < UNNOTICED {
+                assert_eq!(late, []);
+            } else {
+                assert_eq!(late.len(), 1);
+                assert_eq!(late[0].role, Role::DisplacementX);
+                assert!((late[0].delay_s - samples * step_s).abs() < 1e-9);
+            }
+        }
+        // the lag of a high-pass falls with the frequency
+        assert_eq!(late_channels(&observed(0.0, 4.0)), []);
+        // the velocity is late as well: the contact tells that
+        let known = [LateChannel::by(Role::VelocityX, 4.0 * step_s)];
+        assert_eq!(
+            late_displacements(&observed(-4.0 * step_s, 0.0), &known),
+            []
+        );
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! A channel that is later than stated, or of the other sign.
+//! A channel that is later than stated, of the other sign, or at another time in each record.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +21,9 @@ pub struct LateChannel {
     /// Whether its sign is the opposite of the stated one.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub inverted: bool,
+    /// By how much its delay differs from record to record, s, where each has one of its own: the channel is left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unsteady_s: Option<f64>,
 }
 
 impl LateChannel {
@@ -32,6 +35,15 @@ impl LateChannel {
             low_pass: None,
             order_share: all(),
             inverted: false,
+            unsteady_s: None,
+        }
+    }
+
+    /// A channel whose delay differs from record to record by a time, s.
+    pub fn unsteady(role: Role, by_s: f64) -> Self {
+        Self {
+            unsteady_s: Some(by_s),
+            ..Self::by(role, 0.0)
         }
     }
 
@@ -52,6 +64,7 @@ impl LateChannel {
                     old.delay_s += new.delay_s;
                     old.inverted ^= new.inverted;
                     old.low_pass = old.low_pass.or(new.low_pass);
+                    old.unsteady_s = old.unsteady_s.or(new.unsteady_s);
                 }
                 None => all.push(new),
             }

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use crate::event::{
@@ -133,6 +134,18 @@ impl Observation {
         let mut from = from.iter().flatten();
         self.has_flag(FlagCode::Clipped)
             && from.any(|r| matches!(r, Role::AccelerationX | Role::AccelerationY))
+    }
+
+    /// How much later a displacement is than the velocity of the same mass, by their responses, s: less than half a
+    /// period.
+    pub(super) fn lag_s(&self, displacement: Role, velocity: Role) -> Option<f64> {
+        let of = |role| {
+            let found = self.response.iter().find(|r| r.role == role)?;
+            Some(Complex::new(found.real, found.imaginary))
+        };
+        let rate = std::f64::consts::TAU * self.tone()?.frequency_hz;
+        let turned = of(displacement)? * Complex::i() * of(velocity)?.conj();
+        (turned.norm() > 0.0).then(|| -turned.arg() / rate)
     }
 
     /// The observation without what takes room: impacts, amplitudes, responses, waveform and decays.
@@ -332,8 +345,8 @@ fn smears_jumps(record: &Record) -> bool {
     filters.any(|filter| filter.settling_s() * record.sample_rate_hz > 1.0)
 }
 
-/// Scale each record's drive amplitude by what was measured, relative to the median of its
-/// specimen, if it differs from the stated one; the static deflection then refers to that median.
+/// Set each record's drive amplitude to what was measured, if that differs from the stated one. The nominal drive is
+/// the one that most of its specimen's records have by what they state: where all state the same, the median.
 pub fn scale_drives(observations: &mut [Observation]) {
     let groups: std::collections::BTreeSet<Option<String>> = observations
         .iter()
@@ -344,14 +357,14 @@ pub fn scale_drives(observations: &mut [Observation]) {
         let measured: Vec<f64> = observations
             .iter()
             .filter(|o| o.setting.specimen == group && !o.excluded())
-            .filter_map(|o| Some(o.drive?.amplitude))
+            .filter_map(|o| Some(o.drive?.amplitude / o.setting.drive_amplitude))
             .collect();
-        let Some(median) = crate::signal::robust::median(&measured).filter(|m| *m > 0.0) else {
+        let Some(nominal) = crate::signal::robust::median(&measured).filter(|m| *m > 0.0) else {
             continue;
         };
         for o in observations.iter_mut().filter(same) {
             let Some(drive) = o.drive else { continue };
-            let ratio = drive.amplitude / median;
+            let ratio = drive.amplitude / nominal;
             if (ratio / o.setting.drive_amplitude - 1.0).abs() > DRIVE_CHANGES {
                 o.setting.drive_amplitude = ratio;
             }
@@ -556,6 +569,30 @@ mod tests {
         // 2.005/2 differs by less than 0.5 %: the stated amplitude stays.
         let amplitudes = all.map(|o| o.setting.drive_amplitude);
         assert_eq!(amplitudes, [0.5, 1.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn stated_drive_amplitudes_stay_relative_to_the_nominal_one() {
+        let stated = |stated: f64, measured: f64| {
+            let mut o = Observation::of("r", 12.0, Motion::Impactless);
+            o.setting.drive_amplitude = stated;
+            o.drive = Some(DriveTone {
+                frequency_hz: 12.0,
+                frequency_error_hz: 0.0,
+                amplitude: measured,
+                phase_rad: 0.0,
+                residual_ratio: 0.0,
+            });
+            o
+        };
+        // 3 V are the nominal drive; the last record had 3.3 V where 3 V were stated
+        let mut all = [(0.5, 1.5), (1.5, 4.5), (1.5, 4.51), (1.0, 3.3)].map(|(s, m)| stated(s, m));
+        scale_drives(&mut all);
+        let found = all.map(|o| o.setting.drive_amplitude);
+        let wanted = [0.5, 1.5, 1.5, 1.1];
+        for (found, wanted) in found.iter().zip(wanted) {
+            assert!((found - wanted).abs() < 3e-3, "{found} for {wanted}");
+        }
     }
 
     #[test]

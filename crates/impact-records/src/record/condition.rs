@@ -3,6 +3,7 @@
 
 use std::ops::Range;
 
+use super::spikes::without_spikes;
 use super::{Channel, Excitation, Flag, Problem, Record, Role, time_axis};
 use crate::signal::{columns, interpolation, robust, whole};
 
@@ -172,6 +173,8 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
     let frozen: Vec<Flag> = moving.filter_map(without_frozen).collect();
     // one camera takes all of them
     flags.extend(frozen.into_iter().next());
+    let spikes = record.channels.iter_mut().filter_map(without_spikes);
+    flags.extend(spikes);
     record.flags.extend(flags);
 }
 

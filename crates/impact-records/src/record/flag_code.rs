@@ -74,6 +74,8 @@ flag_codes! {
     ContactUnclear = "contact_unclear",
     /// A camera's picture stood still, then jumped.
     FrozenFrames = "frozen_frames",
+    /// Lone samples were far off those around them.
+    Spikes = "spikes",
     /// Samples are missing.
     DroppedSamples = "dropped_samples",
     /// Time stamps are repeated.

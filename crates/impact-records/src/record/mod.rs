@@ -19,6 +19,7 @@ pub mod late;
 mod low_pass;
 pub mod problem;
 mod role;
+mod spikes;
 pub mod time_axis;
 mod times;
 

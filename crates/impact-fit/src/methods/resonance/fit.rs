@@ -59,7 +59,8 @@ fn enough(blocks: &Blocks) -> bool {
 const MOST_FOR_A_START: usize = 64;
 
 /// Starting values of the resonance curve: the stated ones, and a coarse grid whose deflection
-/// follows from the greatest response.
+/// follows from the greatest response. Where masses are stated that differ, springs, dashpots and drives are as unlike
+/// as they, or equal.
 fn starts(block: &ResonanceBlock, nominal: &Nominal) -> Vec<Parameters> {
     let frequencies: Vec<f64> = block.points.iter().map(|p| p.frequency_hz).collect();
     let low = frequencies.iter().copied().fold(f64::INFINITY, f64::min);
@@ -69,10 +70,22 @@ fn starts(block: &ResonanceBlock, nominal: &Nominal) -> Vec<Parameters> {
         .map(|i| low * 0.8 * (high * 1.25 / (low * 0.8)).powf(f64::from(i) / 6.0))
         .collect();
     grid.extend(nominal.natural_frequency_hz);
+    let unlike = nominal.mass_asymmetry.map_or(0.0, |[centre, _]| centre);
+    let per_mass: &[f64] = if unlike == 0.0 {
+        &[0.0]
+    } else {
+        &[0.0, -unlike]
+    };
     for f0 in grid {
-        for beta in [0.01, 0.05, 0.2] {
+        let each = [0.01, 0.05, 0.2].into_iter();
+        for (beta, per_mass) in each.flat_map(|beta| per_mass.iter().map(move |u| (beta, u))) {
             let beta = nominal.damping_ratio.unwrap_or(beta);
-            let unit = nominal.applied(Parameters::symmetric(0.8, f0, beta, 1.0));
+            let unit = Parameters {
+                drive_asymmetry: *per_mass,
+                stiffness_asymmetry: *per_mass,
+                damping_asymmetry: *per_mass,
+                ..nominal.applied(Parameters::symmetric(0.8, f0, beta, 1.0))
+            };
             out.push(Parameters {
                 static_deflection_m: deflection_guess(block, &unit),
                 ..unit

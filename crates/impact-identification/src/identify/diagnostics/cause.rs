@@ -81,6 +81,29 @@ pub fn withdraw(
     replaced
 }
 
+/// What the resonance curve tells is not identified where it is not that of one degree of freedom: neither by the curve
+/// nor by waveforms, whose model is the same.
+pub fn doubt_without_one_degree_of_freedom(
+    joint: &mut MethodResult,
+    methods: &BTreeMap<Method, MethodResult>,
+) {
+    let curve = methods.get(&Method::Resonance);
+    if curve.is_none_or(|curve| curve.fits != Some(false)) {
+        return;
+    }
+    for parameter in [
+        Coordinate::Frequency,
+        Coordinate::Damping,
+        Coordinate::Deflection,
+    ] {
+        let estimate = joint.parameters.slot(parameter).and_then(Option::as_mut);
+        if let Some(estimate) = estimate.filter(|e| e.status == Status::Identified) {
+            estimate.status = Status::Weak;
+            estimate.note = Some(Note::Bent);
+        }
+    }
+}
+
 /// Half an estimate's interval, SI; `None` where it has none.
 fn half_width(estimate: &Estimate) -> Option<f64> {
     estimate.interval95.map(|[low, high]| 0.5 * (high - low))
@@ -236,6 +259,25 @@ mod tests {
             pair: PairAgreement::default(),
         };
         assert!(!explains(Cause::Statement, &apart));
+    }
+
+    #[test]
+    fn a_curve_that_is_not_of_one_degree_of_freedom_identifies_nothing() {
+        let mut joint = MethodResult::default();
+        joint.parameters.restitution = Some(estimate(Coordinate::Restitution, 0.8, 1e-3));
+        joint.parameters.damping_ratio = Some(estimate(Coordinate::Damping, 0.062f64.ln(), 2e-3));
+        let mut methods = methods();
+        let as_found = joint.clone();
+        doubt_without_one_degree_of_freedom(&mut joint, &methods);
+        assert_eq!(joint.parameters, as_found.parameters);
+        methods.get_mut(&Method::Resonance).expect("a curve").fits = Some(false);
+        doubt_without_one_degree_of_freedom(&mut joint, &methods);
+        let beta = joint.parameters.damping_ratio.expect("β");
+        assert_eq!((beta.status, beta.note), (Status::Weak, Some(Note::Bent)));
+        assert_eq!(
+            joint.parameters.restitution,
+            as_found.parameters.restitution
+        );
     }
 
     #[test]

@@ -66,8 +66,19 @@ pub fn late_channels(
         let finding = Finding::InvertedChannel { channel: l.role };
         finding.into()
     });
+    let unsteady = moved.iter().filter_map(|l| {
+        let finding = Finding::UnsteadyChannel {
+            channel: l.role,
+            scatter_ms: 1e3 * l.unsteady_s?,
+        };
+        Some(finding.into())
+    });
     let motion = GAIN_ROLES.iter().enumerate().filter_map(of);
-    inverted.chain(motion).chain(others).collect()
+    inverted
+        .chain(unsteady)
+        .chain(motion)
+        .chain(others)
+        .collect()
 }
 
 /// What is open where a filter's order is not known, or its corner: behind one pole an amplitude at the frequency f

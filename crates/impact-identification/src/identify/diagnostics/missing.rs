@@ -1,7 +1,7 @@
 //! Parameters that a campaign asks for and no method tells: each gets the reason instead of a value.
 
 use impact_fit::estimate::not_identifiable;
-use impact_fit::evidence::Evidence;
+use impact_fit::evidence::{Evidence, Nominal};
 use impact_fit::messages::Note;
 use impact_fit::methods::answer::MethodResult;
 use impact_fit::parameters::Coordinate;
@@ -22,7 +22,11 @@ pub fn say_missing(joint: &mut MethodResult, evidence: &Evidence<'_>) {
         if let Some(slot) = joint.parameters.slot(parameter)
             && slot.is_none()
         {
-            *slot = Some(not_identifiable(why(parameter, &observations)));
+            *slot = Some(not_identifiable(why(
+                parameter,
+                &observations,
+                &evidence.nominal,
+            )));
         }
     }
 }
@@ -46,7 +50,9 @@ fn asked(evidence: &Evidence<'_>, observations: &[&Observation]) -> Vec<Coordina
     r.into_iter().chain(others).collect()
 }
 
-fn why(parameter: Coordinate, observations: &[&Observation]) -> Note {
+/// Why a parameter is missing. Without an impactless record or nominal values the fits of motions with impacts start
+/// from a guess.
+fn why(parameter: Coordinate, observations: &[&Observation], nominal: &Nominal) -> Note {
     let any = |of: &dyn Fn(&Observation) -> bool| observations.iter().any(|o| of(o));
     if parameter == Coordinate::Restitution {
         return if any(&|o| !o.impacts.is_empty()) {
@@ -55,7 +61,10 @@ fn why(parameter: Coordinate, observations: &[&Observation]) -> Note {
             Note::WithoutImpact
         };
     }
-    if any(&|o| o.frequency_hz().is_some()) {
+    let stated = nominal.natural_frequency_hz.is_some() && nominal.static_deflection_m.is_some();
+    if !stated && any(&|o| o.drive.is_some()) && !any(&|o| !o.response.is_empty()) {
+        Note::GuessedStart
+    } else if any(&|o| o.frequency_hz().is_some()) {
         Note::NotDetermined { parameter }
     } else {
         Note::NoFrequency
@@ -67,8 +76,7 @@ mod tests {
     use super::*;
     use impact_fit::Status;
     use impact_fit::estimate::estimate;
-    use impact_fit::evidence::Nominal;
-    use impact_records::event::Impact;
+    use impact_records::event::{DriveTone, Impact};
     use impact_records::motion::Motion;
 
     /// What records are asked for beside the one parameter that they told.
@@ -111,6 +119,21 @@ mod tests {
             .natural_frequency_hz
             .expect("f0 is asked for");
         assert_eq!(f0.note, Some(Note::NoFrequency));
+        let mut driven = Observation::of("r", 12.0, Motion::Chaotic);
+        driven.impacts = vec![Impact::at(0.1, 1.0)];
+        driven.drive = Some(DriveTone {
+            frequency_hz: 12.0,
+            frequency_error_hz: 0.0,
+            amplitude: 1.0,
+            phase_rad: 0.0,
+            residual_ratio: 0.0,
+        });
+        let found = missing(Coordinate::Restitution, &[driven], RigKind::Double);
+        let f0 = found
+            .parameters
+            .natural_frequency_hz
+            .expect("f0 is asked for");
+        assert_eq!(f0.note, Some(Note::GuessedStart));
     }
 
     #[test]

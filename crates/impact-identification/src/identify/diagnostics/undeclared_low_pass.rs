@@ -21,6 +21,12 @@ use impact_records::record::LowPass;
 const LOWERED: [f64; 3] = [0.5, 1.25, 2.0];
 /// Range of it that these tell.
 const TOLD: [f64; 2] = [0.25, 3.0];
+/// The same of two poles: what they turn phases by beyond a delay, which grows as (f/`f_c`)³. Jumps of differentiated
+/// displacements behind 100 Hz showed corners of 130 to 144 Hz: 2.2 and 3.0.
+const TURNED: [f64; 3] = [1.0, 2.25, 3.5];
+const TURN_TOLD: [f64; 2] = [0.5, 5.0];
+/// The same about the best of these, over it.
+const NEARER: [f64; 3] = [0.5, 1.25, 2.0];
 /// Difference of the sums of squares, over what is typical of them, from which one order fits better: three
 /// standard errors.
 const SURE: f64 = 9.0;
@@ -108,26 +114,45 @@ fn settled(
 ) -> Option<Refiltered> {
     let refiltered = |filter| refiltered(evidence, channels, filter);
     let costs = |order: u32, corner: f64| fit(&refiltered((order, corner, 1.0)).evidence(evidence));
-    let more_poles = costs(2, 1.0)?;
-    let one_pole = LOWERED.map(|lowered| costs(1, corner(lowered)));
-    let [Some(a), Some(b), Some(c)] = one_pole else {
-        return None;
+    let one_pole = all(LOWERED.map(|lowered| costs(1, corner(lowered))))?;
+    let two_poles = all(TURNED.map(|turned| costs(2, corner_of_two(turned))))?;
+    let lowered = (LOWERED, TOLD);
+    let parabola = Parabola::through(lowered, one_pole.map(|c| c.simple));
+    let open = Parabola::through(lowered, one_pole.map(|c| c.open)).least;
+    let turned = (TURNED, TURN_TOLD);
+    let [shown, ..] = two_poles;
+    let coarse = Parabola::through(turned, two_poles.map(|c| c.simple));
+    let typical_of = |least: f64| (least / shown.residuals.max(1) as f64).max(1.0);
+    // the corner that jumps show, unless the waveforms surely have another one
+    let moved = (shown.simple - coarse.least) / typical_of(coarse.least) > SURE;
+    let elsewhere = if moved {
+        nearer(coarse.at, &|turned| costs(2, corner_of_two(turned)))
+    } else {
+        None
     };
-    let one_pole = [a, b, c];
-    let parabola = Parabola::through(one_pole.map(|c| c.simple));
-    let open = Parabola::through(one_pole.map(|c| c.open)).least;
-    let least = open.min(more_poles.open);
-    let typical = (least / more_poles.residuals.max(1) as f64).max(1.0);
-    let better = (more_poles.simple - parabola.least) / typical;
-    let surely = (more_poles.open - open) / typical;
+    let (two_simple, two_open, factor) = elsewhere.unwrap_or((shown.simple, shown.open, 1.0));
+    let typical = typical_of(open.min(two_open));
+    let better = (two_simple - parabola.least) / typical;
+    let surely = (two_open - open) / typical;
     let error = (typical / parabola.curvature).sqrt() / parabola.at;
     let filter = match (better > SURE, surely) {
         (true, surely) if surely > SURE => (1, corner(parabola.at), error.min(1.0)),
         (true, _) => (1, corner(parabola.at), 1.0),
-        (false, surely) if surely < -SURE => (2, 1.0, 0.0),
-        (false, _) => (2, 1.0, 1.0),
+        (false, surely) if surely < -SURE => (2, factor, 0.0),
+        (false, _) => (2, factor, 1.0),
     };
     Some(refiltered(filter))
+}
+
+/// The best of two poles near a value of what they turn: its sums of squares, without and with a change of the force,
+/// and its corner over the one that jumps show.
+fn nearer(turned: f64, costs: &dyn Fn(f64) -> Option<Costs>) -> Option<(f64, f64, f64)> {
+    let at = NEARER.map(|factor| factor * turned);
+    let found = all(at.map(costs))?;
+    let through = |of: fn(Costs) -> f64| Parabola::through((at, TURN_TOLD), found.map(of));
+    let simple = through(|c| c.simple);
+    let factor = corner_of_two(simple.at);
+    Some((simple.least, through(|c| c.open).least, factor))
 }
 
 /// The corner over the one that jumps show at which one pole lowers amplitudes by so much.
@@ -135,7 +160,18 @@ fn corner(lowered: f64) -> f64 {
     lowered.sqrt().recip()
 }
 
-/// A sum of squares over what one pole lowers amplitudes by.
+/// The same of two poles that turn phases by so much.
+fn corner_of_two(turned: f64) -> f64 {
+    turned.cbrt().recip()
+}
+
+/// The costs if there are all of them.
+fn all(costs: [Option<Costs>; 3]) -> Option<[Costs; 3]> {
+    let [a, b, c] = costs;
+    Some([a?, b?, c?])
+}
+
+/// A sum of squares over what a filter does to the motion.
 struct Parabola {
     at: f64,
     least: f64,
@@ -144,22 +180,23 @@ struct Parabola {
 }
 
 impl Parabola {
-    /// Through the sums of squares at [`LOWERED`]; where they have no least one, the best of them.
-    fn through([left, middle, right]: [f64; 3]) -> Self {
-        let step = LOWERED[1] - LOWERED[0];
+    /// Through the sums of squares at three values in equal steps, within the range that these tell; where they have no
+    /// least one, the best of them.
+    fn through((at, told): ([f64; 3], [f64; 2]), [left, middle, right]: [f64; 3]) -> Self {
+        let step = at[1] - at[0];
         let slope = (right - left) / (2.0 * step);
         let curvature = (left - 2.0 * middle + right) / (2.0 * step * step);
         if curvature > 0.0 {
-            let at = (LOWERED[1] - slope / (2.0 * curvature)).clamp(TOLD[0], TOLD[1]);
-            let off = at - LOWERED[1];
+            let least_at = (at[1] - slope / (2.0 * curvature)).clamp(told[0], told[1]);
+            let off = least_at - at[1];
             return Self {
-                at,
+                at: least_at,
                 least: middle + slope * off + curvature * off * off,
                 curvature,
             };
         }
         Self {
-            at: if left < right { LOWERED[0] } else { LOWERED[2] },
+            at: if left < right { at[0] } else { at[2] },
             least: left.min(right),
             curvature: f64::MIN_POSITIVE,
         }
@@ -232,7 +269,7 @@ mod tests {
 
     /// Impactless records at some frequencies of a velocity of unit amplitude behind a filter, as if jumps had shown
     /// one of second order at 250 Hz.
-    fn observations(behind: LowPass) -> Vec<Observation> {
+    fn observations(behind: LowPass, error: f64) -> Vec<Observation> {
         let shown = LowPass {
             corner_hz: 250.0,
             order: 2,
@@ -249,7 +286,7 @@ mod tests {
                 role: Role::VelocityX,
                 real: divided.re,
                 imaginary: divided.im,
-                error: 1e-4,
+                error,
                 residual_rms: 0.0,
                 high_pass_hz: None,
             }];
@@ -260,8 +297,8 @@ mod tests {
 
     /// The filter that is settled on, and what stays open of it, where fits compare amplitudes with 1; where the
     /// force may change with the frequency they fit anyhow.
-    fn found(behind: LowPass, force_changes: f64) -> (LowPass, f64) {
-        let observations = observations(behind);
+    fn found(behind: LowPass, force_changes: f64, error: f64) -> (LowPass, f64) {
+        let observations = observations(behind, error);
         let evidence = Evidence {
             rig: RigKind::Double,
             observations: &observations,
@@ -296,18 +333,26 @@ mod tests {
             corner_hz: 200.0,
             order: 1,
         };
-        let (filter, open) = found(one_pole, 0.0);
+        let (filter, open) = found(one_pole, 0.0, 1e-4);
         assert_eq!(filter.order, 1);
         assert!((filter.corner_hz - 200.0).abs() < 1.0, "{filter:?}");
         assert!(open < 0.05, "{open}");
         // the same where a change of the force explains it as well: the order stays open
-        let (filter, open) = found(one_pole, 1.0);
+        let (filter, open) = found(one_pole, 1.0, 1e-4);
         assert_eq!((filter.order, open), (1, 1.0));
         let two_poles = LowPass {
             order: 2,
             ..one_pole
         };
-        let (filter, open) = found(two_poles, 0.0);
+        let (filter, open) = found(two_poles, 0.0, 1e-4);
         assert_eq!((filter.order, open), (2, 0.0));
+        // jumps show a corner of 250 Hz; the waveforms surely have another one
+        let lower = LowPass {
+            corner_hz: 180.0,
+            order: 2,
+        };
+        let (filter, open) = found(lower, 0.0, 3e-6);
+        assert_eq!((filter.order, open), (2, 0.0));
+        assert!((filter.corner_hz - 180.0).abs() < 9.0, "{filter:?}");
     }
 }

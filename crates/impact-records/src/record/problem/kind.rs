@@ -268,6 +268,15 @@ problems! {
         /// Those that are interpolated.
         interpolated: usize,
     };
+    /// Lone samples are far off those around them, and replaced.
+    Spikes: LoneSpikes {
+        /// The channel.
+        channel: String,
+        /// How many.
+        count: usize,
+        /// The first of them.
+        first: usize,
+    };
     /// All channels hold their value.
     DroppedSamples: HeldSamples {
         /// For how many samples.

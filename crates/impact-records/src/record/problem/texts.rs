@@ -146,6 +146,10 @@ message_table! { "problem": Problem;
         samples = Value::Count(*samples),
         first = Value::Count(*first),
         interpolated = Value::Count(*interpolated);
+    Self::LoneSpikes { channel, count, first } =>
+        channel = Value::Name(channel),
+        count = Value::Count(*count),
+        first = Value::Count(*first);
     Self::HeldSamples { samples, first } =>
         samples = Value::Count(*samples),
         first = Value::Count(*first);
