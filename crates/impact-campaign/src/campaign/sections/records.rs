@@ -32,7 +32,9 @@ keys! {
         /// whether the clearances that are stated, here, in the run table or in attributes, are whole gaps between two
         /// masses: half of each is used
         whole_gaps: bool, default "`false`";
-        /// of records that state none, relative to the nominal one
+        /// of records that state none, relative to the nominal one, to which x_st refers. Where the drive is recorded
+        /// the measured amplitude counts: relative to the one that most records have by what they state or, where none
+        /// states any, to the median
         drive_amplitude: Placed<f64>;
         /// of records that state none: `"up"`, `"down"` or `"unknown"`
         sweep: Placed<Sweep>, init r#"# sweep = "up"               # of records that state none: up, down or unknown"#;

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use impact_fit::estimate::{Estimate, Status};
 use impact_fit::messages::cause::Cause;
-use impact_fit::messages::{Finding, Note};
+use impact_fit::messages::{Finding, Note, Remark};
 use impact_fit::method::Method;
 use impact_fit::methods::answer::MethodResult;
 use impact_fit::parameters::Coordinate;
@@ -87,8 +87,8 @@ pub fn doubt_without_one_degree_of_freedom(
     joint: &mut MethodResult,
     methods: &BTreeMap<Method, MethodResult>,
 ) {
-    let curve = methods.get(&Method::Resonance);
-    if curve.is_none_or(|curve| curve.fits != Some(false)) {
+    let says = |remark: &Remark| matches!(remark, Remark::NotOneDegreeOfFreedom { .. });
+    if !methods.values().any(|m| m.remarks.iter().any(says)) {
         return;
     }
     for parameter in [
@@ -113,7 +113,7 @@ fn half_width(estimate: &Estimate) -> Option<f64> {
 mod tests {
     use super::*;
     use impact_fit::estimate::estimate;
-    use impact_fit::messages::{PairAgreement, Remark};
+    use impact_fit::messages::PairAgreement;
     use impact_fit::parameters::effect::Effect;
     use impact_records::record::Role;
 
@@ -270,7 +270,10 @@ mod tests {
         let as_found = joint.clone();
         doubt_without_one_degree_of_freedom(&mut joint, &methods);
         assert_eq!(joint.parameters, as_found.parameters);
-        methods.get_mut(&Method::Resonance).expect("a curve").fits = Some(false);
+        let curve = methods.get_mut(&Method::Resonance).expect("a curve");
+        curve
+            .remarks
+            .push(Remark::NotOneDegreeOfFreedom { deviation: 0.3 });
         doubt_without_one_degree_of_freedom(&mut joint, &methods);
         let beta = joint.parameters.damping_ratio.expect("β");
         assert_eq!((beta.status, beta.note), (Status::Weak, Some(Note::Bent)));
