@@ -8,7 +8,7 @@ mod rows;
 mod scatter;
 mod unlisted;
 
-use crate::estimate::{self, Status};
+use crate::estimate::{self, Estimate, Status};
 use crate::messages::{Note, Remark};
 use crate::method::Method;
 use crate::methods::answer::MethodResult;
@@ -102,34 +102,13 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         fits: Some(true),
         ..MethodResult::default()
     };
-    let spread = Spread {
-        freedom: scatter.freedom,
-        ..Spread::known(error)
-    };
-    let restitution = estimate::estimate_within(Coordinate::Restitution, value, spread, None);
-    let mut restitution = estimate::wider(Coordinate::Restitution, &restitution, unlisted.error);
-    if let Some(error_s) = scatter.times_s.filter(|_| !scatter.is_told()) {
-        restitution.status = Status::Weak;
-        restitution.note = Some(Note::TimesNotTold { error_s });
-    }
+    let restitution = estimated((value, error), &scatter, &unlisted);
     result.parameters.restitution = Some(restitution);
     result.impact_groups = Some(ImpactGroups {
         by_record: all.clone(),
         ..structure::groups(&ratios, observations)
     });
-    let times = scatter
-        .times_s
-        .map(|error_s| Remark::TimesScatter { error_s });
-    let own = scatter
-        .own
-        .map(|share| Remark::RestitutionScatters { share });
-    let decides = unlisted.error > error;
-    let open = decides.then_some(Remark::FlightTimesOpen {
-        half_width: NORMAL_975 * unlisted.error,
-    });
-    result
-        .remarks
-        .extend(times.into_iter().chain(own).chain(open));
+    result.remarks.extend(remarks(error, &scatter, &unlisted));
     result
         .remarks
         .extend(not_used(left_out, &missed, observations));
@@ -150,6 +129,35 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         result.judge_structure(grouping);
     }
     Some(result)
+}
+
+/// R with the error that the rows leave of it and what times do not contain.
+fn estimated((value, error): (f64, f64), scatter: &Scatter, unlisted: &Unlisted) -> Estimate {
+    let spread = Spread {
+        freedom: scatter.freedom,
+        ..Spread::known(error)
+    };
+    let narrow = estimate::estimate_within(Coordinate::Restitution, value, spread, None);
+    let mut estimate = estimate::wider(Coordinate::Restitution, &narrow, unlisted.error);
+    if let Some(error_s) = scatter.times_s.filter(|_| !scatter.is_told()) {
+        estimate.status = Status::Weak;
+        estimate.note = Some(Note::TimesNotTold { error_s });
+    }
+    estimate
+}
+
+/// What scatters, and what times do not contain where it decides the interval; `error`: of R by the rows alone.
+fn remarks(error: f64, scatter: &Scatter, unlisted: &Unlisted) -> impl Iterator<Item = Remark> {
+    let times = scatter
+        .times_s
+        .map(|error_s| Remark::TimesScatter { error_s });
+    let own = scatter
+        .own
+        .map(|share| Remark::RestitutionScatters { share });
+    let open = (unlisted.error > error).then_some(Remark::FlightTimesOpen {
+        half_width: NORMAL_975 * unlisted.error,
+    });
+    times.into_iter().chain(own).chain(open)
 }
 
 /// R of each row.
