@@ -3,8 +3,8 @@
 use crate::signal::local_fit::LocalFit;
 
 /// Least and greatest c of a ball, 1/m: half the density of air times the area over the mass, of steel and of a
-/// balloon. Each factor between them is as likely before flights are seen.
-const USUAL_PER_M: [f64; 2] = [5e-4, 0.3];
+/// table tennis ball. Each factor between them is as likely before flights are seen.
+const USUAL_PER_M: [f64; 2] = [5e-4, 0.15];
 /// Values of c that are tried.
 const TRIED: usize = 61;
 

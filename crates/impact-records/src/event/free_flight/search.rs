@@ -178,10 +178,9 @@ impl<'a> Search<'a> {
         let flights = flights.filter_map(|(i, side)| self.stretches(i, side));
         let shown = flights.flatten().filter_map(|flight| flight.shown);
         let drag = Drag::of(&shown.collect::<Vec<_>>());
-        // its error is one for all impacts, in whose mean it must be whole, and for both speeds of each: it moves
-        // one up and the other down
+        // its error is one for both speeds of an impact: it moves one up and the other down
         Drag {
-            error_per_m: drag.error_per_m * (2.0 * self.falls.len() as f64).sqrt(),
+            error_per_m: std::f64::consts::SQRT_2 * drag.error_per_m,
             ..drag
         }
     }
