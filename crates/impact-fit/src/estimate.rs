@@ -167,11 +167,9 @@ pub fn wider(coordinate: Coordinate, estimate: &Estimate, by: f64) -> Estimate {
         ..estimate.clone()
     };
     let standard_error = error / unit;
-    if standard_error >= limits(coordinate).0 && wider.status == Status::Identified {
-        let parameter = coordinate;
-        wider.status = Status::Weak;
-        wider.note = Some(Note::Open {
-            parameter,
+    if standard_error >= limits(coordinate).0 {
+        wider.doubt(Note::Open {
+            parameter: coordinate,
             standard_error,
         });
     }
@@ -235,10 +233,22 @@ fn leaning(fit: &Fit, coordinate: Coordinate) -> Option<Note> {
 }
 
 impl Estimate {
+    /// Mark it as weak for a reason.
+    pub fn weaken(&mut self, why: Note) {
+        self.status = Status::Weak;
+        self.note = Some(why);
+    }
+
+    /// Mark it as weak for a reason where it is identified; what is weak already keeps its own.
+    pub fn doubt(&mut self, why: Note) {
+        if self.status == Status::Identified {
+            self.weaken(why);
+        }
+    }
+
     /// Mark it as no one number, with an interval that holds all of its values (of R).
     pub fn is_not_one_number(&mut self, values: &[f64]) {
-        self.status = Status::Weak;
-        self.note = Some(Note::NotOneNumber);
+        self.weaken(Note::NotOneNumber);
         if let Some([low, high]) = &mut self.interval95 {
             *low = values.iter().copied().fold(*low, f64::min).max(0.0);
             *high = values.iter().copied().fold(*high, f64::max).min(1.0);

@@ -181,11 +181,8 @@ mod tests {
     #[test]
     fn a_stretch_begins_at_a_zero_phase_of_the_drive() {
         let drive = DriveTone {
-            frequency_hz: 10.0,
-            frequency_error_hz: 0.0,
             phase_rad: 0.25 * std::f64::consts::TAU,
-            amplitude: 1.0,
-            residual_ratio: 0.0,
+            ..DriveTone::at(10.0, 1.0)
         };
         // a quarter of a period has passed at the first sample: three quarters to go
         let quarter = stretch(drive, 2);

@@ -135,13 +135,7 @@ fn records_are_grouped_by_why_their_motion_is_undetermined() {
         let (detecting, classifying) = (DetectSettings::default(), ClassifySettings::default());
         let decay = decay(record, 0, 11.0);
         let mut one = observe(&decay, RigKind::Single, &detecting, &classifying);
-        one.drive = Some(DriveTone {
-            frequency_hz: 11.0,
-            frequency_error_hz: 0.0,
-            amplitude: 1.0,
-            phase_rad: 0.0,
-            residual_ratio: 0.0,
-        });
+        one.drive = Some(DriveTone::at(11.0, 1.0));
         one.flags.clear();
         one.classification.motion = Motion::Undetermined { reason };
         one

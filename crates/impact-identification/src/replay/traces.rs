@@ -204,11 +204,8 @@ mod tests {
 
     fn cut(phase_rad: f64, periods: f64, impacts: &[Impact]) -> Cut<'_> {
         let drive = DriveTone {
-            frequency_hz: 10.0,
-            frequency_error_hz: 0.0,
             phase_rad,
-            amplitude: 1.0,
-            residual_ratio: 0.0,
+            ..DriveTone::at(10.0, 1.0)
         };
         Cut {
             stretch: Stretch {

@@ -143,13 +143,7 @@ mod tests {
 
     #[test]
     fn valid_without_impacts_whole_drive_periods_give_the_offset() {
-        let drive = DriveTone {
-            frequency_hz: 20.0,
-            frequency_error_hz: 0.0,
-            amplitude: 1.0,
-            phase_rad: 0.0,
-            residual_ratio: 0.0,
-        };
+        let drive = DriveTone::at(20.0, 1.0);
         // 2.5 periods of 100 samples: the plain mean would be off by the half period.
         let tone = |i: usize| (std::f64::consts::TAU * i as f64 / 100.0).sin();
         let mut velocity = Series::clean((0..250).map(|i| tone(i) + 0.7).collect());

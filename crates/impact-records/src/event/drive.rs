@@ -22,6 +22,17 @@ pub struct DriveTone {
 }
 
 impl DriveTone {
+    /// A pure tone of a frequency, Hz, and an amplitude, whose phase is zero at the first sample.
+    pub fn at(frequency_hz: f64, amplitude: f64) -> Self {
+        Self {
+            frequency_hz,
+            frequency_error_hz: 0.0,
+            amplitude,
+            phase_rad: 0.0,
+            residual_ratio: 0.0,
+        }
+    }
+
     /// Phase of the drive at a time since the first sample, rad in [0, 2π).
     pub fn phase_at(&self, time_s: f64) -> f64 {
         (std::f64::consts::TAU * self.frequency_hz * time_s + self.phase_rad)

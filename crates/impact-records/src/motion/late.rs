@@ -93,9 +93,7 @@ fn unsteady(role: Role, all: &[(&Observation, &ChannelLag)]) -> Option<LateChann
         .iter()
         .filter(|(_, l)| l.role == role && l.behind_contact);
     let (lags_s, steps_s): (Vec<f64>, Vec<f64>) = same.map(|(_, l)| (l.lag_s, l.step_s)).unzip();
-    let middle_s = robust::median(&lags_s)?;
-    let apart: Vec<f64> = lags_s.iter().map(|lag| (lag - middle_s).abs()).collect();
-    let apart_s = robust::median(&apart)?;
+    let apart_s = robust::median_absolute_deviation(&lags_s)?;
     // the impacts of a record agree on one lag within this
     let unlike = apart_s > UNNOTICED * robust::median(&steps_s)?;
     (lags_s.len() >= FEWEST_IMPACTS && unlike).then(|| LateChannel::unsteady(role, apart_s))
@@ -116,8 +114,8 @@ fn late_displacements(observations: &[Observation], found: &[LateChannel]) -> Ve
         let (lags_s, rates_hz): (Vec<f64>, Vec<f64>) = lags.unzip();
         let step_s = robust::median(&rates_hz)?.recip();
         let behind_s = robust::median(&lags_s)?;
-        let apart: Vec<f64> = lags_s.iter().map(|lag| (lag - behind_s).abs()).collect();
-        let alike = lags_s.len() >= FEWEST_RECORDS && robust::median(&apart)? <= ALIKE * step_s;
+        let apart_s = robust::median_absolute_deviation(&lags_s)?;
+        let alike = lags_s.len() >= FEWEST_RECORDS && apart_s <= ALIKE * step_s;
         let of_velocity = found.iter().find(|late| late.role == velocity);
         let filtered = of_velocity.is_some_and(|late| late.low_pass.is_some());
         let delay_s = behind_s + of_velocity.map_or(0.0, |late| late.delay_s);
@@ -169,9 +167,10 @@ fn told(role: Role, lags: &[(&Observation, &ChannelLag)]) -> Option<Told> {
     let median = |of: &dyn Fn(&(&Observation, &ChannelLag)) -> f64| {
         robust::median(&lags.iter().map(of).collect::<Vec<f64>>())
     };
-    let lag_s = median(&|(_, l)| l.lag_s)?;
+    let lags_s: Vec<f64> = lags.iter().map(|(_, l)| l.lag_s).collect();
+    let lag_s = robust::median(&lags_s)?;
     let step_s = median(&|(_, l)| l.step_s)?;
-    let apart_s = median(&|(_, l)| (l.lag_s - lag_s).abs())?;
+    let apart_s = robust::median_absolute_deviation(&lags_s)?;
     let impacts: usize = lags.iter().map(|(_, l)| l.impacts).sum();
     if impacts < FEWEST_IMPACTS || apart_s > ALIKE * step_s {
         return None;
@@ -275,13 +274,7 @@ mod tests {
                     high_pass_hz: None,
                 };
                 let mut o = Observation::of("r", frequency_hz, Motion::Impactless);
-                o.drive = Some(DriveTone {
-                    frequency_hz,
-                    frequency_error_hz: 0.0,
-                    amplitude: 1.0,
-                    phase_rad: 0.0,
-                    residual_ratio: 0.0,
-                });
+                o.drive = Some(DriveTone::at(frequency_hz, 1.0));
                 o.response = vec![
                     response(Role::VelocityX, 1.0, 0.0),
                     response(Role::DisplacementX, 1.0 / rate, turned),

@@ -550,13 +550,7 @@ mod tests {
         let measured = |specimen: &str, amplitude: f64| {
             let mut o = Observation::of("r", 12.0, Motion::Impactless);
             o.setting.specimen = Some(specimen.to_owned());
-            o.drive = Some(DriveTone {
-                frequency_hz: 12.0,
-                frequency_error_hz: 0.0,
-                amplitude,
-                phase_rad: 0.0,
-                residual_ratio: 0.0,
-            });
+            o.drive = Some(DriveTone::at(12.0, amplitude));
             o
         };
         let mut all = [
@@ -576,13 +570,7 @@ mod tests {
         let stated = |stated: f64, measured: f64| {
             let mut o = Observation::of("r", 12.0, Motion::Impactless);
             o.setting.drive_amplitude = stated;
-            o.drive = Some(DriveTone {
-                frequency_hz: 12.0,
-                frequency_error_hz: 0.0,
-                amplitude: measured,
-                phase_rad: 0.0,
-                residual_ratio: 0.0,
-            });
+            o.drive = Some(DriveTone::at(12.0, measured));
             o
         };
         // 3 V are the nominal drive; the last record had 3.3 V where 3 V were stated

@@ -153,11 +153,8 @@ mod tests {
 
     fn drive() -> DriveTone {
         DriveTone {
-            frequency_hz: 12.6,
-            frequency_error_hz: 0.0,
-            amplitude: 1.0,
             phase_rad: 0.4,
-            residual_ratio: 0.0,
+            ..DriveTone::at(12.6, 1.0)
         }
     }
 

@@ -40,9 +40,7 @@ pub(super) fn without_spikes(channel: &mut Channel) -> Option<Flag> {
 
 /// The samples that are spikes; none where they are too many.
 fn spikes(values: &[f64]) -> Vec<usize> {
-    let mean = robust::mean(values);
-    let deviations: Vec<f64> = values.iter().map(|v| v - mean).collect();
-    let harmful = HARMFUL * robust::rms(&deviations);
+    let harmful = HARMFUL * (robust::squares_about_mean(values) / values.len() as f64).sqrt();
     let off = |i: usize| (values[i] - f64::midpoint(values[i - 1], values[i + 1])).abs();
     let lone = |i: &usize| {
         let size = off(*i);

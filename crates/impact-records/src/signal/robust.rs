@@ -47,10 +47,15 @@ fn of_rank(rank: i64) -> f64 {
 
 /// Standard deviation from the median absolute deviation, as if normal: 1.4826 · MAD.
 pub fn robust_deviation(values: &[f64]) -> Option<f64> {
+    median_absolute_deviation(values).map(|mad| 1.4826 * mad)
+}
+
+/// Median distance from the median.
+pub fn median_absolute_deviation(values: &[f64]) -> Option<f64> {
     let centre = median(values)?;
     let distances = values.iter().map(|v| (v - centre).abs());
     let mut ranks: Vec<i64> = distances.map(rank).collect();
-    median_of_ranks(&mut ranks).map(|mad| 1.4826 * mad)
+    median_of_ranks(&mut ranks)
 }
 
 /// Standard deviation of the white noise on a smooth signal with isolated jumps.

@@ -210,10 +210,7 @@ fn leave_weak(result: &mut MethodResult, why: Note) {
         &mut parameters.damping_ratio,
     ];
     for estimate in both.into_iter().flatten() {
-        if estimate.status == Status::Identified {
-            estimate.status = Status::Weak;
-            estimate.note = Some(why.clone());
-        }
+        estimate.doubt(why.clone());
     }
 }
 
@@ -341,9 +338,8 @@ fn judge_damping(result: &mut MethodResult, decays: &[&Decay], friction: bool) -
     let is_widened = changing.iter().any(|c| !explained(c.0));
     let is_open =
         widened.is_some_and(|(value, [low, high])| is_open(value, 0.5 * (high - low) / NORMAL_975));
-    if is_widened && is_open && estimate.status == Status::Identified {
-        estimate.status = Status::Weak;
-        estimate.note = Some(Note::DampingChanges);
+    if is_widened && is_open {
+        estimate.doubt(Note::DampingChanges);
     }
     let telling: Vec<(&Decay, [f64; 2])> = changing.into_iter().filter(matters).collect();
     let width = |(d, [low, high]): &&(&Decay, [f64; 2])| (high - low) / d.damping_ratio.abs();
@@ -362,8 +358,7 @@ fn judge_damping(result: &mut MethodResult, decays: &[&Decay], friction: bool) -
     };
     let most = are_most(decays, &changes, &|d| d.damping_ratio_error);
     if most {
-        estimate.status = Status::Weak;
-        estimate.note = Some(Note::DampingChanges);
+        estimate.weaken(Note::DampingChanges);
     }
     most
 }
@@ -394,8 +389,7 @@ fn judge_frequency(result: &mut MethodResult, decays: &[&Decay]) -> bool {
     let drifts = |d: &Decay| drifting.iter().any(|own| std::ptr::eq(*own, d));
     let most = are_most(decays, &drifts, &Decay::relative_error);
     if most && let Some(estimate) = &mut result.parameters.natural_frequency_hz {
-        estimate.status = Status::Weak;
-        estimate.note = Some(Note::Drifts);
+        estimate.weaken(Note::Drifts);
     }
     most
 }

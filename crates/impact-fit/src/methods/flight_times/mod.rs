@@ -8,7 +8,7 @@ mod rows;
 mod scatter;
 mod unlisted;
 
-use crate::estimate::{self, Estimate, Status};
+use crate::estimate::{self, Estimate};
 use crate::messages::{Note, Remark};
 use crate::method::Method;
 use crate::methods::answer::MethodResult;
@@ -140,8 +140,7 @@ fn estimated((value, error): (f64, f64), scatter: &Scatter, unlisted: &Unlisted)
     let narrow = estimate::estimate_within(Coordinate::Restitution, value, spread, None);
     let mut estimate = estimate::wider(Coordinate::Restitution, &narrow, unlisted.error);
     if let Some(error_s) = scatter.times_s.filter(|_| !scatter.is_told()) {
-        estimate.status = Status::Weak;
-        estimate.note = Some(Note::TimesNotTold { error_s });
+        estimate.weaken(Note::TimesNotTold { error_s });
     }
     estimate
 }
@@ -283,6 +282,7 @@ fn ratios(row: &Row, own: &RowEstimate) -> impl Iterator<Item = GroupedRatio> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::estimate::Status;
     use impact_records::event::Impact;
     use impact_records::motion::Motion;
 

@@ -212,6 +212,9 @@ impl Ratios {
     /// The estimates for each ratio of the variances; `None` without one that can be computed.
     fn mixed(&self, with_slope: bool, stated_s: Option<f64>) -> Option<Mixed> {
         let freedom = self.freedom() - f64::from(u8::from(with_slope));
+        if freedom <= 0.0 {
+            return None;
+        }
         let own = self.own_variances();
         let shares = own.filter_map(|own| Share::of(self, own, (freedom, with_slope)));
         let mut shares: Vec<Share> = shares.collect();
@@ -225,7 +228,7 @@ impl Ratios {
         for share in &mut shares {
             share.weight = (share.weight - best).exp();
         }
-        (best.is_finite() && freedom > 0.0).then_some(Mixed { shares, freedom })
+        best.is_finite().then_some(Mixed { shares, freedom })
     }
 }
 
@@ -254,11 +257,56 @@ impl RatioRow {
 
     /// The weights of its logarithms in their mean as errors of the times weigh them.
     fn weights_by_times(&self) -> DVector<f64> {
-        let ones = DVector::from_element(self.values.len(), 1.0);
-        let weights = self.by_times.clone().cholesky().map(|c| c.solve(&ones));
-        let weights = weights.unwrap_or(ones);
-        let all = weights.sum();
-        weights / all
+        let count = self.values.len();
+        let weighing = Weighing::of(self.by_times.clone());
+        weighing.map_or_else(
+            || DVector::from_element(count, (count as f64).recip()),
+            |weighing| weighing.shares(),
+        )
+    }
+}
+
+/// How values with a covariance are weighed in their mean.
+pub(super) struct Weighing {
+    pub(super) factor: Cholesky<f64, Dyn>,
+    /// Weights whose sum is the information.
+    weights: DVector<f64>,
+    /// Reciprocal variance of the mean.
+    information: f64,
+}
+
+impl Weighing {
+    /// `None` where the covariance is not positive definite.
+    pub(super) fn of(covariance: DMatrix<f64>) -> Option<Self> {
+        let ones = DVector::from_element(covariance.nrows(), 1.0);
+        let factor = covariance.cholesky()?;
+        let weights = factor.solve(&ones);
+        Some(Self {
+            information: weights.sum(),
+            weights,
+            factor,
+        })
+    }
+
+    fn mean(&self, values: &DVector<f64>) -> f64 {
+        self.weights.dot(values) / self.information
+    }
+
+    /// Values about their mean.
+    pub(super) fn centred(&self, values: &DVector<f64>) -> DVector<f64> {
+        values.add_scalar(-self.mean(values))
+    }
+
+    /// Weights whose sum is one.
+    fn shares(&self) -> DVector<f64> {
+        &self.weights / self.information
+    }
+
+    /// −½ ln of the determinants of the covariance and of the information.
+    pub(super) fn logarithm(&self) -> f64 {
+        let diagonal = self.factor.l_dirty().diagonal();
+        let halves: f64 = diagonal.iter().map(|d| d.ln()).sum();
+        -halves - 0.5 * self.information.ln()
     }
 }
 
@@ -326,24 +374,18 @@ struct Part {
 
 impl Part {
     fn of(row: &RatioRow, covariance: DMatrix<f64>) -> Option<Self> {
-        let count = row.values.len();
-        let factor: Cholesky<f64, Dyn> = covariance.cholesky()?;
-        let weights = factor.solve(&DVector::from_element(count, 1.0));
-        let information = weights.sum();
-        let mean = weights.dot(&row.values) / information;
-        let bounces = DVector::from_fn(count, |k, _| k as f64);
-        let bounces = bounces.add_scalar(-weights.dot(&bounces) / information);
-        let values = row.values.add_scalar(-mean);
-        let (of_bounces, of_values) = (factor.solve(&bounces), factor.solve(&values));
-        let halves: f64 = factor.l().diagonal().iter().map(|d| d.ln()).sum();
+        let weighing = Weighing::of(covariance)?;
+        let bounces = DVector::from_fn(row.values.len(), |k, _| k as f64);
+        let [bounces, values] = [&bounces, &row.values].map(|v| weighing.centred(v));
+        let [of_bounces, of_values] = [&bounces, &values].map(|v| weighing.factor.solve(v));
         Some(Self {
-            mean,
-            information,
+            mean: weighing.mean(&row.values),
+            information: weighing.information,
             squares: values.dot(&of_values),
             slopes: bounces.dot(&of_bounces),
             products: bounces.dot(&of_values),
-            weight: -halves - 0.5 * information.ln(),
-            weights: weights / information,
+            weight: weighing.logarithm(),
+            weights: weighing.shares(),
         })
     }
 }

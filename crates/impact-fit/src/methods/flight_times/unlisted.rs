@@ -6,13 +6,14 @@
 //! the ratios rise along the bounces: the one as if R were greater, the other as if it were less. So R is an average
 //! over both unknowns, each with the likelihood that the scatter of the ratios gives it ([`scatter`](super::scatter)).
 
-use nalgebra::{Cholesky, DVector, Dyn};
+use nalgebra::DVector;
 
 use crate::methods::flight_times::rows::{Fitted, Row};
-use crate::methods::flight_times::scatter::{Ratios, RowEstimate};
+use crate::methods::flight_times::scatter::{Ratios, RowEstimate, Weighing};
 use crate::statistics::quantile::NORMAL_975;
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
+use impact_records::signal::spacing::by_ratio;
 
 /// Least and greatest length of the contact of a ball, s: of steel on glass, and of a basketball. Without a
 /// statement each factor between them is as likely.
@@ -44,7 +45,7 @@ impl Unlisted {
         stated_s: Option<f64>,
     ) -> Self {
         let lengths_s = lengths_s(rows, observations);
-        let drags = between(DRAGS_PER_S2);
+        let drags: Vec<f64> = by_ratio(DRAGS_PER_S2, TRIED).collect();
         let changes: Vec<Vec<RowChange>> = lengths_s
             .iter()
             .map(|length_s| {
@@ -112,17 +113,8 @@ fn lengths_s(rows: &[(&Row, Fitted)], observations: &[Observation]) -> Vec<f64> 
                 .map(|k| share(k) * pulse_s.min(longest_s))
                 .collect()
         }
-        None => between(LENGTHS_S.map(|s| s.min(longest_s))),
+        None => by_ratio(LENGTHS_S.map(|s| s.min(longest_s)), TRIED).collect(),
     }
-}
-
-/// Values between two, each over the one before alike.
-fn between(ends: [f64; 2]) -> Vec<f64> {
-    let [least, greatest] = ends.map(f64::ln);
-    let share = |k: usize| k as f64 / (TRIED - 1) as f64;
-    (0..TRIED)
-        .map(|k| (least + share(k) * (greatest - least)).exp())
-        .collect()
 }
 
 /// What contacts of one length change of the logarithms of a row's ratios, and what air of γ = 1/s² takes from them.
@@ -188,50 +180,31 @@ fn likelihoods(
 
 /// The rows' logarithms, each weighed for one ratio of the variances.
 struct Weighted {
-    factors: Vec<Cholesky<f64, Dyn>>,
+    rows: Vec<Weighing>,
     /// −½ ln of the determinants.
     weight: f64,
 }
 
 impl Weighted {
     fn of(ratios: &Ratios, own: f64) -> Option<Self> {
-        let factors = ratios
-            .rows
-            .iter()
-            .map(|row| ratios.covariance(row, own).cholesky());
-        let factors: Vec<Cholesky<f64, Dyn>> = factors.collect::<Option<_>>()?;
-        let of_row = |factor: &Cholesky<f64, Dyn>| {
-            let diagonal = factor.l_dirty().diagonal();
-            let halves: f64 = diagonal.iter().map(|d| d.ln()).sum();
-            halves + 0.5 * information(factor).ln()
-        };
-        let weight = -factors.iter().map(of_row).sum::<f64>();
-        Some(Self { factors, weight })
+        let rows = ratios.rows.iter();
+        let rows = rows.map(|row| Weighing::of(ratios.covariance(row, own)));
+        let rows: Vec<Weighing> = rows.collect::<Option<_>>()?;
+        let weight = rows.iter().map(Weighing::logarithm).sum();
+        Some(Self { rows, weight })
     }
 
     /// Squares about each row's mean, a polynomial in the drag.
     fn squares(&self, ratios: &Ratios, changes: &[RowChange]) -> [f64; 3] {
         let mut sums = [0.0; 3];
-        for ((row, change), factor) in ratios.rows.iter().zip(changes).zip(&self.factors) {
-            let values = centred(&(&row.values + &change.by_length), factor);
-            let air = centred(&change.by_air, factor);
-            let (of_values, of_air) = (factor.solve(&values), factor.solve(&air));
+        for ((row, change), weighing) in ratios.rows.iter().zip(changes).zip(&self.rows) {
+            let values = weighing.centred(&(&row.values + &change.by_length));
+            let air = weighing.centred(&change.by_air);
+            let [of_values, of_air] = [&values, &air].map(|v| weighing.factor.solve(v));
             sums[0] += values.dot(&of_values);
             sums[1] += 2.0 * air.dot(&of_values);
             sums[2] += air.dot(&of_air);
         }
         sums
     }
-}
-
-/// Information of a mean.
-fn information(factor: &Cholesky<f64, Dyn>) -> f64 {
-    let ones = DVector::from_element(factor.l_dirty().nrows(), 1.0);
-    factor.solve(&ones).sum()
-}
-
-/// Values about their weighted mean.
-fn centred(values: &DVector<f64>, factor: &Cholesky<f64, Dyn>) -> DVector<f64> {
-    let weights = factor.solve(&DVector::from_element(values.len(), 1.0));
-    values.add_scalar(-weights.dot(values) / weights.sum())
 }

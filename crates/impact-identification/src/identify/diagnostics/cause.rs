@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use impact_fit::estimate::{Estimate, Status};
+use impact_fit::estimate::Estimate;
 use impact_fit::messages::cause::Cause;
 use impact_fit::messages::{Finding, Note, Remark};
 use impact_fit::method::Method;
@@ -72,10 +72,9 @@ pub fn withdraw(
             };
             replaced.push(parameter);
         } else if estimate.value.is_some() {
-            estimate.status = Status::Weak;
             let note = estimate.note.take();
             let kept = note.filter(|n| *n == Note::NotOneNumber && cause == Cause::Contact);
-            estimate.note = kept.or(Some(Note::Bent));
+            estimate.weaken(kept.unwrap_or(Note::Bent));
         }
     }
     replaced
@@ -96,10 +95,8 @@ pub fn doubt_without_one_degree_of_freedom(
         Coordinate::Damping,
         Coordinate::Deflection,
     ] {
-        let estimate = joint.parameters.slot(parameter).and_then(Option::as_mut);
-        if let Some(estimate) = estimate.filter(|e| e.status == Status::Identified) {
-            estimate.status = Status::Weak;
-            estimate.note = Some(Note::Bent);
+        if let Some(Some(estimate)) = joint.parameters.slot(parameter) {
+            estimate.doubt(Note::Bent);
         }
     }
 }
@@ -112,6 +109,7 @@ fn half_width(estimate: &Estimate) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impact_fit::estimate::Status;
     use impact_fit::estimate::estimate;
     use impact_fit::messages::PairAgreement;
     use impact_fit::parameters::effect::Effect;

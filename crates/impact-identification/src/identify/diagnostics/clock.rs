@@ -120,13 +120,7 @@ mod tests {
             let stated_hz = 8.0 + 0.5 * (i / 2) as f64;
             let mut o = Observation::of("r", stated_hz, Motion::Impactless);
             o.setting.stated_frequency_hz = Some(stated_hz);
-            o.drive = Some(DriveTone {
-                frequency_hz: stated_hz * ratios(i),
-                frequency_error_hz: 0.0,
-                amplitude: 1.0,
-                phase_rad: 0.0,
-                residual_ratio: 0.0,
-            });
+            o.drive = Some(DriveTone::at(stated_hz * ratios(i), 1.0));
             o
         };
         (0..24).map(one).collect()

@@ -121,13 +121,7 @@ mod tests {
         assert_eq!(f0.note, Some(Note::NoFrequency));
         let mut driven = Observation::of("r", 12.0, Motion::Chaotic);
         driven.impacts = vec![Impact::at(0.1, 1.0)];
-        driven.drive = Some(DriveTone {
-            frequency_hz: 12.0,
-            frequency_error_hz: 0.0,
-            amplitude: 1.0,
-            phase_rad: 0.0,
-            residual_ratio: 0.0,
-        });
+        driven.drive = Some(DriveTone::at(12.0, 1.0));
         let found = missing(Coordinate::Restitution, &[driven], RigKind::Double);
         let f0 = found
             .parameters

@@ -59,13 +59,7 @@ mod tests {
     fn observed(stated_hz: f64, frequency_hz: f64) -> Observation {
         let mut o = Observation::of("r", stated_hz, Motion::Impactless);
         o.setting.stated_frequency_hz = Some(stated_hz);
-        o.drive = Some(DriveTone {
-            frequency_hz,
-            frequency_error_hz: 0.0,
-            amplitude: 1.0,
-            phase_rad: 0.0,
-            residual_ratio: 0.0,
-        });
+        o.drive = Some(DriveTone::at(frequency_hz, 1.0));
         if stated_hz != frequency_hz {
             let problem = Problem::FrequencyUnlikeStated {
                 measured_hz: frequency_hz,

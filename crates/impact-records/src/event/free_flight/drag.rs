@@ -1,6 +1,7 @@
 //! Drag of the air in a flight: an acceleration −c v|v| beside the constant one.
 
 use crate::signal::local_fit::LocalFit;
+use crate::signal::spacing;
 
 /// Least and greatest c of a ball, 1/m: half the density of air times the area over the mass, of steel and of a
 /// table tennis ball. Each factor between them is as likely before flights are seen.
@@ -38,12 +39,8 @@ impl Drag {
         let squares = shown.iter().map(|s| weight(s) * (s.per_m - mean).powi(2));
         let excess = squares.sum::<f64>() / (shown.len() as f64 - 1.0).max(1.0);
         let variance = excess.max(1.0) / all;
-        let [least, greatest] = USUAL_PER_M.map(f64::ln);
-        let each = (0..TRIED).map(|k| {
-            let share = k as f64 / (TRIED - 1) as f64;
-            let tried = (least + share * (greatest - least)).exp();
-            ((-0.5 * (tried - mean).powi(2) / variance).exp(), tried)
-        });
+        let each = spacing::by_ratio(USUAL_PER_M, TRIED)
+            .map(|tried| ((-0.5 * (tried - mean).powi(2) / variance).exp(), tried));
         let each: Vec<(f64, f64)> = each.collect();
         let likely: f64 = each.iter().map(|(likely, _)| likely).sum();
         if likely < f64::MIN_POSITIVE {
@@ -59,7 +56,7 @@ impl Drag {
 }
 
 /// What drag takes from a flight from an instant on, per unit of c, where the velocity is a parabola in time.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Loss {
     /// The instant, samples.
     from: f64,

@@ -49,14 +49,49 @@ pub(super) enum Side {
     After,
 }
 
+/// What is fitted of a flight.
+#[derive(Debug, Clone, Copy)]
+struct Measured {
+    /// Whether it is the displacement, m, else the velocity, m/s.
+    is_displacement: bool,
+    /// Samples per second, Hz.
+    rate_hz: f64,
+}
+
+impl Measured {
+    /// Velocity of a fit at a time in samples, m/s.
+    fn velocity(self, fit: &LocalFit, time: f64) -> f64 {
+        if self.is_displacement {
+            fit.slope(time) * self.rate_hz
+        } else {
+            fit.value(time)
+        }
+    }
+
+    /// Standard error of that velocity over the deviation of the noise.
+    fn velocity_error_factor(self, fit: &LocalFit, time: f64) -> f64 {
+        if self.is_displacement {
+            fit.slope_error_factor(time) * self.rate_hz
+        } else {
+            fit.error_factor(time)
+        }
+    }
+
+    /// What drag of 1/m takes from it by a time in samples.
+    fn lost(self, loss: &Loss, time: f64) -> f64 {
+        if self.is_displacement {
+            loss.of_displacement(time)
+        } else {
+            loss.of_velocity(time) * self.rate_hz
+        }
+    }
+}
+
 /// A stretch of free flight.
 #[derive(Debug, Clone)]
 pub(super) struct Stretch {
     fit: LocalFit,
-    /// Whether the displacement is fitted, else the velocity.
-    of_displacement: bool,
-    /// Samples per second, Hz.
-    rate_hz: f64,
+    measured: Measured,
     /// Standard deviation of the fitted signal about the flight, as far as independent.
     deviation: f64,
     /// Standard deviation of the speed beside the fall between stretches that begin elsewhere, beyond their
@@ -75,13 +110,9 @@ pub(super) struct Stretch {
 impl Stretch {
     /// Velocity at a time in samples, m/s.
     pub(super) fn speed(&self, time: f64) -> f64 {
-        let fitted = if self.of_displacement {
-            self.fit.slope(time) * self.rate_hz
-        } else {
-            self.fit.value(time)
-        };
         let (loss, drag) = self.loss;
-        fitted - drag.per_m * loss.of_velocity(time) * self.rate_hz
+        let lost = drag.per_m * loss.of_velocity(time) * self.measured.rate_hz;
+        self.measured.velocity(&self.fit, time) - lost
     }
 
     /// Change of the velocity per sample.
@@ -95,8 +126,8 @@ impl Stretch {
     pub(super) fn sure_step(&self, time: f64, deviates: f64) -> f64 {
         let count = (self.samples.1 - self.samples.0) as f64;
         let squared = count * count;
-        let (factor, rate_hz) = if self.of_displacement {
-            (720.0 / (squared - 4.0), self.rate_hz)
+        let (factor, rate_hz) = if self.measured.is_displacement {
+            (720.0 / (squared - 4.0), self.measured.rate_hz)
         } else {
             (12.0, 1.0)
         };
@@ -111,12 +142,7 @@ impl Stretch {
 
     /// Standard error of the velocity at a time by the noise, m/s.
     fn noise_error(&self, time: f64) -> f64 {
-        let factor = if self.of_displacement {
-            self.fit.slope_error_factor(time) * self.rate_hz
-        } else {
-            self.fit.error_factor(time)
-        };
-        self.deviation * factor
+        self.deviation * self.measured.velocity_error_factor(&self.fit, time)
     }
 
     /// Standard error of the velocity at a time, m/s.
@@ -133,7 +159,7 @@ impl Stretch {
 
     /// The fitted displacement, if it is the one that is fitted.
     pub(super) fn displacement(&self) -> Option<&LocalFit> {
-        self.of_displacement.then_some(&self.fit)
+        self.measured.is_displacement.then_some(&self.fit)
     }
 }
 
@@ -143,8 +169,7 @@ struct Signal<'a> {
     degree: usize,
     least: usize,
     noise: f64,
-    of_displacement: bool,
-    rate_hz: f64,
+    measured: Measured,
     /// Middle of the fall, samples.
     middle: f64,
     drag: Drag,
@@ -166,8 +191,10 @@ impl<'a> Signal<'a> {
                 degree: 2,
                 least: 6,
                 noise: displacement.noise,
-                of_displacement: true,
-                rate_hz,
+                measured: Measured {
+                    is_displacement: true,
+                    rate_hz,
+                },
                 middle,
                 drag,
             },
@@ -176,8 +203,10 @@ impl<'a> Signal<'a> {
                 degree: 1,
                 least: 4,
                 noise: velocity.noise.max(UNEVEN * greatest_m_s),
-                of_displacement: false,
-                rate_hz,
+                measured: Measured {
+                    is_displacement: false,
+                    rate_hz,
+                },
                 middle,
                 drag,
             },
@@ -228,11 +257,13 @@ impl<'a> Signal<'a> {
     fn fitted(&self, samples: (usize, usize), degree: usize) -> Option<Fitted> {
         let (first, last) = samples;
         let freedom = (last.min(self.values.len()) - first).checked_sub(degree + 1)?;
-        let loss = self.loss(samples)?;
-        let fit = if self.drag == Drag::default() {
-            LocalFit::new(self.values, first, last, degree)?
+        let (loss, fit) = if self.drag == Drag::default() {
+            let fit = LocalFit::new(self.values, first, last, degree)?;
+            (Loss::default(), fit)
         } else {
-            LocalFit::through(&self.without_drag(samples, &loss), first, degree)?
+            let loss = self.loss(samples)?;
+            let values = self.without_drag(samples, &loss);
+            (loss, LocalFit::through(&values, first, degree)?)
         };
         (freedom > 0).then(|| Fitted {
             scatter: (fit.residual_squares / freedom as f64).sqrt(),
@@ -248,51 +279,34 @@ impl<'a> Signal<'a> {
         let more = usize::from(last - first >= MANY);
         let fit = LocalFit::new(self.values, first, last, self.degree + more)?;
         let middle = 0.5 * (first + last) as f64;
-        let velocity = |time: f64| {
-            if self.of_displacement {
-                fit.slope(time)
-            } else {
-                fit.value(time) / self.rate_hz
-            }
-        };
+        let velocity = |time: f64| self.measured.velocity(&fit, time) / self.measured.rate_hz;
         let [before, at, after] = [-1.0, 0.0, 1.0].map(|by| velocity(middle + by));
         let derivatives = [at, 0.5 * (after - before), after - 2.0 * at + before];
         Some(Loss::new(self.middle, middle, derivatives))
     }
 
-    /// What drag of 1/m takes from the signal at a time.
-    fn lost(&self, loss: &Loss, time: f64) -> f64 {
-        if self.of_displacement {
-            loss.of_displacement(time)
-        } else {
-            loss.of_velocity(time) * self.rate_hz
-        }
-    }
-
     fn without_drag(&self, (first, last): (usize, usize), loss: &Loss) -> Vec<f64> {
         let range = first..last.min(self.values.len());
-        let without = |i: usize| self.values[i] + self.drag.per_m * self.lost(loss, i as f64);
+        let without =
+            |i: usize| self.values[i] + self.drag.per_m * self.measured.lost(loss, i as f64);
         range.map(without).collect()
     }
 
     /// A stretch with what it shows of the drag, and what that changes of it.
     fn with_drag(&self, stretch: Stretch) -> Stretch {
-        let (loss, _) = stretch.loss;
         let (first, last) = stretch.samples;
-        let lost = (first..last).map(|i| self.lost(&loss, i as f64));
+        let Some(loss) = self.loss(stretch.samples) else {
+            return stretch;
+        };
+        let lost = (first..last).map(|i| self.measured.lost(&loss, i as f64));
         let lost: Vec<f64> = lost.collect();
         let values = self.without_drag(stretch.samples, &loss);
         let residuals = values.iter().zip(first..);
         let residuals = residuals.map(|(value, i)| value - stretch.fit.value(i as f64));
         let residuals: Vec<f64> = residuals.collect();
         let shown = drag::shown(&residuals, &lost, self.degree, stretch.deviation);
-        let by_drag = LocalFit::through(&lost, first, self.degree).map_or(0.0, |fit| {
-            if self.of_displacement {
-                fit.slope(self.middle) * self.rate_hz
-            } else {
-                fit.value(self.middle)
-            }
-        });
+        let by_drag = LocalFit::through(&lost, first, self.degree);
+        let by_drag = by_drag.map_or(0.0, |fit| self.measured.velocity(&fit, self.middle));
         Stretch {
             by_drag,
             shown: shown.map(|shown| Shown {
@@ -337,8 +351,7 @@ impl Fitted {
         let correlated = correlation(&values, &self.fit, first);
         Stretch {
             fit: self.fit,
-            of_displacement: of.of_displacement,
-            rate_hz: of.rate_hz,
+            measured: of.measured,
             deviation: self.scatter.max(0.5 * of.noise) * correlated,
             unlike: 0.0,
             loss: (self.loss, of.drag),
