@@ -182,7 +182,7 @@ pub(super) fn cases() -> Vec<Case> {
                 "swap [channels.velocity_x] and [channels.velocity_y]",
             ],
         ),
-        refused(
+        noted(
             "the velocity of one mass counted away from the other",
             |lab| lab.edit("channel = \"vy\"", "channel = \"vy\"\nsign = -1"),
             &[

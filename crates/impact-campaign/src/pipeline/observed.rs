@@ -9,9 +9,11 @@ use super::evidence;
 use super::observe;
 use crate::campaign::resolved::ResolvedCampaign;
 use impact_fit::evidence::Evidence;
+use impact_fit::methods::resonance::force_law::force_law;
 use impact_fit::methods::resonance::late_drive::late_drive;
 use impact_records::motion::{
-    Bracket, LateChannel, Observation, brackets, inverted_channels, late_channels, scale_drives,
+    Bracket, LateChannel, Observation, brackets, follow_force_law, inverted_channels,
+    late_channels, scale_drives,
 };
 use labfiles_write::output::OutputError;
 
@@ -100,8 +102,7 @@ impl Observed {
         observations: Vec<Observation>,
         progress: Progress<'_>,
     ) -> Result<Self, PipelineError> {
-        let mut observations = aligned(campaign, observations, progress)?;
-        scale_drives(&mut observations);
+        let observations = aligned(campaign, observations, progress)?;
         Ok(Self::bracketed(observations))
     }
 
@@ -130,7 +131,7 @@ impl Observed {
 
 /// The observations; made again where they show that channels are not as stated, with these corrected: signs by the
 /// directions of jumps, channels beside each other by the times of impacts, then the drive's by the phases of the
-/// motion.
+/// motion. The drive amplitudes are as measured, and follow the law of the force that the resonance curve shows.
 fn aligned(
     campaign: &ResolvedCampaign,
     observations: Vec<Observation>,
@@ -149,6 +150,10 @@ fn aligned(
         if !found.inverted {
             break;
         }
+    }
+    scale_drives(&mut observations);
+    if let Some(law) = force_law(&evidence::evidence(campaign, &observations, &[])) {
+        follow_force_law(&mut observations, law);
     }
     Ok(observations)
 }

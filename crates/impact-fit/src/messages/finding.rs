@@ -79,6 +79,20 @@ pub enum Finding {
         /// Median difference of its delays from their median, ms.
         scatter_ms: f64,
     },
+    /// The driving force rises with a power of the frequency, beside what is stated or recorded of it.
+    ForceLaw {
+        /// The power.
+        power: f64,
+        /// The frequency to which `x_st` refers, Hz.
+        at_hz: f64,
+    },
+    /// The drive amplitudes differ, or are others than the one to which `x_st` refers.
+    DriveAmplitudes {
+        /// The least, over that to which `x_st` refers.
+        lowest: f64,
+        /// The greatest.
+        highest: f64,
+    },
     /// The sign of a channel is the opposite of the stated one.
     InvertedChannel {
         /// The channel.
@@ -331,6 +345,7 @@ impl Finding {
             | Self::GainsApart { .. }
             | Self::LateChannel { .. }
             | Self::UnsteadyChannel { .. }
+            | Self::ForceLaw { .. }
             | Self::InvertedChannel { .. }
             | Self::UndeclaredLowPass { .. }
             | Self::WrongCorner { .. }
@@ -369,6 +384,12 @@ message_table! { "finding": Finding, key = template_key;
     Self::UnsteadyChannel { channel, scatter_ms } =>
         channel = Value::Message(channel),
         time = Value::Number(*scatter_ms, 1);
+    Self::ForceLaw { power, at_hz } =>
+        power = Value::Number(*power, 2),
+        hz = Value::Number(*at_hz, 1);
+    Self::DriveAmplitudes { lowest, highest } =>
+        lowest = Value::Number(*lowest, 2),
+        highest = Value::Number(*highest, 2);
     Self::InvertedChannel { channel } =>
         channel = Value::Message(channel),
         key = Value::Name(channel.name());

@@ -11,6 +11,7 @@ use crate::identify::diagnostics::clock;
 use crate::identify::diagnostics::common_scale::{self, CommonScale, common_scale};
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::doubt::{self, Suspicion};
+use crate::identify::diagnostics::drives::drives;
 use crate::identify::diagnostics::late_channel;
 use crate::identify::diagnostics::refuted_gains::{self, Opened};
 use crate::identify::diagnostics::settling;
@@ -609,6 +610,7 @@ impl<'a> IdentificationRun<'a> {
         let mut found = Vec::from_iter(self.contradicted.clone());
         found.extend(clock::suspicion(observations, clock));
         found.extend(stated_frequencies::no_drive(observations).map(Suspicion::from));
+        found.extend(drives(observations).into_iter().map(Suspicion::from));
         found.extend(self.odd_gaps.iter().cloned());
         found.extend(late_channel::late_channels(
             observations,

@@ -153,7 +153,7 @@ fn bracket(before: &Observation, after: &Observation, place: f64) -> Option<Brac
     let rising = b > a;
     let one_run = before.setting.clearance_m == after.setting.clearance_m
         && before.setting.sweep == after.setting.sweep
-        && (before.setting.drive_amplitude / after.setting.drive_amplitude - 1.0).abs() < 0.02
+        && (before.stated_drive() / after.stated_drive() - 1.0).abs() < 0.02
         && rising == (before.setting.sweep == Sweep::Up);
     if !one_run || before.classification.motion == after.classification.motion {
         return None;

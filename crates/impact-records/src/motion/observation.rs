@@ -12,6 +12,7 @@ use crate::event::{
 };
 use crate::motion::classify::{Classification, ClassifySettings, classify, undetermined};
 use crate::motion::fold::{Folded, fold};
+use crate::motion::force_law::ForceLaw;
 use crate::motion::kind::Motion;
 use crate::motion::late_channel::LateChannel;
 use crate::motion::response::{Response, responses};
@@ -71,6 +72,9 @@ pub struct Observation {
     /// Channels that were found late, beyond what is stated, or of the other sign; their samples have been corrected.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub late: Vec<LateChannel>,
+    /// The law by which the driving force was found to change with the frequency; the drive amplitude follows it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_law: Option<ForceLaw>,
     /// Amplitudes of the motion channels.
     pub amplitudes: Vec<Amplitude>,
     /// Response at the drive's frequency; only of impactless records.
@@ -166,6 +170,17 @@ impl Observation {
             decays: Vec::new(),
             ..*self
         }
+    }
+
+    /// The force at the record's frequency over that to which its law refers: 1 without a law.
+    pub(super) fn force_factor(&self) -> f64 {
+        let factor = |law: ForceLaw| Some(law.factor(self.frequency_hz()?));
+        self.force_law.and_then(factor).unwrap_or(1.0)
+    }
+
+    /// The drive amplitude as stated or measured, relative to the nominal one, without the law of the force.
+    pub fn stated_drive(&self) -> f64 {
+        self.setting.drive_amplitude / self.force_factor()
     }
 
     /// The free decay that determines f0 best.
@@ -330,6 +345,7 @@ fn undriven(record: &Record) -> Observation {
         lags: Vec::new(),
         directions: Vec::new(),
         late: Vec::new(),
+        force_law: None,
         amplitudes: amplitudes(record),
         response: Vec::new(),
         folded: None,
@@ -357,7 +373,7 @@ pub fn scale_drives(observations: &mut [Observation]) {
         let measured: Vec<f64> = observations
             .iter()
             .filter(|o| o.setting.specimen == group && !o.excluded())
-            .filter_map(|o| Some(o.drive?.amplitude / o.setting.drive_amplitude))
+            .filter_map(|o| Some(o.drive?.amplitude / o.stated_drive()))
             .collect();
         let Some(nominal) = crate::signal::robust::median(&measured).filter(|m| *m > 0.0) else {
             continue;
@@ -365,8 +381,8 @@ pub fn scale_drives(observations: &mut [Observation]) {
         for o in observations.iter_mut().filter(same) {
             let Some(drive) = o.drive else { continue };
             let ratio = drive.amplitude / nominal;
-            if (ratio / o.setting.drive_amplitude - 1.0).abs() > DRIVE_CHANGES {
-                o.setting.drive_amplitude = ratio;
+            if (ratio / o.stated_drive() - 1.0).abs() > DRIVE_CHANGES {
+                o.setting.drive_amplitude = ratio * o.force_factor();
             }
         }
     }
@@ -456,6 +472,7 @@ impl Observation {
             lags: Vec::new(),
             directions: Vec::new(),
             late: Vec::new(),
+            force_law: None,
             amplitudes: Vec::new(),
             response: Vec::new(),
             folded: None,

@@ -196,7 +196,8 @@ const AROUND_CONTACT: usize = 4;
 const FEWEST_CONTACTS: usize = 4;
 
 /// An impact takes speed from both masses: if their velocities, counted toward each other, jump in
-/// opposite directions, one of them has the wrong sign.
+/// opposite directions, one of them has the wrong sign. Which one it is the impacts of the whole campaign tell
+/// ([`inverted_channels`](crate::motion::inverted_channels)), so the record is kept.
 fn opposite_masses(record: &Record) -> Option<Flag> {
     let contact = record.channel(Role::Contact)?;
     let level = contact.threshold?;
@@ -223,7 +224,7 @@ fn opposite_masses(record: &Record) -> Option<Flag> {
     let product: f64 = jumps.iter().map(|j| j[0] * j[1]).sum::<f64>() / jumps.len() as f64;
     let correlation = product / (at_contact(0) * at_contact(1)).sqrt();
     let opposite = seen && correlation < -SAME;
-    opposite.then(|| flag(record, Role::VelocityY, Problem::OppositeJumps))
+    opposite.then(|| flag(record, Role::VelocityY, Problem::OppositeJumps).excluding(false))
 }
 
 /// How far from 1 the scales of two channels may be together where only a sign is wrong.

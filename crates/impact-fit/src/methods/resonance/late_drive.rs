@@ -2,9 +2,11 @@
 //! amplitudes tell f0 and β.
 
 use crate::evidence::{Evidence, Nominal};
+use crate::messages::ONE_DEGREE_OF_FREEDOM;
 use crate::methods::blocks::Blocks;
 use crate::methods::resonance::fit;
-use crate::solver::mean_squares;
+use crate::methods::resonance::misfit::{least_of, misfit};
+use crate::methods::resonance::result::deviation;
 use impact_records::motion::LateChannel;
 use impact_records::record::Role;
 
@@ -59,23 +61,18 @@ fn lag(blocks: &Blocks, nominal: &Nominal, at_once: f64) -> Option<(f64, f64)> {
     let stated = nominal.delay_uncertainties_s.iter();
     let stated_s = stated.map(|own| own.unwrap_or(blocks.half_sample_s()));
     let unnoticed_s = SURE * stated_s.fold(0.0, f64::max);
-    // the phases fit best near no lag
-    if [-unnoticed_s, unnoticed_s]
-        .into_iter()
-        .all(|lag_s| misfit(lag_s).is_none_or(|with| with > at_once))
+    let stated_fits = fit::start(blocks, nominal)
+        .is_some_and(|found| deviation(&blocks.resonance, &found) < ONE_DEGREE_OF_FREEDOM);
+    // the phases fit, and best near no lag
+    if stated_fits
+        && [-unnoticed_s, unnoticed_s]
+            .into_iter()
+            .all(|lag_s| misfit(lag_s).is_none_or(|with| with > at_once))
     {
         return None;
     }
     let step_s = 1.0 / (STEPS * fastest_hz);
-    let most = (WIDEST * STEPS).round();
-    let lags = std::iter::successors(Some(-most), |i| (*i < most).then_some(i + 1.0));
-    let found = lags.filter_map(|i| Some((i * step_s, misfit(i * step_s)?)));
-    let (coarse_s, _) = found.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    if coarse_s.abs() > (most - 0.5) * step_s {
-        return None;
-    }
-    let near_s = vertex(coarse_s, step_s, &misfit)?;
-    let lag_s = vertex(near_s, 0.2 * step_s, &misfit)?;
+    let lag_s = least_of(WIDEST * STEPS * step_s, step_s, &misfit)?;
     let left = misfit(lag_s)?;
     (lag_s.abs() > unnoticed_s).then_some((lag_s, left))
 }
@@ -86,27 +83,6 @@ fn behind(nominal: &Nominal, lag_s: f64) -> Nominal {
         delays_s: nominal.delays_s.map(|delay_s| delay_s - lag_s),
         ..*nominal
     }
-}
-
-/// Mean square of what the best curve leaves of the responses.
-fn misfit(blocks: &Blocks, nominal: &Nominal) -> Option<f64> {
-    let found = fit::start(blocks, nominal)?;
-    let left = mean_squares(&blocks.resonance, &found);
-    let count = left.iter().flatten().count();
-    (count > 0).then(|| left.iter().flatten().sum::<f64>() / count as f64)
-}
-
-/// Where the parabola through three values, a step apart, has its least value, within the steps.
-fn vertex(middle: f64, step: f64, value: &impl Fn(f64) -> Option<f64>) -> Option<f64> {
-    let [low, at, high] = [middle - step, middle, middle + step].map(value);
-    let (low, at, high) = (low?, at?, high?);
-    let bend = low - 2.0 * at + high;
-    let shift = if bend > 0.0 {
-        (0.5 * (low - high) / bend).clamp(-1.0, 1.0)
-    } else {
-        0.0
-    };
-    Some(middle + shift * step)
 }
 
 #[cfg(test)]

@@ -2,7 +2,9 @@
 
 pub mod block;
 pub mod fit;
+pub mod force_law;
 pub mod late_drive;
+mod misfit;
 mod result;
 mod select;
 

@@ -20,8 +20,8 @@ pub(super) fn result(blocks: &Blocks, fitted: &FitResult) -> MethodResult {
     result
 }
 
-/// Judge whether the impactless records are those of one degree of freedom for each mass.
-fn judge(result: &mut MethodResult, block: &ResonanceBlock, fitted: &Parameters) {
+/// By how much the responses deviate from a curve, as a share of the greater of both: root mean square.
+pub(super) fn deviation(block: &ResonanceBlock, fitted: &Parameters) -> f64 {
     let mut deviations = Vec::new();
     for point in &block.points {
         for r in &point.responses {
@@ -33,7 +33,12 @@ fn judge(result: &mut MethodResult, block: &ResonanceBlock, fitted: &Parameters)
             deviations.push(apart / model.norm().max(r.amplitude()));
         }
     }
-    let deviation = robust::rms(&deviations);
+    robust::rms(&deviations)
+}
+
+/// Judge whether the impactless records are those of one degree of freedom for each mass.
+fn judge(result: &mut MethodResult, block: &ResonanceBlock, fitted: &Parameters) {
+    let deviation = deviation(block, fitted);
     result.fits = Some(deviation < ONE_DEGREE_OF_FREEDOM);
     result.remarks.push(if deviation < ONE_DEGREE_OF_FREEDOM {
         Remark::OneDegreeOfFreedom { deviation }

@@ -9,6 +9,7 @@ pub mod clock;
 pub mod common_scale;
 pub mod contradicting_gap;
 pub mod doubt;
+pub mod drives;
 pub mod late_channel;
 pub mod missing;
 pub mod refuted_gains;

@@ -15,6 +15,9 @@ pub const WIDE: f64 = 1.5;
 const FEW: usize = 64;
 /// Lowest frequency of the drive over the corner from which a fit starts.
 const BELOW: f64 = 20.0;
+/// The same over a corner that is found, at most: a lower one turns phases by less than 0.001 rad, so that what the fit
+/// gains by it has another cause.
+const FURTHEST_BELOW: f64 = 1e3;
 /// Least ratio of the sums of squares without and with the high-pass: errors of the model may make less.
 const CLEARLY: f64 = 1.5;
 
@@ -45,7 +48,8 @@ pub fn undeclared(blocks: &Blocks, fit: &dyn Fn(&Blocks) -> Option<Fit>) -> Vec<
         };
         let typical = (there.cost / there.residuals.max(1) as f64).max(1.0);
         let z_score = ((here.cost - there.cost) / typical).max(0.0).sqrt();
-        if z_score <= SURE || here.cost < CLEARLY * there.cost {
+        let without_effect = BELOW / there.parameters.corner(role) > FURTHEST_BELOW;
+        if z_score <= SURE || here.cost < CLEARLY * there.cost || without_effect {
             break;
         }
         z_scores.push((role, z_score));
