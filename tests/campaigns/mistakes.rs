@@ -275,3 +275,19 @@ fn valid_a_drive_that_is_later_than_stated_is_named_and_moved_back() {
         );
     }
 }
+
+#[test]
+fn valid_a_velocity_of_the_wrong_sign_is_named_and_turned_around() {
+    let simulated = Simulated::of("realistic");
+    let found = simulated.found_with("campaign.toml", |text| {
+        let (before, x) = text.split_once("[channels.velocity_x]\n").expect("x");
+        format!("{before}[channels.velocity_x]\nsign = -1\n{x}")
+    });
+    assert_eq!(first_suspicion(&found), "inverted_channel", "{found}");
+    assert_eq!(found["suspicions"][0]["channel"], "velocity_x");
+    let [low, high] = interval_of_r(&found);
+    assert!(
+        low < 0.75 && 0.75 < high && high - low < 0.01,
+        "{low} to {high}"
+    );
+}

@@ -51,7 +51,9 @@ pub fn force_law(evidence: &Evidence<'_>) -> Option<ForceLaw> {
     let left = |power: f64| misfit(&about(power, middle_hz), &evidence.nominal);
     let power = least_of(STEEPEST, STEP, &left)?;
     let with = about(power, middle_hz);
-    let found = fit::start(&with, &evidence.nominal)?;
+    let start = fit::start(&with, &evidence.nominal)?;
+    let found = fit::from(&with, &evidence.nominal.ideal(), start)?.ok()?;
+    let found = found.fit.parameters;
     let describes = left(power)? < LEFT * left(0.0)?
         && deviation(&with.resonance, &found) < ONE_DEGREE_OF_FREEDOM;
     (describes && power.abs() > LEAST).then_some(ForceLaw {

@@ -5,6 +5,9 @@ use crate::methods::blocks::Blocks;
 use crate::methods::resonance::fit;
 use crate::solver::mean_squares;
 
+/// Steps of the parabolas by which the least misfit is found, over that of the search.
+const NEARER: [f64; 4] = [1.0, 0.2, 0.04, 0.01];
+
 /// Mean square of what the best curve leaves of the responses.
 pub(super) fn misfit(blocks: &Blocks, nominal: &Nominal) -> Option<f64> {
     let found = fit::start(blocks, nominal)?;
@@ -23,8 +26,9 @@ pub(super) fn least_of(most: f64, step: f64, misfit: &impl Fn(f64) -> Option<f64
     if coarse.abs() > (count - 0.5) * step {
         return None;
     }
-    let near = vertex(coarse, step, misfit)?;
-    vertex(near, 0.2 * step, misfit)
+    NEARER
+        .iter()
+        .try_fold(coarse, |near, share| vertex(near, share * step, misfit))
 }
 
 /// Where the parabola through three values, a step apart, has its least value, within the steps.

@@ -652,6 +652,26 @@ mod tests {
     }
 
     #[test]
+    fn valid_f0_of_parts_is_not_compared_where_no_phase_is_measured() {
+        let both = [(12.0, 11), (12.3, 12)].map(|(f0, seed)| recorded((0.8, f0), 36, seed));
+        let mut observations = observed(&both.concat());
+        for o in &mut observations {
+            let Some(drive) = o.drive.take() else {
+                continue;
+            };
+            o.setting.stated_frequency_hz = Some(drive.frequency_hz);
+            o.motion_tone = Some(drive);
+        }
+        let found = identify(&evidence(&observations));
+        let other_rig = |f: &Finding| matches!(f, Finding::RigChanged { .. });
+        assert!(
+            !found.suspicions.iter().any(other_rig),
+            "{:?}",
+            found.suspicions
+        );
+    }
+
+    #[test]
     fn valid_sweeps_down_on_another_rig_are_named() {
         let records = recorded((0.8, 12.0), 72, 11);
         let of = |down: &[Record]| {
