@@ -41,6 +41,7 @@ const STEP_KEYS: &[&str] = &[
     "tinc",
     "x_increment",
     "xincrement",
+    "xinc",
     "sample_period",
     "sampling_period",
     "time_interval",

@@ -9,9 +9,13 @@ const FIRST_WORDS: [&str; 9] = [
 ];
 
 /// Words that make a name that of a time axis wherever they stand.
-const WORDS: [&str; 8] = [
+const WORDS: [&str; 12] = [
     "time",
+    "datetime",
     "elapsed",
+    "stamp",
+    "ts",
+    "uptime",
     "zeit",
     "timestamp",
     "zeitstempel",
@@ -348,6 +352,8 @@ impl AxisUnit {
     /// assert_eq!(seconds(Some("ms"), "Time", &[0.0, 1.0]), Some(1e-3));
     /// assert_eq!(seconds(None, "elapsed_millis", &[0.0, 1.0]), Some(1e-3));
     /// assert_eq!(seconds(None, "timestamp", &[1_486_512_345_678.0]), Some(1e-3));
+    /// assert_eq!(seconds(None, "ts", &[1.732_651_2e18, 1.732_651_201e18]), None);
+    /// assert_eq!(seconds(None, "ts", &[1.732_651_200_000e18, 1.732_651_200_001e18]), Some(1e-9));
     /// assert_eq!(seconds(None, "Time", &[0.0, 0.5]), Some(1.0));
     /// assert_eq!(seconds(None, "Time", &[0.0, 10.0, 20.0]), None);
     /// assert_eq!(seconds(None, "Tiempo (milisegundos)", &[0.0, 0.5]), Some(1e-3));
@@ -594,12 +600,16 @@ mod tests {
             "in s",
             "in ms",
             "rec.t",
+            "ts",
+            "ts_ns",
+            ".header.stamp",
+            "datetime",
         ] {
             assert!(is_time_name(name), "{name}");
         }
         for name in [
             "times", "velocity", "tone", "s", "min", "h", "items", "minimum", "bus", "tens",
-            "in V", "in mm", "t1", "touch",
+            "in V", "in mm", "t1", "touch", "volts",
         ] {
             assert!(!is_time_name(name), "{name}");
         }

@@ -91,6 +91,13 @@ pub enum Note {
         /// Damping ratio that both together are worth.
         equivalent: f64,
     },
+    /// Drag of the air and viscous damping are not told apart well enough.
+    DragNotTold {
+        /// Periods of the longest decay.
+        periods: f64,
+        /// Damping ratio that both together are worth.
+        equivalent: f64,
+    },
     /// Nothing damps the motion that stands out of the noise.
     Undamped {
         /// Damping ratio that is not exceeded, at 97.5 %.
@@ -155,6 +162,9 @@ message_table! { "note": Note;
     Self::TimesNotTold { error_s } => error = Value::Number(1e3 * *error_s, 1);
     Self::FewPeriods { periods } => periods = Value::Number(*periods, 1);
     Self::FrictionNotTold { periods, equivalent } =>
+        periods = Value::Number(*periods, 1),
+        equivalent = Value::Number(*equivalent, digits(*equivalent) + 1);
+    Self::DragNotTold { periods, equivalent } =>
         periods = Value::Number(*periods, 1),
         equivalent = Value::Number(*equivalent, digits(*equivalent) + 1);
     Self::Undamped { most } => most = Value::Number(*most, digits(*most));

@@ -114,6 +114,7 @@ fn unexplained(channel: &Channel, decay: &Decay, fitted: &[f64]) -> f64 {
 fn thinned(rate_hz: f64, first: usize, values: &[f64]) -> Signal {
     let stride = values.len().div_ceil(MOST_POINTS).max(1);
     let kept = (0..values.len()).step_by(stride);
+    let kept = kept.filter(|i| values[*i].is_finite());
     Signal {
         time_s: kept.clone().map(|i| (first + i) as f64 / rate_hz).collect(),
         values: kept.map(|i| values[i]).collect(),

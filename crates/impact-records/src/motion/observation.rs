@@ -220,7 +220,12 @@ pub fn observe(
     detecting: &DetectSettings,
     classifying: &ClassifySettings,
 ) -> Observation {
-    if record.setting.excitation == Excitation::FreeDecay {
+    let decays = record.setting.excitation == Excitation::FreeDecay;
+    if (decays || detecting.flight == FlightKind::ConstantForce) && record.has_gaps() {
+        let of_part = |part: &Record| observe(part, rig, detecting, classifying);
+        return observe_parts(record, of_part);
+    }
+    if decays {
         return observe_decay(record);
     }
     let mut detection = detect(record, rig, detecting);
@@ -264,6 +269,44 @@ pub fn observe(
         observation.folded = Some(Arc::new(fold((record, rig), &detection, &drive, n)));
     }
     observation
+}
+
+/// Observe what lies between the gaps of a record: the impacts and decays of all parts, in the time of the record. Where
+/// none has any, the longest part shows why.
+fn observe_parts(record: &Record, of_part: impl Fn(&Record) -> Observation) -> Observation {
+    let rate_hz = record.sample_rate_hz;
+    let mut observed: Vec<Observation> = Vec::new();
+    for (first, part) in record.between_gaps() {
+        let mut found = of_part(&part);
+        let later_s = first as f64 / rate_hz;
+        found.impacts.iter_mut().for_each(|i| i.time_s += later_s);
+        found
+            .decays
+            .iter_mut()
+            .for_each(|d| d.shift(first, rate_hz));
+        observed.push(found);
+    }
+    let shows = |o: &Observation| !(o.impacts.is_empty() && o.decays.is_empty());
+    if observed.iter().any(shows) {
+        observed.retain(shows);
+    }
+    let longest = observed
+        .iter()
+        .max_by(|a, b| a.duration_s.total_cmp(&b.duration_s));
+    let mut whole = longest.map_or_else(|| undriven(record), Observation::outline);
+    whole.duration_s = record.duration_s();
+    whole.flags.clone_from(&record.flags);
+    for found in observed {
+        let told = found.flags.into_iter().filter(|f| !whole.flags.contains(f));
+        let told: Vec<Flag> = told.collect();
+        whole.flags.extend(told);
+        whole.impacts.extend(found.impacts);
+        whole.decays.extend(found.decays);
+        if whole.amplitudes.is_empty() {
+            whole.amplitudes = found.amplitudes;
+        }
+    }
+    whole
 }
 
 /// By how much a displacement goes farther than the clearance lets it before that is a contradiction: gains,
@@ -597,6 +640,47 @@ mod tests {
         let wanted = [0.5, 1.5, 1.5, 1.1];
         for (found, wanted) in found.iter().zip(wanted) {
             assert!((found - wanted).abs() < 3e-3, "{found} for {wanted}");
+        }
+    }
+
+    #[test]
+    fn valid_decays_on_either_side_of_a_gap_are_those_of_the_rig_and_impacts_keep_their_times() {
+        let blows = [0.5, 5.5];
+        let value = |i: usize| {
+            let t = i as f64 / 500.0;
+            let last = blows.iter().rev().find(|b| **b <= t);
+            let since = last.map_or(-1.0, |b| t - b);
+            let moving = (-0.4 * since).exp() * (std::f64::consts::TAU * 4.0 * since).sin();
+            if since < 0.0 { 0.0 } else { moving }
+        };
+        let gapped = |i: usize| (1500..2600).contains(&i);
+        let values = (0..5000).map(|i| if gapped(i) { f64::NAN } else { value(i) });
+        let mut record = Record::of(500.0, &[(Role::VelocityX, &values.collect::<Vec<_>>())]);
+        record.setting.excitation = Excitation::FreeDecay;
+        let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
+        let found = observe(&record, RigKind::Single, &detect, &classify);
+        assert_eq!(found.decays.len(), 2);
+        for (decay, blow) in found.decays.iter().zip(blows) {
+            assert!((decay.natural_frequency_hz - 4.0).abs() < 2e-3, "{decay:?}");
+            assert!((decay.first as f64 / 500.0 - blow).abs() < 0.2, "{decay:?}");
+        }
+        assert!((found.duration_s - 10.0).abs() < 1e-9);
+        // a ball on flights of 0.5 s, out of sight for 10 samples in the third
+        let height = |i: usize| 1.25 * 9.81 * (i % 50) as f64 * (50 - i % 50) as f64 / 1e4;
+        let hidden = |i: usize| (120..130).contains(&i);
+        let heights: Vec<f64> = (0..300)
+            .map(|i| if hidden(i) { f64::NAN } else { -height(i) })
+            .collect();
+        let record = Record::of(100.0, &[(Role::DisplacementX, &heights)]);
+        let detect = DetectSettings {
+            flight: FlightKind::ConstantForce,
+            ..detect
+        };
+        let found = observe(&record, RigKind::Single, &detect, &classify);
+        let times: Vec<f64> = found.impacts.iter().map(|i| i.time_s).collect();
+        assert_eq!(times.len(), 5, "{times:?}");
+        for (k, time_s) in times.iter().enumerate() {
+            assert!((time_s - 0.5 * (k + 1) as f64).abs() < 0.01, "{times:?}");
         }
     }
 

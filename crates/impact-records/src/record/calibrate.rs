@@ -290,6 +290,26 @@ mod tests {
         of_rows(&rows.collect::<String>(), 0.0)
     }
 
+    #[test]
+    fn a_record_whose_last_sample_is_first_is_read_from_its_end_and_a_clock_that_jumps_back_is_not()
+    {
+        let falls = record((0..100).rev().map(|i| f64::from(i) * 1e-3));
+        assert!(!falls.excluded(), "{:?}", falls.flags);
+        assert_eq!(
+            falls.flags[0].message(),
+            "the time 'time' falls from the first row to the last: the record is read from its end"
+        );
+        assert!((falls.sample_rate_hz - 1000.0).abs() < 1e-6);
+        assert_eq!(falls.channels[0].values[..2], [-2.0, 1.0]);
+        let jumps = record((0..100).map(|i| f64::from(i % 60) * 1e-3));
+        let message = jumps.flags[0].message();
+        assert!(
+            message.starts_with("the time runs backward after sample 59"),
+            "{message}"
+        );
+        assert!(jumps.excluded());
+    }
+
     /// The record of rows of a time and a value, without its first seconds.
     fn of_rows(rows: &str, skip_s: f64) -> Record {
         let folder = tempfile::tempdir().unwrap();

@@ -127,6 +127,7 @@ pub(super) fn closings(times: &[f64], states: &[f64], levels: Levels) -> Closing
 /// than a contact may be throws one after the other.
 pub(super) fn listing(times: &[f64]) -> Listing {
     let contacts = groups(times).filter(|found| found.closed_s <= LONGEST_CONTACT_S);
+    let contacts = contacts.or_else(|| chattering(times));
     let rises = match &contacts {
         Some(closings) => rises(times, &closings.times_s),
         None => rises(times, times),
@@ -165,6 +166,29 @@ fn groups(times: &[f64]) -> Option<Closings> {
     let grouped = limits.filter_map(|(ratio, limit)| Some((ratio, grouped(times, limit)?)));
     let best = grouped.max_by(|a, b| a.0.total_cmp(&b.0));
     best.map(|(_, closings)| closings)
+}
+
+/// Longest time from one closing of a contact that bounces to the next, s.
+const CHATTER_S: f64 = 3e-3;
+/// How long a contact bounces over the shortest flight, at most.
+const CHATTERS: f64 = 0.1;
+
+/// The impacts of a contact that bounces at some of them, if each flight is far longer.
+fn chattering(times: &[f64]) -> Option<Closings> {
+    let all: Vec<&[f64]> = times.chunk_by(|a, b| b - a <= CHATTER_S).collect();
+    let lasting = all.iter().map(|g| g[g.len() - 1] - g[0]);
+    let lasting: Vec<f64> = lasting.filter(|s| *s > 0.0).collect();
+    let longest = lasting.iter().copied().reduce(f64::max)?;
+    let times_s: Vec<f64> = all.iter().map(|g| g[0]).collect();
+    let flights = times_s.windows(2).map(|w| w[1] - w[0]);
+    let shortest = flights.reduce(f64::min)?;
+    if times_s.len() < FEWEST_CONTACTS || longest > CHATTERS * shortest {
+        return None;
+    }
+    Some(Closings {
+        times_s,
+        closed_s: robust::median(&lasting)?,
+    })
 }
 
 /// The groups of times that are no longer apart than a limit, if all have several but perhaps the first, where the
@@ -288,6 +312,25 @@ mod tests {
                 .flat_map(|t| [*t, t + 2e-4, t + 3e-4, t + 2e-3]);
             assert_eq!(found(&bouncing.collect::<Vec<_>>()).times_s, impacts);
         }
+    }
+
+    #[test]
+    fn a_contact_that_bounces_at_some_impacts_is_closed_once_at_each() {
+        let impacts = bounces(0.5, 0.8, 7);
+        let bouncing = impacts.iter().enumerate().flat_map(|(k, t)| {
+            let count = [1, 3, 1, 1, 2, 3, 1][k];
+            (0..count).map(move |i| t + 6e-4 * f64::from(i))
+        });
+        match listing(&bouncing.collect::<Vec<_>>()) {
+            Listing::Changes(found) => {
+                assert_eq!(found.times_s, impacts);
+                assert!((found.closed_s - 1.2e-3).abs() < 1e-9);
+            }
+            other => panic!("{other:?}"),
+        }
+        // the last flights of a ball are short, and none of them is a bounce of the contact
+        let short = bounces(0.5, 0.4, 8);
+        assert_eq!(listing(&short), Listing::Impacts);
     }
 
     #[test]

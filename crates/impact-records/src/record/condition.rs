@@ -1,8 +1,10 @@
 //! What is wrong with the samples of a record: unequal lengths, missing values, dead, clipped
 //! and held channels.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
+use super::gaps;
 use super::spikes::without_spikes;
 use super::{Channel, Excitation, Flag, Problem, Record, Role, time_axis};
 use crate::signal::{columns, interpolation, robust, whole};
@@ -150,13 +152,27 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
         return;
     }
     let mut flags = Vec::new();
+    if !driven {
+        flags.extend(record.channels.iter_mut().filter_map(gaps::fill));
+    }
     let rate_hz = record.sample_rate_hz;
     let crests = Crests::of(record.setting.excitation);
+    let parts = gaps::parts(record);
     for (channel, range) in record.channels.iter().zip(ranges) {
-        let span = Span::of(&channel.values);
-        let found = not_numbers(channel)
-            .or_else(|| dead(channel, &span, driven))
-            .or_else(|| clipped(channel, (&span, crests), (*range, rate_hz)));
+        // between impacts and after blows what lies outside of a gap stands for itself
+        let missing = match channel.role.is_motion() && !driven && !parts.is_empty() {
+            true => gaps::left_out(channel),
+            false => not_numbers(channel),
+        };
+        let of_values = if missing.as_ref().is_some_and(|flag| flag.excludes) {
+            None
+        } else {
+            let whole = with_values(channel);
+            let span = Span::of(&whole.values);
+            dead(&whole, &span, driven)
+                .or_else(|| clipped(&whole, (&span, crests), (*range, rate_hz)))
+        };
+        let found = missing.into_iter().chain(of_values);
         // What is wrong with a frame's channel leaves no record out.
         flags.extend(found.map(|flag| Flag {
             excludes: flag.excludes && !channel.role.is_frame(),
@@ -190,7 +206,7 @@ const UNSEEN_PART: f64 = 2.0 / 3.0;
 const STEPS_A_SAMPLE: f64 = 10.0;
 
 /// Samples on either side of a frozen picture between which it is interpolated, and the most that are.
-const AROUND: usize = 3;
+pub(super) const AROUND: usize = 3;
 
 /// Displacements that stand still in the midst of a motion and then jump by as much as it would have gone on: a camera
 /// that repeats pictures. What moves by many steps of the converter a sample cannot rest by its rounding. Repeated
@@ -342,6 +358,18 @@ fn not_numbers(channel: &Channel) -> Option<Flag> {
     Some(Flag::new(Some(&channel.name), problem))
 }
 
+/// A channel without the samples that have no value.
+fn with_values(channel: &Channel) -> Cow<'_, Channel> {
+    if columns::all_finite(&channel.values) {
+        return Cow::Borrowed(channel);
+    }
+    let finite = channel.values.iter().copied().filter(|v| v.is_finite());
+    Cow::Owned(Channel {
+        values: finite.collect(),
+        ..channel.clone()
+    })
+}
+
 /// Least and greatest value and the smallest step between neighbours that is not zero.
 struct Span {
     low: f64,
@@ -361,7 +389,7 @@ impl Span {
 }
 
 /// Samples of the shortest record in which a constant channel is told from one that was cut short.
-const FEWEST_SAMPLES: usize = 16;
+pub(super) const FEWEST_SAMPLES: usize = 16;
 
 /// A record of so few samples that none of its channels can be judged.
 fn too_short(record: &Record, driven: bool) -> Option<Flag> {
@@ -564,7 +592,10 @@ fn at_rail(values: &[f64], rail: f64, step: f64) -> usize {
 }
 
 /// The longest stretches of values that pass a test.
-fn runs(values: &[f64], test: impl Fn(f64) -> bool) -> impl Iterator<Item = Range<usize>> {
+pub(super) fn runs(
+    values: &[f64],
+    test: impl Fn(f64) -> bool,
+) -> impl Iterator<Item = Range<usize>> {
     let mut from = 0;
     std::iter::from_fn(move || {
         let start = from + values[from..].iter().position(|v| test(*v))?;

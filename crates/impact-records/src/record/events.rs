@@ -84,9 +84,12 @@ fn printed_step_s(times: &[f64]) -> f64 {
     digits.map_or(0.0, |digits| 10f64.powi(-digits))
 }
 
-/// The stated times without empty rows at their end; the first row that does not rise as the error.
+/// The stated times without empty rows, the earliest first; the first row that does not rise as the error.
 fn times(values: &[f64]) -> Result<Vec<f64>, usize> {
-    let filled: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    let mut filled: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    if filled.windows(2).all(|w| w[1] < w[0]) {
+        filled.reverse();
+    }
     match filled.windows(2).position(|w| w[1] <= w[0]) {
         Some(row) => Err(row + 2),
         None => Ok(filled),
@@ -156,6 +159,14 @@ mod tests {
         assert_eq!(times.len(), 4);
         assert!((times[3] - 1.22).abs() < 1e-12);
         assert!((list.sample_rate_hz - 3.0 / 1.22).abs() < 1e-12);
+        assert!(list.flags.is_empty());
+    }
+
+    #[test]
+    fn a_list_of_times_with_the_last_impact_first_is_turned_around() {
+        let mut list = record(&[1.22, 0.9, 0.5, 0.0]);
+        settle(&mut list, ContactContent::Times, 0.0);
+        assert_eq!(list.values(Role::Contact).unwrap(), [0.0, 0.5, 0.9, 1.22]);
         assert!(list.flags.is_empty());
     }
 

@@ -15,6 +15,7 @@ mod content;
 mod events;
 mod flag;
 mod flag_code;
+mod gaps;
 pub mod late;
 mod low_pass;
 pub mod problem;

@@ -40,6 +40,7 @@ pub fn counts_frames(dataset: &DatasetInfo, index: usize) -> bool {
     let named = [
         "frame",
         "frames",
+        "sub frame",
         "frame number",
         "frame no",
         "image",

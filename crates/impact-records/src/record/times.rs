@@ -2,7 +2,7 @@
 
 use super::alignment::{self, Timing};
 use super::bind::{BoundRole, RecordSetup};
-use super::{Flag, FlagCode, Problem, Record, Role};
+use super::{Channel, Flag, FlagCode, Problem, Record, Role};
 use super::{changes, condition, time_axis};
 use labfiles::timing::AxisUnit;
 use labfiles::units::symbol_of;
@@ -101,6 +101,9 @@ impl Clocks {
         }
         let mut times = times.first_mut().and_then(Option::take);
         condition::equal_lengths(record, times.as_mut());
+        if let (Some(times), Some(&axis)) = (&mut times, self.axes.first()) {
+            turn(record, times, &dataset.channels[axis].name);
+        }
         condition::trim_missing(record, times.as_mut());
         if times.is_some() {
             condition::skip(record, times.as_mut(), setup.skip_s);
@@ -150,6 +153,22 @@ impl Clocks {
         }
         record.sample_rate_hz = alignment::align(record, &timings).unwrap_or(0.0);
     }
+}
+
+/// Turn a record around whose last sample is first: all its times fall.
+fn turn(record: &mut Record, times: &mut [f64], axis: &str) {
+    let falls = times.len() > 2 && times.windows(2).all(|w| w[1] < w[0]);
+    let same = |c: &Channel| c.values.len() == times.len();
+    if !falls || !record.channels.iter().all(same) {
+        return;
+    }
+    times.reverse();
+    for channel in &mut record.channels {
+        channel.values.reverse();
+    }
+    let axis = axis.to_owned();
+    let flag = Flag::new(Some(&axis.clone()), Problem::TimeTurnedAround { axis });
+    record.flags.push(flag.excluding(false));
 }
 
 /// Say of a contact whose rows are its changes, not samples, what to write instead.

@@ -52,6 +52,15 @@ pub(crate) fn parse(cell: &str, month_first: bool) -> Option<Stamp> {
     if cell.is_empty() || cell.len() > 48 || !cell.is_ascii() {
         return None;
     }
+    if let Some((days, time)) = with_named_month(cell) {
+        let seconds = if time.is_empty() {
+            0.0
+        } else {
+            parse_time(time)?
+        };
+        let days = Some(days);
+        return Some(Stamp { days, seconds });
+    }
     let (date, rest) = cell.split_once(['T', ' ']).unwrap_or((cell, ""));
     let days = parse_date(date, month_first);
     let time = if days.is_some() { rest } else { cell };
@@ -60,6 +69,42 @@ pub(crate) fn parse(cell: &str, month_first: bool) -> Option<Stamp> {
         _ => parse_time(time.trim())?,
     };
     Some(Stamp { days, seconds })
+}
+
+/// The first letters of the months.
+const MONTHS: [&str; 12] = [
+    "jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec",
+];
+
+/// Days since 1970-01-01 and the time of day of a cell whose date names its month: `27-Nov-2025 10:59:57`, `27 Nov 2025`,
+/// `Nov 27, 2025 10:59:57 AM`.
+fn with_named_month(cell: &str) -> Option<(i64, &str)> {
+    let mark = |c: char| matches!(c, '-' | '/' | ' ' | ',' | '.');
+    let mut rest = cell;
+    let mut next = || {
+        let end = rest.find(mark).unwrap_or(rest.len());
+        let part = &rest[..end];
+        rest = rest[end..].trim_start_matches(mark);
+        part
+    };
+    let parts = [next(), next(), next()];
+    let month_of = |part: &str| {
+        let begin = part.get(..3)?.to_ascii_lowercase();
+        let letters = part.bytes().all(|b| b.is_ascii_alphabetic());
+        MONTHS.iter().position(|m| *m == begin).filter(|_| letters)
+    };
+    let (day, month) = match [month_of(parts[0]), month_of(parts[1])] {
+        [None, Some(month)] => (parts[0], month),
+        [Some(month), None] => (parts[1], month),
+        _ => return None,
+    };
+    let year = parts[2];
+    if !is_digits(day, 2) || !is_digits(year, 4) || year.len() != 4 {
+        return None;
+    }
+    let month = u32::try_from(month + 1).ok()?;
+    let date = NaiveDate::from_ymd_opt(year.parse().ok()?, month, day.parse().ok()?)?;
+    Some((date.to_epoch_days().into(), rest))
 }
 
 /// Days since 1970-01-01 of a date in any of the usual orders.
@@ -85,7 +130,7 @@ fn is_digits(text: &str, longest: usize) -> bool {
     (1..=longest).contains(&text.len()) && text.bytes().all(|b| b.is_ascii_digit())
 }
 
-/// Seconds of `h:mm:ss.fff`, `mm:ss.fff`, either with AM or PM, `Z` or an offset (left out:
+/// Seconds of `h:mm:ss.fff`, `mm:ss.fff`, either with AM or PM, `Z`, `UTC` or an offset (left out:
 /// all stamps of a file share it).
 fn parse_time(text: &str) -> Option<f64> {
     let upper = text.to_ascii_uppercase();
@@ -131,11 +176,15 @@ fn parse_clock(hours: &str, minutes: &str, seconds: &str, half_day: Option<f64>)
     (minutes < 60.0 && seconds < 61.0).then_some(hours * 3600.0 + minutes * 60.0 + seconds)
 }
 
-/// A time without its `Z` or `+01:00`.
+/// A time in capitals without its `Z`, ` UTC` or `+01:00`.
 fn without_zone(text: &str) -> &str {
     let text = text.trim_end_matches('Z');
+    let named = text.rsplit_once(' ').filter(|(_, zone)| {
+        (2..=5).contains(&zone.len()) && zone.bytes().all(|b| b.is_ascii_uppercase())
+    });
+    let text = named.map_or(text, |(time, _)| time);
     match text.rfind(['+', '-']) {
-        Some(i) if i > 0 => &text[..i],
+        Some(i) if i > 0 => text[..i].trim_end(),
         _ => text,
     }
 }
@@ -176,6 +225,23 @@ mod tests {
             49_547.25
         );
         assert_eq!(parse("10:45:47:12", false), None);
+        let morning = Some(Stamp {
+            days: Some(20_419),
+            seconds: 39_597.25,
+        });
+        for text in [
+            "27-Nov-2025 10:59:57.250",
+            "27 Nov 2025 10:59:57.25",
+            "Nov 27, 2025 10:59:57.25 AM",
+            "2025-11-27 10:59:57.250000 +01:00",
+            "2025-11-27 10:59:57.250 UTC",
+            "2025-11-27T10:59:57.250000000Z",
+        ] {
+            assert_eq!(parse(text, false), morning, "{text}");
+        }
+        for text in ["Nov 27", "nov-27-25", "10:59:57 o'clock", "mass 12 2025"] {
+            assert_eq!(parse(text, false), None, "{text}");
+        }
         for text in ["1.5", "12", "", "a:b", "2024-13-01", "12:61:00", "-1:00:00"] {
             assert_eq!(parse(text, false), None, "{text}");
         }

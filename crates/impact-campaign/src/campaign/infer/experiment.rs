@@ -190,12 +190,24 @@ const INTERVALS: [&str; 4] = ["interval", "duration", "diff", "dt"];
 const FLIGHTS: [&str; 5] = ["flug", "flight", "abstand", "lap", "runde"];
 
 /// Whether a column of times holds those from one event to the next: by its name, by a name of flights whose numbers
-/// do not only rise, or by numbers of which most fall.
+/// do not only rise, or by numbers of which most fall, and are no times of which the last is first.
 fn are_intervals(name: &str, values: &[f64]) -> bool {
     let name = name.to_lowercase();
     let called = |words: &[&str]| words.iter().any(|word| name.contains(word));
     let fall = values.windows(2).filter(|w| w[1] < w[0]).count();
-    called(&INTERVALS) || (called(&FLIGHTS) && fall > 0) || 2 * fall >= values.len().max(1)
+    called(&INTERVALS)
+        || (called(&FLIGHTS) && fall > 0)
+        || (2 * fall >= values.len().max(1) && !are_reversed(values))
+}
+
+/// Whether numbers that all fall are times of bounces of which the last is first: they fall by more and more, and flights,
+/// which follow a geometric row themselves, by less and less.
+fn are_reversed(values: &[f64]) -> bool {
+    let steps: Vec<f64> = values.windows(2).map(|w| w[0] - w[1]).collect();
+    let grow = steps.windows(2).filter(|w| w[1] > w[0]).count();
+    steps.iter().all(|step| *step > 0.0)
+        && 3 * grow >= 2 * steps.len().saturating_sub(1)
+        && grow > 0
 }
 
 /// The column of a list of events that states the impacts, among those that contain times.
@@ -247,7 +259,7 @@ fn sounds(place: Place<'_>, channel: usize) -> bool {
     found.len() >= FEWEST_SOUNDS && 3 * shorter >= 2 * flights.len().saturating_sub(1)
 }
 
-/// A record by the inferred roles, in SI as far as units are known.
+/// A record by the inferred roles, in SI as far as units are known; of one with gaps the longest part between them.
 fn read(place: Place<'_>, channels: &[InferredChannel]) -> Record {
     let setups: Vec<ChannelSetup> = channels
         .iter()
@@ -276,7 +288,13 @@ fn read(place: Place<'_>, channels: &[InferredChannel]) -> Record {
         driven: false,
         skip_s: 0.0,
     };
-    calibrate(place.source, &setup)
+    let record = calibrate(place.source, &setup);
+    let parts = match record.has_gaps() {
+        true => record.between_gaps(),
+        false => Vec::new(),
+    };
+    let longest = parts.into_iter().max_by_key(|(_, part)| part.samples());
+    longest.map_or(record, |(_, part)| part)
 }
 
 /// Pictures a second by which records are looked at that number them, and state no rate.
@@ -393,6 +411,9 @@ mod tests {
         assert!(!are_intervals("Time", &[0.5, 0.9, 1.2, 0.5, 0.9, 1.2]));
         assert!(are_intervals("duration", &times));
         assert!(!are_intervals("t", &[]));
+        // the last impact first
+        let reversed: Vec<f64> = times.iter().rev().copied().collect();
+        assert!(!are_intervals("Zeit", &reversed));
     }
 
     /// A decay of β = 0.02 over ten periods of 1 Hz.

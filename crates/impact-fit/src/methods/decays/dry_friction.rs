@@ -7,6 +7,10 @@
 //!
 //! Its 95 % interval reaches from v up by no more than that of a viscous fit, and down by what friction the decay leaves
 //! possible. In several decays ρ need not be the same: means of v and r with the same weights obey the same equation.
+//!
+//! Drag of the air that is worth δ makes the rate of decay fall along the decay by as much as friction worth δ makes it rise,
+//! to first order in what the amplitude loses: r is an estimate of ρ − δ, and with −r in the place of r the profile has
+//! what drag leaves of β.
 
 use impact_records::signal::decay::{BesideFriction, Decay};
 
@@ -27,6 +31,8 @@ pub(super) struct Shared {
     viscous: (f64, Spread),
     /// What friction is worth of it, with its error.
     friction: (f64, Spread),
+    /// Whether drag of the air may have part of it.
+    drag: bool,
 }
 
 impl Shared {
@@ -44,7 +50,13 @@ impl Shared {
         Self {
             viscous: mean(0),
             friction: mean(1),
+            drag: false,
         }
+    }
+
+    /// The same where drag of the air is possible, or not.
+    pub(super) fn with_drag(self, drag: bool) -> Self {
+        Self { drag, ..self }
     }
 
     /// Whether friction is beyond chance.
@@ -78,7 +90,17 @@ impl Shared {
         }
     }
 
-    /// The profile's 95 % interval, up to the viscous fit's where the profile leaves no damping: friction that is worth
+    /// What drag leaves of β at least, where it is possible.
+    fn beside_drag(&self) -> Option<f64> {
+        let (friction, spread) = self.friction;
+        let mirrored = Self {
+            friction: (-friction, spread),
+            ..*self
+        };
+        self.drag.then(|| mirrored.interval()[0])
+    }
+
+    /// The profile's 95 % interval beside friction, up to the viscous fit's where the profile leaves no damping: friction that is worth
     /// more than all of it is none.
     fn interval(&self) -> [f64; 2] {
         let (viscous, friction) = (self.viscous.0, self.friction.0);
@@ -109,15 +131,25 @@ impl Shared {
         let (viscous, spread) = self.viscous;
         let high = spread.upper_end(viscous, high);
         let value = self.value();
-        let error = 0.5 * (high - low) / self.quantile();
         let most = estimate::limits(Coordinate::Damping).0;
         let undamped = viscous <= spread.half95();
-        let is_weak = undamped || low <= 0.0 || error > most * value;
+        let error_from = |low: f64| 0.5 * (high - low) / self.quantile();
+        let is_open = |low: f64| low <= 0.0 || error_from(low) > most * value;
+        let by_friction = is_open(low);
+        let low = self.beside_drag().map_or(low, |own| own.min(low));
+        let error = error_from(low);
+        let is_weak = undamped || is_open(low);
         let note = if undamped {
             Some(Note::Undamped { most: high })
+        } else if !is_weak || spread.error > most * viscous {
+            None
+        } else if by_friction {
+            Some(Note::FrictionNotTold {
+                periods,
+                equivalent: viscous,
+            })
         } else {
-            let by_friction = is_weak && spread.error <= most * viscous;
-            by_friction.then_some(Note::FrictionNotTold {
+            Some(Note::DragNotTold {
                 periods,
                 equivalent: viscous,
             })
@@ -182,7 +214,27 @@ mod tests {
         Shared {
             viscous: (viscous, Spread::known(errors[0])),
             friction: (friction, Spread::known(errors[1])),
+            drag: false,
         }
+    }
+
+    #[test]
+    fn valid_drag_leaves_of_beta_what_friction_of_the_same_size_would() {
+        // the rate of decay falls along the decay: drag worth 4e-3 of 0.01
+        let own = shared(0.01, -4e-3, [1e-4, 5e-4]);
+        let plain = own.estimate(9.0);
+        assert_eq!(plain.status, Status::Identified);
+        let with = own.with_drag(true).estimate(9.0);
+        let [low, high] = with.interval95.unwrap();
+        assert!(low < 0.006 && high > 0.01, "{low} {high}");
+        assert!(
+            matches!(with.note, Some(Note::DragNotTold { .. })),
+            "{with:?}"
+        );
+        assert_eq!(with.value, plain.value);
+        // friction of that size leaves as much
+        let rubbed = shared(0.01, 4e-3, [1e-4, 5e-4]);
+        assert!((rubbed.interval()[0] - low).abs() < 1e-12);
     }
 
     #[test]

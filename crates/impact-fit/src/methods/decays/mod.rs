@@ -75,7 +75,9 @@ pub fn pooled(observations: &[Observation], effects: Effects) -> Option<MethodRe
         return None;
     }
     let shared = Shared::of(&decays);
-    let possible = effects.iter().any(|e| e == Effect::Friction);
+    let may_have = |effect: Effect| effects.iter().any(|e| e == effect);
+    let possible = may_have(Effect::Friction);
+    let shared = shared.with_drag(may_have(Effect::Drag));
     let shared = Some(shared).filter(|s| possible || s.is_told());
     let frequencies: Vec<Measured> = decays
         .iter()
@@ -136,9 +138,23 @@ fn frequency_beside_friction(decay: &Decay) -> Measured {
 fn logarithm(decay: &Decay, frequency_hz: f64, error_hz: f64) -> Measured {
     Measured {
         value: frequency_hz.ln(),
-        error: error_hz.hypot(drift_error_hz(decay)) / frequency_hz,
+        error: error_hz
+            .hypot(drift_error_hz(decay))
+            .hypot(undamped_error_hz(decay))
+            / frequency_hz,
         freedom: decay.freedom,
     }
+}
+
+/// What damping that is not viscous leaves open of f0, Hz: drag does not lower the frequency as viscous damping of the same
+/// loss does.
+fn undamped_error_hz(decay: &Decay) -> f64 {
+    let changes = decay.course.damping_z_score > CHANGES;
+    if !changes || decay.course.law == DampingLaw::Friction {
+        return 0.0;
+    }
+    let lowered = 1.0 - (1.0 - decay.damping_ratio.powi(2)).max(0.0).sqrt();
+    lowered * decay.natural_frequency_hz
 }
 
 /// Periods of the motion in a decay, which may stick before the decay is over.

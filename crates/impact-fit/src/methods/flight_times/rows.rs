@@ -59,7 +59,7 @@ pub(super) fn rows(records: &[(usize, &Observation)]) -> Rows {
         let flights = flights(o);
         let ratios = ratios(o);
         let two = (1..flights.len()).filter_map(|k| Some((k, two_in_one(&ratios, k, median)?)));
-        let two: Vec<(usize, f64)> = two.collect();
+        let two: Vec<(usize, f64)> = two.chain(two_at_an_end(&ratios)).collect();
         let first =
             |(k, r): &(usize, f64)| (*record, o.impacts[*k].time_s + flights[*k] / (1.0 + r));
         found.missed.extend(two.iter().map(first));
@@ -102,6 +102,25 @@ fn two_in_one(ratios: &[f64], flight: usize, restitution: f64) -> Option<f64> {
     let near = |ratio: f64, two: f64| (ratio / two).ln().abs() < half;
     let both = near(*to, restitution * sum) && near(*from, restitution.powi(2) / sum);
     both.then_some(restitution)
+}
+
+/// R where the first flight of a row, or the last one, is two: its ratio to the flight beside it is then R²/(1 + R) or
+/// R(1 + R), where the next ratio is R.
+fn two_at_an_end(ratios: &[f64]) -> Option<(usize, f64)> {
+    let &[first, second, ..] = ratios else {
+        return None;
+    };
+    let &[.., before, last] = ratios else {
+        return None;
+    };
+    let near = |ratio: f64, two: f64| (ratio / two).ln().abs() < AS_TWO;
+    if second < GREATEST && near(first, second.powi(2) / (1.0 + second)) {
+        Some((0, second))
+    } else if before < GREATEST && near(last, before * (1.0 + before)) {
+        Some((ratios.len(), before))
+    } else {
+        None
+    }
 }
 
 /// Gauss–Newton for `t_0`, `T_0` and R from the ratio of the first two flights.

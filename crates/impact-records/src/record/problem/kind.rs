@@ -174,6 +174,28 @@ problems! {
         /// The sample of the first.
         first: usize,
     };
+    /// Some values are NaN or infinite: what lies between them is used.
+    NotANumber: GapsLeftOut {
+        /// The channel.
+        channel: String,
+        /// How many samples.
+        count: usize,
+        /// In how many gaps.
+        gaps: usize,
+        /// The sample of the first.
+        first: usize,
+    };
+    /// Some values are NaN or infinite, a few in a row at most: they are filled.
+    NotANumber: ShortGapsFilled {
+        /// The channel.
+        channel: String,
+        /// How many samples.
+        count: usize,
+        /// In how many gaps.
+        gaps: usize,
+        /// The sample of the first.
+        first: usize,
+    };
     /// At no sample have all channels a value.
     NotANumber: NoCompleteSample;
     /// The channels differ in length.
@@ -306,6 +328,11 @@ problems! {
         before_s: f64,
         /// The next time, s.
         after_s: f64,
+    };
+    /// All times fall: the record is read from its end.
+    TimeBackward: TimeTurnedAround {
+        /// The time axis.
+        axis: String,
     };
     /// An impact is not later than the one before.
     TimeBackward: ImpactsNotInOrder {

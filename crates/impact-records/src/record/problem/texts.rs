@@ -106,6 +106,16 @@ message_table! { "problem": Problem;
         channel = Value::Name(channel),
         count = Value::Count(*count),
         first = Value::Count(*first);
+    Self::ShortGapsFilled { channel, count, gaps, first } =>
+        channel = Value::Name(channel),
+        count = Value::Count(*count),
+        gaps = Value::Count(*gaps),
+        first = Value::Count(*first);
+    Self::GapsLeftOut { channel, count, gaps, first } =>
+        channel = Value::Name(channel),
+        count = Value::Count(*count),
+        gaps = Value::Count(*gaps),
+        first = Value::Count(*first);
     Self::LengthsDiffer { shortest, longest } =>
         shortest = Value::Count(*shortest),
         longest = Value::Count(*longest);
@@ -188,6 +198,7 @@ message_table! { "problem": Problem;
         axis = Value::Name(axis),
         unit = Value::Name(unit);
     Self::TimeTakenAsSeconds { axis } => axis = Value::Name(axis);
+    Self::TimeTurnedAround { axis } => axis = Value::Name(axis);
     Self::TimeTakenAsDays { axis } => axis = Value::Name(axis);
     Self::LaterChannel { channel, by_s } =>
         channel = Value::Name(channel),

@@ -52,7 +52,7 @@ pub(super) fn parts(samples: &[f64]) -> Vec<(usize, usize)> {
     let mut from = 0;
     for edge in edges {
         if out.is_empty()
-            && heights[..edge / window]
+            && heights[..edge.div_ceil(window)]
                 .iter()
                 .all(|h| *h < BLOW * greatest)
         {

@@ -106,7 +106,7 @@ impl Decay {
     }
 
     /// Count samples from an earlier one on.
-    fn shift(&mut self, by: usize, rate_hz: f64) {
+    pub(crate) fn shift(&mut self, by: usize, rate_hz: f64) {
         self.first += by;
         self.stopped_s = self.stopped_s.map(|s| s + by as f64 / rate_hz);
     }

@@ -23,6 +23,10 @@ const NO_NOISE: f64 = 3.0;
 const EXPLAINED: f64 = 0.8;
 /// How much more than the least may be left where a fit begins.
 const AS_LITTLE: f64 = 1.5;
+/// What a fit leaves over the decay, from which one that begins later is looked at, and what that one leaves of it at most
+/// where the decay begins there: samples before a blow bend the fit of a few periods as a whole.
+const POOR: f64 = 0.05;
+const FAR_LESS: f64 = 0.2;
 
 /// Time constants of the first motion after which another that lasts is looked for; its fit begins after one.
 const OVER: f64 = 3.0;
@@ -273,7 +277,7 @@ fn begin(samples: &[f64], start: usize, rough: [f64; 2]) -> Option<(usize, First
         let Some(fit) = samples.get(first..).and_then(|tail| first_fit(tail, rough)) else {
             break;
         };
-        if fit.follows {
+        if fit.follows && fit.left < POOR {
             return Some((first, fit));
         }
         found.push((first, fit));
@@ -281,7 +285,13 @@ fn begin(samples: &[f64], start: usize, rough: [f64; 2]) -> Option<(usize, First
     }
     let left = found.iter().map(|f| f.1.left);
     let least = left.fold(f64::INFINITY, f64::min);
-    found.into_iter().find(|f| f.1.left <= AS_LITTLE * least)
+    let follows = |f: &&(usize, FirstFit)| f.1.follows && least > FAR_LESS * f.1.left;
+    let at = found.iter().find(follows).map(|f| f.0);
+    let mut found = found.into_iter();
+    match at {
+        Some(first) => found.find(|f| f.0 == first),
+        None => found.find(|f| f.1.left <= AS_LITTLE * least),
+    }
 }
 
 /// A fit from a sample on.

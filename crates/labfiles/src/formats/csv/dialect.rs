@@ -90,8 +90,8 @@ pub(crate) fn detect(lines: &[&[u8]]) -> Option<Dialect> {
 }
 
 /// Whether lines are one column of numbers with a decimal comma, not two columns of whole numbers: the comma parts
-/// digits alone, and the heading is one cell, or what follows the comma has as many digits everywhere and begins
-/// with a zero somewhere, as no number does.
+/// digits alone, the last with a power of ten or none, and the heading is one cell, or what follows the comma has as many
+/// digits everywhere and begins with a zero somewhere, as no number does.
 fn is_column_of_decimals(lines: &[&[u8]], judged: &[&[u8]]) -> bool {
     let halves = |line: &&[u8]| {
         let line = line.trim_ascii();
@@ -99,7 +99,15 @@ fn is_column_of_decimals(lines: &[&[u8]], judged: &[&[u8]]) -> bool {
         let (whole, part) = (&line[..comma], &line[comma + 1..]);
         let unsigned = whole.strip_prefix(b"-").unwrap_or(whole);
         let digits = |text: &[u8]| !text.is_empty() && text.iter().all(u8::is_ascii_digit);
-        (digits(unsigned) && digits(part)).then(|| part.to_vec())
+        let power = part.iter().position(|b| matches!(b, b'e' | b'E'));
+        let (part, power) = part.split_at(power.unwrap_or(part.len()));
+        let power = power.get(1..).unwrap_or_default();
+        let power = power
+            .strip_prefix(b"-")
+            .or(power.strip_prefix(b"+"))
+            .unwrap_or(power);
+        (digits(unsigned) && digits(part) && power.iter().all(u8::is_ascii_digit))
+            .then(|| part.to_vec())
     };
     let Some(parts) = judged.iter().map(halves).collect::<Option<Vec<_>>>() else {
         return false;
@@ -291,6 +299,12 @@ mod tests {
         is("Weg [mm]\n3,00000\n2,99931\n-1,5", lone, b',', 1);
         is("Zeit in ms\n400,0\n761,3", lone, b',', 1);
         is("3,00\n2,99\n2,05", lone, b',', 1);
+        is(
+            "data:\n1,034500E-03\n-2,500000E+00\n9,99E-01",
+            lone,
+            b',',
+            1,
+        );
         is("a,b\n3,10\n2,99\n2,45", Separator::Byte(b','), b'.', 2);
         is(
             "2024-05-01 12:00:00;1,5\n2024-05-01 12:00:01;1,6",

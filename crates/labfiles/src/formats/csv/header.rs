@@ -57,6 +57,7 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header
         columns,
         ..*dialect
     };
+    of_logger(&mut rows);
     let units = units_row(&rows, dialect.columns);
     let alone = units.is_some() && units_alone(&rows);
     if units.is_some() && !alone {
@@ -77,6 +78,9 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header
         header.names = names;
     } else {
         header.names.extend(trace);
+    }
+    if header.names.iter().take(2).eq(["Frame", "Sub Frame"]) {
+        header.attributes.extend(rate_above(&rows));
     }
     for mut row in rows {
         row.truncate(filled_cells(&row));
@@ -116,9 +120,16 @@ fn pairs_above(plain: &[&[u8]]) -> Vec<(String, String)> {
             .collect();
         let [key, value] = <[String; 2]>::try_from(cells).ok()?;
         let word = key.starts_with(char::is_alphabetic) && !value.is_empty();
+        let key = key.trim_end_matches(':').to_owned();
         word.then_some((key, value))
     };
-    let all: Vec<(String, String)> = plain.iter().rev().map_while(pair).collect();
+    // a line that says that the data follow
+    let says_data = |line: &&&[u8]| {
+        let line = line.trim_ascii().to_ascii_lowercase();
+        line.starts_with(b"data:") && line.len() <= b"data:,".len()
+    };
+    let above = plain.iter().rev().skip_while(says_data);
+    let all: Vec<(String, String)> = above.map_while(pair).collect();
     if all.len() < FEWEST_PAIRS {
         Vec::new()
     } else {
@@ -137,6 +148,29 @@ fn trace_of(pairs: &[(String, String)]) -> Option<String> {
         Some(unit) => format!("{name} [{unit}]"),
         None => name.to_owned(),
     })
+}
+
+/// Leave of the four lines that head a table of Campbell loggers those with names and units, and none of the units of stamps
+/// and row numbers.
+fn of_logger(rows: &mut Vec<Vec<String>>) {
+    let is_one = rows.len() == 4 && rows[0].first().is_some_and(|cell| cell == "TOA5");
+    if !is_one {
+        return;
+    }
+    rows.truncate(3);
+    for unit in rows[2]
+        .iter_mut()
+        .filter(|u| ["TS", "RN"].contains(&u.as_str()))
+    {
+        unit.clear();
+    }
+}
+
+/// The rate that stands alone in a line above a table of trajectories.
+fn rate_above(rows: &[Vec<String>]) -> Option<(String, String)> {
+    let mut alone = rows.iter().filter(|row| filled_cells(row) == 1);
+    let rate = alone.find(|row| number::parse_cell(row[0].as_bytes(), b'.').is_some())?;
+    Some(("sample_rate_hz".to_owned(), rate[0].clone()))
 }
 
 /// Whether the row of units heads the table by itself, below a preamble of keys and values that does not name the

@@ -348,3 +348,41 @@ fn valid_a_time_that_states_its_unit_wins_over_stamps_that_do_not() {
         assert!((rate - 100.0).abs() < 0.01, "{heading}: {rate}");
     }
 }
+
+#[test]
+fn headings_of_loggers_oscilloscopes_and_cameras_are_read() {
+    // the lines of a data logger: names, units, and how each value was formed
+    let logger = source(
+        b"\"TOA5\",\"CR1000X\",\"CR1000X\",\"12345\",\"CR1000X.Std.05\",\"CPU:a.CR1X\",\"1234\",\"Table1\"\n\
+          \"TIMESTAMP\",\"RECORD\",\"Disp\",\"Batt\"\n\"TS\",\"RN\",\"mm\",\"V\"\n\"\",\"\",\"Smp\",\"Smp\"\n\
+          \"2025-11-27 10:59:57\",0,1.25,12.6\n\"2025-11-27 10:59:57.01\",1,1.5,12.6\n\
+          \"2025-11-27 10:59:57.02\",2,1.25,12.6\n",
+    );
+    let set = &logger.datasets()[0];
+    assert_eq!(set.time_axis, Some(0));
+    assert_eq!(
+        (
+            set.channels[2].name.as_str(),
+            set.channels[2].unit.as_deref()
+        ),
+        ("Disp", Some("mm"))
+    );
+    assert!((set.sample_rate_hz().unwrap() - 100.0).abs() < 1e-6);
+    // one column below keys, the step among them
+    let scope = source(
+        b"Revision:,1\nType:,normal\nPoints:,4\nXInc:,+1.00000000E-003\nXOrg:,0\nData:,\n1.5E+00\n2.5E+00\n\
+          -1.5E+00\n0.0E+00\n",
+    );
+    let set = &scope.datasets()[0];
+    assert_eq!((set.channels.len(), set.channels[0].samples), (1, 4));
+    assert!((set.sample_rate_hz().unwrap() - 1000.0).abs() < 1e-6);
+    // trajectories below their rate
+    let camera = source(
+        b"Trajectories\n100\n,,A:top,,\nFrame,Sub Frame,X,Y,Z\n,,mm,mm,mm\n1,0,20.5,100.1,1000.2\n\
+          2,0,19.5,100.1,1000.1\n3,0,18.5,100.2,1000.0\n",
+    );
+    let set = &camera.datasets()[0];
+    let names: Vec<&str> = set.channels.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["Frame", "Sub Frame", "X", "Y", "Z"]);
+    assert!((set.sample_rate_hz().unwrap() - 100.0).abs() < 1e-6);
+}

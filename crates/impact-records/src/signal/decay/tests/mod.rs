@@ -610,3 +610,53 @@ fn valid_a_drift_does_not_hide_a_decay_that_is_over() {
         "{found:?}"
     );
 }
+
+#[test]
+fn valid_a_last_blow_that_is_recorded_for_some_periods_is_a_decay() {
+    for end in [7.6, 8.0, 8.5, 9.5] {
+        let count = crate::signal::whole::index(end * 1000.0);
+        let mut samples = sampled(count, 1000.0, |t| {
+            let last = [7.0, 1.0].into_iter().find(|b| t >= *b);
+            last.map_or(0.0, |b| decay(3.0, 0.02, -0.25 * TAU)(t - b))
+        });
+        white(&mut samples, 2e-3, 9);
+        let found = fit_channels(&[Watched::displacement(&samples)], 1000.0);
+        assert_eq!(found.len(), 2, "{end}");
+        for decay in &found {
+            assert!(
+                (decay.natural_frequency_hz / 3.0 - 1.0).abs() < 2e-3,
+                "{end}: {decay:?}"
+            );
+            assert!(
+                (decay.damping_ratio - 0.02).abs() < 2e-3,
+                "{end}: {decay:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn valid_heavy_decays_are_found_however_long_the_mass_is_held_before_and_after() {
+    let held = [0.0, 0.03, 0.1, 0.2, 0.5];
+    for (beta, hold_s) in [0.2f64, 0.3, 0.45, 0.6]
+        .into_iter()
+        .flat_map(|b| held.map(|h| (b, h)))
+    {
+        for count in [1200, 2000, 4000] {
+            let released = decay(3.0, beta, -beta.asin());
+            let mut samples = sampled(count, 1000.0, |t| 10.0 * released((t - hold_s).max(0.0)));
+            white(&mut samples, 0.02, 9);
+            let found = fit_channels(&[Watched::displacement(&samples)], 1000.0);
+            let best = found.iter().max_by_key(|d| d.samples);
+            let best = best.unwrap_or_else(|| panic!("{beta} {hold_s} {count}"));
+            assert!(
+                (best.natural_frequency_hz / 3.0 - 1.0).abs() < 0.01,
+                "{beta} {hold_s} {count}: {best:?}"
+            );
+            assert!(
+                (best.damping_ratio / beta - 1.0).abs() < 0.02,
+                "{beta} {hold_s} {count}: {best:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! Records with gaps: samples at which a motion channel has no value.
+
+use std::ops::Range;
+
+use super::condition::{AROUND, FEWEST_SAMPLES, runs};
+use super::{Channel, Flag, Problem, Record, Role};
+use crate::signal::{interpolation, robust};
+
+/// Share of the samples that are filled at most.
+const FILLED: f64 = 0.1;
+/// Root mean square by which a polynomial misses samples that are known, over the motion's, at most.
+const MISSED: f64 = 0.05;
+
+/// Fill the gaps of a displacement or a velocity that are as short as repeated pictures may be, and as well surrounded,
+/// where a polynomial through as many samples foretells those that are known.
+pub(super) fn fill(channel: &mut Channel) -> Option<Flag> {
+    use Role::{DisplacementX, DisplacementY, VelocityX, VelocityY};
+    let moves = matches!(
+        channel.role,
+        DisplacementX | DisplacementY | VelocityX | VelocityY
+    );
+    let values = &channel.values;
+    let whole = |range: Range<usize>| values[range].iter().all(|v| v.is_finite());
+    let gaps: Vec<Range<usize>> = runs(values, |v| !v.is_finite())
+        .filter(|gap| gap.len() <= AROUND && gap.start >= AROUND)
+        .filter(|gap| gap.end + AROUND <= values.len())
+        .filter(|gap| whole(gap.start - AROUND..gap.start) && whole(gap.end..gap.end + AROUND))
+        .collect();
+    let count: usize = gaps.iter().map(Range::len).sum();
+    let longest = gaps.iter().map(Range::len).max()?;
+    if !moves || count as f64 > FILLED * values.len() as f64 || !foretells(values, longest) {
+        return None;
+    }
+    let problem = Problem::ShortGapsFilled {
+        channel: channel.name.clone(),
+        count,
+        gaps: gaps.len(),
+        first: gaps[0].start,
+    };
+    for gap in gaps {
+        for i in gap.clone() {
+            channel.values[i] = between(&channel.values, &gap, i);
+        }
+    }
+    Some(Flag::new(Some(&channel.name), problem).excluding(false))
+}
+
+/// Value of a sample of a gap by Lagrange's polynomial through those around the gap.
+fn between(values: &[f64], gap: &Range<usize>, at: usize) -> f64 {
+    let around = (gap.start - AROUND..gap.start).chain(gap.end..gap.end + AROUND);
+    interpolation::through(values, &around.collect::<Vec<_>>(), at)
+}
+
+/// Whether gaps of a length would be filled well where samples are known.
+fn foretells(values: &[f64], length: usize) -> bool {
+    let span = 2 * AROUND + length;
+    let known = values.windows(span).enumerate();
+    let known = known.filter(|(_, around)| around.iter().all(|v| v.is_finite()));
+    let off = known.map(|(i, _)| {
+        let gap = i + AROUND..i + AROUND + length;
+        let at = gap.start + length / 2;
+        values[at] - between(values, &gap, at)
+    });
+    let off: Vec<f64> = off.collect();
+    let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    let motion = (robust::squares_about_mean(&finite) / finite.len() as f64).sqrt();
+    !off.is_empty() && robust::rms(&off) < MISSED * motion
+}
+
+/// Name the gaps of a channel of which what lies between them is used.
+pub(super) fn left_out(channel: &Channel) -> Option<Flag> {
+    let first = channel.values.iter().position(|v| !v.is_finite())?;
+    let missing: Vec<Range<usize>> = runs(&channel.values, |v| !v.is_finite()).collect();
+    let problem = Problem::GapsLeftOut {
+        channel: channel.name.clone(),
+        count: missing.iter().map(Range::len).sum(),
+        gaps: missing.len(),
+        first,
+    };
+    Some(Flag::new(Some(&channel.name), problem).excluding(false))
+}
+
+/// The ranges of samples between gaps at which all channels of motion have values, those that are long enough.
+pub(super) fn parts(record: &Record) -> Vec<Range<usize>> {
+    let moving: Vec<&Channel> = record
+        .channels
+        .iter()
+        .filter(|c| c.role.is_motion())
+        .collect();
+    let whole = |i: usize| moving.iter().all(|c| c.values[i].is_finite());
+    let mut parts = Vec::new();
+    let mut begin = None;
+    for i in 0..=record.samples() {
+        if i < record.samples() && whole(i) {
+            begin.get_or_insert(i);
+        } else if let Some(first) = begin.take().filter(|first| i - first >= FEWEST_SAMPLES) {
+            parts.push(first..i);
+        }
+    }
+    parts
+}
+
+impl Record {
+    /// Whether a motion channel lacks the values of some samples.
+    pub fn has_gaps(&self) -> bool {
+        let mut moving = self.channels.iter().filter(|c| c.role.is_motion());
+        moving.any(|c| c.values.iter().any(|v| !v.is_finite()))
+    }
+
+    /// The parts between its gaps as records of their own without flags, each with the sample at which it begins.
+    pub fn between_gaps(&self) -> Vec<(usize, Self)> {
+        let part = |range: Range<usize>| {
+            let channels = self.channels.iter().map(|channel| Channel {
+                values: channel.values[range.clone()].to_vec(),
+                ..channel.clone()
+            });
+            let part = Self {
+                id: self.id.clone(),
+                channels: channels.collect(),
+                setting: self.setting.clone(),
+                flags: Vec::new(),
+                ..*self
+            };
+            (range.start, part)
+        };
+        parts(self).into_iter().map(part).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::{Excitation, FlagCode};
+
+    fn wave(i: usize) -> f64 {
+        (0.05 * i as f64).sin()
+    }
+
+    fn record(missing: &[Range<usize>]) -> Record {
+        let gap = |i: &usize| missing.iter().any(|m| m.contains(i));
+        let values: Vec<f64> = (0..1000)
+            .map(|i| if gap(&i) { f64::NAN } else { wave(i) })
+            .collect();
+        let mut record = Record::of(100.0, &[(Role::VelocityX, &values)]);
+        record.setting.excitation = Excitation::FreeDecay;
+        record
+    }
+
+    #[test]
+    fn what_lies_between_gaps_are_parts_of_their_own() {
+        let record = record(&[300..310, 315..316, 700..740]);
+        let parts = record.between_gaps();
+        let places: Vec<[usize; 2]> = parts.iter().map(|(i, p)| [*i, p.samples()]).collect();
+        // five samples between two gaps are none
+        assert_eq!(places, [[0, 300], [316, 384], [740, 260]]);
+        let (first, part) = &parts[1];
+        assert_eq!(part.channels[0].values[3], wave(first + 3));
+        assert!(record.has_gaps() && !part.has_gaps());
+    }
+
+    #[test]
+    fn gaps_are_named_and_leave_an_undriven_record_in() {
+        for (driven, count) in [(false, 1), (true, 1)] {
+            let mut gapped = record(&[300..310]);
+            super::super::condition::inspect(&mut gapped, &[None], driven);
+            assert_eq!(gapped.flags.len(), count);
+            assert_eq!(gapped.flags[0].code, FlagCode::NotANumber);
+            assert_eq!(gapped.excluded(), driven);
+        }
+        let mut gapped = record(&[300..310]);
+        super::super::condition::inspect(&mut gapped, &[None], false);
+        assert_eq!(
+            gapped.flags[0].message(),
+            "channel 'velocity_x' has no value at 10 samples in 1 gaps, the first at sample 300: what lies between \
+             gaps is used, each part by itself"
+        );
+    }
+
+    #[test]
+    fn valid_gaps_of_up_to_three_samples_are_filled_where_the_motion_is_slow() {
+        let mut gapped = record(&[100..101, 300..303, 990..992]);
+        super::super::condition::inspect(&mut gapped, &[None], false);
+        let values = &gapped.channels[0].values;
+        assert!((0..1000).all(|i| (values[i] - wave(i)).abs() < 1e-6));
+        assert!(gapped.flags[0].message().contains("at 6 samples in 3 gaps"));
+        // five samples a period are too few
+        let fast: Vec<f64> = (0..1000)
+            .map(|i| {
+                if i == 500 {
+                    f64::NAN
+                } else {
+                    (1.2 * i as f64).sin()
+                }
+            })
+            .collect();
+        let mut fast = Record::of(100.0, &[(Role::VelocityX, &fast)]);
+        super::super::condition::inspect(&mut fast, &[None], false);
+        assert!(fast.has_gaps());
+    }
+}
