@@ -53,9 +53,9 @@ const IRREGULAR_PERIODS: u32 = 10;
 /// Rank of motions without a period among the types that are compared; they are shown last.
 const IRREGULAR: u8 = 1;
 
-/// Indices of the records to compare: those named, else the surest of each type of motion of the
-/// campaign. Where there are more types than comparisons, z = 1/n and p/1 come first, then chaos, other periodic motions and
-/// z = 0.
+/// Indices of the records to compare: those named, else the surest of each type of motion of the campaign, of these
+/// one inside a run of the same motion. Where there are more types than comparisons, z = 1/n and p/1 come first, then chaos,
+/// other periodic motions and z = 0.
 pub(super) fn chosen_records(input: &Input<'_>) -> Vec<usize> {
     let observations = input.observations;
     let find = |name: &String| observations.iter().position(|o| o.record == *name);
@@ -63,6 +63,8 @@ pub(super) fn chosen_records(input: &Input<'_>) -> Vec<usize> {
     if !by_name.is_empty() {
         return by_name;
     }
+    let alike = alike_beside(observations);
+    let quality = |i: usize| quality(&observations[i], alike[i]);
     let mut best: BTreeMap<(u8, String), usize> = BTreeMap::new();
     for (i, o) in observations.iter().enumerate() {
         let rank = match &o.classification.motion {
@@ -78,7 +80,7 @@ pub(super) fn chosen_records(input: &Input<'_>) -> Vec<usize> {
             _ => continue,
         };
         let key = (rank, o.classification.motion.label());
-        let better = |k: &usize| quality(o) > quality(&observations[*k]);
+        let better = |k: &usize| quality(i) > quality(*k);
         if best.get(&key).is_none_or(better) {
             best.insert(key, i);
         }
@@ -88,10 +90,29 @@ pub(super) fn chosen_records(input: &Input<'_>) -> Vec<usize> {
     shown.into_iter().map(|(_, i)| i).collect()
 }
 
-/// Confidence first, then the strength of the motion over its noise.
-fn quality(o: &Observation) -> f64 {
+/// Confidence first, then the distance from the ends of the motion's region, then the strength of the motion over its noise.
+fn quality(o: &Observation, alike: usize) -> (f64, usize, f64) {
     let noise = o.classification.evidence.noise_ratio.unwrap_or(1.0);
-    o.classification.confidence.min(SURE) - noise
+    (o.classification.confidence.min(SURE), alike, -noise)
+}
+
+/// Of each record how many of the two measured just before and after it at its gap and in its direction have its motion.
+fn alike_beside(observations: &[Observation]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..observations.len()).collect();
+    order.sort_by_key(|i| observations[*i].setting.sequence);
+    let mut alike = vec![0; observations.len()];
+    for pair in order.windows(2) {
+        let &[i, k] = pair else { continue };
+        let (a, b) = (&observations[i], &observations[k]);
+        let same = a.setting.clearance_m == b.setting.clearance_m
+            && a.setting.sweep == b.setting.sweep
+            && a.classification.motion == b.classification.motion;
+        if same {
+            alike[i] += 1;
+            alike[k] += 1;
+        }
+    }
+    alike
 }
 
 /// The chosen records with letters in their order; none for a record without a drive.
@@ -177,6 +198,23 @@ fn stretch(drive: DriveTone, periods: u32) -> Stretch {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn records_inside_a_run_of_a_motion_are_told_from_those_at_its_ends() {
+        let quarter = Motion::periodic(1, 4);
+        let motions = [Motion::Chaotic, quarter.clone(), quarter.clone(), quarter];
+        let mut run: Vec<Observation> = motions
+            .into_iter()
+            .map(|motion| Observation::of("r", 12.0, motion))
+            .collect();
+        for (i, o) in run.iter_mut().enumerate() {
+            o.setting.sequence = i;
+        }
+        assert_eq!(alike_beside(&run), [0, 1, 2, 1]);
+        // the last one at another gap is no neighbour
+        run[3].setting.clearance_m = Some(2e-3);
+        assert_eq!(alike_beside(&run), [0, 1, 1, 0]);
+    }
 
     #[test]
     fn a_stretch_begins_at_a_zero_phase_of_the_drive() {
