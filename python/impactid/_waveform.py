@@ -100,12 +100,12 @@ def replay(folder: Path, record: str) -> dict[str, dict[str, Signal]]:
 
 
 def _found(folder: Path, campaign: dict[str, Any]) -> dict[str, Any]:
-    """The campaign with paths that lead to its files from the working directory: as stated, or below the nearest
-    folder above the results from which they do. The program finds them so too."""
-    if Path(campaign["file"]).exists():
-        return campaign
-    above = (base for base in folder.resolve().parents if (base / campaign["file"]).exists())
-    base = next(above, None)
+    """The campaign with paths that lead to its files: below where the results state that they begin, the working
+    directory, or the nearest folder above the results from which they do. The program finds them so too."""
+    results = folder.resolve()
+    stated = [results / campaign["paths_begin_at"]] if "paths_begin_at" in campaign else []
+    bases = [*stated, Path.cwd(), *results.parents]
+    base = next((base for base in bases if (base / campaign["file"]).exists()), None)
     if base is None:
         return campaign
     campaign["file"] = str(base / campaign["file"])

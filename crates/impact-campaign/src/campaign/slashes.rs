@@ -45,7 +45,7 @@ pub(super) fn serialize<S: Serializer>(path: &Path, to: S) -> Result<S::Ok, S::E
 }
 
 /// Write a path, where there is one.
-pub(super) fn serialize_option<S: Serializer>(
+pub(crate) fn serialize_option<S: Serializer>(
     path: &Option<PathBuf>,
     to: S,
 ) -> Result<S::Ok, S::Error> {

@@ -4,10 +4,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::campaign::resolved::{RESOLVED, RecordEntry, ResolvedCampaign};
+use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
 use crate::pipeline::identify::{self, IdentificationFile};
 use crate::pipeline::json::{read_json, store_error, write_json};
 use crate::pipeline::observe::each_record;
+pub use crate::pipeline::resolved_file::{read_resolved, write_resolved};
 use crate::pipeline::{Observed, PipelineError, Progress, RefusedRecord, gzip_json};
 use impact_identification::identify::residuals::MethodResiduals;
 use impact_records::motion::{Folded, Observation, brackets};
@@ -25,33 +26,6 @@ const WAVEFORMS: &str = "waveforms.json.gz";
 const RESIDUALS: &str = "residuals.json.gz";
 /// What a run keeps for its report.
 const KEPT: &str = "report_data.json.gz";
-
-/// Write the resolved campaign beside the results.
-///
-/// # Errors
-/// If it cannot be written.
-pub fn write_resolved(campaign: &ResolvedCampaign, out: &Path) -> Result<(), PipelineError> {
-    write_json(&out.join(RESOLVED), campaign)
-}
-
-/// Read the resolved campaign of a previous stage. Its paths are as they were stated; where they lead nowhere from
-/// the working directory, they are those below the nearest folder above the results from which they do.
-///
-/// # Errors
-/// If it is missing or unreadable.
-pub fn read_resolved(out: &Path) -> Result<ResolvedCampaign, PipelineError> {
-    let campaign: ResolvedCampaign = read_json(&out.join(RESOLVED))?;
-    if campaign.file.exists() {
-        return Ok(campaign);
-    }
-    let whole = out.canonicalize().unwrap_or_else(|_| out.to_owned());
-    let mut above = whole.ancestors().skip(1);
-    let base = above.find(|base| base.join(&campaign.file).exists());
-    Ok(match base {
-        Some(base) => campaign.below(base),
-        None => campaign,
-    })
-}
 
 /// The calibrated campaign: records in SI in our own HDF5 files, with the flags of the calibration.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
@@ -448,18 +422,6 @@ mod tests {
                 .remedy()
                 .contains("ingest, classify, identify, report")
         );
-    }
-
-    #[test]
-    fn results_lead_to_their_inputs_from_another_directory() {
-        // paths of the example begin at the workspace, and tests run in their crate
-        let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../../reports/example");
-        let campaign = read_resolved(Path::new(example)).unwrap();
-        let table = campaign.run_table.iter();
-        let files = campaign.records.iter().map(|r| &r.file).chain(table);
-        for file in files.chain([&campaign.file]) {
-            assert!(file.exists(), "{}", file.display());
-        }
     }
 
     #[test]

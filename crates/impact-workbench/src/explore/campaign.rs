@@ -361,7 +361,10 @@ fn changed_inputs(resolved: &ResolvedCampaign, found: &IdentificationFile) -> Ve
             Some(_) => changed.push(name.as_str()),
         }
     }
-    let folder = resolved.folder().display();
+    let folder = match resolved.folder() {
+        here if here.as_os_str().is_empty() => Path::new(".").display(),
+        folder => folder.display(),
+    };
     let gone = named(&gone).map(|names| {
         format!("Not in {folder} any more: {names}. What was measured there cannot be shown.")
     });
