@@ -19,22 +19,19 @@ function prefixed(lists, unit) {
 export class CampaignView {
   constructor(app, facts) {
     this.app = app;
-    this.facts = facts;
-    this.proposals = [];
-    this.fit = facts.fit;
-    this.head();
-    element("residuals").hidden = !this.fit; // its place, before there is anything in it
+    this.replace(facts);
     new ResizeObserver(() => this.traces()).observe(element("traces"));
   }
 
-  /** More records: what was shown of the old ones is asked for again. */
+  /** Other records: what is shown of those before is asked for again. */
   replace(facts) {
     this.facts = facts;
     this.fit = facts.fit;
     this.proposals = [];
     this.residual = null;
     this.head();
-    this.select.value = this.app.state.record ?? "";
+    this.select.value = this.app.state?.record ?? "";
+    element("residuals").hidden = !this.fit; // its place, before there is anything in it
   }
 
   /** (η, ρ) of a record or bracket at the sliders. */
@@ -193,8 +190,6 @@ export class CampaignView {
 
   residuals(frame) {
     this.residual = frame;
-    const box = element("residuals");
-    box.hidden = !this.fit;
     if (!this.fit) return;
     // a method that the joint fit trusts less than its own noise is judged as the joint fit weighs it
     const item = (name, rms, tip, { weight = 1, ideal_rig, remarks = [] } = {}) => {
@@ -211,7 +206,7 @@ export class CampaignView {
     const known = frame.brackets.filter((b) => b.boundary_hz !== null), past = known.filter((b) => b.past_hz > 0);
     const most = Math.max(0, ...past.map((b) => b.past_hz));
     if (known.length) parts.push(make("span", `Boundaries: ${past.length} of ${known.length} past their brackets${past.length ? `, by up to ${number(most, 3)} Hz` : ""}`));
-    box.replaceChildren(make("span", "Residuals at the sliders:"), ...parts, button("Back to the fit (Z)", () => this.app.backToFit()));
+    element("residuals").replaceChildren(make("span", "Residuals at the sliders:"), ...parts, button("Back to the fit (Z)", () => this.app.backToFit()));
     this.app.map.redraw();
   }
 }

@@ -1,13 +1,9 @@
 // The way to the server: its token, and what to do where it is wrong or the server is gone.
-import { make } from "./fields.js";
+import { kept, make } from "./fields.js";
 
 /** Time between two looks at whether the server is back, ms. */
 const AGAIN = 1500;
 const TOKEN = /[0-9a-f]{32}/;
-
-/** The token of the newest address that was opened on this port. */
-const kept = () => { try { return localStorage.getItem("token"); } catch { return null; } };
-const keep = (token) => { try { localStorage.setItem("token", token); } catch { /* a private window keeps none */ } };
 
 /** Whether a token opens the door: "open", "wrong", "full" or "gone". */
 async function ask(token) {
@@ -17,9 +13,10 @@ async function ask(token) {
   } catch { return "gone"; }
 }
 
-/** The first of the tokens at hand that opens the door; `null` where none does. */
+/** The first that opens the door of the tokens at hand, a page's own and that of the newest address that was opened on this
+ * port; `null` where none does. */
 async function known(token) {
-  for (const t of new Set([token, kept()])) if (t && (await ask(t)) === "open") { keep(t); return t; }
+  for (const t of new Set([token, kept("token")])) if (t && (await ask(t)) === "open") { kept("token", t); return t; }
   return null;
 }
 
@@ -42,7 +39,7 @@ export async function enter(app, token) {
     input.addEventListener("keydown", (e) => { if (e.key === "Enter") { e.preventDefault(); input.blur(); } });
     input.addEventListener("change", async () => {
       const given = TOKEN.exec(input.value)?.[0];
-      if (given && (await ask(given)) === "open") { keep(given); box.removeEventListener("close", again); box.close(); resolve(given); } else fault.textContent = given ? "The server does not know this token." : "This address has no token: it has 32 digits and letters after t=.";
+      if (given && (await ask(given)) === "open") { kept("token", given); box.removeEventListener("close", again); box.close(); resolve(given); } else fault.textContent = given ? "The server does not know this token." : "This address has no token: it has 32 digits and letters after t=.";
     });
     show();
   });

@@ -24,6 +24,14 @@ export function typed(text) {
   return text.trim() !== "" && Number.isFinite(v) ? v : null;
 }
 
+/** What the browser keeps under a name, a new value where one is given; a private window keeps nothing. */
+export function kept(name, value) {
+  try {
+    if (value !== undefined) localStorage.setItem(name, value);
+    return localStorage.getItem(name);
+  } catch { return null; }
+}
+
 let fields = 0;
 
 /** A field [label, range, get, put] of a number, with the place where it says what is wrong. `put` may refuse a value

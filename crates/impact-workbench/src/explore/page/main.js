@@ -7,7 +7,7 @@ import { Dialogs } from "./dialogs.js";
 import { listen, press } from "./keys.js";
 import { enter, lost } from "./door.js";
 import { Demos } from "./demos.js";
-import { Sliders, button, element, make } from "./fields.js";
+import { Sliders, button, element, kept, make } from "./fields.js";
 import { number, named, colour, markColour } from "./draw.js";
 
 /** Points of a boundary. */
@@ -452,7 +452,7 @@ class App {
   theme() {
     const root = document.documentElement;
     root.dataset.theme = root.dataset.theme === "dark" ? "light" : "dark";
-    try { localStorage.setItem("theme", root.dataset.theme); } catch { /* a private window keeps none */ }
+    kept("theme", root.dataset.theme);
     this.map.redraw(); this.restorePanel(); this.note(); this.legend(this.legendStyles ?? []);
   }
 
@@ -508,9 +508,7 @@ class App {
   }
 }
 
-let theme = null;
-try { theme = localStorage.getItem("theme"); } catch { /* a private window keeps none */ }
-document.documentElement.dataset.theme = theme ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+document.documentElement.dataset.theme = kept("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
 const app = new App();
 window.impactid = app;
 app.open();

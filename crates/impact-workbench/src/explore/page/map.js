@@ -45,6 +45,7 @@ export class MapView {
     this.finished = 0;       // id of the newest request whose map came to its end
     this.late = false;       // whether what is wanted has not come yet: what is older is faint
     this.unnamed = false;    // whether names and legend are those of a map before: hidden and faint
+    this.waiting = {};       // timers after which a map is late or unnamed
     this.theme = "";
     this.pointer();
     new ResizeObserver(() => this.redraw()).observe(this.canvas);
@@ -68,25 +69,19 @@ export class MapView {
 
   /** Another map was asked for: what is shown is that of another machine or view, and faint unless it comes at once. */
   asked() {
-    clearTimeout(this.waiting); clearTimeout(this.naming);
-    if (!this.late) this.waiting = setTimeout(() => this.fade(true), AT_ONCE);
-    if (!this.unnamed) this.naming = setTimeout(() => this.unname(true), AT_ONCE);
+    for (const what of ["late", "unnamed"]) {
+      clearTimeout(this.waiting[what]);
+      if (!this[what]) this.waiting[what] = setTimeout(() => this.mark(what, true), AT_ONCE);
+    }
   }
 
-  fade(late) {
-    clearTimeout(this.waiting);
-    if (this.late === late) return;
-    this.late = late;
+  /** Say whether cells are `late`, or names and legend `unnamed`, which follow only with the second level of a map. */
+  mark(what, is) {
+    clearTimeout(this.waiting[what]);
+    if (this[what] === is) return;
+    this[what] = is;
+    document.getElementById("legend").classList.toggle("late", this.unnamed);
     this.redraw("tiles", "lines");
-  }
-
-  /** Names and legend follow only with the second level of a map. */
-  unname(unnamed) {
-    clearTimeout(this.naming);
-    if (this.unnamed === unnamed) return;
-    this.unnamed = unnamed;
-    document.getElementById("legend").classList.toggle("late", unnamed);
-    this.redraw("lines");
   }
 
   /** A strip of motions that coexist with those of the map's cells. */
@@ -157,10 +152,10 @@ export class MapView {
     tile.filled += frame.cell.length;
     tile.complete = tile.filled >= tile.cells.length;
     // never the cells of two machines side by side
-    this.fade(!tile.complete && this.tiles.some((t) => t.id !== tile.id));
+    this.mark("late", !tile.complete && this.tiles.some((t) => t.id !== tile.id));
     if (tile.complete) {
       this.tiles = this.tiles.filter((t) => t === tile || (t.id === tile.id && t.level > tile.level));
-      if (tile.level === 1) { this.regions = regions(tile); this.cells128 = tile; this.unname(false); }
+      if (tile.level === 1) { this.regions = regions(tile); this.cells128 = tile; this.mark("unnamed", false); }
       if (tile.level >= 1) this.app.legend(commonest(tile));
     }
     if (frame.last) this.finished = frame.id;

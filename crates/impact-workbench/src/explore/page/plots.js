@@ -58,22 +58,21 @@ export class MotionPanel extends Panel {
   /** The next stretch of the running motion joins what is shown. */
   run(frame) {
     const span = this.app.state.periods;
-    const old = this.live ?? { t: [], x: [], vx: [], y: [], vy: [], gap: [], px: [], pv: [], pt: [], end: 0, moved: 0 };
     const { damping_ratio, restitution, asymmetry } = this.app.state;
     const at = JSON.stringify([frame.cursor.eta, frame.cursor.rho, damping_ratio, restitution, asymmetry]);
-    if (old.at && old.at !== at) old.moved = old.end;
+    const old = this.live ?? { t: [], x: [], other: [], jumps: [], px: [], pv: [], pt: [], end: 0, moved: 0, at };
+    if (old.at !== at) old.moved = old.end;
     old.at = at;
     if (frame.motion) this.frame = { ...this.frame, ...frame, column: { ...this.frame?.column, lag: frame.column.lag, autocorrelation: frame.column.autocorrelation } };
     const c = frame.column, n = c.periods.length, jumps = withJumps(c);
-    old.jumps = (old.jumps ?? []).concat(jumps.map((p) => [old.end + p[0], p[1], p[2]]));
+    old.jumps.push(...jumps.map((p) => [old.end + p[0], p[1], p[2]]));
     for (let i = old.t.length ? 1 : 0; i < n; i++) {
-      old.t.push(old.end + c.periods[i]); old.x.push(c.x[i]); old.vx.push(c.vx[i]);
-      old.y.push(c.y[i]); old.vy.push(c.vy[i]); old.gap.push(frame.gap);
+      old.t.push(old.end + c.periods[i]); old.x.push(c.x[i]); old.other.push(frame.gap - c.y[i]);
     }
     old.px.push(...c.poincare_x); old.pv.push(...c.poincare_vx); old.pt.push(...Array(c.poincare_x.length).fill(old.end));
     old.end += c.periods[n - 1];
     const first = old.t.findIndex((t) => t >= old.end - span);
-    if (first > 0) for (const key of ["t", "x", "vx", "y", "vy", "gap"]) old[key].splice(0, first);
+    if (first > 0) for (const key of ["t", "x", "other"]) old[key].splice(0, first);
     old.jumps = old.jumps.filter((p) => p[0] >= old.end - span);
     for (const key of ["px", "pv", "pt"]) old[key].splice(0, Math.max(0, old[key].length - 500));
     this.live = old;
@@ -88,7 +87,7 @@ export class MotionPanel extends Panel {
   series() {
     const l = this.live, c = this.frame?.column, two = this.frame?.two_masses ?? true;
     const t = l ? l.t : c.periods, x = l ? l.x : c.x;
-    const other = l ? l.y.map((y, i) => l.gap[i] - y) : Float32Array.from(c.y, (y) => this.frame.gap - y);
+    const other = l ? l.other : Float32Array.from(c.y, (y) => this.frame.gap - y);
     this.span = [t[0], Math.max(t[t.length - 1], t[0] + 0.1)];
     const f = this.timeFrame = new Frame(element("series"), this.span, around([x, other]), ["time *τ*/*T*", "displacement"], { top: 24 });
     const curves = [["*X*", x, colour("blue")], [two ? "2*ρ* − *Y*" : "stop", other, two ? colour("vermilion") : colour("ink")]];
@@ -196,8 +195,8 @@ export function facts(rows) {
 export const CHARACTERISTICS = {
   lyapunov: { text: "Lyapunov exponent", axis: "Lyapunov exponent per *τ*", zero: true, of: (d) => d.lyapunov, error: (d) => d.lyapunov_error },
   autocorrelation: { text: "autocorrelation at one drive period", axis: "autocorrelation", range: [-1.05, 1.05], zero: true, of: (d) => d.correlation },
-  approach_of_x: { text: "X′ before impacts", axis: "*X*′ before impacts", dots: (d, key) => d.step.map((s) => d[key][s]), of: (d) => d.xSpeed },
-  impactless_phase: { text: "phase without impacts", axis: "phase lag, °", range: [0, 180], of: (d) => d.phase },
+  approach_of_x: { text: "X′ before impacts", axis: "*X*′ before impacts", dots: (d, key) => d.impact_step.map((s) => d[key][s]), of: (d) => d.impact_x_speed },
+  impactless_phase: { text: "phase without impacts", axis: "phase lag, °", range: [0, 180], of: (d) => d.impactless_phase.map((p) => p * 180 / Math.PI) },
 };
 /** Share of the uppermost picture that trajectories take above its box. */
 const INSETS = 0.36;
@@ -217,11 +216,8 @@ export class LinePanel extends Panel {
   add(frame) {
     if (frame.id !== this.id) this.clear(frame.id);
     this.all = frame.all;
-    const way = this.ways[frame.way] ??= { eta: [], rho: [], x_max: [], x_min: [], lyapunov: [], lyapunov_error: [], impactless: [], phase: [], correlation: [], step: [], speed: [], xSpeed: [] };
-    const c = frame.column;
-    for (const key of ["eta", "rho", "x_max", "x_min", "lyapunov", "lyapunov_error", "impactless", "correlation"]) way[key].push(...c[key]);
-    way.phase.push(...c.impactless_phase.map((p) => p * 180 / Math.PI));
-    way.step.push(...c.impact_step); way.speed.push(...c.impact_speed); way.xSpeed.push(...c.impact_x_speed);
+    const way = this.ways[frame.way] ??= {};
+    for (const [key, values] of Object.entries(frame.column)) (way[key] ??= []).push(...values);
     this.draw();
   }
 
@@ -299,7 +295,7 @@ export class LinePanel extends Panel {
       f.dots(d[key], d.x_max, 1.3, ink); f.dots(d[key], d.x_min, 0.8, ink);
     }, above);
     this.insets(greatest, key);
-    panel("line-v", around([...lists("speed"), [0]]), `approach speed *X*′₋${this.app.state.single ? "" : " + *Y*′₋"}`, (f, d, ink) => f.dots(d.step.map((s) => d[key][s]), d.speed, 1, ink));
+    panel("line-v", around([...lists("impact_speed"), [0]]), `approach speed *X*′₋${this.app.state.single ? "" : " + *Y*′₋"}`, (f, d, ink) => f.dots(d.impact_step.map((s) => d[key][s]), d.impact_speed, 1, ink));
     const name = this.app.state.characteristic ?? "lyapunov", shown = CHARACTERISTICS[name];
     element("characteristic").value = name;
     element("line-l").setAttribute("aria-label", `${shown.text} along the line`);

@@ -46,7 +46,8 @@ export class Wire {
     return now - this.keyAt < 30 ? this.keyAt : now;
   }
 
-  send(slot, ask, state, since) {
+  /** Ask for what replaces every earlier request of the slot. */
+  ask(slot, ask, state, since) {
     const id = this.next++;
     this.asked.delete(this.newest[slot]);
     this.newest[slot] = id;
@@ -54,9 +55,6 @@ export class Wire {
     if (this.socket.readyState === 1) this.socket.send(JSON.stringify({ id, ask, state }));
     return id;
   }
-
-  /** Ask for what replaces every earlier request of the slot. */
-  ask(slot, ask, state) { return this.send(slot, ask, state); }
 
   /** Ask one at a time: while an answer is waited for, only the newest request is kept. `make` gives
    * [ask, state] when it is sent, so that it starts from the answer before. */
@@ -66,14 +64,14 @@ export class Wire {
       this.waiting[slot] = [make, this.waiting[slot]?.[1] ?? since];
       return;
     }
-    this.busy[slot] = this.send(slot, ...make(), since);
+    this.busy[slot] = this.ask(slot, ...make(), since);
   }
 
   /** Ask for what is answered once. */
   once(ask, state) {
     if (this.socket.readyState > 1) return Promise.reject(GONE);
     const slot = REPLACED.has(ask.kind) ? ask.kind : "once" + this.next;
-    const id = this.send(slot, ask, state);
+    const id = this.ask(slot, ask, state);
     return new Promise((resolve, reject) => { this.asked.get(id).promise = { resolve, reject }; });
   }
 
@@ -89,7 +87,7 @@ export class Wire {
     if (!this.busy[slot] && this.waiting[slot]) {
       const [make, asked] = this.waiting[slot];
       delete this.waiting[slot];
-      this.busy[slot] = this.send(slot, ...make(), asked);
+      this.busy[slot] = this.ask(slot, ...make(), asked);
     }
   }
 }
