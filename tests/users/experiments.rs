@@ -165,6 +165,16 @@ fn valid_times_of_bounces_from_init_to_the_report() {
     assert!(campaign.contains("content = \"times\""), "{campaign}");
     assert!(holds(&found, "restitution", 0.76), "{}", found["joint"]);
     assert_eq!(found["methods"]["flight_times"]["records"], 4);
+    // a list of times was sampled at no rate
+    let (said, code) = folder.run(&["report", "results", "--format", "html"]);
+    assert_eq!(code, 0, "{said}");
+    let page = fs::read_to_string(folder.lab.path().join("results/report.html")).expect("a page");
+    let (_, sampling) = page.split_once("sampling").expect("the length");
+    let sampling: String = sampling.chars().take(80).collect();
+    assert!(
+        sampling.contains("s a record") && !sampling.contains("Hz"),
+        "{sampling}"
+    );
 }
 
 /// A ball's bounces as a phone hears them: clicks of 3 kHz in a WAV file of 8 kHz.
@@ -290,6 +300,29 @@ fn valid_a_phone_on_a_spring_from_init_to_the_report() {
         campaign.contains("channel = \"Linear Acceleration z\""),
         "{campaign}"
     );
+    let joint = &found["joint"];
+    assert!(holds(&found, "natural_frequency_hz", 1.2), "{joint}");
+    assert!(holds(&found, "damping_ratio", 0.01), "{joint}");
+}
+
+/// The same as Physics Toolbox names it: multiples of gravity without a unit.
+#[test]
+fn valid_g_forces_of_a_phone_are_accelerations() {
+    let renamed = |(name, bytes): (String, Vec<u8>)| {
+        let text = String::from_utf8(bytes).expect("text");
+        let (_, rows) = text.split_once('\n').expect("a head");
+        (name, format!("time,gFx,gFy,gFz,TgF\n{rows}").into_bytes())
+    };
+    let folder = Folder::of(&phone().into_iter().map(renamed).collect::<Vec<_>>());
+    let found = folder.play();
+    let campaign = folder.campaign();
+    for words in [
+        "[channels.acceleration_x]",
+        "channel = \"gFz\"",
+        "unit = \"g\"",
+    ] {
+        assert!(campaign.contains(words), "{words} is not in {campaign}");
+    }
     let joint = &found["joint"];
     assert!(holds(&found, "natural_frequency_hz", 1.2), "{joint}");
     assert!(holds(&found, "damping_ratio", 0.01), "{joint}");

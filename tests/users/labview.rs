@@ -32,12 +32,13 @@ fn saved(take: &Take) -> String {
     format!("Zeit [s];{titles}\r\n{}", text.replace('.', ","))
 }
 
-/// The run table as a laboratory book, and the records beside it.
+/// The run table as a laboratory book, and the records in a folder beside it.
 fn save(takes: &[Take], folder: &Path) {
     let mut book = String::from("Datei;Frequenz [Hz];Spalt [mm];Richtung\r\n");
+    fs::create_dir(folder.join("Messungen")).expect("room");
     for (number, take) in takes.iter().enumerate() {
         let name = format!("Lauf_{number:03}.csv");
-        fs::write(folder.join(&name), saved(take)).expect("room");
+        fs::write(folder.join("Messungen").join(&name), saved(take)).expect("room");
         let way = if take.upward { "auf" } else { "ab" };
         let row = format!("{};{}", take.frequency_hz, take.clearance_mm).replace('.', ",");
         let _ = write!(book, "{name};{row};{way}\r\n");

@@ -1,5 +1,6 @@
 //! The run table: a CSV file or a sheet of a workbook with one row per record, units in its header.
 
+mod files;
 mod headings;
 mod sheets;
 mod text;
@@ -19,7 +20,9 @@ use impact_records::language::Language;
 use impact_records::record::Sweep;
 use labfiles::units::{self, Dimension};
 
-use headings::{COLUMNS, DATASET, FILE, FREQUENCY, column_of, columns_of, states_setting};
+use headings::{
+    COLUMNS, DATASET, FILE, FREQUENCY, begun_with, column_of, columns_of, states_setting,
+};
 
 use text::{decode, reader};
 
@@ -167,9 +170,7 @@ pub(super) fn read(folder: &Path, name: &str, faults: &mut FaultCollector) -> Ve
             read_row(&cells, &mut bad, faults)
         })
         .collect();
-    for row in &mut rows {
-        row.file = beside(folder, name, &row.file).unwrap_or_else(|| row.file.clone());
-    }
+    files::find(folder, name, &mut rows);
     rows.retain(|row| {
         let missing = slashes::is_foreign(&row.file) && !folder.join(&row.file).exists();
         if missing {
@@ -183,13 +184,6 @@ pub(super) fn read(folder: &Path, name: &str, faults: &mut FaultCollector) -> Ve
         faults.fault(Code::Missing, None, "", what, "write one line per record");
     }
     rows
-}
-
-/// The path of a file that is not in the campaign's folder but in that of the run table, below the campaign's.
-fn beside(folder: &Path, table: &str, file: &str) -> Option<String> {
-    let below = Path::new(table).parent()?.join(file);
-    let moved = !folder.join(file).exists() && folder.join(&below).exists();
-    moved.then(|| below.to_string_lossy().into_owned())
 }
 
 impl Written {
@@ -335,13 +329,19 @@ fn read_header(
         );
     }
     let complete = (header.at[FILE].is_some() || in_workbook) && states_setting(columns);
-    note_unknown(&unknown, complete, faults);
+    let missing = |column: usize| header.at[column].is_none();
+    note_unknown(&unknown, &missing, complete, faults);
     header
 }
 
 /// Columns that are none of a run table, and no remarks: notes where the columns that are needed are there and nothing like
 /// them is meant.
-fn note_unknown(unknown: &[(&str, &str)], complete: bool, faults: &mut FaultCollector) {
+fn note_unknown(
+    unknown: &[(&str, &str)],
+    missing: &dyn Fn(usize) -> bool,
+    complete: bool,
+    faults: &mut FaultCollector,
+) {
     let mut unused = Vec::new();
     for (name, bare) in unknown {
         let lower = bare.to_lowercase();
@@ -349,7 +349,9 @@ fn note_unknown(unknown: &[(&str, &str)], complete: bool, faults: &mut FaultColl
         if remarks.any(|r| lower.starts_with(r)) {
             continue;
         }
-        let remedy = match nearest(bare, &COLUMNS) {
+        let setting = begun_with(bare).filter(|column| missing(*column));
+        let setting = setting.map(|column| COLUMNS[column]);
+        let remedy = match setting.or_else(|| nearest(bare, &COLUMNS)) {
             Some(near) => format!("did you mean '{near}'? Otherwise begin its name with 'note'"),
             None if complete => {
                 unused.push((*name).to_owned());
@@ -798,11 +800,57 @@ mod tests {
         assert_eq!(faults.len(), 1);
         let found = "1: : columns that are not known are not used: Nr., Datum, Prüfer. ";
         assert!(faults[0].starts_with(found), "{faults:?}");
-        // one that is needed may be meant
+        // one that is needed may be meant, also a setting that is not there so
+        let text = "Datei;Frequenz [Hz];Spalt 2r [mm]\na.csv;8,5;2\n";
+        let (_, faults) = read_text(text.as_bytes());
+        assert!(
+            faults[0].contains("did you mean 'clearance'?"),
+            "{faults:?}"
+        );
         for text in ["file,Nr.\na,1\n", "file,gap [mm],swep\na,1,up\n"] {
             let (_, faults) = read_text(text.as_bytes());
             assert!(faults[0].contains("is not known"), "{faults:?}");
         }
+    }
+
+    #[test]
+    fn a_name_without_its_ending_is_that_of_the_one_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let text = "fname,freq_Hz,gap_mm,dir\nrun1,8,1,1\nrun2,9,1,-1\n";
+        for name in ["log.csv", "run1.csv", "run2.csv", "run2.txt"] {
+            std::fs::write(at(name), text).unwrap();
+        }
+        let mut faults = FaultCollector::new(&at("log.csv"));
+        let rows = read(folder.path(), "log.csv", &mut faults);
+        let files: Vec<&str> = rows.iter().map(|row| row.file.as_str()).collect();
+        assert_eq!(files, ["run1.csv", "run2"]);
+        let sweeps: Vec<Option<Sweep>> = rows.iter().map(|row| row.sweep).collect();
+        assert_eq!(sweeps, [Some(Sweep::Up), Some(Sweep::Down)]);
+    }
+
+    #[test]
+    fn files_that_are_all_in_one_folder_below_are_found_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        for name in ["data", "old"] {
+            std::fs::create_dir(at(name)).unwrap();
+        }
+        for name in ["runs.csv", "data/a.csv", "data/b.csv"] {
+            std::fs::write(at(name), "file,gap [mm]\na.csv,1\nb.csv,1\n").unwrap();
+        }
+        let files = || {
+            let mut faults = FaultCollector::new(&at("runs.csv"));
+            let rows = read(folder.path(), "runs.csv", &mut faults);
+            rows.into_iter().map(|row| row.file).collect::<Vec<_>>()
+        };
+        assert_eq!(files(), ["data/a.csv", "data/b.csv"]);
+        // where more folders have such files, or one is where the table says, none is guessed
+        std::fs::write(at("old/b.csv"), "").unwrap();
+        assert_eq!(files(), ["a.csv", "b.csv"]);
+        std::fs::remove_file(at("old/b.csv")).unwrap();
+        std::fs::write(at("a.csv"), "").unwrap();
+        assert_eq!(files(), ["a.csv", "b.csv"]);
     }
 
     #[test]

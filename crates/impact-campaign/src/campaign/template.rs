@@ -232,7 +232,7 @@ fn describe(channel: &InferredChannel) -> String {
     )
 }
 
-/// The line of a channel's unit; the unit, if the file states one or the channel is a rate by its name.
+/// The line of a channel's unit; the unit, if the file states one or the channel's name implies it.
 fn unit_line(
     text: &mut String,
     role: Role,
@@ -241,9 +241,9 @@ fn unit_line(
 ) -> Result<Option<units::Unit>, std::fmt::Error> {
     let known = channel.unit.as_deref().and_then(units::parse_unit);
     let stated = units::unit_of(channel.unit.as_deref(), &channel.name);
-    let turns = (stated.is_none() && infer::is_rate(channel)).then_some("rad/s");
-    let unit = stated.or_else(|| turns.and_then(units::parse_unit));
-    let usual = turns.or_else(|| role.dimension().map(Dimension::si_symbol));
+    let implied = infer::implied_unit(channel).filter(|_| stated.is_none());
+    let unit = stated.or_else(|| implied.and_then(units::parse_unit));
+    let usual = implied.or_else(|| role.dimension().map(Dimension::si_symbol));
     match (known, stated.and_then(units::symbol_of), usual) {
         (Some(_), ..) => writeln!(text, "# unit = as the file states")?,
         (None, Some(symbol), _) => {
@@ -258,7 +258,9 @@ fn unit_line(
                 "unit = \"1\"                  # the file states {stated}: of a drive its frequency and phase count"
             )?;
         }
-        (None, None, Some(usual)) if turns.is_some() || found.experiment != Experiment::Driven => {
+        (None, None, Some(usual))
+            if implied.is_some() || found.experiment != Experiment::Driven =>
+        {
             let usual = usual.replace('²', "2");
             let stated = channel.unit.as_deref().unwrap_or("none");
             writeln!(

@@ -19,7 +19,7 @@ pub enum ContactContent {
 
 impl ContactContent {
     /// Whether the rows are impacts, so that there is no time axis.
-    pub(super) fn is_list(self) -> bool {
+    pub fn is_list(self) -> bool {
         matches!(self, Self::Times | Self::Intervals)
     }
 }

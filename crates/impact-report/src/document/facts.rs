@@ -31,7 +31,7 @@ pub(super) fn facts(content: &ReportContent, locale: Locale<'_>) -> Vec<(Rich, R
     add(Phrase::Measured, dates(campaign, locale));
     add(Phrase::ReportOf, content.date.clone().unwrap_or_default());
     add(Phrase::Records, records(overview, campaign.files, locale));
-    add(Phrase::Sampling, sampling(overview, locale));
+    add(Phrase::Sampling, sampling(campaign, overview, locale));
     add(Phrase::Drive, drive(overview, locale));
     add(Phrase::Clearances, clearances(overview, locale));
     add(Phrase::NominalValues, nominal(&campaign.nominal, locale));
@@ -79,8 +79,10 @@ fn records(overview: &Overview, files: usize, locale: Locale<'_>) -> String {
     text
 }
 
-fn sampling(overview: &Overview, locale: Locale<'_>) -> String {
-    let rate = overview.sample_rate_hz.map(|r| {
+/// Rate and length of the records; lists of times have no rate.
+fn sampling(campaign: &CampaignFacts, overview: &Overview, locale: Locale<'_>) -> String {
+    let lists = campaign.channels.iter().any(|c| c.content.is_list());
+    let rate = overview.sample_rate_hz.filter(|_| !lists).map(|r| {
         if r >= 1e3 {
             let rate = trimmed(&locale.significant(r / 1e3, 4));
             format!("{rate}\u{2009}kHz")

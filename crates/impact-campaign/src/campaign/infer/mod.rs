@@ -24,7 +24,7 @@ use globs::slashed;
 use place::{Place, spread};
 
 pub use found::{Experiment, FolderContents, InferredChannel, RefusedFile};
-pub use roles::is_rate;
+pub use roles::implied_unit;
 
 /// Depth of the search below the folder.
 const DEPTH: usize = 4;
@@ -444,7 +444,7 @@ mod tests {
     }
 
     #[test]
-    fn german_names_of_drive_contact_and_frame_are_known() {
+    fn german_names_of_drive_contact_frame_and_motions_are_known() {
         let mut channels = vec![
             seen("Erreger", Some("V")),
             seen("Kontakt", Some("V")),
@@ -458,6 +458,18 @@ mod tests {
         let mut channels = vec![seen("Anregung in V", None)];
         roles::assign(&mut channels);
         assert_eq!(channels[0].role, Some(Role::Drive));
+        let motions = ["Laser X", "Geschw. Y", "Weg X", "Weg Y"];
+        let mut channels = vec![seen("Erreger", Some("V"))];
+        channels.extend(motions.map(|name| seen(name, Some("V"))));
+        roles::assign(&mut channels);
+        let given: Vec<_> = channels.iter().skip(1).map(|c| c.role).collect();
+        let roles = [
+            Role::VelocityX,
+            Role::VelocityY,
+            Role::DisplacementX,
+            Role::DisplacementY,
+        ];
+        assert_eq!(given, roles.map(Some));
     }
 
     #[test]

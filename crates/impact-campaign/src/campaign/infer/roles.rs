@@ -170,7 +170,7 @@ fn axis(channel: &InferredChannel) -> Option<(Vec<String>, char)> {
     let quantity = &last[..last.len() - 1];
     if !quantity.is_empty() {
         // ax, vy, accz, gx of a gyroscope
-        ["a", "v", "w", "g", "acc", "accel", "gyr", "gyro"]
+        ["a", "v", "w", "g", "gf", "acc", "accel", "gyr", "gyro"]
             .contains(&quantity)
             .then_some(())?;
         words.push(quantity.to_owned());
@@ -267,7 +267,7 @@ fn score(
 const RATES: [&str; 6] = ["rad/s", "rad_s", "deg/s", "deg_s", "°/s", "dps"];
 
 /// Whether a channel is an angular rate: by its unit, or without one by its name.
-pub fn is_rate(channel: &InferredChannel) -> bool {
+fn is_rate(channel: &InferredChannel) -> bool {
     let words = words(shown(channel));
     let any = |stems: &[&str]| words.iter().any(|w| stems.iter().any(|s| w.starts_with(s)));
     let (_, in_name) = units::split_unit(&channel.name);
@@ -277,6 +277,21 @@ pub fn is_rate(channel: &InferredChannel) -> bool {
             any(&["gyro", "omega", "angularvel", "winkelgeschw", "drehrate"])
                 || (any(&["angular"]) && any(&["vel", "rate", "speed"]))
         }
+    }
+}
+
+/// Words by which phones name accelerations.
+const ACCELERATIONS: [&str; 6] = ["ax", "ay", "az", "gfx", "gfy", "gfz"];
+/// Those in multiples of gravity.
+const G_FORCES: [&str; 3] = ["gfx", "gfy", "gfz"];
+
+/// The unit that a channel's name implies where none is stated.
+pub fn implied_unit(channel: &InferredChannel) -> Option<&'static str> {
+    let is_g_force = || matches!(&words(shown(channel))[..], [word] if G_FORCES.contains(&&**word));
+    if is_rate(channel) {
+        Some("rad/s")
+    } else {
+        is_g_force().then_some("g")
     }
 }
 
@@ -333,15 +348,23 @@ fn kind(channel: &InferredChannel) -> Kind {
         "drive", "gen", "exc", "hammer", "force", "load", "input", "shaker", "erreg", "anreg",
         "kraft",
     ];
+    const VELOCITIES: [&str; 9] = [
+        "vel", "speed", "laser", "ldv", "vib", "vx", "vy", "geschw", "schnelle",
+    ];
+    const DISPLACEMENTS: [&str; 8] = [
+        "disp", "pos", "dx", "dy", "angle", "winkel", "weg", "auslenk",
+    ];
     match () {
         () if has(&DRIVES) => Kind::Drive,
-        () if has(&["vel", "speed", "laser", "ldv", "vib", "vx", "vy"]) => Kind::Velocity,
+        () if has(&VELOCITIES) => Kind::Velocity,
         // v_x, v y
         () if matches!(&words[..], [v, side] if v == "v" && ["x", "y"].contains(&&**side)) => {
             Kind::Velocity
         }
-        () if has(&["disp", "pos", "dx", "dy", "angle", "winkel"]) => Kind::Displacement,
-        () if has(&["acc"]) => Kind::Acceleration,
+        () if has(&DISPLACEMENTS) => Kind::Displacement,
+        () if has(&["acc", "beschl"]) || words.iter().any(|w| ACCELERATIONS.contains(&&**w)) => {
+            Kind::Acceleration
+        }
         () if channel.levels.is_some() && channel.changes > OF_TRIGGER => Kind::Contact,
         // a coordinate, in pixels too
         () if unit.is_none() && is_coordinate(channel, &words) => Kind::Displacement,

@@ -62,6 +62,13 @@ pub(super) fn column_of(heading: &str) -> Option<usize> {
     of(heading).or_else(|| of(units::split_unit(heading).0))
 }
 
+/// The column of a setting with whose word a heading begins: `Spalt 2r`, `gap width`.
+pub(super) fn begun_with(heading: &str) -> Option<usize> {
+    let first = heading.split(|c: char| !c.is_alphanumeric()).next()?;
+    let column = (first.chars().count() > 1).then(|| column_of(first))??;
+    SETTINGS.contains(&column).then_some(column)
+}
+
 /// The column of each heading: by its words, and where none is that of files or of datasets, the first whose cells all
 /// are names of such.
 pub(super) fn columns_of(
