@@ -4,17 +4,17 @@ use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use super::Row;
-
 /// Correct the names of files that are not below the campaign's folder as they stand.
-pub(super) fn find(folder: &Path, table: &str, rows: &mut [Row]) {
-    for row in &mut *rows {
-        row.file = beside(folder, table, &row.file).unwrap_or_else(|| row.file.clone());
+pub(super) fn find(folder: &Path, table: &str, files: &mut [&mut String]) {
+    for file in &mut *files {
+        if let Some(moved) = beside(folder, table, file) {
+            **file = moved;
+        }
     }
-    complete_names(folder, rows);
-    if let Some(below) = subfolder(folder, rows) {
-        for row in rows {
-            row.file = format!("{below}/{}", row.file);
+    complete_names(folder, files);
+    if let Some(below) = subfolder(folder, files) {
+        for file in files {
+            **file = format!("{below}/{file}");
         }
     }
 }
@@ -27,11 +27,11 @@ fn beside(folder: &Path, table: &str, file: &str) -> Option<String> {
 }
 
 /// Names without an ending become those of the one file that has the name before its ending.
-fn complete_names(folder: &Path, rows: &mut [Row]) {
-    let lacks = |row: &&mut Row| {
-        Path::new(&row.file).extension().is_none() && !folder.join(&row.file).exists()
+fn complete_names(folder: &Path, files: &mut [&mut String]) {
+    let lacks = |file: &&mut &mut String| {
+        Path::new(&***file).extension().is_none() && !folder.join(&***file).exists()
     };
-    let mut lacking = rows.iter_mut().filter(lacks).peekable();
+    let mut lacking = files.iter_mut().filter(lacks).peekable();
     if lacking.peek().is_none() {
         return;
     }
@@ -42,20 +42,20 @@ fn complete_names(folder: &Path, rows: &mut [Row]) {
             named.entry(stem).or_default().push(name);
         }
     }
-    for row in lacking {
-        if let Some([name]) = named.get(&row.file).map(Vec::as_slice) {
-            row.file = name.clone();
+    for file in lacking {
+        if let Some([name]) = named.get(&**file).map(Vec::as_slice) {
+            **file = name.clone();
         }
     }
 }
 
 /// The folder below the campaign's in which the files of a run table are, where none of them is where the table says and they
 /// are in no other one.
-fn subfolder(folder: &Path, rows: &[Row]) -> Option<String> {
-    if rows.iter().any(|row| folder.join(&row.file).exists()) {
+fn subfolder(folder: &Path, files: &[&mut String]) -> Option<String> {
+    if files.iter().any(|file| folder.join(&**file).exists()) {
         return None;
     }
-    let holds = |below: &PathBuf| rows.iter().any(|row| below.join(&row.file).is_file());
+    let holds = |below: &PathBuf| files.iter().any(|file| below.join(&**file).is_file());
     let mut found = entries(folder).filter(holds);
     let first = found.next()?.file_name()?.to_str()?.to_owned();
     found.next().is_none().then_some(first)
