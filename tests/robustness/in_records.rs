@@ -401,7 +401,7 @@ fn times() -> Vec<Case> {
             |lab| lab.column("r2.csv", 0, |_, t| format!("{:.6}", 1.0 - t)),
             &[
                 "r2.csv",
-                "the time runs backward",
+                "the record is read from its end",
                 "2 of 3 records can be used",
             ],
         ),

@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use super::gaps;
+use super::gaps::{self, AROUND, FEWEST_SAMPLES, runs};
 use super::spikes::without_spikes;
 use super::{Channel, Excitation, Flag, Problem, Record, Role, time_axis};
 use crate::signal::{columns, interpolation, robust, whole};
@@ -205,9 +205,6 @@ const UNSEEN_PART: f64 = 2.0 / 3.0;
 /// its deviations each.
 const STEPS_A_SAMPLE: f64 = 10.0;
 
-/// Samples on either side of a frozen picture between which it is interpolated, and the most that are.
-pub(super) const AROUND: usize = 3;
-
 /// Displacements that stand still in the midst of a motion and then jump by as much as it would have gone on: a camera
 /// that repeats pictures. What moves by many steps of the converter a sample cannot rest by its rounding. Repeated
 /// pictures, which show the motion late, are replaced by a polynomial through those around them.
@@ -387,9 +384,6 @@ impl Span {
         }
     }
 }
-
-/// Samples of the shortest record in which a constant channel is told from one that was cut short.
-pub(super) const FEWEST_SAMPLES: usize = 16;
 
 /// A record of so few samples that none of its channels can be judged.
 fn too_short(record: &Record, driven: bool) -> Option<Flag> {
@@ -589,20 +583,6 @@ fn at_rail(values: &[f64], rail: f64, step: f64) -> usize {
         .filter(|run| is_cut_off(values, run, step))
         .map(|run| run.len())
         .sum()
-}
-
-/// The longest stretches of values that pass a test.
-pub(super) fn runs(
-    values: &[f64],
-    test: impl Fn(f64) -> bool,
-) -> impl Iterator<Item = Range<usize>> {
-    let mut from = 0;
-    std::iter::from_fn(move || {
-        let start = from + values[from..].iter().position(|v| test(*v))?;
-        let length = values[start..].iter().take_while(|v| test(**v)).count();
-        from = start + length;
-        Some(start..from)
-    })
 }
 
 /// A stretch in which every channel holds its value: samples were lost and the converter
@@ -909,5 +889,55 @@ mod tests {
             assert_eq!(unequal.flags[0].code, FlagCode::UnequalLengths);
             assert_eq!(unequal.excluded(), excluded);
         }
+    }
+
+    fn gapped_record(missing: &[Range<usize>]) -> Record {
+        let gap = |i: &usize| missing.iter().any(|m| m.contains(i));
+        let values: Vec<f64> = (0..1000)
+            .map(|i| if gap(&i) { f64::NAN } else { sine(i) })
+            .collect();
+        let mut record = Record::of(100.0, &[(Role::VelocityX, &values)]);
+        record.setting.excitation = Excitation::FreeDecay;
+        record
+    }
+
+    #[test]
+    fn gaps_are_named_and_leave_an_undriven_record_in() {
+        for (driven, count) in [(false, 1), (true, 1)] {
+            let mut gapped = gapped_record(std::slice::from_ref(&(300..310)));
+            inspect(&mut gapped, &[None], driven);
+            assert_eq!(gapped.flags.len(), count);
+            assert_eq!(gapped.flags[0].code, FlagCode::NotANumber);
+            assert_eq!(gapped.excluded(), driven);
+        }
+        let mut gapped = gapped_record(std::slice::from_ref(&(300..310)));
+        inspect(&mut gapped, &[None], false);
+        assert_eq!(
+            gapped.flags[0].message(),
+            "channel 'velocity_x' has no value at 10 samples in 1 gaps, the first at sample 300: what lies between \
+             gaps is used, each part by itself"
+        );
+    }
+
+    #[test]
+    fn valid_gaps_of_up_to_three_samples_are_filled_where_the_motion_is_slow() {
+        let mut gapped = gapped_record(&[100..101, 300..303, 990..992]);
+        inspect(&mut gapped, &[None], false);
+        let values = &gapped.channels[0].values;
+        assert!((0..1000).all(|i| (values[i] - sine(i)).abs() < 1e-6));
+        assert!(gapped.flags[0].message().contains("at 6 samples in 3 gaps"));
+        // five samples a period are too few
+        let fast: Vec<f64> = (0..1000)
+            .map(|i| {
+                if i == 500 {
+                    f64::NAN
+                } else {
+                    (1.2 * f64::from(i)).sin()
+                }
+            })
+            .collect();
+        let mut fast = Record::of(100.0, &[(Role::VelocityX, &fast)]);
+        inspect(&mut fast, &[None], false);
+        assert!(fast.has_gaps());
     }
 }

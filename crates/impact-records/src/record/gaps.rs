@@ -2,9 +2,14 @@
 
 use std::ops::Range;
 
-use super::condition::{AROUND, FEWEST_SAMPLES, runs};
 use super::{Channel, Flag, Problem, Record, Role};
 use crate::signal::{interpolation, robust};
+
+/// Samples of the shortest record in which a constant channel is told from one that was cut short.
+pub(super) const FEWEST_SAMPLES: usize = 16;
+
+/// Samples on either side of a frozen picture between which it is interpolated, and the most that are.
+pub(super) const AROUND: usize = 3;
 
 /// Share of the samples that are filled at most.
 const FILLED: f64 = 0.1;
@@ -100,6 +105,20 @@ pub(super) fn parts(record: &Record) -> Vec<Range<usize>> {
     parts
 }
 
+/// The longest stretches of values that pass a test.
+pub(super) fn runs(
+    values: &[f64],
+    test: impl Fn(f64) -> bool,
+) -> impl Iterator<Item = Range<usize>> {
+    let mut from = 0;
+    std::iter::from_fn(move || {
+        let start = from + values[from..].iter().position(|v| test(*v))?;
+        let length = values[start..].iter().take_while(|v| test(**v)).count();
+        from = start + length;
+        Some(start..from)
+    })
+}
+
 impl Record {
     /// Whether a motion channel lacks the values of some samples.
     pub fn has_gaps(&self) -> bool {
@@ -130,7 +149,7 @@ impl Record {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{Excitation, FlagCode};
+    use crate::record::Excitation;
 
     fn wave(i: usize) -> f64 {
         (0.05 * i as f64).sin()
@@ -156,45 +175,5 @@ mod tests {
         let (first, part) = &parts[1];
         assert_eq!(part.channels[0].values[3], wave(first + 3));
         assert!(record.has_gaps() && !part.has_gaps());
-    }
-
-    #[test]
-    fn gaps_are_named_and_leave_an_undriven_record_in() {
-        for (driven, count) in [(false, 1), (true, 1)] {
-            let mut gapped = record(&[300..310]);
-            super::super::condition::inspect(&mut gapped, &[None], driven);
-            assert_eq!(gapped.flags.len(), count);
-            assert_eq!(gapped.flags[0].code, FlagCode::NotANumber);
-            assert_eq!(gapped.excluded(), driven);
-        }
-        let mut gapped = record(&[300..310]);
-        super::super::condition::inspect(&mut gapped, &[None], false);
-        assert_eq!(
-            gapped.flags[0].message(),
-            "channel 'velocity_x' has no value at 10 samples in 1 gaps, the first at sample 300: what lies between \
-             gaps is used, each part by itself"
-        );
-    }
-
-    #[test]
-    fn valid_gaps_of_up_to_three_samples_are_filled_where_the_motion_is_slow() {
-        let mut gapped = record(&[100..101, 300..303, 990..992]);
-        super::super::condition::inspect(&mut gapped, &[None], false);
-        let values = &gapped.channels[0].values;
-        assert!((0..1000).all(|i| (values[i] - wave(i)).abs() < 1e-6));
-        assert!(gapped.flags[0].message().contains("at 6 samples in 3 gaps"));
-        // five samples a period are too few
-        let fast: Vec<f64> = (0..1000)
-            .map(|i| {
-                if i == 500 {
-                    f64::NAN
-                } else {
-                    (1.2 * i as f64).sin()
-                }
-            })
-            .collect();
-        let mut fast = Record::of(100.0, &[(Role::VelocityX, &fast)]);
-        super::super::condition::inspect(&mut fast, &[None], false);
-        assert!(fast.has_gaps());
     }
 }

@@ -660,7 +660,6 @@ mod tests {
             ["cart A x", "cart B x"],
             ["cart1_x", "cart2_x"],
             ["Rider 1 X", "Rider 2 X"],
-            ["Position, Red", "Position, Blue"],
             ["red X", "blue X"],
         ] {
             for unit in ["m", "px"] {

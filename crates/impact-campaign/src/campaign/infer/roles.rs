@@ -219,11 +219,8 @@ fn side(name: &str) -> Option<char> {
 
 fn side_of(words: &[String]) -> Option<char> {
     let of = |word: &str| match word {
-        "x" | "1" | "left" | "links" | "red" | "a" | "vx" | "ax" | "dx" | "x1" | "v1" | "mass1" => {
-            Some('x')
-        }
-        "y" | "2" | "right" | "rechts" | "blue" | "b" | "vy" | "ay" | "dy" | "x2" | "v2"
-        | "mass2" => Some('y'),
+        "x" | "1" | "left" | "a" | "vx" | "ax" | "dx" | "x1" | "v1" | "mass1" => Some('x'),
+        "y" | "2" | "right" | "b" | "vy" | "ay" | "dy" | "x2" | "v2" | "mass2" => Some('y'),
         _ => None,
     };
     words.iter().rev().find_map(|w| of(w))
