@@ -431,6 +431,14 @@ pub fn scale_drives(observations: &mut [Observation]) {
     }
 }
 
+/// Let the drive amplitudes of all records follow a law, beside what is stated or measured of them.
+pub fn follow_force_law(observations: &mut [Observation], law: ForceLaw) {
+    for o in observations {
+        o.force_law = Some(law);
+        o.setting.drive_amplitude *= o.force_factor();
+    }
+}
+
 /// Relative change of the measured drive amplitude from which it counts.
 const DRIVE_CHANGES: f64 = 5e-3;
 
@@ -623,6 +631,20 @@ mod tests {
         // 2.005/2 differs by less than 0.5 %: the stated amplitude stays.
         let amplitudes = all.map(|o| o.setting.drive_amplitude);
         assert_eq!(amplitudes, [0.5, 1.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn amplitudes_follow_the_law_however_often_they_are_scaled() {
+        let at = |hz: f64| Observation::of("r", hz, Motion::Impactless);
+        let mut all = [at(10.0), at(20.0)];
+        let law = ForceLaw {
+            power: 2.0,
+            at_hz: 10.0,
+        };
+        follow_force_law(&mut all, law);
+        scale_drives(&mut all);
+        let amplitudes = all.map(|o| o.setting.drive_amplitude);
+        assert!((amplitudes[0] - 1.0).abs() < 1e-12 && (amplitudes[1] - 4.0).abs() < 1e-12);
     }
 
     #[test]
