@@ -8,7 +8,7 @@ import closed_form
 import instruments
 import rig
 from instruments import Motion
-from specimen import machine
+from specimen import machine, natural
 
 MOST_PERIODS_N = 6
 
@@ -52,6 +52,7 @@ class Bench:
         self.stuck = False
         self.phase = self.rng.uniform(0.0, 2.0 * math.pi)
         self.p = machine(d, kind)
+        self.natural_hz, _ = natural(self.p, kind)
         self.other = False
         self.force = self.p[[rig.FX, rig.FY]].copy()
 
@@ -78,7 +79,7 @@ class Bench:
         self.p[rig.OMEGA], self.p[rig.PHASE] = 2.0 * math.pi * frequency_hz, self.phase
         self.p[rig.GAP] = gap_m
         slope = 1.0 + 0.01 * self.kind.effects * self.d["sign"] * (frequency_hz / self.d["f0"] - 1.0)
-        self.p[[rig.FX, rig.FY]] = self.force * slope * (frequency_hz / self.d["f0"]) ** self.kind.force_power
+        self.p[[rig.FX, rig.FY]] = self.force * slope * (frequency_hz / self.natural_hz) ** self.kind.force_power
 
     def knock(self):
         """What slamming doors and adjusting the generator do to the masses."""

@@ -91,22 +91,29 @@ def add_effects(p, d, strength):
     p[rig.PHI2], p[rig.PHI3] = d["phases"]
 
 
-def truth(d, kind, impacts):
-    """What the campaign should find: frequencies and damping from eigenvalues, by definition of the README."""
-    p = machine(d, kind)
+def natural(p, kind):
+    """Natural frequency in Hz and damping ratio from eigenvalues, by definition of the README: means of both masses."""
     mode = (p[rig.MODE_M], p[rig.MODE_K], p[rig.MODE_B]) if kind.second_mode else None
     own = [rig.natural(p[rig.MX], p[rig.KX], p[rig.BX], mode)]
-    deflections = [p[rig.FX] / p[rig.KX]]
     if kind.machine == "double":
         own.append(rig.natural(p[rig.MY], p[rig.KY], p[rig.BY], mode))
+    return math.exp(np.mean([math.log(f) for f, _ in own])), float(np.mean([b for _, b in own]))
+
+
+def truth(d, kind, impacts):
+    """What the campaign should find."""
+    p = machine(d, kind)
+    frequency_hz, damping_ratio = natural(p, kind)
+    deflections = [p[rig.FX] / p[rig.KX]]
+    if kind.machine == "double":
         deflections.append(p[rig.FY] / p[rig.KY])
     restitution = d["R"]
     if kind.speed_exponent and len(impacts):
         restitution = float(np.median(impacts[:, 3] / impacts[:, 1]))
     return {
         "restitution": restitution,
-        "natural_frequency_hz": math.exp(np.mean([math.log(f) for f, _ in own])),
-        "damping_ratio": float(np.mean([b for _, b in own])),
+        "natural_frequency_hz": frequency_hz,
+        "damping_ratio": damping_ratio,
         "static_deflection_m": float(np.mean(deflections)),
     }
 

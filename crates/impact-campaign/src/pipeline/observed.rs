@@ -11,8 +11,9 @@ use crate::campaign::resolved::ResolvedCampaign;
 use impact_fit::evidence::Evidence;
 use impact_fit::methods::resonance::force_law::force_law;
 use impact_fit::methods::resonance::late_drive::late_drive;
+use impact_identification::identify::identify_campaign;
 use impact_records::motion::{
-    Bracket, LateChannel, Observation, brackets, follow_force_law, inverted_channels,
+    Bracket, ForceLaw, LateChannel, Observation, brackets, follow_force_law, inverted_channels,
     late_channels, scale_drives,
 };
 use labfiles_write::output::OutputError;
@@ -154,6 +155,12 @@ fn aligned(
     scale_drives(&mut observations);
     if let Some(law) = force_law(&evidence::evidence(campaign, &observations, &[])) {
         follow_force_law(&mut observations, law);
+        let found = identify_campaign(&evidence::evidence(campaign, &observations, &[]));
+        let about_f0 = found.joint.parameters.natural_frequency_hz;
+        // all records tell f0 better than the curve, which the power bends
+        if let Some(at_hz) = about_f0.and_then(|f0| f0.value) {
+            follow_force_law(&mut observations, ForceLaw { at_hz, ..law });
+        }
     }
     Ok(observations)
 }

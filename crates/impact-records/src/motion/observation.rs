@@ -431,11 +431,13 @@ pub fn scale_drives(observations: &mut [Observation]) {
     }
 }
 
-/// Let the drive amplitudes of all records follow a law, beside what is stated or measured of them.
+/// Let the drive amplitudes of all records follow a law, beside what is stated or measured of them; in place of one that
+/// they follow already.
 pub fn follow_force_law(observations: &mut [Observation], law: ForceLaw) {
     for o in observations {
+        let stated = o.stated_drive();
         o.force_law = Some(law);
-        o.setting.drive_amplitude *= o.force_factor();
+        o.setting.drive_amplitude = stated * o.force_factor();
     }
 }
 
