@@ -361,7 +361,20 @@ impl Remark {
     }
 }
 
-message_table! { "remark": Remark;
+/// The kind or, of R that rises with the speed, a text of its own.
+fn template_key(remark: &Remark) -> String {
+    match remark {
+        Remark::RestitutionChanges { slower, faster }
+        | Remark::LongContact { slower, faster, .. }
+            if faster.restitution > slower.restitution =>
+        {
+            format!("{}_rising", remark.kind())
+        }
+        _ => remark.kind().to_owned(),
+    }
+}
+
+message_table! { "remark": Remark, key = template_key;
     Self::OneDegreeOfFreedom { deviation } =>
         share = Value::Percent(*deviation, 2),
         most = Value::Percent(ONE_DEGREE_OF_FREEDOM, 0);
