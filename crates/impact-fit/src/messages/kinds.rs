@@ -2,7 +2,7 @@
 
 use strum::IntoEnumIterator;
 
-use super::{Finding, Item, Note, PairAgreement, Reason, Remark, Sentence};
+use super::{Finding, Item, Note, PairAgreement, Reason, Remark, Sentence, SpeedPoint};
 use crate::method::Method;
 use crate::parameters::Coordinate;
 use crate::parameters::effect::{Effect, EffectKind};
@@ -40,10 +40,27 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         one_pole_hz: 0.5,
         order: Some(order),
     });
+    // and R that rises with the speed
+    let faster = SpeedPoint {
+        restitution: 1.0,
+        ..SpeedPoint::default()
+    };
+    let rising = [
+        Remark::RestitutionChanges {
+            slower: SpeedPoint::default(),
+            faster,
+        },
+        Remark::LongContact {
+            slower: SpeedPoint::default(),
+            faster,
+            samples: 3.0,
+        },
+    ];
     let findings = Finding::iter().filter(|f| !matches!(f, Finding::BeyondModel { .. }));
     boxed(Method::iter())
         .chain(boxed(Note::iter()))
         .chain(boxed(Remark::iter()))
+        .chain(boxed(rising.into_iter()))
         .chain(boxed(Reason::iter()))
         .chain(boxed(findings))
         .chain(boxed(late.into_iter()))
