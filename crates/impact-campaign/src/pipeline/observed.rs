@@ -153,16 +153,22 @@ fn aligned(
         }
     }
     scale_drives(&mut observations);
-    if let Some(law) = force_law(&evidence::evidence(campaign, &observations, &[])) {
-        follow_force_law(&mut observations, law);
-        let found = identify_campaign(&evidence::evidence(campaign, &observations, &[]));
-        let about_f0 = found.joint.parameters.natural_frequency_hz;
-        // all records tell f0 better than the curve, which the power bends
-        if let Some(at_hz) = about_f0.and_then(|f0| f0.value) {
-            follow_force_law(&mut observations, ForceLaw { at_hz, ..law });
-        }
-    }
+    follow_the_force(campaign, &mut observations);
     Ok(observations)
+}
+
+/// Let the drive amplitudes follow the law of the force that the resonance curve shows, if it shows one, about the f0
+/// that all records tell: they tell it better than the curve, which the power bends.
+fn follow_the_force(campaign: &ResolvedCampaign, observations: &mut [Observation]) {
+    let Some(law) = force_law(&evidence::evidence(campaign, observations, &[])) else {
+        return;
+    };
+    follow_force_law(observations, law);
+    let found = identify_campaign(&evidence::evidence(campaign, observations, &[]));
+    let about_f0 = found.joint.parameters.natural_frequency_hz;
+    if let Some(at_hz) = about_f0.and_then(|f0| f0.value) {
+        follow_force_law(observations, ForceLaw { at_hz, ..law });
+    }
 }
 
 /// The observations with what was found of channels corrected too; the same where nothing was.

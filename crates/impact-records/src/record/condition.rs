@@ -157,17 +157,20 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
     }
     let rate_hz = record.sample_rate_hz;
     let crests = Crests::of(record.setting.excitation);
-    let parts = gaps::parts(record);
+    let in_parts = !driven && !gaps::parts(record).is_empty();
     for (channel, range) in record.channels.iter().zip(ranges) {
         // between impacts and after blows what lies outside of a gap stands for itself
-        let missing = match channel.role.is_motion() && !driven && !parts.is_empty() {
+        let missing = match channel.role.is_motion() && in_parts {
             true => gaps::left_out(channel),
             false => not_numbers(channel),
         };
         let of_values = if missing.as_ref().is_some_and(|flag| flag.excludes) {
             None
         } else {
-            let whole = with_values(channel);
+            let whole = match missing {
+                Some(_) => Cow::Owned(with_values(channel)),
+                None => Cow::Borrowed(channel),
+            };
             let span = Span::of(&whole.values);
             dead(&whole, &span, driven)
                 .or_else(|| clipped(&whole, (&span, crests), (*range, rate_hz)))
@@ -356,15 +359,12 @@ fn not_numbers(channel: &Channel) -> Option<Flag> {
 }
 
 /// A channel without the samples that have no value.
-fn with_values(channel: &Channel) -> Cow<'_, Channel> {
-    if columns::all_finite(&channel.values) {
-        return Cow::Borrowed(channel);
-    }
+fn with_values(channel: &Channel) -> Channel {
     let finite = channel.values.iter().copied().filter(|v| v.is_finite());
-    Cow::Owned(Channel {
+    Channel {
         values: finite.collect(),
         ..channel.clone()
-    })
+    }
 }
 
 /// Least and greatest value and the smallest step between neighbours that is not zero.
@@ -622,6 +622,7 @@ mod tests {
 
     use super::*;
     use crate::record::FlagCode;
+    use crate::record::gaps::gapped_record;
 
     fn sine(i: usize) -> f64 {
         (0.05 * i as f64).sin()
@@ -889,16 +890,6 @@ mod tests {
             assert_eq!(unequal.flags[0].code, FlagCode::UnequalLengths);
             assert_eq!(unequal.excluded(), excluded);
         }
-    }
-
-    fn gapped_record(missing: &[Range<usize>]) -> Record {
-        let gap = |i: &usize| missing.iter().any(|m| m.contains(i));
-        let values: Vec<f64> = (0..1000)
-            .map(|i| if gap(&i) { f64::NAN } else { sine(i) })
-            .collect();
-        let mut record = Record::of(100.0, &[(Role::VelocityX, &values)]);
-        record.setting.excitation = Excitation::FreeDecay;
-        record
     }
 
     #[test]

@@ -68,8 +68,7 @@ fn foretells(values: &[f64], length: usize) -> bool {
     });
     let off: Vec<f64> = off.collect();
     let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    let motion = (robust::squares_about_mean(&finite) / finite.len() as f64).sqrt();
-    !off.is_empty() && robust::rms(&off) < MISSED * motion
+    !off.is_empty() && robust::rms(&off) < MISSED * robust::rms_about_mean(&finite)
 }
 
 /// Name the gaps of a channel of which what lies between them is used.
@@ -93,16 +92,8 @@ pub(super) fn parts(record: &Record) -> Vec<Range<usize>> {
         .filter(|c| c.role.is_motion())
         .collect();
     let whole = |i: usize| moving.iter().all(|c| c.values[i].is_finite());
-    let mut parts = Vec::new();
-    let mut begin = None;
-    for i in 0..=record.samples() {
-        if i < record.samples() && whole(i) {
-            begin.get_or_insert(i);
-        } else if let Some(first) = begin.take().filter(|first| i - first >= FEWEST_SAMPLES) {
-            parts.push(first..i);
-        }
-    }
-    parts
+    let parts = stretches(record.samples(), whole);
+    parts.filter(|part| part.len() >= FEWEST_SAMPLES).collect()
 }
 
 /// The longest stretches of values that pass a test.
@@ -110,11 +101,15 @@ pub(super) fn runs(
     values: &[f64],
     test: impl Fn(f64) -> bool,
 ) -> impl Iterator<Item = Range<usize>> {
+    stretches(values.len(), move |i| test(values[i]))
+}
+
+/// The longest stretches of the numbers below a count that pass a test.
+fn stretches(count: usize, test: impl Fn(usize) -> bool) -> impl Iterator<Item = Range<usize>> {
     let mut from = 0;
     std::iter::from_fn(move || {
-        let start = from + values[from..].iter().position(|v| test(*v))?;
-        let length = values[start..].iter().take_while(|v| test(**v)).count();
-        from = start + length;
+        let start = (from..count).find(|i| test(*i))?;
+        from = (start..count).find(|i| !test(*i)).unwrap_or(count);
         Some(start..from)
     })
 }
@@ -146,28 +141,27 @@ impl Record {
     }
 }
 
+/// A slow motion in an undriven record, with gaps.
+#[cfg(test)]
+pub(super) fn gapped_record(missing: &[Range<usize>]) -> Record {
+    let wave = |i: usize| (0.05 * i as f64).sin();
+    let gap = |i: &usize| missing.iter().any(|m| m.contains(i));
+    let values: Vec<f64> = (0..1000)
+        .map(|i| if gap(&i) { f64::NAN } else { wave(i) })
+        .collect();
+    let mut record = Record::of(100.0, &[(Role::VelocityX, &values)]);
+    record.setting.excitation = super::Excitation::FreeDecay;
+    record
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Excitation;
-
-    fn wave(i: usize) -> f64 {
-        (0.05 * i as f64).sin()
-    }
-
-    fn record(missing: &[Range<usize>]) -> Record {
-        let gap = |i: &usize| missing.iter().any(|m| m.contains(i));
-        let values: Vec<f64> = (0..1000)
-            .map(|i| if gap(&i) { f64::NAN } else { wave(i) })
-            .collect();
-        let mut record = Record::of(100.0, &[(Role::VelocityX, &values)]);
-        record.setting.excitation = Excitation::FreeDecay;
-        record
-    }
 
     #[test]
     fn what_lies_between_gaps_are_parts_of_their_own() {
-        let record = record(&[300..310, 315..316, 700..740]);
+        let wave = |i: usize| (0.05 * i as f64).sin();
+        let record = gapped_record(&[300..310, 315..316, 700..740]);
         let parts = record.between_gaps();
         let places: Vec<[usize; 2]> = parts.iter().map(|(i, p)| [*i, p.samples()]).collect();
         // five samples between two gaps are none

@@ -40,7 +40,7 @@ pub(super) fn without_spikes(channel: &mut Channel) -> Option<Flag> {
 
 /// The samples that are spikes; none where they are too many.
 fn spikes(values: &[f64]) -> Vec<usize> {
-    let harmful = HARMFUL * (robust::squares_about_mean(values) / values.len() as f64).sqrt();
+    let harmful = HARMFUL * robust::rms_about_mean(values);
     let off = |i: usize| (values[i] - f64::midpoint(values[i - 1], values[i + 1])).abs();
     let lone = |i: &usize| {
         let size = off(*i);

@@ -94,6 +94,11 @@ pub fn squares_about_mean(values: &[f64]) -> f64 {
     values.iter().map(|v| (v - centre).powi(2)).sum()
 }
 
+/// Root mean square about the mean; of no values NaN.
+pub fn rms_about_mean(values: &[f64]) -> f64 {
+    (squares_about_mean(values) / values.len() as f64).sqrt()
+}
+
 /// Root mean square; zero for an empty slice.
 pub fn rms(values: &[f64]) -> f64 {
     if values.is_empty() {

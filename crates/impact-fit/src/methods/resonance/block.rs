@@ -556,6 +556,12 @@ impl Model<'_> {
 }
 
 impl ResonanceBlock {
+    /// Whether the drive was recorded in all records, so that the responses have phases.
+    pub fn has_phases(&self) -> bool {
+        let mut points = self.points.iter();
+        points.all(|p| p.phase_error_rad.is_some())
+    }
+
     /// Predicted complex response of a channel at a point, SI, gain included.
     pub fn response(
         &self,

@@ -5,7 +5,7 @@ use crate::evidence::Evidence;
 use crate::messages::ONE_DEGREE_OF_FREEDOM;
 use crate::methods::blocks::Blocks;
 use crate::methods::resonance::fit;
-use crate::methods::resonance::misfit::{least_of, misfit};
+use crate::methods::resonance::misfit::{least_of, left_by, misfit};
 use crate::methods::resonance::result::deviation;
 use impact_records::motion::ForceLaw;
 
@@ -52,9 +52,10 @@ pub fn force_law(evidence: &Evidence<'_>) -> Option<ForceLaw> {
     let power = least_of(STEEPEST, STEP, &left)?;
     let with = about(power, middle_hz);
     let start = fit::start(&with, &evidence.nominal)?;
+    let left = left_by(&with, &start)?;
     let found = fit::from(&with, &evidence.nominal.ideal(), start)?.ok()?;
     let found = found.fit.parameters;
-    let describes = left(power)? < LEFT * left(0.0)?
+    let describes = left < LEFT * left_by(&blocks, &constant)?
         && deviation(&with.resonance, &found) < ONE_DEGREE_OF_FREEDOM;
     (describes && power.abs() > LEAST).then_some(ForceLaw {
         power,

@@ -5,7 +5,7 @@ use crate::evidence::{Evidence, Nominal};
 use crate::messages::ONE_DEGREE_OF_FREEDOM;
 use crate::methods::blocks::Blocks;
 use crate::methods::resonance::fit;
-use crate::methods::resonance::misfit::{least_of, misfit};
+use crate::methods::resonance::misfit::{least_of, left_by, misfit};
 use crate::methods::resonance::result::deviation;
 use impact_records::motion::LateChannel;
 use impact_records::record::Role;
@@ -25,12 +25,13 @@ const LEFT: f64 = 0.1;
 /// the motion, or to be of the other sign; `None` where they do not.
 pub fn late_drive(evidence: &Evidence<'_>) -> Option<LateChannel> {
     let blocks = Blocks::new(evidence);
-    let points = &blocks.resonance.points;
-    if points.is_empty() || points.iter().any(|p| p.phase_error_rad.is_none()) {
+    if blocks.resonance.points.is_empty() || !blocks.resonance.has_phases() {
         return None;
     }
-    let at_once = misfit(&blocks, &evidence.nominal)?;
-    let late = lag(&blocks, &evidence.nominal, at_once).map(|(lag_s, left)| {
+    let stated = fit::start(&blocks, &evidence.nominal)?;
+    let at_once = left_by(&blocks, &stated)?;
+    let fits = deviation(&blocks.resonance, &stated) < ONE_DEGREE_OF_FREEDOM;
+    let late = lag(&blocks, &evidence.nominal, (at_once, fits)).map(|(lag_s, left)| {
         let late = LateChannel::by(Role::Drive, lag_s);
         (late, left)
     });
@@ -53,18 +54,16 @@ fn turned_around(blocks: &Blocks) -> Blocks {
 }
 
 /// The lag of the drive's channel with which the phases fit best, s, if it is noticed, and the misfit that it leaves;
-/// `at_once`: that without one.
-fn lag(blocks: &Blocks, nominal: &Nominal, at_once: f64) -> Option<(f64, f64)> {
+/// `at_once`: that without one, and whether the responses are those of one degree of freedom then.
+fn lag(blocks: &Blocks, nominal: &Nominal, (at_once, fits): (f64, bool)) -> Option<(f64, f64)> {
     let points = blocks.resonance.points.iter();
     let fastest_hz = points.map(|p| p.frequency_hz).fold(0.0, f64::max);
     let misfit = |lag_s: f64| misfit(blocks, &behind(nominal, lag_s));
     let stated = nominal.delay_uncertainties_s.iter();
     let stated_s = stated.map(|own| own.unwrap_or(blocks.half_sample_s()));
     let unnoticed_s = SURE * stated_s.fold(0.0, f64::max);
-    let stated_fits = fit::start(blocks, nominal)
-        .is_some_and(|found| deviation(&blocks.resonance, &found) < ONE_DEGREE_OF_FREEDOM);
     // the phases fit, and best near no lag
-    if stated_fits
+    if fits
         && [-unnoticed_s, unnoticed_s]
             .into_iter()
             .all(|lag_s| misfit(lag_s).is_none_or(|with| with > at_once))

@@ -3,6 +3,7 @@
 use crate::evidence::Nominal;
 use crate::methods::blocks::Blocks;
 use crate::methods::resonance::fit;
+use crate::parameters::Parameters;
 use crate::solver::mean_squares;
 
 /// Steps of the parabolas by which the least misfit is found, over that of the search.
@@ -10,8 +11,12 @@ const NEARER: [f64; 4] = [1.0, 0.2, 0.04, 0.01];
 
 /// Mean square of what the best curve leaves of the responses.
 pub(super) fn misfit(blocks: &Blocks, nominal: &Nominal) -> Option<f64> {
-    let found = fit::start(blocks, nominal)?;
-    let left = mean_squares(&blocks.resonance, &found);
+    left_by(blocks, &fit::start(blocks, nominal)?)
+}
+
+/// Mean square of what a curve leaves of the responses.
+pub(super) fn left_by(blocks: &Blocks, curve: &Parameters) -> Option<f64> {
+    let left = mean_squares(&blocks.resonance, curve);
     let count = left.iter().flatten().count();
     (count > 0).then(|| left.iter().flatten().sum::<f64>() / count as f64)
 }

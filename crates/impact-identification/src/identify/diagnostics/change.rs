@@ -189,9 +189,8 @@ impl<'a> Search<'a> {
         let [Some(first), Some(other)] = both else {
             return None;
         };
-        let points = &self.fitted.selection.blocks.resonance.points;
         // amplitudes alone of half of the records do not tell one resonance from another
-        let phases = points.iter().all(|p| p.phase_error_rad.is_some());
+        let phases = self.fitted.selection.blocks.resonance.has_phases();
         let compared = first.into_iter();
         let compared = compared.filter(|(c, _)| phases || *c == Coordinate::Restitution);
         let common = compared.filter_map(|(c, a)| Some((c, [a, *other.get(&c)?])));
