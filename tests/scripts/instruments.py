@@ -29,6 +29,7 @@ class Channel:
     delay_s: float = 0.0
     smear: float = 0.0  # share of a sample by which software shifts readings, by straight lines between them
     low_pass: tuple = (0, 0.0)  # order and corner in Hz of a Butterworth filter
+    band_limit: float = 0.0  # corner over the sampling rate of a converter's filter of linear phase
     pickup_drive: float = 0.0  # volts per volt of the generator
     pickup_contact: float = 0.0  # volts per volt of the contact
     noise_v: float = 0.0
@@ -108,6 +109,7 @@ def motion_channel(c, d, kind, speed):
         unit = "m/s^2/V"
     c = replace(c, scale=scale, scale_text=f"{scale:g} {unit}", gain=gain)
     c = replace(c, high_passed=kind.high_pass_hidden or c.role == "velocity_y", low_pass=kind.low_pass)
+    c = replace(c, band_limit=kind.band_limit)
     if kind.smear:
         c = replace(c, smear=kind.smear if kind.smear > 0.0 else d["smear_x"] if of_x else d["smear_y"])
     if of_x:
@@ -122,6 +124,8 @@ def times_needed(channel, ticks):
     period = ticks[1] - ticks[0]
     if channel.low_pass[0]:
         return fine_times(channel, ticks)
+    if channel.band_limit:
+        return dense_times(channel, ticks)
     base = ticks - channel.delay_s
     if channel.smear:
         base = base + channel.smear * period
@@ -140,6 +144,15 @@ def fine_times(channel, ticks):
     shift = 0.5 * period if channel.role.startswith("acceleration") else 0.0
     count = (lead + len(ticks) - 1 + (1 if shift else 0)) * parts + 1
     return ticks[0] - channel.delay_s - shift - lead * period + period / parts * np.arange(count)
+
+
+def dense_times(channel, ticks):
+    """An even grid that reaches beyond the ticks (of accelerations: the middles between them) by a band limit's half."""
+    period = ticks[1] - ticks[0]
+    averaged = channel.role.startswith("acceleration")
+    count = (2 * BAND_HALF + len(ticks) - 1 + averaged) * BAND_PARTS + 1
+    first = ticks[0] - channel.delay_s - (BAND_HALF + 0.5 * averaged) * period
+    return first + period / BAND_PARTS * np.arange(count)
 
 
 def quantity(channel, motion, times):
@@ -175,6 +188,8 @@ def sensor(channel, motion, ticks):
         value = low_passed(channel, motion, times, value)
         parts = max(1, int(np.ceil(period * 60.0 * channel.low_pass[1])))
         value = value[::parts][-(len(ticks) + averaged) :]
+    if channel.band_limit:
+        value = band_limited(channel, motion, times, value)
     if averaged:
         value = np.diff(value) / period
     if channel.smear:
@@ -187,12 +202,24 @@ def converted(channel, volts, rng):
     count = channel.full_scale_v / 2 ** (channel.bits - 1)
     noisy = volts + channel.noise_v * rng.standard_normal(len(volts))
     limit = 2 ** (channel.bits - 1)
-    return np.clip(np.round(noisy / count), -limit, limit - 1).astype(np.int16), count
+    return np.clip(np.round(noisy / count), -limit, limit - 1).astype(np.int16 if channel.bits <= 16 else np.int32), count
 
 
 def low_passed(channel, motion, times, value):
     """A Butterworth filter on a signal that is even between its jumps."""
     order, corner = channel.low_pass
+    jumps, smooth = without_jumps(channel, motion, times, value)
+    poles, residues = butterworth(order, corner)
+    out = linear_response(smooth, times[1] - times[0], poles, residues)
+    for at, jump in jumps:
+        since = np.maximum(0.0, times - at)
+        step = sum(r / p * (np.exp(p * since) - 1.0) for p, r in zip(poles, residues))
+        out += jump * step.real * (times >= at)
+    return out
+
+
+def without_jumps(channel, motion, times, value):
+    """Times and heights of a signal's jumps, and the signal without them."""
     index = 4 if channel.role.endswith("x") else 5
     jumps = np.zeros((0, 2))
     if not channel.role.startswith("displacement"):
@@ -202,12 +229,27 @@ def low_passed(channel, motion, times, value):
     smooth = value.copy()
     for at, jump in jumps:
         smooth -= jump * (times >= at)
-    poles, residues = butterworth(order, corner)
-    out = linear_response(smooth, times[1] - times[0], poles, residues)
+    return jumps, smooth
+
+
+BAND_HALF = 24  # samples of either half of a band limit's impulse response
+BAND_PARTS = 8  # values in a sample
+
+
+def band_limited(channel, motion, times, value):
+    """The filter of a converter that samples far faster than it gives values (a sinc under Kaiser's window), and the
+    values at the ticks: jumps ring before and behind themselves."""
+    jumps, smooth = without_jumps(channel, motion, times, value)
+    fine = np.linspace(-BAND_HALF, BAND_HALF, 200 * BAND_HALF * BAND_PARTS + 1)
+    response = np.sinc(2.0 * channel.band_limit * fine) * np.kaiser(len(fine), 9.0)
+    step = np.concatenate([[0.0], np.cumsum(0.5 * (response[1:] + response[:-1]))])
+    coarse = response[:: 100]
+    out = np.convolve(smooth, coarse / coarse.sum(), mode="valid")[::BAND_PARTS]
+    half = BAND_HALF * BAND_PARTS
+    period = BAND_PARTS * (times[1] - times[0])
+    ticks = times[half : len(times) - half : BAND_PARTS]
     for at, jump in jumps:
-        since = np.maximum(0.0, times - at)
-        step = sum(r / p * (np.exp(p * since) - 1.0) for p, r in zip(poles, residues))
-        out += jump * step.real * (times >= at)
+        out += jump * np.interp((ticks - at) / period, fine, step / step[-1])
     return out
 
 

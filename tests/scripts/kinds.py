@@ -51,6 +51,7 @@ class Kind:
     late_s: tuple = ()  # (role, s) pairs
     low_pass: tuple = (0, 0.0)  # order and corner in Hz, of the channels of motion
     low_pass_stated: bool = False
+    band_limit: float = 0.0  # corner over the rate of the filter of linear phase in a delta-sigma converter
     high_pass_hidden: bool = False  # both velocities behind the high-pass, which is not stated
     noise: float = 1.0  # over that of the typical converter
     contact_missed: float = 0.0  # share of the impacts that the contact does not show
@@ -115,6 +116,12 @@ KINDS = {
     "low_pass_200_1": Kind("the same of order 1", low_pass=(1, 200.0)),
     "low_pass_800": Kind("velocities behind an anti-alias filter of order 4 at 800 Hz", low_pass=(4, 800.0)),
     "low_pass_stated": Kind("low-pass of order 2 at 200 Hz, stated", low_pass=(2, 200.0), low_pass_stated=True),
+    "low_pass_1300": Kind("an anti-alias filter of order 4 at 1.3 kHz, 10 kHz", low_pass=(4, 1300.0), rate_hz=1e4),
+    "low_pass_4000": Kind("an anti-alias filter of order 8 at 4 kHz, 10 kHz", low_pass=(8, 4000.0), rate_hz=1e4),
+    "delta_sigma": Kind("velocities from a delta-sigma converter", band_limit=0.48, bits=24),
+    "delta_sigma_10k": Kind("the same at 10 kHz", band_limit=0.48, bits=24, rate_hz=1e4),
+    "delta_sigma_displacement": Kind("displacements from such a converter", roles=DISPLACEMENTS, band_limit=0.48, bits=24),
+    "delta_sigma_acceleration": Kind("accelerations from such a converter", roles=ACCELERATIONS, band_limit=0.48, bits=24),
     "smeared": Kind("jumps smeared over two samples by software", smear=-1.0),
     "smeared_half": Kind("readings averaged with the one before", smear=0.5),
     "pickup_drive": Kind("velocity x picks up 0.3 % of the generator", pickup_drive=3e-3),

@@ -133,6 +133,19 @@ def filters():
         sum(residues / (400j * math.pi - poles)))], [1.0, math.sqrt(0.5)], 1e-12)
 
 
+def band_limit():
+    """The filter of a delta-sigma converter passes a tone below its corner and takes away one above half the rate."""
+    channel = instruments.Channel("velocity_x", "v", band_limit=0.48)
+    ticks = 20.0 + np.arange(200) / 2000.0
+    times = instruments.times_needed(channel, ticks)
+    for frequency, passed in [(300.0, 1.0), (1200.0, 0.0)]:
+        states = np.zeros((len(times), rig.STATES))
+        states[:, 1] = np.cos(2.0 * math.pi * frequency * times)
+        motion = instruments.Motion(times, states, np.zeros((0, 6)), 5e-4, 80.0, 0.0)
+        expected = passed * np.cos(2.0 * math.pi * frequency * ticks)
+        check(f"a tone of {frequency:g} Hz", instruments.sensor(channel, motion, ticks), expected, 1e-4)
+
+
 def run():
     """All checks."""
     plastic_impacts()
@@ -140,4 +153,5 @@ def run():
     resonance()
     contacts()
     filters()
+    band_limit()
     print("all met")

@@ -23,6 +23,7 @@
 //!     values,
 //!     high_pass_hz: None,
 //!     low_pass: None,
+//!     smoothing: None,
 //!     threshold: (role == Role::Contact).then_some(2.5),
 //! };
 //! let phase = |i: usize| std::f64::consts::TAU * i as f64 / 200.0;

@@ -329,6 +329,7 @@ pub fn calibrated(raw: &RawRecord, truth: &Truth, faults: &Faults) -> Record {
                     .collect(),
                 high_pass_hz: faults.high_pass_hz.filter(|_| filtered),
                 low_pass: None,
+                smoothing: None,
                 threshold: (role == Role::Contact).then_some(2.5),
             },
         )

@@ -123,6 +123,8 @@ pub enum Note {
     OneOfTwo,
     /// The speeds at impacts come from differentiated displacements.
     Differentiated,
+    /// The velocities ring beside the impacts.
+    Ringing,
     /// The solver failed.
     SolverFailed,
     /// The data do not separate the parameters.
@@ -139,6 +141,7 @@ impl From<&FitError> for Note {
             FitError::Empty => Self::NothingToFit,
             FitError::OneOfTwo => Self::OneOfTwo,
             FitError::Differentiated => Self::Differentiated,
+            FitError::Ringing => Self::Ringing,
             FitError::Solver => Self::SolverFailed,
             FitError::Singular => Self::NotSeparable,
         }

@@ -100,6 +100,9 @@ pub enum FitError {
     /// The speeds at impacts come from displacements.
     #[error("speeds at impacts come from displacements")]
     Differentiated,
+    /// The velocities rang beside the impacts.
+    #[error("the velocities ring beside the impacts")]
+    Ringing,
     /// The solver ended without a point.
     #[error("the solver failed")]
     Solver,

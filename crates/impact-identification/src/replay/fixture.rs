@@ -113,6 +113,7 @@ pub fn decay(id: &str, mass: usize, f0_hz: f64) -> Record {
             values: (0..1640).map(value).collect(),
             high_pass_hz: None,
             low_pass: None,
+            smoothing: None,
             threshold: None,
         }],
         setting: Setting {

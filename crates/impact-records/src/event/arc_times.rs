@@ -259,6 +259,7 @@ mod tests {
             values,
             noise: 1e-6,
             high_pass_hz: Some(CORNER_HZ),
+            spread: 0,
         };
         let body = Body {
             velocity: Some(velocity),
@@ -290,7 +291,7 @@ mod tests {
                     error: 1e-6,
                 },
                 source: DetectionSource::Velocity,
-                open_from: 0,
+                calm_from: 0,
                 dead_samples: 0.0,
             })
             .collect();

@@ -10,8 +10,8 @@ use crate::signal::whole;
 /// an impact to it.
 pub(super) const DEGREE: usize = 3;
 
-/// Part of an arc that may be left out while the contact is closed: a sixth.
-const PICKED_UP: usize = 6;
+/// Part of an arc that may be left out beside an impact: a third.
+const LEFT_OUT: usize = 3;
 
 /// An impact's time in samples with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,15 +41,20 @@ pub(super) struct Candidate {
     pub source: DetectionSource,
     /// Samples the contact stayed closed beyond an ordinary pulse.
     pub dead_samples: f64,
-    /// First sample at which the contact of an ordinary pulse is open again; 0 without one. Until then the
-    /// velocities may show what their cables pick up from it.
-    pub open_from: usize,
+    /// First sample behind it that shows a flight: the contact of an ordinary pulse is open again, which cables pick
+    /// up, and a filter rings no more; 0 where nothing is known of either.
+    pub calm_from: usize,
 }
 
 impl Candidate {
     /// Standard error of its middle as the time of the impact, samples.
     pub(super) fn middle_error(&self) -> f64 {
         self.jump.gap as f64 / 12f64.sqrt()
+    }
+
+    /// First sample that does not show the ringing behind it, which lasts so many samples.
+    pub(super) fn calm_behind(&self, rings: f64) -> usize {
+        whole::index(self.jump.middle().floor() + rings)
     }
 }
 
@@ -80,10 +85,10 @@ pub(super) fn windows(velocity: &Series, arcs: Arcs<'_>, index: usize) -> [(usiz
         .get(index + 1)
         .map_or(samples, |c| c.jump.left + 1);
     let begin = jump.left + jump.gap;
-    // Where leaving them out would take much of the arc, samples of the closed contact are kept.
-    let open_from = candidates[index].open_from;
-    let few = open_from <= begin + width / PICKED_UP && open_from + width / 2 <= high;
-    let begin = if few { begin.max(open_from) } else { begin };
+    // Where leaving them out would take much of the arc, samples that are not calm are kept.
+    let calm_from = candidates[index].calm_from;
+    let few = calm_from <= begin + width / LEFT_OUT && calm_from + width / 2 <= high;
+    let begin = if few { begin.max(calm_from) } else { begin };
     let dead = whole::index(candidates[index].dead_samples);
     // Within a dead zone the bodies move together: "after" is limited to its samples.
     let end = if dead > 3 {
@@ -110,6 +115,24 @@ pub(super) fn fits(values: &[f64], windows: [(usize, usize); 2]) -> Option<[Loca
 /// Flights of one signal before and after a candidate, fitted to samples that touch no impact.
 pub(super) fn flights(velocity: &Series, arcs: Arcs<'_>, index: usize) -> Option<[LocalFit; 2]> {
     fits(&velocity.values, windows(velocity, arcs, index))
+}
+
+/// Mean instant, in samples, of the change from the flight before a candidate to the one after: half a sample behind the
+/// last one before it, and as many more as the shares that are left to change, as they are to be taken, add up to.
+pub(super) fn jump_centre(
+    velocity: &Series,
+    arcs: Arcs<'_>,
+    index: usize,
+    taken: impl Fn(f64) -> f64,
+) -> Option<f64> {
+    let jump = arcs.candidates[index].jump;
+    let [before, after] = flights(velocity, arcs, index)?;
+    let left_to_do = |k: usize| {
+        let (from, to) = (before.value(k as f64), after.value(k as f64));
+        taken((velocity.values[k] - to) / (from - to))
+    };
+    let inside = jump.left + 1..(jump.left + jump.gap).min(velocity.values.len());
+    Some(jump.left as f64 + 0.5 + inside.map(left_to_do).sum::<f64>())
 }
 
 /// Speeds of one signal before and after a candidate, as they were read at a time.

@@ -55,12 +55,14 @@ pub(super) fn channel_lags(
             let values = velocity.values.iter().step_by(stride).copied();
             let velocity = Series {
                 values: values.collect(),
+                spread: velocity.spread.div_ceil(stride),
                 ..*velocity
             };
             let search = JumpSearch::new(&velocity, width / stride);
             let jumps = search.find();
             let times = jumps.iter().map(|j| j.middle() * step_s).collect();
-            Some((velocity.role, search.gap as f64 * step_s, times))
+            let rise = search.gap.saturating_sub(2 * velocity.spread).max(1);
+            Some((velocity.role, rise as f64 * step_s, times))
         })
         .collect();
     let time = |samples: f64| samples / kinematics.rate_hz;

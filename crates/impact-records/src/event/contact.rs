@@ -94,6 +94,7 @@ mod tests {
             values,
             high_pass_hz: None,
             low_pass: None,
+            smoothing: None,
             threshold,
         }
     }

@@ -1,6 +1,7 @@
 //! From a record to its impacts: contact pulses and velocity jumps fused, times refined.
 
 use crate::event::arcs::{self, Arcs, Candidate, DEGREE, Instant};
+use crate::event::calming::Ringing;
 use crate::event::channel_lags::{ChannelLag, channel_lags};
 use crate::event::contact::{Closed, closed_intervals};
 use crate::event::directions::{JumpDirections, jump_directions};
@@ -14,8 +15,6 @@ use crate::event::touches::touches;
 use crate::event::{drift, free_flight, impact_speeds, integrated};
 use crate::record::{Flag, ListedTimes, Problem, Record, Role};
 use crate::signal::local_fit::LocalFit;
-use crate::signal::ringing;
-use crate::signal::robust;
 use crate::signal::whole;
 use labfiles::units::Dimension;
 
@@ -99,6 +98,8 @@ pub struct Detection {
     pub directions: Vec<JumpDirections>,
     /// Problems found.
     pub flags: Vec<Flag>,
+    /// How the approach velocity rings beside its jumps; `None` where few of these are strong.
+    pub(crate) ringing: Option<Ringing>,
 }
 
 /// Detect the impacts of a record.
@@ -124,6 +125,7 @@ pub struct Detection {
 ///         values,
 ///         high_pass_hz: None,
 ///         low_pass: None,
+///         smoothing: None,
 ///         threshold: None,
 ///     }],
 ///     setting: Setting {
@@ -144,6 +146,17 @@ pub struct Detection {
 /// assert!((found.impacts[0].approach_speed_before_m_s.unwrap() - 1.01).abs() < 1e-3);
 /// ```
 pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detection {
+    detect_at(record, rig, settings, None)
+}
+
+/// The same of a record that was smoothed: impacts are those that were found before, at these times in s, or that the
+/// contact shows.
+pub(crate) fn detect_at(
+    record: &Record,
+    rig: RigKind,
+    settings: &DetectSettings,
+    known_s: Option<&[f64]>,
+) -> Detection {
     let (drive, mut flags) = drive::measure(record, settings.drive_tolerance);
     let stride = stride(record, drive.as_ref(), settings.flight);
     let contact = record.channel(Role::Contact);
@@ -170,7 +183,10 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
     let arc_samples = arc_samples(width);
     let found = match &kinematics.relative.velocity {
         Some(velocity) => {
-            let found = fuse((&kinematics.relative, velocity), &closed, width, dead_from);
+            let known =
+                known_s.map(|times| times.iter().map(|t| t * rate_hz).collect::<Vec<f64>>());
+            let body = (&kinematics.relative, velocity);
+            let found = fuse(body, (&closed, known.as_deref()), width, dead_from);
             found.confirmed(velocity, arc_samples)
         }
         None => from_contact_alone(&closed, dead_from),
@@ -182,7 +198,7 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
         candidates: &found.candidates,
         samples: arc_samples,
     };
-    let lags = if found.may_be_late(rate_hz) {
+    let lags = if found.may_be_late(&kinematics) {
         channel_lags(&kinematics, &closed, width)
     } else {
         Vec::new()
@@ -209,6 +225,7 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
         closed_fraction: closed_samples as f64 / record.samples().max(1) as f64,
         kinematics,
         flags,
+        ringing: found.ringing,
     }
 }
 
@@ -270,6 +287,7 @@ fn freely_every(record: &Record, rig: RigKind, closed: &[Closed], stride: usize)
         lags: Vec::new(),
         directions: Vec::new(),
         flags: found.flags,
+        ringing: None,
     }
 }
 
@@ -291,6 +309,7 @@ fn listed(kinematics: Kinematics, times_s: &[f64], known: ListedTimes) -> Detect
         lags: Vec::new(),
         directions: Vec::new(),
         flags: Vec::new(),
+        ringing: None,
     }
 }
 
@@ -439,18 +458,24 @@ struct Fused {
     upward: usize,
     /// Jumps downward, as impacts make them.
     downward: usize,
+    /// How the velocity rings beside its jumps.
+    ringing: Option<Ringing>,
 }
 
 /// Fuse jumps and contact pulses: a jump within reach of a pulse belongs to it; a pulse without a
-/// jump admits a weaker jump beside it, as does a touch; a long pulse is a dead zone.
+/// jump admits a weaker jump beside it, as does a touch; a long pulse is a dead zone. Where impacts are known already, in
+/// samples, no others are found without a pulse.
 fn fuse(
     (relative, velocity): (&Body, &Series),
-    closed: &[Closed],
+    (closed, known): (&[Closed], Option<&[f64]>),
     width: usize,
     dead_from: usize,
 ) -> Fused {
     let search = JumpSearch::new(velocity, width);
     let mut jumps = search.find();
+    if let Some(known) = known {
+        search.keep_known(&mut jumps, known);
+    }
     let (upward, downward) = search.directions();
     let mut unsupported = 0;
     for pulse in closed {
@@ -478,6 +503,7 @@ fn fuse(
         missed: 0,
         upward,
         downward,
+        ringing: None,
     }
 }
 
@@ -487,15 +513,23 @@ const ONE_IMPACT_S: f64 = 10e-3;
 impl Fused {
     /// Whether a channel may be late: jumps take more than a sample, follow each other closely, or contradict
     /// the contact.
-    fn may_be_late(&self, rate_hz: f64) -> bool {
+    fn may_be_late(&self, kinematics: &Kinematics) -> bool {
         let all = &self.candidates;
+        let rate_hz = kinematics.rate_hz;
+        let spread = kinematics
+            .relative
+            .velocity
+            .as_ref()
+            .map_or(0, |v| v.spread);
         let pairs = all.windows(2);
         let close = pairs
             .filter(|pair| pair[1].jump.middle() - pair[0].jump.middle() < ONE_IMPACT_S * rate_hz)
             .count();
         let contradicted = self.unsupported + self.missed;
         !all.is_empty()
-            && (self.jump_samples > 1 || 4 * close > all.len() || 2 * contradicted > all.len())
+            && (self.jump_samples > 1 + 2 * spread
+                || 4 * close > all.len()
+                || 2 * contradicted > all.len())
     }
 }
 
@@ -513,12 +547,10 @@ const SHOWN: f64 = 0.5;
 /// Height of a jump, over that of the one before it, up to which it may be what that one's ringing leaves; any that
 /// the contact does not show, after one that it does, may be.
 const OF_RINGING: f64 = 0.3;
-/// Height of a jump, over the greatest, from which it is one of those by which ringing is told.
-const STRONG: f64 = 0.5;
 
 impl Fused {
     /// Without the jumps that no contact pulse and no difference of the flights beside them confirm:
-    /// extrapolated across an impact nearby, a velocity seems to jump.
+    /// extrapolated across an impact nearby, a velocity seems to jump. Flights begin where ringing has ended.
     fn confirmed(self, velocity: &Series, samples: usize) -> Self {
         let without_pulse = |c: &Candidate| c.source == DetectionSource::Velocity;
         let all = &self.candidates;
@@ -527,7 +559,8 @@ impl Fused {
             candidates,
             samples,
         };
-        let rings = rings_for(velocity, all);
+        let ringing = Ringing::of(velocity, arcs);
+        let rings = ringing.map_or(0.0, |r| r.beside[1]);
         let shows = |i: usize| {
             let middle = all[i].jump.middle();
             let mut windows = arcs::windows(velocity, arcs, i);
@@ -538,9 +571,8 @@ impl Fused {
                 rings > 0.0 && (weak || other.source == DetectionSource::Both)
             };
             if let Some(other) = other.filter(may_ring) {
-                let calm = whole::index((other.jump.middle() + rings).ceil());
                 let first = &mut windows[0];
-                first.0 = first.0.max(calm);
+                first.0 = first.0.max(other.calm_behind(rings));
                 if first.0 + arcs::DEGREE + 1 > first.1 {
                     return false;
                 }
@@ -555,27 +587,18 @@ impl Fused {
             fall + 3.0 * velocity.noise * error > SHOWN * all[i].jump.height.abs()
         };
         let kept = (0..all.len()).filter(|i| !without_pulse(&all[*i]) || shows(*i));
-        let candidates: Vec<Candidate> = kept.map(|i| all[i].clone()).collect();
+        let calm = |c: &Candidate| Candidate {
+            calm_from: c.calm_from.max(c.calm_behind(rings)),
+            ..c.clone()
+        };
+        let candidates: Vec<Candidate> = kept.map(|i| calm(&all[i])).collect();
         Self {
             missed: candidates.iter().filter(|c| without_pulse(c)).count(),
             candidates,
+            ringing,
             ..self
         }
     }
-}
-
-/// Samples for which a velocity rings after its strong jumps, as behind a filter.
-fn rings_for(velocity: &Series, all: &[Candidate]) -> f64 {
-    let heights = all.iter().map(|c| c.jump.height.abs());
-    let strong = STRONG * heights.fold(0.0, f64::max);
-    let strong = all.iter().filter(|c| c.jump.height.abs() > strong);
-    let times: Vec<f64> = strong.map(|c| c.jump.middle()).collect();
-    if times.len() < ringing::FEWEST {
-        return 0.0;
-    }
-    let size = robust::robust_deviation(&velocity.values).unwrap_or(0.0);
-    let [_, after] = ringing::beside_impacts(&velocity.values, &times, size);
-    after
 }
 
 /// Samples at which a jump that belongs to a pulse may begin.
@@ -615,7 +638,7 @@ fn candidates(
             jump: *jump,
             source,
             dead_samples,
-            open_from: pulse
+            calm_from: pulse
                 .filter(|p| p.samples() < dead_from)
                 .map_or(0, |p| p.last + 1),
         });
@@ -650,7 +673,7 @@ fn from_contact_alone(closed: &[Closed], dead_from: usize) -> Fused {
                 error: f64::NAN,
             },
             source: DetectionSource::Contact,
-            open_from: 0,
+            calm_from: 0,
             dead_samples: if pulse.samples() >= dead_from {
                 pulse.samples() as f64
             } else {
@@ -724,8 +747,8 @@ mod tests {
     fn a_pulse_belongs_to_the_jump_within_its_reach() {
         let velocity = Series::clean(sawtooth(400));
         let closed = [pulse(100, 102), pulse(245, 247)];
-        let found =
-            fuse((&Body::default(), &velocity), &closed, 8, 10).confirmed(&velocity, ARC_SAMPLES);
+        let found = fuse((&Body::default(), &velocity), (&closed, None), 8, 10)
+            .confirmed(&velocity, ARC_SAMPLES);
         let sources: Vec<_> = found.candidates.iter().map(|c| c.source).collect();
         use DetectionSource::{Both, Velocity};
         assert_eq!(sources, [Both, Velocity, Velocity]);
@@ -740,7 +763,7 @@ mod tests {
     #[test]
     fn a_jump_that_the_flights_do_not_show_needs_a_pulse() {
         let velocity = Series::clean(sawtooth(400));
-        let mut found = fuse((&Body::default(), &velocity), &[], 8, 10);
+        let mut found = fuse((&Body::default(), &velocity), (&[], None), 8, 10);
         assert_eq!(found.candidates.len(), 3);
         // Between two impacts the velocity climbs steadily.
         let mut seeming = found.candidates[0].clone();
@@ -766,11 +789,15 @@ mod tests {
         let values = sawtooth(800).into_iter().enumerate();
         let ringing: Vec<f64> = values.map(|(i, v)| v + rings(i)).collect();
         let ringing = Series::clean(ringing);
-        let mut found = fuse((&Body::default(), &ringing), &[], 16, 10);
+        let mut found = fuse((&Body::default(), &ringing), (&[], None), 16, 10);
         let first = found.candidates[0].clone();
-        assert!(rings_for(&ringing, &found.candidates) > 12.0);
-        let calm = Series::clean(sawtooth(800));
-        assert!(rings_for(&calm, &found.candidates) < 3.0);
+        let jumps = Arcs {
+            candidates: &found.candidates,
+            samples: ARC_SAMPLES,
+        };
+        let after = |velocity: &Series| Ringing::of(velocity, jumps).unwrap().beside[1];
+        assert!(after(&ringing) > 12.0);
+        assert!(after(&Series::clean(sawtooth(800))) < 3.0);
         let mut seeming = first.clone();
         seeming.jump.left += 10;
         seeming.jump.height *= 0.2;
@@ -791,7 +818,7 @@ mod tests {
         let velocity = Series::clean(sawtooth(400));
         let found = fuse(
             (&Body::default(), &velocity),
-            &[pulse(100, 120), pulse(200, 330)],
+            (&[pulse(100, 120), pulse(200, 330)], None),
             8,
             10,
         );
@@ -873,6 +900,7 @@ mod tests {
                 values: values.collect(),
                 high_pass_hz: None,
                 low_pass: None,
+                smoothing: None,
                 threshold: None,
             }],
             setting: Setting {

@@ -158,9 +158,12 @@ impl FiniteContact {
 }
 
 /// How long the impacts of a record last; `None` if they are instants, or if nothing shows it
-/// (it takes measured velocity and displacement).
+/// (it takes measured velocity and displacement, not smoothed).
 pub(super) fn measure(kinematics: &Kinematics, arcs: Arcs<'_>) -> Option<FiniteContact> {
-    kinematics.relative.displacement.as_ref()?;
+    let displacement = kinematics.relative.displacement.as_ref()?;
+    if displacement.spread > 0 {
+        return None;
+    }
     let candidates = &widened(arcs.candidates);
     let arcs = arcs.of(candidates);
     let instants = instants(kinematics, arcs);

@@ -1,30 +1,22 @@
 //! Velocities by integrating an acceleration: impacts are spikes, and each flight between two of them has a constant
 //! of integration of its own.
 
-use crate::event::arcs::{Arcs, Instant, flights};
+use crate::event::arcs::{Arcs, Instant, flights, jump_centre};
 use crate::event::kinematics::Series;
 use crate::signal::local_fit::LocalFit;
 
 /// Times of impacts: an integrated acceleration shows the impulse itself, and its centre; `plain` where it does not.
 pub(super) fn instants(velocity: &Series, arcs: Arcs<'_>, plain: &[Instant]) -> Vec<Instant> {
-    let centre = |i: usize| impulse_centre(velocity, arcs, i).unwrap_or(plain[i]);
-    (0..plain.len()).map(centre).collect()
-}
-
-/// Mean instant of the change from the flight before to the one after, as an integrated acceleration shows it: it
-/// is known to a sample, as the spike is.
-fn impulse_centre(velocity: &Series, arcs: Arcs<'_>, index: usize) -> Option<Instant> {
-    let jump = arcs.candidates[index].jump;
-    let [before, after] = flights(velocity, arcs, index)?;
-    let left_to_do = |k: usize| {
-        let (from, to) = (before.value(k as f64), after.value(k as f64));
-        ((velocity.values[k] - to) / (from - to)).clamp(0.0, 1.0)
+    // It is known to a sample, as the spike is.
+    let centre = |i: usize| {
+        Some(Instant {
+            time: jump_centre(velocity, arcs, i, |share| share.clamp(0.0, 1.0))?,
+            error: 12f64.sqrt().recip(),
+        })
     };
-    let inside = jump.left + 1..(jump.left + jump.gap).min(velocity.values.len());
-    Some(Instant {
-        time: jump.left as f64 + 0.5 + inside.map(left_to_do).sum::<f64>(),
-        error: 12f64.sqrt().recip(),
-    })
+    (0..plain.len())
+        .map(|i| centre(i).unwrap_or(plain[i]))
+        .collect()
 }
 
 /// Give each flight of an integrated acceleration its own constant: the bodies touch at its ends, so its mean

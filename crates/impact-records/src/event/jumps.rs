@@ -166,6 +166,18 @@ impl<'a> JumpSearch<'a> {
         self.remeasured(accepted)
     }
 
+    /// Only the jumps at known places, in samples, with weaker ones where none was found.
+    pub(super) fn keep_known(&self, jumps: &mut Vec<Jump>, known: &[f64]) {
+        let beside = |jump: &Jump, at: f64| (jump.middle() - at).abs() <= self.gap as f64 + 1.0;
+        jumps.retain(|jump| known.iter().any(|at| beside(jump, *at)));
+        for at in known {
+            if !jumps.iter().any(|jump| beside(jump, *at)) {
+                let first = whole::index((at - self.gap as f64).floor());
+                self.admit((first, first + self.gap), jumps);
+            }
+        }
+    }
+
     /// Numbers of significant jumps upward and downward. Of neighbours only the strongest counts,
     /// because the scan swings back beside a jump. The steepest step tells the direction: where a contact
     /// takes longer than a window, its ends seem to jump back.

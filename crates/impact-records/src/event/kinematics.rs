@@ -30,6 +30,8 @@ pub struct Series {
     /// Corner of the high-pass that was undone, Hz: a constant and a ramp remain unknown. `None` if
     /// the signal had none.
     pub high_pass_hz: Option<f64>,
+    /// Samples to either side by which smoothing has spread a jump.
+    pub spread: usize,
 }
 
 impl Series {
@@ -62,18 +64,20 @@ impl Series {
     fn every(mut self, stride: usize) -> Self {
         if stride > 1 {
             self.values = self.values.into_iter().step_by(stride).collect();
+            self.spread = self.spread.div_ceil(stride);
         }
         self
     }
 
     /// Fewest samples from the last one before a jump to the first one after it: a difference of displacements
-    /// beside a kink mixes both sides in two samples, the integral of a spike stands halfway in one.
+    /// beside a kink mixes both sides in two samples, the integral of a spike stands halfway in one; smoothing mixes more.
     pub(super) fn least_gap(&self) -> usize {
-        match self.role {
+        let measured = match self.role {
             Role::DisplacementX | Role::DisplacementY => 3,
             Role::AccelerationX | Role::AccelerationY => 2,
             _ => 1,
-        }
+        };
+        measured + 2 * self.spread
     }
 
     /// Whether it is a velocity by integrating an acceleration: what it is off changes by its noise from sample to
@@ -248,7 +252,8 @@ fn series(record: &Record, role: Role) -> Option<Series> {
     if channel.values.is_empty() || !columns::all_finite(&channel.values) {
         return None;
     }
-    let noise = noise_with_converter(&channel.values);
+    let smoothing = channel.smoothing;
+    let noise = smoothing.map_or_else(|| noise_with_converter(&channel.values), |s| s.noise);
     let values = match channel.high_pass_hz {
         Some(corner) => {
             let mean = robust::mean(&channel.values);
@@ -262,6 +267,9 @@ fn series(record: &Record, role: Role) -> Option<Series> {
         values,
         noise,
         high_pass_hz: channel.high_pass_hz,
+        spread: smoothing.map_or(0, |s| {
+            whole::index((s.reach_s * record.sample_rate_hz - 1e-6).ceil())
+        }),
     };
     if series.high_pass_hz.is_some() {
         // The high-pass has removed the constant part; a measured one is kept for `remove_drift`.
@@ -304,6 +312,7 @@ fn differentiated(displacement: &Series, rate_hz: f64) -> Series {
         values,
         noise: displacement.noise * rate_hz / 2f64.sqrt(),
         high_pass_hz: displacement.high_pass_hz,
+        spread: displacement.spread,
     }
 }
 
@@ -326,6 +335,7 @@ fn integrated(acceleration: &Series, rate_hz: f64) -> Series {
         noise: acceleration.noise / rate_hz,
         values,
         high_pass_hz,
+        spread: acceleration.spread,
     }
 }
 
@@ -346,6 +356,7 @@ fn combined(
                     values,
                     noise,
                     high_pass_hz,
+                    spread: x.spread.max(y.spread),
                 }),
                 Some(RelativeSource::Both),
             )
@@ -357,6 +368,7 @@ fn combined(
                 values,
                 noise: 2.0 * one.noise,
                 high_pass_hz: one.high_pass_hz,
+                spread: one.spread,
             };
             (Some(series), Some(RelativeSource::Doubled))
         }
@@ -373,6 +385,7 @@ impl Series {
             values,
             noise: 1e-3,
             high_pass_hz: None,
+            spread: 0,
         }
     }
 }

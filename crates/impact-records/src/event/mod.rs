@@ -6,6 +6,7 @@
 
 mod arc_times;
 mod arcs;
+mod calming;
 mod channel_lags;
 mod contact;
 mod contact_profile;
@@ -26,7 +27,9 @@ mod lag;
 mod refine;
 mod touches;
 
+pub(crate) use calming::calmed;
 pub use channel_lags::ChannelLag;
+pub(crate) use detect::detect_at;
 pub use detect::extrapolation_error;
 pub use detect::{DetectSettings, Detection, FlightKind, detect};
 pub use directions::JumpDirections;

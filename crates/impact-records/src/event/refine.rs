@@ -1,7 +1,7 @@
 //! Times of impacts to a fraction of the sample step.
 
 use crate::event::arc_times::arc_times;
-use crate::event::arcs::{Arcs, Candidate, Instant, fits, speeds, windows};
+use crate::event::arcs::{Arcs, Instant, fits, jump_centre, speeds, windows};
 use crate::event::impact::MassSpeeds;
 use crate::event::integrated;
 use crate::event::kinematics::{Kinematics, Series};
@@ -11,11 +11,11 @@ use crate::signal::local_fit::crossing;
 /// condition that the relative displacement is the same at every impact, else the middle of the
 /// sample interval. An integrated acceleration shows the impulse itself, and its centre.
 pub(super) fn instants(kinematics: &Kinematics, arcs: Arcs<'_>) -> Vec<Instant> {
-    let middle = |c: &Candidate| Instant {
-        time: c.jump.middle(),
-        error: c.middle_error(),
-    };
-    let plain: Vec<Instant> = arcs.candidates.iter().map(middle).collect();
+    let velocity = kinematics.relative.velocity.as_ref();
+    let smooth = velocity.filter(|v| v.spread > 0);
+    let plain: Vec<Instant> = (0..arcs.candidates.len())
+        .map(|i| middle(smooth, arcs, i))
+        .collect();
     match (
         &kinematics.relative.displacement,
         &kinematics.relative.velocity,
@@ -32,6 +32,24 @@ pub(super) fn instants(kinematics: &Kinematics, arcs: Arcs<'_>) -> Vec<Instant> 
         }
         (None, Some(velocity)) => arc_times(kinematics, velocity, arcs, &plain),
         _ => plain,
+    }
+}
+
+/// The middle of a candidate's jump; where smoothing has spread it, its centre: smoothing keeps the sum of all samples.
+fn middle(smooth: Option<&Series>, arcs: Arcs<'_>, index: usize) -> Instant {
+    let candidate = &arcs.candidates[index];
+    let jump = candidate.jump;
+    let centre = smooth.and_then(|v| Some((v, jump_centre(v, arcs, index, |share| share)?)));
+    let (low, high) = (jump.left as f64, (jump.left + jump.gap) as f64);
+    match centre.filter(|(_, time)| (low..=high).contains(time)) {
+        Some((velocity, time)) => Instant {
+            time,
+            error: jump.gap as f64 * velocity.noise / jump.height.abs(),
+        },
+        None => Instant {
+            time: jump.middle(),
+            error: candidate.middle_error(),
+        },
     }
 }
 
@@ -83,6 +101,7 @@ pub(super) fn correct_jumps(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::event::arcs::Candidate;
     use crate::event::impact::DetectionSource;
     use crate::event::impact_speeds::impacts;
     use crate::event::jumps::JumpSearch;
@@ -115,6 +134,7 @@ mod tests {
             values,
             noise: 1e-9,
             high_pass_hz: None,
+            spread: 0,
         };
         let body = Body {
             velocity: Some(series(Role::VelocityX, (0..1000).map(velocity).collect())),
@@ -140,7 +160,7 @@ mod tests {
             jump,
             source: DetectionSource::Velocity,
             dead_samples: 0.0,
-            open_from: 0,
+            calm_from: 0,
         };
         let found = JumpSearch::new(velocity, 12).find();
         found.into_iter().map(candidate).collect()

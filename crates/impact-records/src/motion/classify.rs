@@ -480,6 +480,7 @@ mod tests {
             lags: Vec::new(),
             directions: Vec::new(),
             flags: Vec::new(),
+            ringing: None,
         }
     }
 

@@ -7,8 +7,8 @@ use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use crate::event::{
-    ChannelLag, DetectSettings, DriveTone, FlightKind, Impact, JumpDirections, RigKind, detect,
-    of_motion,
+    ChannelLag, DetectSettings, DriveTone, FlightKind, Impact, JumpDirections, RigKind, calmed,
+    detect, detect_at, of_motion,
 };
 use crate::motion::classify::{Classification, ClassifySettings, classify, undetermined};
 use crate::motion::fold::{Folded, fold};
@@ -63,6 +63,9 @@ pub struct Observation {
     /// Whether a motion channel has passed a low-pass, so that the speeds at impacts are not those of flights.
     #[serde(default)]
     pub low_pass: bool,
+    /// Whether the motion was smoothed because it rings beside impacts.
+    #[serde(default)]
+    pub smoothed: bool,
     /// How much later than the contact or the other mass the channels show impacts, where that may matter.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lags: Vec<ChannelLag>,
@@ -228,7 +231,12 @@ pub fn observe(
     if decays {
         return observe_decay(record);
     }
-    let mut detection = detect(record, rig, detecting);
+    let first = detect(record, rig, detecting);
+    let calm = calmed(record, &first, |smooth, times_s| {
+        detect_at(smooth, rig, detecting, Some(times_s))
+    });
+    let (calm, mut detection) = calm.map_or((None, first), |(calm, found)| (Some(calm), found));
+    let record = calm.as_ref().unwrap_or(record);
     let drive = detection.drive;
     let motion = detection.kinematics.waveform.as_ref();
     let motion_tone = motion
@@ -385,6 +393,7 @@ fn undriven(record: &Record) -> Observation {
         missed_pulses: 0,
         jump_samples: 1,
         low_pass: smears_jumps(record),
+        smoothed: record.channels.iter().any(|c| c.smoothing.is_some()),
         lags: Vec::new(),
         directions: Vec::new(),
         late: Vec::new(),
@@ -522,6 +531,7 @@ impl Observation {
             missed_pulses: 0,
             jump_samples: 1,
             low_pass: false,
+            smoothed: false,
             lags: Vec::new(),
             directions: Vec::new(),
             late: Vec::new(),

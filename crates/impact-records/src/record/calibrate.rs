@@ -275,6 +275,7 @@ fn scaled(
         values,
         high_pass_hz: setup.high_pass_hz,
         low_pass: setup.low_pass,
+        smoothing: None,
         threshold: setup.threshold.map(|t| t.si),
     })
 }

@@ -312,6 +312,7 @@ mod tests {
                 values: (0..2000).map(|i| of(f64::from(i) / 2000.0)).collect(),
                 high_pass_hz: None,
                 low_pass: None,
+                smoothing: None,
                 threshold: None,
             })
             .collect();

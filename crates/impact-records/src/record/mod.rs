@@ -50,8 +50,19 @@ pub struct Channel {
     pub high_pass_hz: Option<f64>,
     /// Low-pass that the signal has passed; `None`: none that matters.
     pub low_pass: Option<LowPass>,
+    /// How it was smoothed, where it rang beside impacts; `None`: it is as it was measured.
+    pub smoothing: Option<Smoothing>,
     /// Level between open and closed contact, SI; only for [`Role::Contact`].
     pub threshold: Option<f64>,
+}
+
+/// How a channel was smoothed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Smoothing {
+    /// Time to either side by which a jump is spread, s.
+    pub reach_s: f64,
+    /// Standard deviation of the white noise before, SI.
+    pub noise: f64,
 }
 
 /// Direction in which the drive frequency was stepped when the record was taken.
@@ -219,6 +230,7 @@ impl Record {
             values: values.to_vec(),
             high_pass_hz: None,
             low_pass: None,
+            smoothing: None,
             threshold: (*role == Role::Contact).then_some(2.5),
         };
         Self {

@@ -11,6 +11,7 @@ pub mod local_fit;
 pub mod onsets;
 pub(crate) mod ringing;
 pub mod robust;
+pub(crate) mod smoothing;
 pub mod spacing;
 mod spectrum;
 pub mod thinning;

@@ -134,6 +134,8 @@ pub enum FirstValueOnly {
     OneOfTwo,
     /// Displacements were differentiated beside the kinks that impacts make in them.
     Differentiated,
+    /// Velocities rang beside the impacts: their flights are known farther from them only.
+    Ringing,
 }
 
 /// Whether the speeds of driven motions come from displacements.
@@ -146,6 +148,21 @@ fn differentiated(observations: &[Observation]) -> bool {
         let mut from = from.iter().flatten();
         from.any(|role| matches!(role, Role::DisplacementX | Role::DisplacementY))
     })
+}
+
+/// Share of the driven motions with impacts from which velocities that ring are those of all: in the others noise hides
+/// it. Of sound velocities none ring.
+const RINGING: f64 = 0.1;
+
+/// Whether the velocities of driven motions with impacts ring beside these.
+fn ringing(observations: &[Observation]) -> bool {
+    let driven = observations
+        .iter()
+        .filter(|o| !o.excluded() && o.drive.is_some() && !o.impacts.is_empty());
+    let (all, rang) = driven.fold((0, 0), |(all, rang), o| {
+        (all + 1, rang + u32::from(o.smoothed))
+    });
+    f64::from(rang) > RINGING * f64::from(all)
 }
 
 /// On which corners speeds depend, by their index.
@@ -240,8 +257,10 @@ impl ImpactBlock {
             free,
             first_value_only: if rig == RigKind::Double && with_speeds.any(|i| !sees_both(i)) {
                 Some(FirstValueOnly::OneOfTwo)
+            } else if differentiated(observations) {
+                Some(FirstValueOnly::Differentiated)
             } else {
-                differentiated(observations).then_some(FirstValueOnly::Differentiated)
+                ringing(observations).then_some(FirstValueOnly::Ringing)
             },
             push: push(observations),
             ..Self::of_pairs(pairs, relative_error)

@@ -17,6 +17,7 @@ pub fn from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<Fit
     match blocks.impact.first_value_only {
         Some(FirstValueOnly::OneOfTwo) => return Some(Err(FitError::OneOfTwo)),
         Some(FirstValueOnly::Differentiated) => return Some(Err(FitError::Differentiated)),
+        Some(FirstValueOnly::Ringing) => return Some(Err(FitError::Ringing)),
         None => {}
     }
     let list: Vec<(&dyn Block, f64)> = vec![(&blocks.impact, 1.0)];

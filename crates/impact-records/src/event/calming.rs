@@ -1,0 +1,223 @@
+//! Records whose velocities ring beside impacts: behind the steep filters of converters before and after a jump, behind
+//! others after it. Smoothing takes the ringing away; a jump takes some samples more then.
+
+use crate::event::arcs::{Arcs, Candidate, DEGREE, flights};
+use crate::event::detect::Detection;
+use crate::event::kinematics::{Series, noise_with_converter};
+use crate::record::{Record, Smoothing};
+use crate::signal::local_fit::LocalFit;
+use crate::signal::smoothing::{GAIN, reach, smoothed};
+use crate::signal::{ringing, robust};
+
+/// Height of a jump, over the third, from which it is one of those by which ringing is told.
+const STRONG: f64 = 0.5;
+
+/// How a velocity rings beside its strong jumps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Ringing {
+    /// Samples before and after a jump in which it rings.
+    pub beside: [f64; 2],
+    /// Mean square of what the flights beside a jump leave, (m/s)².
+    left: f64,
+    /// Samples of these flights.
+    samples: usize,
+    /// Variance of a flight's value in the middle of the jump over that of its noise.
+    factor: f64,
+    /// Usual samples from one jump to the next.
+    apart: f64,
+}
+
+impl Ringing {
+    /// That of a velocity with jumps and flights beside these; `None` where few are strong.
+    pub(super) fn of(velocity: &Series, all: Arcs<'_>) -> Option<Self> {
+        let height = |c: &Candidate| c.jump.height.abs();
+        let mut heights: Vec<f64> = all.candidates.iter().map(height).collect();
+        heights.sort_by(|a, b| b.total_cmp(a));
+        // one or two may be misread
+        let usual = *heights.get(ringing::FEWEST - 1)?;
+        let strong = all.candidates.iter().filter(|c| height(c) > STRONG * usual);
+        let strong: Vec<Candidate> = strong.cloned().collect();
+        let jumps: Vec<f64> = strong.iter().map(|c| c.jump.middle()).collect();
+        let size = robust::robust_deviation(&velocity.values).unwrap_or(0.0);
+        let strong = all.of(&strong);
+        let mut beside: Vec<(LocalFit, f64)> = Vec::new();
+        for (i, at) in jumps.iter().enumerate() {
+            let both = flights(velocity, strong, i).into_iter().flatten();
+            beside.extend(both.map(|flight| (flight, *at)));
+        }
+        let left: Vec<f64> = beside.iter().map(|(flight, _)| left(flight)).collect();
+        let factors = beside
+            .iter()
+            .map(|(flight, at)| flight.error_factor(*at).powi(2));
+        let factors: Vec<f64> = factors.collect();
+        let apart: Vec<f64> = jumps.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        Some(Self {
+            beside: ringing::beside_impacts(&velocity.values, &jumps, size),
+            left: robust::median(&left)?,
+            samples: beside.iter().map(|(flight, _)| flight.samples).sum(),
+            factor: robust::median(&factors)?,
+            apart: robust::median(&apart)?,
+        })
+    }
+}
+
+/// Variance of the noise beside a polynomial of a flight, from what it leaves, (m/s)².
+fn left(flight: &LocalFit) -> f64 {
+    flight.residual_squares / flight.samples.saturating_sub(DEGREE + 1).max(1) as f64
+}
+
+/// Distances of the taps, samples of the record: they take away what turns over in as many.
+const APART: [usize; 12] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24];
+/// Share of the usual time between impacts that smoothing may take at one of them.
+const MOST: f64 = 0.15;
+/// Part of what flights leave beyond noise that smoothing may leave.
+const LEFT: f64 = 0.25;
+/// Standard errors of a mean square of noise within which it is one of noise.
+const NOISE: f64 = 4.0;
+
+/// The record with its motion smoothed such that flights no more ring and speeds at its impacts have the least errors, and
+/// what was found in it; `None` where it does not ring or smoothing does not help. What still
+/// rings is an error of all impacts, noise is one of each.
+pub(crate) fn calmed(
+    record: &Record,
+    found: &Detection,
+    detect: impl Fn(&Record, &[f64]) -> Detection,
+) -> Option<(Record, Detection)> {
+    let rings = found.ringing.filter(|r| r.beside[0] + r.beside[1] > 0.0)?;
+    let error = (2.0 / rings.samples as f64).sqrt();
+    let noise = found.kinematics.relative.velocity.as_ref()?.noise.powi(2);
+    let beyond = rings.left - noise;
+    if beyond < NOISE * error * noise {
+        return None;
+    }
+    let stride = record.sample_rate_hz / found.kinematics.rate_hz;
+    let most = MOST * rings.apart * stride;
+    let fits = APART.into_iter().filter(|a| 2.0 * reach(*a) as f64 <= most);
+    let jump_s = (found.contact_samples() - 1) as f64 / found.kinematics.rate_hz;
+    let times_s: Vec<f64> = found.impacts.iter().map(|i| i.time_s).collect();
+    let tried = fits.filter_map(|apart| {
+        let smooth = smoothed_record(record, apart, jump_s);
+        let found = detect(&smooth, &times_s);
+        let rings = found.ringing?;
+        let left = (rings.left - GAIN * noise).max(0.0);
+        let variance = (noise / times_s.len() as f64 + left) * rings.factor;
+        (left < LEFT * beyond).then_some((variance, smooth, found))
+    });
+    let (_, smooth, found) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some((smooth, found))
+}
+
+/// The record with the channels of motion smoothed by taps so many samples apart, of jumps that took some time before.
+fn smoothed_record(record: &Record, apart: usize, jump_s: f64) -> Record {
+    let mut smooth = record.clone();
+    for channel in smooth.channels.iter_mut().filter(|c| c.role.is_motion()) {
+        channel.smoothing = Some(Smoothing {
+            reach_s: reach(apart) as f64 / record.sample_rate_hz + 0.5 * jump_s,
+            noise: noise_with_converter(&channel.values),
+        });
+        channel.values = smoothed(&channel.values, apart);
+    }
+    smooth
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::event::{DetectSettings, RigKind, detect, detect_at};
+    use crate::record::Role;
+
+    const RATE_HZ: f64 = 2000.0;
+    /// Flight time in samples, approach speed in m/s, restitution.
+    const FLIGHT: f64 = 127.3;
+    const SPEED: f64 = 0.5;
+    const RESTITUTION: f64 = 0.8;
+
+    /// Flights whose velocities rise from −R to 1 like v = V(−R + as + bs²), s = 0…1; the impacts are at (k + 0.4) flights.
+    fn flights() -> Vec<f64> {
+        let (a, b) = (4.0 * RESTITUTION - 2.0, 3.0 * (1.0 - RESTITUTION));
+        let value = |i: usize| {
+            let s = (i as f64 / FLIGHT + 0.6).fract();
+            SPEED * (-RESTITUTION + a * s + b * s * s)
+        };
+        (0..2000).map(value).collect()
+    }
+
+    /// What the filter of a converter adds to each jump: its step response less the step itself. The filter is a sinc
+    /// that ends at 0.47 of the rate under a window cos².
+    fn ringing() -> Vec<f64> {
+        const HALF: f64 = 24.0;
+        const PARTS: usize = 100;
+        let kernel = |t: f64| {
+            let x = std::f64::consts::TAU * 0.47 * t;
+            let sinc = if x == 0.0 { 1.0 } else { x.sin() / x };
+            sinc * (0.5 * std::f64::consts::PI * t / HALF).cos().powi(2)
+        };
+        let count = 2 * 24 * PARTS;
+        let at = |k: usize| (k as f64 + 0.5) / PARTS as f64 - HALF;
+        let sums: Vec<f64> = (0..count)
+            .scan(0.0, |sum, k| {
+                *sum += kernel(at(k));
+                Some(*sum)
+            })
+            .collect();
+        let whole = sums[count - 1];
+        let mut added = vec![0.0; 2000];
+        let jump = -(1.0 + RESTITUTION) * SPEED;
+        for impact in (0..16).map(|k| FLIGHT * (f64::from(k) + 0.4)) {
+            for (i, value) in added.iter_mut().enumerate() {
+                let since = i as f64 - impact;
+                if since.abs() < HALF {
+                    let passed = sums[crate::signal::whole::index((since + HALF) * PARTS as f64)];
+                    *value += jump * (passed / whole - f64::from(since >= 0.0));
+                }
+            }
+        }
+        added
+    }
+
+    fn record(values: &[f64]) -> Record {
+        Record::of(RATE_HZ, &[(Role::VelocityX, values)])
+    }
+
+    fn found(record: &Record) -> Detection {
+        detect(record, RigKind::Single, &DetectSettings::default())
+    }
+
+    fn calm(record: &Record) -> Option<(Record, Detection)> {
+        calmed(record, &found(record), |smooth, times_s| {
+            let settings = DetectSettings::default();
+            detect_at(smooth, RigKind::Single, &settings, Some(times_s))
+        })
+    }
+
+    /// Greatest deviation of a ratio of speeds from R.
+    fn off(found: &Detection) -> f64 {
+        let ratio = |i: &crate::event::Impact| {
+            -i.approach_speed_after_m_s.unwrap() / i.approach_speed_before_m_s.unwrap()
+        };
+        let off = found.impacts.iter().map(|i| (ratio(i) - RESTITUTION).abs());
+        off.fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn valid_speeds_at_impacts_are_right_behind_the_filter_of_a_converter() {
+        let added = ringing();
+        let rings: Vec<f64> = flights().iter().zip(added).map(|(v, a)| v + a).collect();
+        let rings = record(&rings);
+        assert!(off(&found(&rings)) > 0.02, "{}", off(&found(&rings)));
+        let (smooth, calm) = calm(&rings).expect("it rings");
+        assert_eq!(calm.impacts.len(), 15);
+        assert!(off(&calm) < 0.01, "{}", off(&calm));
+        for (k, impact) in calm.impacts.iter().enumerate() {
+            let late = impact.time_s * RATE_HZ - FLIGHT * (k as f64 + 0.4);
+            assert!(late.abs() < 0.1, "{k}: {late}");
+        }
+        let smoothing = smooth.channels[0].smoothing.expect("smoothed");
+        assert!(smoothing.reach_s < 10.0 / RATE_HZ);
+    }
+
+    #[test]
+    fn a_velocity_that_does_not_ring_stays_as_it_was_measured() {
+        assert!(calm(&record(&flights())).is_none());
+    }
+}
