@@ -16,7 +16,7 @@ _LEFT = 'style="text-align:left"'
 METHODS = {
     "boundaries": "Boundaries",
     "multiple_shooting": "Multiple shooting",
-    "flight_times": "Flight times",
+    "flight_times": "Flight times or heights",
     "free_decay": "Free decay",
     "speeds_at_impact": "Speeds at impact",
     "published_speeds": "Published speeds",

@@ -73,21 +73,14 @@ fn name_records() -> String {
     format!("name the folder that holds files of {titles} or other text tables")
 }
 
-/// What a table of heights is.
-const HEIGHTS: &str = "contains heights: R is the square root of the height after an impact over that before it, and is \
-                       not computed from a table of heights by this program";
-
 /// No record: each file with the reason, and the remedy of the first reader that refused one.
 fn none_found(folder: &Path, found: &FolderContents) -> Failure {
     let refused = found.refused.iter();
     let refused = refused.map(|r| format!("; {}: {}", r.file, r.reason));
     let others = found.others.iter().map(|file| {
-        let what = if found.heights.contains(file) {
-            HEIGHTS
-        } else {
-            "was read, but is neither a series of 16 samples or more nor a list of times"
-        };
-        format!("; {file} {what}")
+        format!(
+            "; {file} was read, but is neither a series of 16 samples or more nor a list of times or heights"
+        )
     });
     let mut faults: String = refused.chain(others).take(NAMED).collect();
     let all = found.refused.len() + found.others.len();
@@ -128,8 +121,10 @@ fn print_summary(path: &Path, found: &FolderContents, verbosity: Verbosity) {
     for note in &found.notes {
         verbosity.info(note);
     }
-    let assigned = found.channels.iter().filter(|c| c.role.is_some()).count();
-    let left_over = without_role(found);
+    let of_role = found.channels.iter().filter(|c| c.role.is_some()).count();
+    let assigned = of_role + found.then.len();
+    let mut left_over = without_role(found);
+    left_over.retain(|name| !found.then.iter().any(|then| then == name));
     verbosity.info(&format!(
         "{}: {} with {} ({}), {assigned} of {} signals assigned to a role{}. Complete it, then run: impactid \
          check {}",
@@ -172,8 +167,7 @@ mod tests {
         };
         let mut found = FolderContents {
             refused: (1..=2).map(refused).collect(),
-            others: ["a.csv", "h.csv"].map(str::to_owned).to_vec(),
-            heights: vec!["h.csv".to_owned()],
+            others: vec!["a.csv".to_owned()],
             ..FolderContents::default()
         };
         let only = |found: &FolderContents| {
@@ -184,8 +178,7 @@ mod tests {
         assert_eq!(
             message,
             "no record found in r; t1.mat: it holds a table T; t2.mat: it holds a table T; a.csv was read, but \
-             is neither a series of 16 samples or more nor a list of times; h.csv contains heights: R is the square root of \
-             the height after an impact over that before it, and is not computed from a table of heights by this program"
+             is neither a series of 16 samples or more nor a list of times or heights"
         );
         assert_eq!(remedy, "save table2struct(T) of 1");
         found.refused = (1..=6).map(refused).collect();

@@ -15,12 +15,12 @@ use std::process::Command;
 use serde_json::Value;
 
 /// A folder with files, and the program run beside it.
-struct Folder {
+pub(super) struct Folder {
     lab: tempfile::TempDir,
 }
 
 impl Folder {
-    fn of(files: &[(String, Vec<u8>)]) -> Self {
+    pub(super) fn of(files: &[(String, Vec<u8>)]) -> Self {
         let lab = tempfile::tempdir().expect("a temporary folder");
         fs::create_dir(lab.path().join("day")).expect("a folder");
         for (name, bytes) in files {
@@ -29,7 +29,7 @@ impl Folder {
         Self { lab }
     }
 
-    fn run(&self, args: &[&str]) -> (String, i32) {
+    pub(super) fn run(&self, args: &[&str]) -> (String, i32) {
         let output = Command::new(env!("CARGO_BIN_EXE_impactid"))
             .args(args)
             .current_dir(self.lab.path())
@@ -41,7 +41,7 @@ impl Folder {
     }
 
     /// From `init` to the report; the identification.
-    fn play(&self) -> Value {
+    pub(super) fn play(&self) -> Value {
         let (said, code) = self.run(&["init", "day"]);
         assert_eq!(code, 0, "{said}");
         let (said, code) = self.run(&["check", "day/campaign.toml"]);
@@ -55,7 +55,7 @@ impl Folder {
         read(&self.lab.path().join("results"))
     }
 
-    fn campaign(&self) -> String {
+    pub(super) fn campaign(&self) -> String {
         fs::read_to_string(self.lab.path().join("day/campaign.toml")).expect("campaign.toml")
     }
 }
@@ -66,7 +66,7 @@ fn read(results: &Path) -> Value {
 }
 
 /// Whether the 95 % interval of a joint estimate holds a value.
-fn holds(found: &Value, parameter: &str, truth: f64) -> bool {
+pub(super) fn holds(found: &Value, parameter: &str, truth: f64) -> bool {
     let interval = &found["joint"][parameter]["interval95"];
     let [low, high] = [0, 1].map(|i| interval[i].as_f64().unwrap_or(f64::NAN));
     low <= truth && truth <= high

@@ -3,7 +3,9 @@
 
 mod accelerometer;
 mod experiments;
+mod heights;
 mod labview;
+mod loggers;
 mod matlab;
 mod rig;
 mod workbook;

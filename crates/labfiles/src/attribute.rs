@@ -47,6 +47,9 @@ const STEP_KEYS: &[&str] = &[
     "time_interval",
     "abtastintervall",
 ];
+/// One that does only with a unit of time behind the number, as Hantek writes it, lower case.
+const CLOCK_KEY: &str = "clock";
+
 /// Attribute names that give the start of the acquisition, lower case.
 const START_KEYS: [&str; 7] = [
     "start_time",
@@ -85,9 +88,33 @@ pub(crate) fn sample_rate_beside(
         keys.iter()
             .find_map(|k| quantity(attributes, k, wanted, decimal))
     };
-    let step = || of(STEP_KEYS, Dimension::Time).map(f64::recip);
+    let step = || {
+        of(STEP_KEYS, Dimension::Time)
+            .or_else(|| clock_s(attributes))
+            .map(f64::recip)
+    };
     let rate = of(RATE_KEYS, Dimension::Frequency).or_else(step);
     rate.filter(|r| r.is_finite() && *r > 0.0)
+}
+
+/// The step of a clock that states its unit, s.
+fn clock_s(attributes: &BTreeMap<String, String>) -> Option<f64> {
+    let (_, text) = lookup(attributes, CLOCK_KEY)?;
+    let (number, unit) = number_and_unit(text, Some(b'.'))?;
+    Some(number * factor(unit, Dimension::Time)?)
+}
+
+/// How many samples each stored one stands for, where the attributes state that samples were left out.
+pub fn decimation(attributes: &BTreeMap<String, String>) -> Option<f64> {
+    let keys = [
+        "decimation",
+        "decimation_factor",
+        "downsampling",
+        "downsample",
+    ];
+    let (_, text) = keys.iter().find_map(|key| lookup(attributes, key))?;
+    let (number, unit) = number_and_unit(text, Some(b'.'))?;
+    (unit.is_empty() && number > 1.0).then_some(number)
 }
 
 /// Whether an attribute of this name states a rate or a time step.
@@ -205,6 +232,10 @@ fn quantity(
 /// The factor to SI of a unit of a dimension.
 fn factor(symbol: &str, wanted: Dimension) -> Option<f64> {
     let rate = samples_per_second(symbol).filter(|_| wanted == Dimension::Frequency);
+    // oscilloscopes print uS for microseconds
+    let lower = symbol.to_lowercase();
+    let capital = wanted == Dimension::Time && ["us", "ms", "ns", "s"].contains(&lower.as_str());
+    let symbol = if capital { lower.as_str() } else { symbol };
     let unit = || parse_split_unit(symbol).filter(|u| u.dimension == wanted);
     rate.or_else(|| unit().map(|u| u.to_si))
 }

@@ -111,6 +111,8 @@ changes! {
     ("channels.ROLE.range", Classify, as_is, Add("channels.velocity_x", r#"range = "0.5 V""#));
     ("channels.ROLE.ignore_file_unit", Classify, in_mv, Add("channels.velocity_x", "ignore_file_unit = true"));
     ("channels.ROLE.content", Classify, timed, Replace(r#""times""#, r#""intervals""#));
+    ("channels.ROLE.then", Classify, high, Replace(r#"["after"]"#, r#"["later"]"#));
+    ("channels.ROLE.height_uncertainty", Identify, high, Replace(r#""1 mm""#, r#""30 mm""#));
     ("channels.ROLE.instrument", Html, one_record, Add("channels.contact", r#"instrument = "a wire""#));
     ("analysis.exclude", Classify, as_is, Add("analysis", r#"exclude = ["r2"]"#));
     ("analysis.skip", Classify, as_is, Add("analysis", r#"skip = "0.3 s""#));
@@ -180,6 +182,19 @@ fn timed(lab: &Lab) {
     let campaign = "[campaign]\nname = \"ball\"\nmachine = \"single\"\nflight = \"constant_force\"\n\
                     [records]\nfiles = \"list.txt\"\n\
                     [channels.contact]\nchannel = \"t\"\ncontent = \"times\"\n";
+    lab.write("campaign.toml", campaign);
+}
+
+/// Heights instead of records.
+fn high(lab: &Lab) {
+    lab.write(
+        "heights.csv",
+        "drop [cm],after [cm],later [cm]\n100,64.2,41\n100,63.5,40\n100,64.0,42\n",
+    );
+    let campaign = "[campaign]\nname = \"ball\"\nmachine = \"single\"\nflight = \"constant_force\"\n\
+                    [records]\nfiles = \"heights.csv\"\n\
+                    [channels.contact]\nchannel = \"drop\"\ncontent = \"heights\"\n\
+                    then = [\"after\"]\nheight_uncertainty = \"1 mm\"\n";
     lab.write("campaign.toml", campaign);
 }
 

@@ -25,6 +25,8 @@ pub struct Checked {
     pub usable: usize,
     /// Whether any of them shows what a method of identification uses: a drive, impacts with speeds, a decay.
     telling: bool,
+    /// Impacts of the records that can be used.
+    impacts: usize,
     /// What distinguishes each record from the others.
     fingerprints: Vec<Fingerprint>,
 }
@@ -35,6 +37,7 @@ impl Checked {
         self.diagnostics.extend(later.diagnostics);
         self.usable += later.usable;
         self.telling |= later.telling;
+        self.impacts += later.impacts;
         self.fingerprints.extend(later.fingerprints);
         self
     }
@@ -77,6 +80,9 @@ pub fn read_all(
     if all.usable > 0 && !all.telling {
         all.diagnostics.extend(stated_nothing(campaign));
     }
+    if all.impacts == 1 {
+        all.diagnostics.push(one_impact(campaign));
+    }
     all
 }
 
@@ -88,6 +94,22 @@ pub fn nothing_stated(
     let mut usable = observations.iter().filter(|o| !o.excluded()).peekable();
     let silent = usable.peek().is_some() && !usable.any(tells);
     silent.then(|| stated_nothing(campaign)).flatten()
+}
+
+/// That the records of a campaign show one impact.
+fn one_impact(campaign: &ResolvedCampaign) -> Diagnostic {
+    let place = Place {
+        file: campaign.file.clone(),
+        item: "records".to_owned(),
+        ..Place::default()
+    };
+    Diagnostic::new(
+        (Code::Missing, Severity::Note),
+        place,
+        "one impact is all that the records show: R is that of this impact, as sure as its speeds or heights are; whether \
+         R scatters from impact to impact, or depends on the speed, is not known",
+        "record more impacts, at unlike speeds",
+    )
 }
 
 /// Whether a record shows what a method of identification uses.
@@ -151,6 +173,7 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
         .map(|f| Diagnostic::of_flag(&entry.file, &record.id, f))
         .collect();
     let usable = usize::from(!flags.iter().any(|f| f.excludes));
+    let impacts = usable * observed.impacts.len();
     let print = Fingerprint {
         hash: fingerprint(&record),
         samples: record.samples(),
@@ -161,6 +184,7 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
         diagnostics,
         usable,
         telling,
+        impacts,
         fingerprints: vec![print],
     }
 }

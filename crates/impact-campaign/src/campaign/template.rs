@@ -97,10 +97,7 @@ fn records(text: &mut String, found: &FolderContents) -> std::fmt::Result {
     for note in &found.notes {
         writeln!(text, "# {note}")?;
     }
-    let listed = matches!(
-        found.experiment,
-        Experiment::Events(ContactContent::Times | ContactContent::Intervals)
-    );
+    let listed = matches!(found.experiment, Experiment::Events(content) if content.is_list());
     if !found.timed && !listed {
         let sound = found.experiment == Experiment::Events(ContactContent::Sound);
         let (rate, why) = match (found.counts_frames, sound) {
@@ -250,6 +247,13 @@ fn unit_line(
             writeln!(text, "unit = \"{symbol}\"                 # from its name")?;
         }
         (None, None, _) if found.experiment == Experiment::Events(ContactContent::Sound) => {}
+        (None, None, _) if matches!(found.experiment, Experiment::Events(c) if c.is_of_heights()) =>
+        {
+            writeln!(
+                text,
+                "# unit = \"cm\"              # FILL IN: the file states none"
+            )?;
+        }
         (None, None, _) if channel.counted_in.is_some() => unit_of_times(text, channel)?,
         (None, None, _) if role == Role::Drive && channel.unit.is_some() => {
             let stated = channel.unit.as_deref().unwrap_or_default();
@@ -308,7 +312,7 @@ fn table(
     writeln!(text, "channel = {}", quoted(&channel.name))?;
     let unit = unit_line(text, role, channel, found)?;
     if let Experiment::Events(content) = found.experiment {
-        return events(text, content);
+        return events(text, content, &found.then);
     }
     let guessed = unit.is_none() && found.experiment != Experiment::Driven;
     let volts = !guessed && unit.is_none_or(|u| u.dimension == Dimension::Voltage);
@@ -369,7 +373,7 @@ fn table(
 }
 
 /// What the contact's channel contains.
-fn events(text: &mut String, content: ContactContent) -> std::fmt::Result {
+fn events(text: &mut String, content: ContactContent, then: &[String]) -> std::fmt::Result {
     let (word, what) = match content {
         ContactContent::Signal => return writeln!(text),
         ContactContent::Times => (
@@ -381,8 +385,31 @@ fn events(text: &mut String, content: ContactContent) -> std::fmt::Result {
             "each row is the time from an impact to the next",
         ),
         ContactContent::Sound => ("sound", "a microphone: the impacts are heard in it"),
+        ContactContent::Heights if then.is_empty() => (
+            "heights",
+            "the height of the drop and of the tops after it, from where the mass touches the plate",
+        ),
+        ContactContent::Heights => (
+            "heights",
+            "each row is a drop: its height, and those after its impacts, from where the mass touches the plate",
+        ),
+        ContactContent::Rebounds => (
+            "rebounds",
+            "the height of the drop; each of then is one after an impact, from where the mass touches the plate",
+        ),
     };
-    writeln!(text, "content = \"{word}\"          # {what}\n")
+    writeln!(text, "content = \"{word}\"          # {what}")?;
+    if content.is_of_heights() {
+        if !then.is_empty() {
+            let names: Vec<String> = then.iter().map(|name| quoted(name)).collect();
+            writeln!(text, "then = [{}]", names.join(", "))?;
+        }
+        writeln!(
+            text,
+            "# height_uncertainty = \"2 mm\" # of each height; their scatter tells it if not given"
+        )?;
+    }
+    writeln!(text)
 }
 
 fn threshold(

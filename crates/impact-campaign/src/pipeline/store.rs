@@ -13,7 +13,7 @@ use crate::pipeline::{Observed, PipelineError, Progress, RefusedRecord, gzip_jso
 use impact_identification::identify::residuals::MethodResiduals;
 use impact_records::motion::{Folded, Observation, brackets};
 use impact_records::record::calibrate::{
-    ChannelKey, ChannelSetup, StatedTimes, TIMES_CONTACT, TIMES_ERROR,
+    ChannelKey, ChannelSetup, HEIGHTS_DIGIT, HEIGHTS_ERROR, StatedTimes, TIMES_CONTACT, TIMES_ERROR,
 };
 use impact_records::record::{ContactContent, Flag, Record, Role};
 use labfiles::units::{Dimension, Quantity, Unit};
@@ -171,6 +171,8 @@ fn table_attributes(record: &Record) -> Vec<(String, AttributeValue)> {
     let known = [
         (TIMES_ERROR, listed.error_s),
         (TIMES_CONTACT, listed.contact_s),
+        (HEIGHTS_DIGIT, listed.digit_m),
+        (HEIGHTS_ERROR, listed.height_m),
     ];
     let known = known.into_iter().filter(|(_, value)| *value > 0.0);
     let known = known.map(|(key, value)| (key.to_owned(), value.into()));
@@ -203,6 +205,7 @@ fn note_roles(roles: &mut Vec<ChannelSetup>, record: &Record) {
                 .filter(|_| channel.role == Role::Contact),
             content: match (channel.role, channel.dimension) {
                 (Role::Contact, Dimension::Time) => ContactContent::Times,
+                (Role::Contact, Dimension::Length) => ContactContent::Heights,
                 _ => ContactContent::Signal,
             },
             ..ChannelSetup::plain(channel.role, key)

@@ -2,7 +2,9 @@
 
 use strum::IntoEnumIterator;
 
-use super::{Finding, Item, Note, PairAgreement, Reason, Remark, Sentence, SpeedPoint};
+use super::{
+    Finding, HeightsCause, Item, Note, PairAgreement, Reason, Remark, Sentence, SpeedPoint,
+};
 use crate::method::Method;
 use crate::parameters::Coordinate;
 use crate::parameters::effect::{Effect, EffectKind};
@@ -73,6 +75,7 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         .chain(boxed(Sentence::iter()))
         .chain(boxed([PairAgreement::default()].into_iter()))
         .chain(boxed(Item::iter()))
+        .chain(boxed(HeightsCause::iter()))
         .chain(boxed(BoundaryKind::iter()))
         .chain(boxed(DampingLaw::iter()))
         .collect()

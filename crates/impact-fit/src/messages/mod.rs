@@ -5,6 +5,7 @@ pub mod cause;
 mod damping;
 mod direction;
 mod finding;
+mod heights_cause;
 mod kinds;
 mod note;
 mod pair;
@@ -14,6 +15,7 @@ mod sentence;
 
 pub use damping::DampingPoint;
 pub use finding::{Finding, PublishedSetting};
+pub use heights_cause::HeightsCause;
 pub use kinds::{kinds, labels};
 pub use note::Note;
 pub use pair::PairAgreement;

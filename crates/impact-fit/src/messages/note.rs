@@ -75,6 +75,11 @@ pub enum Note {
         /// The error that each is given, s.
         error_s: f64,
     },
+    /// One impact, or two of one drop, leave nothing that tells the errors of heights.
+    HeightsNotTold {
+        /// The error that each is given, m.
+        error_m: f64,
+    },
     /// What oscillates does not decay, beside or after a motion that does.
     MayBeForced,
     /// The fits leave more of the decays than noise, so that they are not of one oscillation.
@@ -162,6 +167,7 @@ message_table! { "note": Note;
         parameter = Value::Message(parameter),
         correlation = Value::Number(*correlation, 2);
     Self::ByMethodAlone { method } => method = Value::Message(method);
+    Self::HeightsNotTold { error_m } => error = Value::Number(1e3 * *error_m, 0);
     Self::TimesNotTold { error_s } => error = Value::Number(1e3 * *error_s, 1);
     Self::FewPeriods { periods } => periods = Value::Number(*periods, 1);
     Self::FrictionNotTold { periods, equivalent } =>

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{DampingPoint, Item, Note};
+use crate::messages::HeightsCause;
 use crate::messages::cause::Cause;
 use crate::method::Method;
 use impact_records::message::{Message, Value};
@@ -195,6 +196,34 @@ pub enum Remark {
     FlightTimesOpen {
         /// Half the 95 % interval that it leaves of R.
         half_width: f64,
+    },
+    /// How far heights are off those of one R.
+    HeightsScatter {
+        /// Standard error of a height, m.
+        error_m: f64,
+    },
+    /// How much the air slows the flights is not known, and leaves R of heights open.
+    HeightsOpen {
+        /// Half the 95 % interval that it leaves of R.
+        half_width: f64,
+    },
+    /// R of heights changes with the height.
+    RestitutionByHeight {
+        /// R at the least height.
+        low: f64,
+        /// R at the greatest.
+        high: f64,
+        /// What may be the cause.
+        cause: HeightsCause,
+    },
+    /// Tops are missing among heights: one height is R⁴ times the one before.
+    TopsMissed {
+        /// How many.
+        count: usize,
+        /// The record of the first one.
+        record: String,
+        /// The height before it, m.
+        height_m: f64,
     },
     /// R of the flights' ratios scatters from impact to impact by more than the times do.
     RestitutionScatters {
@@ -423,6 +452,16 @@ message_table! { "remark": Remark, key = template_key;
         half = Value::Number(*half_width, 3);
     Self::TimesScatter { error_s } => error = Value::Number(1e3 * error_s, 2);
     Self::FlightTimesOpen { half_width } => half = Value::Number(*half_width, 4);
+    Self::HeightsScatter { error_m } => error = Value::Number(1e3 * error_m, 1);
+    Self::HeightsOpen { half_width } => half = Value::Number(*half_width, 4);
+    Self::RestitutionByHeight { low, high, cause } =>
+        low = Value::Number(*low, 3),
+        high = Value::Number(*high, 3),
+        cause = Value::Message(cause);
+    Self::TopsMissed { count, record, height_m } =>
+        count = Value::Count(*count),
+        record = Value::Name(record),
+        height = Value::Number(*height_m, 3);
     Self::RestitutionScatters { share } => share = Value::Number(1e2 * share, 1);
     Self::OddRecord { record, restitution, others } =>
         record = Value::Name(record),

@@ -164,6 +164,10 @@ pub(crate) fn detect_at(
         let kinematics = Kinematics::of(record, rig, stride);
         return listed(kinematics, &channel.values, record.listed);
     }
+    if let Some(channel) = contact.filter(|c| c.dimension == Dimension::Length) {
+        let kinematics = Kinematics::of(record, rig, stride);
+        return of_impacts(kinematics, by_heights(&channel.values, record.listed));
+    }
     let closed = contact.map_or_else(Vec::new, |channel| {
         closed_intervals(
             channel,
@@ -297,9 +301,14 @@ fn listed(kinematics: Kinematics, times_s: &[f64], known: ListedTimes) -> Detect
         contact_duration_s: Some(known.contact_s).filter(|s| *s > 0.0),
         ..Impact::timed(*time_s, known.error_s)
     });
+    of_impacts(kinematics, impacts.collect())
+}
+
+/// Impacts that nothing was looked for in.
+fn of_impacts(kinematics: Kinematics, impacts: Vec<Impact>) -> Detection {
     Detection {
         drive: None,
-        impacts: impacts.collect(),
+        impacts,
         jump_samples: 1,
         unsupported_pulses: 0,
         missed_pulses: 0,
@@ -311,6 +320,37 @@ fn listed(kinematics: Kinematics, times_s: &[f64], known: ListedTimes) -> Detect
         flags: Vec::new(),
         ringing: None,
     }
+}
+
+/// Gravity, m/s²: R does not depend on it.
+const GRAVITY: f64 = 9.81;
+
+/// Between a last top and the next drop, s: impacts so far apart beyond their flight are not of one drop.
+const BETWEEN_DROPS_S: f64 = 1.0;
+
+/// Impacts between heights, with NaN between drops, as one drop after the other would have them.
+fn by_heights(heights_m: &[f64], known: ListedTimes) -> Vec<Impact> {
+    let (mut impacts, mut drop_s) = (Vec::new(), 0.0);
+    for drop in heights_m.split(|h| h.is_nan()) {
+        let speed = |height_m: f64| (2.0 * GRAVITY * height_m).sqrt();
+        for pair in drop.windows(2) {
+            let [before, after] = [pair[0], pair[1]].map(speed);
+            let fall_s = before / GRAVITY;
+            let by_digit_s = known.digit_m / before;
+            let stated = Some(GRAVITY * known.height_m / before);
+            impacts.push(Impact {
+                approach_speed_before_m_s: Some(before),
+                approach_speed_after_m_s: Some(-after),
+                speed_error_m_s: stated.filter(|_| known.height_m > 0.0),
+                source: DetectionSource::Heights,
+                ..Impact::timed(drop_s + fall_s, by_digit_s)
+            });
+            // the rise, and the fall of the next one
+            drop_s += fall_s + after / GRAVITY;
+        }
+        drop_s += BETWEEN_DROPS_S;
+    }
+    impacts
 }
 
 fn is_without_flight(flag: &Flag) -> bool {

@@ -14,6 +14,9 @@ pub enum DetectionSource {
     Velocity,
     /// Both.
     Both,
+    /// Heights before and after it: the speeds are those of free fall, and their standard error is that of a height as
+    /// it is stated, none where it is not; that of the time is the error of the fall's time by a height's last digit.
+    Heights,
 }
 
 impl DetectionSource {
@@ -23,6 +26,7 @@ impl DetectionSource {
             Self::Contact => "contact",
             Self::Velocity => "velocity",
             Self::Both => "both",
+            Self::Heights => "heights",
         }
     }
 }

@@ -355,8 +355,14 @@ fn observe_decay(record: &Record) -> Observation {
     let mut observation = undriven(record);
     observation.decays = free_decays(record);
     if observation.decays.is_empty() {
-        let flag = Flag::new(None, Problem::NoDecayFound);
-        observation.flags.push(flag);
+        let mut masses = [false, true].into_iter();
+        let rests = masses.any(|y| watched(record, y).iter().any(decay::comes_to_rest));
+        let problem = if rests {
+            Problem::ComesToRest
+        } else {
+            Problem::NoDecayFound
+        };
+        observation.flags.push(Flag::new(None, problem));
     }
     observation.flags = without_what_follows(record, observation.flags);
     observation
@@ -455,24 +461,26 @@ const DRIVE_CHANGES: f64 = 5e-3;
 
 /// Free decays of the motion channels of mass x, else of mass y.
 fn free_decays(record: &Record) -> Vec<Decay> {
-    let of_mass = |y: bool| {
-        let watched = |role: Role| {
-            Some(Watched {
-                values: record.values(role)?,
-                quantity: role.motion_signal(),
-            })
-        };
-        let channels: Vec<Watched<'_>> = Role::ALL
-            .iter()
-            .copied()
-            .filter(|role| role.is_motion() && role.is_of_y() == y)
-            .filter_map(watched)
-            .filter(|channel| channel.values.iter().all(|v| v.is_finite()))
-            .collect();
-        decay::fit_channels(&channels, record.sample_rate_hz)
-    };
+    let of_mass = |y| decay::fit_channels(&watched(record, y), record.sample_rate_hz);
     let of_x = of_mass(false);
     if of_x.is_empty() { of_mass(true) } else { of_x }
+}
+
+/// The motion channels of a mass without gaps.
+fn watched(record: &Record, of_y: bool) -> Vec<Watched<'_>> {
+    let channel = |role: Role| {
+        Some(Watched {
+            values: record.values(role)?,
+            quantity: role.motion_signal(),
+        })
+    };
+    Role::ALL
+        .iter()
+        .copied()
+        .filter(|role| role.is_motion() && role.is_of_y() == of_y)
+        .filter_map(channel)
+        .filter(|channel| channel.values.iter().all(|v| v.is_finite()))
+        .collect()
 }
 
 fn contact_flag(record: &Record, impacts: &[Impact], unsupported: usize) -> Option<Flag> {

@@ -155,6 +155,12 @@ pub struct ChannelSetup {
     /// What the contact's channel contains.
     #[serde(default)]
     pub content: ContactContent,
+    /// Of heights: the columns of the heights that follow in the same row.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub then: Vec<ChannelKey>,
+    /// Of heights: standard uncertainty of each, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height_uncertainty_m: Option<f64>,
     /// What recorded it, in words.
     #[serde(default)]
     pub instrument: Option<String>,
@@ -183,6 +189,8 @@ impl ChannelSetup {
             range: None,
             ignore_file_unit: false,
             content: ContactContent::Signal,
+            then: Vec::new(),
+            height_uncertainty_m: None,
             instrument: None,
         }
     }
@@ -317,6 +325,10 @@ fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -
     };
     let list = setup.content.is_list();
     match role.dimension() {
+        None if setup.content.is_of_heights() && found != Dimension::Length => {
+            return wrong(Of(Dimension::Length));
+        }
+        None if setup.content.is_of_heights() => return Ok(()),
         None if list && found != Dimension::Time => return wrong(Times),
         None if list => return Ok(()),
         Some(expected) if found != expected => return wrong(Of(expected)),

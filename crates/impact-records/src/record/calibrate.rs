@@ -6,7 +6,7 @@ use super::bind::flag;
 pub use super::bind::{BoundChannel, ChannelKey, ChannelSetup, RecordSetup, StatedTimes, bind};
 use super::times::Clocks;
 use super::{Channel, ContactContent, Flag, FlagCode, ListedTimes, Problem, Record, Role, Setting};
-use super::{changes, condition, consistency, contact_levels, events, late};
+use super::{changes, condition, consistency, contact_levels, events, heights, late};
 use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 
 /// A record without channels, for a file that cannot be read.
@@ -110,6 +110,10 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
     if !content.is_list() {
         clocks.settle(&mut record, setup, dataset, (&kept, axes));
     }
+    if content.is_of_heights() {
+        settle_heights(source, setup, dataset, &mut record);
+        return record;
+    }
     if content != ContactContent::Signal {
         let closed_s = match content {
             ContactContent::Times => keep_closings(source, setup, dataset, (&mut record, &kept)),
@@ -137,6 +141,70 @@ pub const TIMES_ERROR: &str = "times_error_s";
 /// Attribute of a dataset that lists times: how long the contact is closed, s.
 pub const TIMES_CONTACT: &str = "times_contact_s";
 
+/// Attribute of a dataset of heights: the standard error of each by its last digit, m.
+pub const HEIGHTS_DIGIT: &str = "heights_digit_m";
+/// Attribute of a dataset of heights: the standard uncertainty of each as it is stated, m.
+pub const HEIGHTS_ERROR: &str = "heights_error_m";
+
+/// Read the columns of heights that follow in the same row, and settle the drops.
+fn settle_heights(
+    source: &dyn Source,
+    setup: &RecordSetup<'_>,
+    dataset: &DatasetInfo,
+    record: &mut Record,
+) {
+    let Some(contact) = setup.channels.iter().find(|c| c.role == Role::Contact) else {
+        return;
+    };
+    record.channels.retain(|c| c.role == Role::Contact);
+    let first = record.channels.first().map(|c| c.values.clone());
+    let (Some(first), Ok(bound)) = (first, bind(contact, dataset)) else {
+        return;
+    };
+    let mut beside = Vec::new();
+    for key in &contact.then {
+        match column(source, setup.dataset, dataset, contact, key) {
+            Ok(values) => beside.push(values),
+            Err(flag) => return record.flags.push(flag),
+        }
+    }
+    let unit_m = bound.to_si.to_si.abs();
+    let all = beside.iter().flatten().chain(&first);
+    let raw: Vec<f64> = all.map(|h| (h + bound.offset_si) / unit_m).collect();
+    let number = |key: &str| dataset.attributes.get(key)?.parse().ok();
+    let known = ListedTimes {
+        digit_m: number(HEIGHTS_DIGIT).unwrap_or(0.0),
+        height_m: number(HEIGHTS_ERROR)
+            .or(contact.height_uncertainty_m)
+            .unwrap_or(0.0),
+        ..ListedTimes::default()
+    };
+    let step_m = if known.digit_m > 0.0 {
+        0.0
+    } else {
+        events::printed_step(&raw) * unit_m
+    };
+    heights::settle(record, contact.content, &beside, (step_m, known));
+}
+
+/// The heights of a further column, m, calibrated as the first.
+fn column(
+    source: &dyn Source,
+    index: usize,
+    dataset: &DatasetInfo,
+    contact: &ChannelSetup,
+    key: &ChannelKey,
+) -> Result<Vec<f64>, Flag> {
+    let own = ChannelSetup {
+        source: key.clone(),
+        ..contact.clone()
+    };
+    let bound = bind(&own, dataset)?;
+    let samples = source.read(index, &[bound.index]);
+    let samples = samples.map_err(|error| read_flag(&error))?.remove(0);
+    Ok(scaled(samples, &own, &bound, &dataset.channels[bound.index])?.values)
+}
+
 /// Take what a dataset of calibrated times states of them.
 fn stated(listed: &mut ListedTimes, dataset: &DatasetInfo) {
     let number = |key: &str| dataset.attributes.get(key)?.parse().ok();
@@ -144,6 +212,7 @@ fn stated(listed: &mut ListedTimes, dataset: &DatasetInfo) {
         *listed = ListedTimes {
             error_s,
             contact_s: number(TIMES_CONTACT).unwrap_or(0.0),
+            ..ListedTimes::default()
         };
     }
 }

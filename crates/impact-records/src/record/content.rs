@@ -15,11 +15,20 @@ pub enum ContactContent {
     Intervals,
     /// A microphone's signal.
     Sound,
+    /// Heights: of the drop, and of the top after each impact; down the rows, or along each row.
+    Heights,
+    /// The height of a drop, and in each column beside it that of the top after it.
+    Rebounds,
 }
 
 impl ContactContent {
     /// Whether the rows are impacts, so that there is no time axis.
     pub fn is_list(self) -> bool {
-        matches!(self, Self::Times | Self::Intervals)
+        matches!(self, Self::Times | Self::Intervals) || self.is_of_heights()
+    }
+
+    /// Whether the rows are heights.
+    pub fn is_of_heights(self) -> bool {
+        matches!(self, Self::Heights | Self::Rebounds)
     }
 }

@@ -16,9 +16,9 @@ pub(super) fn settle(record: &mut Record, content: ContactContent, closed_s: f64
     let Some(channel) = record.channels.iter_mut().find(|c| c.role == Role::Contact) else {
         return;
     };
-    let printed = || printed_step_s(&channel.values);
+    let printed = || printed_step(&channel.values);
     let (found, step_s) = match content {
-        ContactContent::Signal => return,
+        ContactContent::Signal | ContactContent::Heights | ContactContent::Rebounds => return,
         ContactContent::Times => (
             times(&channel.values)
                 .map_err(|row| not_rising(channel, row))
@@ -47,6 +47,7 @@ pub(super) fn settle(record: &mut Record, content: ContactContent, closed_s: f64
     record.listed = ListedTimes {
         error_s: step_s.hypot(contact_s) / 12f64.sqrt(),
         contact_s,
+        ..ListedTimes::default()
     };
     channel.values = times_s;
     channel.dimension = Dimension::Time;
@@ -70,8 +71,8 @@ fn impacts(times: Vec<f64>, channel: &Channel) -> Result<(Vec<f64>, f64, Option<
 /// Most digits after the point that times in s are printed with.
 const MOST_DIGITS: i32 = 12;
 
-/// The step of the last digit with which times are printed, s; 0 where they are not rounded.
-fn printed_step_s(times: &[f64]) -> f64 {
+/// The step of the last digit with which numbers are printed; 0 where they are not rounded.
+pub(super) fn printed_step(times: &[f64]) -> f64 {
     let finite = || times.iter().filter(|t| t.is_finite());
     let whole = |digits: &i32| {
         finite().all(|t| {

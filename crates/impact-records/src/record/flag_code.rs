@@ -72,6 +72,8 @@ flag_codes! {
     ContactChanges = "contact_changes",
     /// The rows are neither impacts nor changes of the contact.
     ContactUnclear = "contact_unclear",
+    /// Heights from which R follows.
+    Heights = "heights",
     /// A camera's picture stood still, then jumped.
     FrozenFrames = "frozen_frames",
     /// Lone samples were far off those around them.

@@ -16,6 +16,7 @@ mod events;
 mod flag;
 mod flag_code;
 mod gaps;
+mod heights;
 pub mod late;
 mod low_pass;
 pub mod problem;
@@ -173,6 +174,10 @@ pub struct ListedTimes {
     /// How long the contact is usually closed, s; 0 where that is not known. It is part of the intervals from one
     /// closing to the next.
     pub contact_s: f64,
+    /// Of heights: standard error of each by its last digit, m.
+    pub digit_m: f64,
+    /// Of heights: standard uncertainty of each as it is stated, m; 0 where it is not.
+    pub height_m: f64,
 }
 
 /// A record: channels of one acquisition on one uniform time axis.

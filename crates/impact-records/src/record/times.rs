@@ -293,9 +293,13 @@ fn settle_rate(
     let measured = times.and_then(|times| time_axis::inspect(times, &mut record.flags));
     let stated = stated_rate(record, dataset, kept);
     let coarse = record.flags.iter().any(|f| f.code == FlagCode::TimeCoarse);
+    let decimation = labfiles::attribute::decimation(&dataset.attributes);
+    let left_out = decimation.filter(|_| measured.is_none());
     let rate = match coarse {
         // the file's rate is that of the same stamps
         true => setup.times.sample_rate_hz,
+        // beside a decimation it may be that before it
+        false if left_out.is_some() => setup.times.sample_rate_hz.or(stated),
         false => measured.or(stated).or(setup.times.sample_rate_hz),
     };
     if rate.is_some() {
@@ -305,6 +309,14 @@ fn settle_rate(
         Some(rate) => {
             record.sample_rate_hz = rate;
             record.flags.extend(contradicting_step(rate, dataset, kept));
+            let taken = left_out.filter(|_| setup.times.sample_rate_hz.is_none());
+            record.flags.extend(taken.map(|decimation| {
+                let problem = Problem::RateBesideDecimation {
+                    rate_hz: rate,
+                    decimation,
+                };
+                Flag::new(None, problem).excluding(false)
+            }));
         }
         None => no_rate(record),
     }

@@ -8,6 +8,7 @@ mod dialect;
 mod front;
 pub(crate) mod header;
 pub(crate) mod parts;
+mod rewritten;
 mod time_axis;
 
 use std::path::Path;
@@ -57,7 +58,7 @@ pub(crate) fn recognises(front: &[u8]) -> bool {
 /// # Errors
 /// If the file cannot be read, is empty, or no separator makes a table of numbers of it.
 pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
-    let table = open_text(TextFile::open(path)?, "")?;
+    let table = open_text(rewritten::plain(TextFile::open(path)?)?, "")?;
     opened("csv", path, table.datasets, table.notes, table.reader)
 }
 

@@ -1,7 +1,7 @@
 //! Reading text files in blocks of whole lines: what CSV and LVM share.
 //!
-//! A file is never held whole, except one in UTF-16 or one with lines ended by carriage returns alone, be
-//! they all or some, which is transcoded once.
+//! A file is never held whole, except one in UTF-16, one with lines ended by carriage returns alone, be
+//! they all or some, and one that is no table of cells, which are transcoded once.
 
 pub(crate) mod cells;
 pub(crate) mod clock;

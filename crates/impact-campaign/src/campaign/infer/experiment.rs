@@ -1,6 +1,7 @@
 //! What was probably measured: a driven rig, free decays, free flights, or the times of impacts.
 
 use super::found::{Experiment, FolderContents, InferredChannel};
+use super::heights::{self, Heights};
 use super::place::{Place, spread};
 use super::{drive, lists};
 use impact_records::event::{
@@ -25,6 +26,9 @@ const DECAY_PERIODS: f64 = 5.0;
 /// Part of a signal that the fit of a decay of few periods may leave, and those periods.
 const CLEAR_LEAVES: f64 = 0.15;
 const CLEAR_PERIODS: f64 = 1.5;
+/// Part of a signal that the fit of a decay of half a swing may leave, and its greatest damping ratio.
+const HEAVY_LEAVES: f64 = 0.05;
+const MOST_DAMPED: f64 = 0.9;
 /// Fewest sounds that are bounces.
 const FEWEST_SOUNDS: usize = 4;
 
@@ -36,6 +40,11 @@ pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
         found.experiment = Experiment::Events(events(*first, &times, &mut found.channels));
         return;
     }
+    if let Some(listed) = heights::of(*first) {
+        found.experiment = Experiment::Events(listed.content);
+        of_heights(&listed, found);
+        return;
+    }
     let some = spread(places, MOST_RECORDS);
     drive::settle(&some, &mut found.channels);
     let moving = |c: &InferredChannel| c.role.is_some_and(Role::is_motion);
@@ -43,6 +52,22 @@ pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
         without_motion(&some, found);
     } else if !found.states_drive {
         of_motions(&some, found);
+    }
+}
+
+/// Give the first column of heights its role, and note those that follow.
+fn of_heights(listed: &Heights, found: &mut FolderContents) {
+    for channel in &mut found.channels {
+        channel.role = None;
+    }
+    let names = listed.columns.iter().filter_map(|i| found.channels.get(*i));
+    found.then = names.skip(1).map(|c| c.name.clone()).collect();
+    if let Some(first) = listed
+        .columns
+        .first()
+        .and_then(|i| found.channels.get_mut(*i))
+    {
+        first.role = Some(Role::Contact);
     }
 }
 
@@ -318,10 +343,12 @@ fn decays(record: &Record) -> bool {
         let periods = d.samples as f64 / record.sample_rate_hz * d.natural_frequency_hz;
         let long = d.residual_ratio < DECAY_LEAVES && periods > DECAY_PERIODS;
         let clear = d.residual_ratio < CLEAR_LEAVES && periods > CLEAR_PERIODS;
-        (long || clear) && d.damping_ratio < 0.5
+        let heavy = d.residual_ratio < HEAVY_LEAVES && periods > CLEAR_PERIODS;
+        (long || clear) && d.damping_ratio < 0.5 || heavy && d.damping_ratio < MOST_DAMPED
     };
     let found = decay::fit_channels(&channels, record.sample_rate_hz);
-    found.iter().max_by_key(|d| d.samples).is_some_and(is_one)
+    let longest = found.iter().max_by_key(|d| d.samples);
+    longest.is_some_and(is_one) || channels.iter().any(decay::comes_to_rest)
 }
 
 /// Correlation from which two sensors see one body, whichever way they point: 1/(1 + q²) with noise of q times the motion

@@ -39,8 +39,8 @@ pub struct FolderContents {
     pub records: usize,
     /// Tables that are no records, as those of settings and notes: files, or sheets of them.
     pub others: Vec<String>,
-    /// Tables of the heights before and after an impact, among `others`.
-    pub heights: Vec<String>,
+    /// Columns of heights that follow those of the contact's channel in the same row.
+    pub then: Vec<String>,
     /// What else a user should know of the files.
     pub notes: Vec<String>,
     /// Whether the run table or the files' attributes state drive frequencies.

@@ -124,18 +124,6 @@ fn changes_at(place: Place<'_>) -> Option<usize> {
     (found && greatest > 2.0 * least).then_some(time)
 }
 
-/// Stems of the word for a height, lower case.
-const HEIGHTS: [&str; 5] = ["height", "höhe", "hoehe", "hauteur", "altezza"];
-
-/// Whether a table contains the heights before and after impacts.
-pub(super) fn are_heights(set: &DatasetInfo) -> bool {
-    let height = |c: &&ChannelInfo| {
-        let name = c.name.to_lowercase();
-        HEIGHTS.iter().any(|stem| name.contains(stem))
-    };
-    set.channels.iter().filter(height).count() > 1
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -177,19 +165,5 @@ mod tests {
         assert!(of(series).is_empty());
         let uneven = "time (s),temperature\n0,20.1\n50,20.4\n170,20.8\n210,21.0\n900,21.3\n";
         assert!(of(uneven).is_empty());
-    }
-
-    #[test]
-    fn a_table_of_two_heights_is_one_of_heights() {
-        let named = |names: [&str; 2]| {
-            let text = format!("{},{}\n50,27\n75,41\n100,55\n", names[0], names[1]);
-            let folder = tempfile::tempdir().unwrap();
-            let path = folder.path().join("heights.csv");
-            std::fs::write(&path, text).unwrap();
-            are_heights(&labfiles::open(&path).unwrap().datasets()[0])
-        };
-        assert!(named(["drop_height_cm", "rebound_height_cm"]));
-        assert!(named(["Fallhöhe (cm)", "Sprunghöhe (cm)"]));
-        assert!(!named(["height (cm)", "time (s)"]));
     }
 }

@@ -4,6 +4,7 @@ mod drive;
 mod experiment;
 mod found;
 mod globs;
+mod heights;
 mod lists;
 mod place;
 mod roles;
@@ -56,11 +57,7 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
         }
         match opened_path {
             Ok(source) if holds_record(source.as_ref()) => opened.push((relative, source)),
-            Ok(source) => {
-                let heights = source.datasets().iter().any(lists::are_heights);
-                found.heights.extend(heights.then(|| slashed(&relative)));
-                found.others.push(slashed(&relative));
-            }
+            Ok(_) => found.others.push(slashed(&relative)),
             Err(error) => found.refused.push(RefusedFile {
                 file: slashed(&relative),
                 reason: error.found,
@@ -235,10 +232,12 @@ fn holds_record(source: &dyn Source) -> bool {
 /// Fewest samples of a record.
 const FEWEST_SAMPLES: u64 = 16;
 
-/// Whether a dataset is a record: of many samples, or a list of events.
+/// Whether a dataset is a record: of many samples, a list of events, or heights.
 fn is_record(place: Place<'_>) -> bool {
     let mut channels = place.set().channels.iter();
-    channels.any(|c| c.samples >= FEWEST_SAMPLES) || lists::is_list(place)
+    channels.any(|c| c.samples >= FEWEST_SAMPLES)
+        || lists::is_list(place)
+        || heights::of(place).is_some()
 }
 
 fn describe(first: Place<'_>, found: &mut FolderContents) {

@@ -451,7 +451,7 @@ impl Groups {
     }
 }
 
-/// What comes before the quantity in a name: "blue" of "Blue:Acceleration - x".
+/// What comes before the quantity in a name, or the colour behind it: "blue" of "Blue:Acceleration - x".
 fn group(name: &str) -> Option<String> {
     const QUANTITIES: [&str; 12] = [
         "position",
@@ -471,5 +471,15 @@ fn group(name: &str) -> Option<String> {
     let at = words
         .iter()
         .position(|w| QUANTITIES.contains(&w.as_str()))?;
-    (at > 0).then(|| words[..at].join(" "))
+    let behind = || words.get(at + 1).filter(|w| COLOURS.contains(&w.as_str()));
+    match at {
+        0 => behind().cloned(),
+        _ => Some(words[..at].join(" ")),
+    }
 }
+
+/// By what carts and their sensors are told apart, also behind the quantity: `Position, Red`.
+const COLOURS: [&str; 12] = [
+    "red", "blue", "green", "yellow", "orange", "purple", "black", "white", "grey", "gray", "rot",
+    "blau",
+];

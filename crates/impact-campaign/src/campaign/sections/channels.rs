@@ -45,8 +45,14 @@ keys! {
         threshold: Placed<WrittenQuantity>;
         /// of the contact: `"signal"` (default); `"times"` or `"intervals"` of impacts, one in each row, or of changes
         /// of the contact, closed, open, closed …, with or without a column of its state; `"sound"` of a microphone. R
-        /// then follows from the flight times, under `flight = "constant_force"`
+        /// then follows from the flight times, under `flight = "constant_force"`; or `"heights"` of a drop and of the tops
+        /// after it, below each other or, with `then`, along each row; `"rebounds"`: each of `then` is one of the drop from
+        /// `channel`
         content: Placed<ContactContent>;
+        /// of heights: the columns of the heights that follow in the same row, `["rebound"]`
+        then: Placed<Vec<WrittenKey>>;
+        /// of heights: standard uncertainty of each, `"2 mm"`; by their scatter, and at least their last digit, if not given
+        height_uncertainty: Placed<WrittenQuantity>;
         /// full scale of the converter; samples there are clipped. Of an acceleration, spikes at impacts may be, and
         /// equal greatest values show it without this key
         range: Placed<WrittenQuantity>;
@@ -223,10 +229,47 @@ fn resolve_one(
             context,
         )
         .map_or(ContactContent::Signal, |placed| *placed.get_ref()),
+        then: then(role, written, &key, context),
+        height_uncertainty_m: context.within(
+            &written.height_uncertainty,
+            &key("height_uncertainty"),
+            Dimension::Length,
+            [1e-6, 1.0],
+        ),
         instrument: value(&written.instrument),
         ..ChannelSetup::plain(role, source(role, placed, context)?)
     };
     Some(setup)
+}
+
+/// The columns of heights that follow; the content says what they are for.
+fn then(
+    role: Role,
+    written: &ChannelTable,
+    key: &dyn Fn(&str) -> String,
+    context: &mut ResolveContext<'_>,
+) -> Vec<ChannelKey> {
+    let content = value(&written.content).unwrap_or_default();
+    if content == ContactContent::Rebounds
+        && written.then.is_none()
+        && let Some(placed) = &written.content
+    {
+        let what = "no column of rebounds is named".to_owned();
+        let remedy =
+            "name the columns of the rebounds as then, and that of the drop's height as channel";
+        context.fault(Code::Missing, placed, &key("then"), what, remedy);
+    }
+    let uncertain = written.height_uncertainty.as_ref().map(Spanned::span);
+    let named = written.then.as_ref().map(Spanned::span);
+    if let (Some(span), false) = (named.or(uncertain), content.is_of_heights()) {
+        let placed = Spanned::new(span, ());
+        let what = "then and height_uncertainty are those of heights".to_owned();
+        let remedy = "write content = \"heights\" or \"rebounds\", or remove them";
+        context.fault(Code::Conflict, &placed, &key("then"), what, remedy);
+    }
+    let placed = of_contact(role, &written.then, ("then", &key("then")), context);
+    let keys = placed.map(|placed| placed.get_ref().iter().map(|k| k.0.clone()));
+    keys.map(Iterator::collect).unwrap_or_default()
 }
 
 fn source(

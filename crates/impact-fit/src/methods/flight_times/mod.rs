@@ -1,9 +1,11 @@
 //! R from the times of impacts alone: under a constant force a flight lasts 2v/a, so that each flight is
-//! R times as long as the one before.
+//! R times as long as the one before. Or from heights, each R² times the one before ([`heights`]).
 //!
 //! The times of a record are a geometric row, `t_k = t_0 + T_0 (1 + R + … + R^(k−1))` ([`rows`]). What scatters about
 //! it are errors of the times and R itself, from impact to impact ([`scatter`]).
 
+mod fall;
+mod heights;
 mod rows;
 mod scatter;
 mod unlisted;
@@ -13,8 +15,8 @@ use crate::messages::{Note, Remark};
 use crate::method::Method;
 use crate::methods::answer::MethodResult;
 use crate::methods::fits::Fits;
-use crate::methods::flight_times::rows::{Fitted, Row, Rows, fitted, rows};
-use crate::methods::flight_times::scatter::{RowEstimate, Scatter};
+use crate::methods::flight_times::rows::{Fitted, Row, Rows, rows};
+use crate::methods::flight_times::scatter::{Known, RowEstimate, Scatter, Trend, fitted};
 use crate::methods::flight_times::unlisted::Unlisted;
 use crate::methods::identifier::Identifier;
 use crate::methods::impacts::structure::{self, GroupedRatio, Grouping, ImpactGroup, ImpactGroups};
@@ -53,36 +55,48 @@ const MATTERS: f64 = 0.005;
 /// Records from which one is told from the others.
 const SEVERAL: usize = 4;
 
-/// Whether R of a record rests on the times of its impacts: it has neither drive nor speeds.
+/// Whether R of a record rests on the times of its impacts, without drive or speeds, or on heights.
 pub fn is_timed(o: &Observation) -> bool {
+    if heights::are_listed(o) {
+        return true;
+    }
     let no_speed = |i: &impact_records::event::Impact| i.approach_speed_before_m_s.is_none();
     o.drive.is_none() && o.impacts.len() > 2 && o.impacts.iter().all(no_speed)
 }
 
-/// R of all records whose impacts are known by their times alone; `None` without any.
+/// R of all records whose impacts are known by their times or heights alone; `None` without any.
 pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     let timed = |(_, o): &(usize, &Observation)| !o.excluded() && is_timed(o);
     let records: Vec<(usize, &Observation)> =
         observations.iter().enumerate().filter(timed).collect();
-    let Rows {
-        rows,
-        left_out,
-        missed,
-    } = rows(&records);
+    let by_heights = records.iter().all(|(_, o)| heights::are_listed(o));
+    let (rows, known) = if by_heights {
+        (heights::rows(&records), heights::known(&records))
+    } else {
+        (rows(&records), Known::of_times(stated_error_s(&records)))
+    };
     let fits: Vec<(&Row, Fitted)> = rows
+        .rows
         .iter()
-        .filter_map(|row| Some((row, fitted(&row.times_s)?)))
+        .filter_map(|row| Some((row, fitted(row)?)))
         .collect();
     if fits.is_empty() {
-        let remarks: Vec<Remark> = not_used(left_out, &missed, observations).collect();
-        return (!missed.is_empty()).then(|| MethodResult {
+        let remarks: Vec<Remark> = not_used(&rows, observations).collect();
+        return (!rows.missed.is_empty()).then(|| MethodResult {
             remarks,
             ..MethodResult::default()
         });
     }
-    let stated_s = stated_error_s(&records);
-    let scatter = Scatter::of(&fits, stated_s);
-    let all = by_row(&fits, &scatter, observations);
+    let mut result = of_rows(&fits, known, observations);
+    result.records = records.len();
+    result.remarks.extend(not_used(&rows, observations));
+    Some(result)
+}
+
+/// R of rows with their fits.
+fn of_rows(fits: &[(&Row, Fitted)], known: Known, observations: &[Observation]) -> MethodResult {
+    let scatter = Scatter::of(fits, known);
+    let all = by_row(fits, &scatter, observations);
     let odd = odd_record(&all);
     let used = |i: &usize| Some(*i) != odd;
     let indices: Vec<usize> = (0..fits.len()).filter(used).collect();
@@ -90,73 +104,102 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     let rows: Vec<(&Row, Fitted)> = indices.iter().map(|i| fits[*i]).collect();
     let (value, error) = weighted(&groups);
     let estimates: Vec<&RowEstimate> = indices.iter().map(|i| &scatter.rows[*i]).collect();
-    let unlisted = Unlisted::of(&rows, &estimates, observations, stated_s);
+    let unlisted = Unlisted::of(&rows, &estimates, observations, known.least);
     let value = value + unlisted.change;
     let ratios: Vec<GroupedRatio> = indices
         .iter()
         .flat_map(|i| ratios(fits[*i].0, &scatter.rows[*i]))
         .collect();
     let mut result = MethodResult {
-        observations: rows.iter().map(|(row, _)| row.times_s.len()).sum(),
-        records: records.len(),
+        observations: rows.iter().map(|(row, _)| row.impacts()).sum(),
         fits: Some(true),
         ..MethodResult::default()
     };
-    let restitution = estimated((value, error), &scatter, &unlisted);
+    let restitution = estimated((value, error), (&scatter, known), &unlisted);
     result.parameters.restitution = Some(restitution);
     result.impact_groups = Some(ImpactGroups {
         by_record: all.clone(),
         ..structure::groups(&ratios, observations)
     });
-    result.remarks.extend(remarks(error, &scatter, &unlisted));
-    result
-        .remarks
-        .extend(not_used(left_out, &missed, observations));
-    if let Some(odd) = odd {
-        result.remarks.push(Remark::OddRecord {
-            record: all[odd].group.clone(),
-            restitution: all[odd].restitution,
-            others: value,
-        });
+    let said = remarks(error, (&scatter, known), &unlisted);
+    result.remarks.extend(said);
+    result.remarks.extend(odd.map(|odd| Remark::OddRecord {
+        record: all[odd].group.clone(),
+        restitution: all[odd].restitution,
+        others: value,
+    }));
+    if ratios.len() > 1 {
+        judge(&mut result, &rows, (&groups, &ratios), known);
     }
-    let several = ratios.len() > 1 && !rows.is_empty();
-    let grouping = if changes(&rows, stated_s) {
-        Some(Grouping::Bounce)
-    } else {
-        between_records(&groups).or_else(|| structure::structure(&ratios))
+    result
+}
+
+/// Judge whether R is one number over bounces and records.
+fn judge(
+    result: &mut MethodResult,
+    rows: &[(&Row, Fitted)],
+    (groups, ratios): (&[ImpactGroup], &[GroupedRatio]),
+    known: Known,
+) {
+    let trend = scatter::trend(rows, known.least).filter(is_change);
+    let grouping = match trend {
+        Some(trend) if known.heights => {
+            let each: Vec<&Row> = rows.iter().map(|(row, _)| *row).collect();
+            return heights::judge(result, &each, &trend);
+        }
+        Some(_) => Some(Grouping::Bounce),
+        None => between_records(groups).or_else(|| structure::structure(ratios)),
     };
-    if let Some(grouping) = grouping.filter(|_| several) {
+    if let Some(grouping) = grouping {
         result.judge_structure(grouping);
     }
-    Some(result)
 }
 
 /// R with the error that the rows leave of it and what times do not contain.
-fn estimated((value, error): (f64, f64), scatter: &Scatter, unlisted: &Unlisted) -> Estimate {
+fn estimated(
+    (value, error): (f64, f64),
+    (scatter, known): (&Scatter, Known),
+    unlisted: &Unlisted,
+) -> Estimate {
     let spread = Spread {
         freedom: scatter.freedom,
         ..Spread::known(error)
     };
     let narrow = estimate::estimate_within(Coordinate::Restitution, value, spread, None);
     let mut estimate = estimate::wider(Coordinate::Restitution, &narrow, unlisted.error);
-    if let Some(error_s) = scatter.times_s.filter(|_| !scatter.is_told()) {
-        estimate.weaken(Note::TimesNotTold { error_s });
+    if let Some(error) = scatter.listed.filter(|_| !scatter.told) {
+        estimate.weaken(if known.heights {
+            Note::HeightsNotTold { error_m: error }
+        } else {
+            Note::TimesNotTold { error_s: error }
+        });
     }
     estimate
 }
 
 /// What scatters, and what times do not contain where it decides the interval; `error`: of R by the rows alone.
-fn remarks(error: f64, scatter: &Scatter, unlisted: &Unlisted) -> impl Iterator<Item = Remark> {
-    let times = scatter
-        .times_s
-        .map(|error_s| Remark::TimesScatter { error_s });
+fn remarks(
+    error: f64,
+    (scatter, known): (&Scatter, Known),
+    unlisted: &Unlisted,
+) -> impl Iterator<Item = Remark> {
+    let listed = scatter.listed.map(|error| {
+        if known.heights {
+            Remark::HeightsScatter { error_m: error }
+        } else {
+            Remark::TimesScatter { error_s: error }
+        }
+    });
     let own = scatter
         .own
         .map(|share| Remark::RestitutionScatters { share });
-    let open = (unlisted.error > error).then_some(Remark::FlightTimesOpen {
-        half_width: NORMAL_975 * unlisted.error,
+    let half_width = NORMAL_975 * unlisted.error;
+    let open = (unlisted.error > error).then_some(if known.heights {
+        Remark::HeightsOpen { half_width }
+    } else {
+        Remark::FlightTimesOpen { half_width }
     });
-    times.into_iter().chain(own).chain(open)
+    listed.into_iter().chain(own).chain(open)
 }
 
 /// R of each row.
@@ -168,7 +211,7 @@ fn by_row(
     let each = fits.iter().zip(&scatter.rows);
     each.map(|((row, _), own)| ImpactGroup {
         group: observations[row.record].record.clone(),
-        impacts: row.times_s.len(),
+        impacts: row.impacts(),
         speed_m_s: None,
         restitution: own.restitution,
         standard_error: own.error,
@@ -176,29 +219,33 @@ fn by_row(
     .collect()
 }
 
-/// Whether R changes along the bounces.
-fn changes(rows: &[(&Row, Fitted)], stated_s: Option<f64>) -> bool {
-    scatter::trend(rows, stated_s).is_some_and(|trend| {
-        let chance = student_tail(trend.deviates, trend.freedom);
-        chance < structure::FALSE_ALARMS / QUESTIONS && trend.change > MATTERS
-    })
+/// Whether a change of R along the bounces is one that matters, and no chance.
+fn is_change(trend: &Trend) -> bool {
+    let chance = student_tail(trend.deviates, trend.freedom);
+    chance < structure::FALSE_ALARMS / QUESTIONS && trend.change > MATTERS
 }
 
 /// What the flights that are left out, and the impacts that seem to be missing, are to be known by.
-fn not_used(
-    left_out: usize,
-    missed: &[(usize, f64)],
-    observations: &[Observation],
-) -> impl Iterator<Item = Remark> {
+fn not_used(found: &Rows, observations: &[Observation]) -> impl Iterator<Item = Remark> {
+    let left_out = found.left_out;
     let flights = (left_out > 0).then_some(Remark::FlightsLeftOut { count: left_out });
-    let impacts = missed
+    let impacts = found
+        .missed
         .first()
         .map(|(record, time_s)| Remark::ImpactsMissed {
-            count: missed.len(),
+            count: found.missed.len(),
             record: observations[*record].record.clone(),
             time_s: *time_s,
         });
-    flights.into_iter().chain(impacts)
+    let tops = found
+        .skipped
+        .first()
+        .map(|(record, height_m)| Remark::TopsMissed {
+            count: found.skipped.len(),
+            record: observations[*record].record.clone(),
+            height_m: *height_m,
+        });
+    flights.into_iter().chain(impacts).chain(tops)
 }
 
 /// Whether R differs between records by more than the errors of their times.
@@ -270,17 +317,18 @@ fn stated_error_s(records: &[(usize, &Observation)]) -> Option<f64> {
 
 /// Each flight over the one before.
 fn ratios(row: &Row, own: &RowEstimate) -> impl Iterator<Item = GroupedRatio> {
-    let triples = row.times_s.windows(3).zip(&own.ratio_errors).enumerate();
-    triples.map(|(k, (t, error))| {
-        let ratio = (t[2] - t[1]) / (t[1] - t[0]);
-        GroupedRatio {
-            record: row.record,
-            bounce: row.first + k,
-            speed_m_s: None,
-            ratio,
-            error: ratio * error,
-        }
-    })
+    let each = row.flights_s().into_iter().zip(row.bounces());
+    each.zip(&own.ratio_errors)
+        .map(|(([before, after], bounce), error)| {
+            let ratio = after / before;
+            GroupedRatio {
+                record: row.record,
+                bounce,
+                speed_m_s: None,
+                ratio,
+                error: ratio * error,
+            }
+        })
 }
 
 #[cfg(test)]

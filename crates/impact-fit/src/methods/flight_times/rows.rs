@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::methods::flight_times::fall::Fall;
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
 
@@ -17,15 +18,56 @@ pub(super) struct Row {
     pub(super) record: usize,
     /// Number of its first flight in the record.
     pub(super) first: usize,
-    pub(super) times_s: Vec<f64>,
+    pub(super) listed: Listed,
+}
+
+/// What of a row's impacts is listed.
+#[derive(Debug, Clone)]
+pub(super) enum Listed {
+    /// The times of impacts, s.
+    Times(Vec<f64>),
+    /// The heights before and after each impact, m.
+    Heights(Vec<Fall>),
+}
+
+impl Row {
+    /// The flights before and after each impact between two, s.
+    pub(super) fn flights_s(&self) -> Vec<[f64; 2]> {
+        match &self.listed {
+            Listed::Times(times_s) => {
+                let triples = times_s.windows(3);
+                triples.map(|t| [t[1] - t[0], t[2] - t[1]]).collect()
+            }
+            Listed::Heights(falls) => falls.iter().map(Fall::flights_s).collect(),
+        }
+    }
+
+    /// Number of impacts.
+    pub(super) fn impacts(&self) -> usize {
+        match &self.listed {
+            Listed::Times(times_s) => times_s.len(),
+            Listed::Heights(falls) => falls.len(),
+        }
+    }
+
+    /// Number of the bounce of each ratio.
+    pub(super) fn bounces(&self) -> Vec<usize> {
+        match &self.listed {
+            Listed::Times(times_s) => {
+                let last = self.first + times_s.len().saturating_sub(2);
+                (self.first..last).collect()
+            }
+            Listed::Heights(falls) => falls.iter().map(|fall| fall.bounce).collect(),
+        }
+    }
 }
 
 /// The geometric row that fits.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fitted {
     pub(super) restitution: f64,
-    /// Standard error of R for a standard error of 1 s of each time.
-    pub(super) error_per_s: f64,
+    /// Standard error of R for a standard error of 1 s of each time, or of 1 m of each height.
+    pub(super) error_per_unit: f64,
 }
 
 /// The rows of all records.
@@ -36,6 +78,8 @@ pub(super) struct Rows {
     pub(super) left_out: usize,
     /// Where an impact is missing: the record's index and the time, s.
     pub(super) missed: Vec<(usize, f64)>,
+    /// Where a top between heights is missing: the record's index and the height before it, m.
+    pub(super) skipped: Vec<(usize, f64)>,
 }
 
 /// The rows of all records, parted where a flight does not follow from the one before.
@@ -77,7 +121,9 @@ pub(super) fn rows(records: &[(usize, &Observation)]) -> Rows {
                 found.rows.push(Row {
                     record: *record,
                     first: begin,
-                    times_s: o.impacts[begin..=end].iter().map(|i| i.time_s).collect(),
+                    listed: Listed::Times(
+                        o.impacts[begin..=end].iter().map(|i| i.time_s).collect(),
+                    ),
                 });
             }
             begin = end;
@@ -124,7 +170,7 @@ fn two_at_an_end(ratios: &[f64]) -> Option<(usize, f64)> {
 }
 
 /// Gauss–Newton for `t_0`, `T_0` and R from the ratio of the first two flights.
-pub(super) fn fitted(times_s: &[f64]) -> Option<Fitted> {
+pub(super) fn fitted_times(times_s: &[f64]) -> Option<Fitted> {
     times_s.len().checked_sub(3)?;
     let (first, second) = (times_s[1] - times_s[0], times_s[2] - times_s[1]);
     let mut at = Vector3::new(times_s[0], first, second / first);
@@ -152,6 +198,6 @@ pub(super) fn fitted(times_s: &[f64]) -> Option<Fitted> {
     let variance = normal.try_inverse()?[(2, 2)];
     (at[2].is_finite() && at[2] > 0.0 && variance > 0.0).then(|| Fitted {
         restitution: at[2],
-        error_per_s: variance.sqrt(),
+        error_per_unit: variance.sqrt(),
     })
 }

@@ -1,4 +1,5 @@
 //! How far R of rows of flights may be off: by errors of the times, and as R itself scatters from impact to impact.
+//! Errors of heights stand for those of the times where heights are listed.
 //!
 //! The logarithm of each flight over the one before is ln R + ρ + e. ρ is independent from impact to impact; e follows
 //! from the errors of three times, so that e of neighbours are correlated. In these correlations it shows which is
@@ -7,11 +8,14 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::methods::flight_times::rows::{Fitted, Row};
+use crate::methods::flight_times::fall::Fall;
+use crate::methods::flight_times::rows::{Fitted, Listed, Row, fitted_times};
 use impact_records::signal::{columns, robust};
 
 /// Standard error of a time that neither its source nor the scatter states, s.
 const USUAL_ERROR_S: f64 = 2e-3;
+/// That of a height, m: one read beside a rule.
+const USUAL_ERROR_M: f64 = 1e-2;
 /// Degrees of freedom from which a trend is looked at.
 const ENOUGH: f64 = 2.0;
 /// Ratios of the variances in a factor of ten.
@@ -21,6 +25,39 @@ const BEYOND: f64 = 10.0;
 /// Probability from which it is R that scatters.
 const SURE: f64 = 0.95;
 
+/// What is known of the errors of what is listed, s or m.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Known {
+    /// The least that each may be off: by its last digit, or as it is stated.
+    pub(super) least: Option<f64>,
+    /// Whether `least` is its standard error as the laboratory states it.
+    pub(super) told: bool,
+    /// Whether heights are listed.
+    pub(super) heights: bool,
+}
+
+impl Known {
+    /// Of times with so great an error by their last digit, s.
+    pub(super) fn of_times(least: Option<f64>) -> Self {
+        Self {
+            least,
+            told: false,
+            heights: false,
+        }
+    }
+
+    /// The error of one row that nothing else tells, and its degrees of freedom.
+    fn of_one_row(self) -> f64 {
+        let usual = if self.heights {
+            USUAL_ERROR_M
+        } else {
+            USUAL_ERROR_S
+        };
+        let least = self.least.unwrap_or(0.0);
+        if self.told { least } else { least.max(usual) }
+    }
+}
+
 /// What rows tell of R.
 pub(super) struct Scatter {
     /// Each row's.
@@ -28,8 +65,10 @@ pub(super) struct Scatter {
     /// Degrees of freedom of their errors, the scatter between rows where none is left in them; infinite where nothing
     /// tells the errors of the times.
     pub(super) freedom: f64,
-    /// Scatter of the times, s; not known where it is R that scatters.
-    pub(super) times_s: Option<f64>,
+    /// Scatter of the times, s, or of the heights, m; not known where it is R that scatters.
+    pub(super) listed: Option<f64>,
+    /// Whether anything tells the errors of what is listed.
+    pub(super) told: bool,
     /// Relative standard deviation of R from impact to impact, where it is R that scatters.
     pub(super) own: Option<f64>,
 }
@@ -47,34 +86,40 @@ pub(super) struct RowEstimate {
 }
 
 impl Scatter {
-    /// Of rows with their fits; `stated_s`: the times' standard error as their source states it.
-    pub(super) fn of(fits: &[(&Row, Fitted)], stated_s: Option<f64>) -> Self {
+    /// Of rows with their fits.
+    pub(super) fn of(fits: &[(&Row, Fitted)], known: Known) -> Self {
+        let stated = known.least;
         let ratios = Ratios::of(fits.iter().map(|(row, _)| *row));
-        let mix = |with_slope| ratios.mixed(with_slope, stated_s);
-        let least_s = stated_s.unwrap_or(0.0);
+        let mix = |with_slope| ratios.mixed(with_slope, stated);
+        let least = stated.unwrap_or(0.0);
         let Some(mixed) = mix(false) else {
             // three times in each row: what a source prints is the least that they may be off
-            let known = match fits.len() {
-                1 => (least_s.max(USUAL_ERROR_S), f64::INFINITY),
-                rows => (least_s, (rows - 1) as f64),
+            let error = match fits.len() {
+                1 => (known.of_one_row(), f64::INFINITY),
+                rows => (least, (rows - 1) as f64),
             };
-            return Self::by_times(fits, &ratios, known);
+            return Self::by_errors(fits, &ratios, error, known.told);
         };
-        let known = fits.iter().enumerate().all(|(i, (_, fit))| {
+        let within = fits.iter().enumerate().all(|(i, (_, fit))| {
             let (_, error) = mixed.logarithm(i);
-            fit.restitution * error <= fit.error_per_s * least_s
+            fit.restitution * error <= fit.error_per_unit * least
         });
-        if known {
+        if within {
             // digits are the least that the times may be off, and a scatter within them may be one by chance
-            return Self::by_times(fits, &ratios, (least_s, mixed.freedom));
+            let freedom = if known.told {
+                f64::INFINITY
+            } else {
+                mixed.freedom
+            };
+            return Self::by_errors(fits, &ratios, (least, freedom), true);
         }
         let rows = fits.iter().enumerate().map(|(i, (_, fit))| {
             let (mean, error) = mixed.logarithm(i);
             // the fit of the times takes curvature into account that logarithms do not
-            let restitution = fit.restitution * (mean - ratios.by_times(i)).exp();
+            let restitution = fit.restitution * (mean - ratios.by_errors(i)).exp();
             RowEstimate {
                 restitution,
-                error: (restitution * error).max(fit.error_per_s * least_s),
+                error: (restitution * error).max(fit.error_per_unit * least),
                 ratio_errors: mixed.ratio_errors(&ratios, i),
                 weights: mixed.weights(i),
             }
@@ -86,35 +131,37 @@ impl Scatter {
         Self {
             rows: rows.collect(),
             freedom: mixed.freedom,
-            times_s: own.is_none().then(|| beside.times_s(&ratios)),
+            listed: own.is_none().then(|| beside.listed(&ratios)),
+            told: true,
             own,
         }
     }
 
-    /// With errors of the times of so many degrees of freedom and one R.
-    fn by_times(fits: &[(&Row, Fitted)], ratios: &Ratios, (error_s, freedom): (f64, f64)) -> Self {
+    /// With errors of what is listed, of so many degrees of freedom, and one R.
+    fn by_errors(
+        fits: &[(&Row, Fitted)],
+        ratios: &Ratios,
+        (error, freedom): (f64, f64),
+        told: bool,
+    ) -> Self {
         let rows = fits.iter().enumerate().map(|(i, (_, fit))| RowEstimate {
             restitution: fit.restitution,
-            error: fit.error_per_s * error_s,
+            error: fit.error_per_unit * error,
             ratio_errors: ratios.rows[i]
-                .by_times
+                .by_errors
                 .diagonal()
                 .iter()
-                .map(|v| error_s * v.sqrt())
+                .map(|v| error * v.sqrt())
                 .collect(),
-            weights: ratios.rows[i].weights_by_times().data.into(),
+            weights: ratios.rows[i].weights_by_errors().data.into(),
         });
         Self {
             rows: rows.collect(),
             freedom,
-            times_s: Some(error_s),
+            listed: Some(error),
+            told: told || freedom.is_finite(),
             own: None,
         }
-    }
-
-    /// Whether anything tells the errors of the times.
-    pub(super) fn is_told(&self) -> bool {
-        self.freedom.is_finite()
     }
 }
 
@@ -126,28 +173,52 @@ pub(super) struct Trend {
     pub(super) freedom: f64,
     /// R's change over the longest row.
     pub(super) change: f64,
+    /// R at the least and at the greatest of what it is a line over: the bounce, or the height.
+    pub(super) ends: [f64; 2],
 }
 
-/// How R changes along the bounces of rows, its logarithm a line over their number with one slope for all.
+/// How R changes along the bounces of rows, its logarithm a line over their number, or over the height, with one slope
+/// for all.
 pub(super) fn trend(fits: &[(&Row, Fitted)], stated_s: Option<f64>) -> Option<Trend> {
     let ratios = Ratios::of(fits.iter().map(|(row, _)| *row));
     let mixed = ratios
         .mixed(true, stated_s)
         .filter(|m| m.freedom >= ENOUGH)?;
     let (slope, error) = mixed.average(|share| share.slope);
-    let longest = ratios.rows.iter().map(|r| r.values.len()).max()?;
+    let places = |row: &RatioRow| columns::extremes(row.places.as_slice());
+    let spans = ratios.rows.iter().map(places);
+    let longest = spans
+        .clone()
+        .map(|(low, high)| high - low)
+        .fold(0.0, f64::max);
     let typical = robust::median(&fits.iter().map(|(_, f)| f.restitution).collect::<Vec<_>>())?;
+    let all = ratios.rows.iter().flat_map(|r| r.places.iter().copied());
+    let all: Vec<f64> = all.collect();
+    let centre = robust::mean(&all);
+    let (low, high) = columns::extremes(&all);
     Some(Trend {
         deviates: slope / error,
         freedom: mixed.freedom,
-        change: (typical * slope * longest.saturating_sub(1) as f64).abs(),
+        ends: [low, high].map(|place| typical * (slope * (place - centre)).exp()),
+        change: (typical * slope * longest).abs(),
     })
 }
 
-/// The logarithms of a row's ratios, with their covariance for independent errors of 1 s of each time.
+/// R by the errors of what is listed alone.
+pub(super) fn fitted(row: &Row) -> Option<Fitted> {
+    match &row.listed {
+        Listed::Times(times_s) => fitted_times(times_s),
+        Listed::Heights(_) => RatioRow::of(row).fitted(),
+    }
+}
+
+/// The logarithms of a row's ratios, with their covariance for independent errors of 1 s of each time, or of 1 m of each
+/// height.
 pub(super) struct RatioRow {
     pub(super) values: DVector<f64>,
-    by_times: DMatrix<f64>,
+    /// What R may change along: the number of the bounce in the row, or the mean height before and after it, m.
+    pub(super) places: DVector<f64>,
+    by_errors: DMatrix<f64>,
 }
 
 /// Those of all rows.
@@ -159,10 +230,10 @@ pub(super) struct Ratios {
 
 impl Ratios {
     pub(super) fn of<'a>(rows: impl Iterator<Item = &'a Row>) -> Self {
-        let rows: Vec<RatioRow> = rows.map(|row| RatioRow::of(&row.times_s)).collect();
+        let rows: Vec<RatioRow> = rows.map(|row| RatioRow::of(row)).collect();
         let diagonals = rows
             .iter()
-            .flat_map(|r| r.by_times.diagonal().data.as_vec().clone());
+            .flat_map(|r| r.by_errors.diagonal().data.as_vec().clone());
         let all: Vec<f64> = diagonals.collect();
         let (least, greatest) = columns::extremes(&all);
         let median = robust::median(&all).unwrap_or(1.0);
@@ -173,9 +244,9 @@ impl Ratios {
     }
 
     /// The mean of a row's logarithms as errors of the times weigh them.
-    fn by_times(&self, row: usize) -> f64 {
+    fn by_errors(&self, row: usize) -> f64 {
         let row = &self.rows[row];
-        row.weights_by_times().dot(&row.values)
+        row.weights_by_errors().dot(&row.values)
     }
 
     /// Degrees of freedom about one R of each row.
@@ -195,7 +266,7 @@ impl Ratios {
     /// Covariance of a row's logarithms over the variance of the median one by errors of the times.
     pub(super) fn covariance(&self, row: &RatioRow, own: f64) -> DMatrix<f64> {
         let count = row.values.len();
-        &row.by_times / self.variances[1] + DMatrix::identity(count, count) * own
+        &row.by_errors / self.variances[1] + DMatrix::identity(count, count) * own
     }
 
     /// Variance of the median logarithm for so large an error of each time, s.
@@ -237,7 +308,26 @@ fn whole_steps(low: f64, high: f64) -> usize {
 }
 
 impl RatioRow {
-    fn of(times_s: &[f64]) -> Self {
+    pub(super) fn of(row: &Row) -> Self {
+        match &row.listed {
+            Listed::Times(times_s) => Self::of_times(times_s),
+            Listed::Heights(falls) => Self::of_heights(falls),
+        }
+    }
+
+    fn of_heights(falls: &[Fall]) -> Self {
+        let count = falls.len();
+        let by_errors = DMatrix::from_fn(count, count, |i, k| Fall::covariance(falls, i, k));
+        Self {
+            values: DVector::from_fn(count, |k, _| {
+                0.5 * (falls[k].after_m / falls[k].before_m).ln()
+            }),
+            places: DVector::from_fn(count, |k, _| 0.5 * (falls[k].after_m + falls[k].before_m)),
+            by_errors,
+        }
+    }
+
+    fn of_times(times_s: &[f64]) -> Self {
         let flights: Vec<f64> = times_s.windows(2).map(|w| w[1] - w[0]).collect();
         let count = flights.len().saturating_sub(1);
         let values = DVector::from_fn(count, |k, _| (flights[k + 1] / flights[k]).ln());
@@ -246,19 +336,37 @@ impl RatioRow {
             let (before, after) = (flights[k].recip(), flights[k + 1].recip());
             [before, -(before + after), after]
         };
-        let by_times = DMatrix::from_fn(count, count, |i, k| {
+        let by_errors = DMatrix::from_fn(count, count, |i, k| {
             let (a, b) = (slopes(i), slopes(k));
             // time number i + n of the row is number i + n − k of ratio k
             let shared = |n: usize| (n + i).checked_sub(k).and_then(|m| b.get(m)).copied();
             (0..3).map(|n| a[n] * shared(n).unwrap_or(0.0)).sum::<f64>()
         });
-        Self { values, by_times }
+        Self {
+            values,
+            places: DVector::from_fn(count, |k, _| k as f64),
+            by_errors,
+        }
+    }
+
+    pub(super) fn by_errors(&self) -> &DMatrix<f64> {
+        &self.by_errors
+    }
+
+    /// Its R as errors of what is listed weigh it.
+    pub(super) fn fitted(&self) -> Option<Fitted> {
+        let weighing = Weighing::of(self.by_errors.clone())?;
+        let restitution = weighing.mean(&self.values).exp();
+        Some(Fitted {
+            restitution,
+            error_per_unit: restitution / weighing.information.sqrt(),
+        })
     }
 
     /// The weights of its logarithms in their mean as errors of the times weigh them.
-    fn weights_by_times(&self) -> DVector<f64> {
+    fn weights_by_errors(&self) -> DVector<f64> {
         let count = self.values.len();
-        let weighing = Weighing::of(self.by_times.clone());
+        let weighing = Weighing::of(self.by_errors.clone());
         weighing.map_or_else(
             || DVector::from_element(count, (count as f64).recip()),
             |weighing| weighing.shares(),
@@ -375,8 +483,7 @@ struct Part {
 impl Part {
     fn of(row: &RatioRow, covariance: DMatrix<f64>) -> Option<Self> {
         let weighing = Weighing::of(covariance)?;
-        let bounces = DVector::from_fn(row.values.len(), |k, _| k as f64);
-        let [bounces, values] = [&bounces, &row.values].map(|v| weighing.centred(v));
+        let [bounces, values] = [&row.places, &row.values].map(|v| weighing.centred(v));
         let [of_bounces, of_values] = [&bounces, &values].map(|v| weighing.factor.solve(v));
         Some(Self {
             mean: weighing.mean(&row.values),
@@ -422,7 +529,7 @@ impl Mixed {
 
     /// Relative standard error of each ratio of a row.
     fn ratio_errors(&self, ratios: &Ratios, row: usize) -> Vec<f64> {
-        let variances = ratios.rows[row].by_times.diagonal();
+        let variances = ratios.rows[row].by_errors.diagonal();
         let of = |variance: &f64| {
             let unit = variance / ratios.variances[1];
             self.average(|s| [0.0, s.scale * (unit + s.own)]).1
@@ -430,8 +537,8 @@ impl Mixed {
         variances.iter().map(of).collect()
     }
 
-    /// Standard error of the times, s.
-    fn times_s(&self, ratios: &Ratios) -> f64 {
+    /// Standard error of the times, s, or of the heights, m.
+    fn listed(&self, ratios: &Ratios) -> f64 {
         self.average(|s| [0.0, s.scale / ratios.variances[1]]).1
     }
 

@@ -2,13 +2,14 @@
 //! and how much the air slows the flights.
 //!
 //! Where a contact of length c begins each interval D, the flight lasts D − c. In air, of drag −γ v²/a at the speed v
-//! under the acceleration a, a flight of T over the one before is R (1 − (1 + R²) γ T²/16) to first order. Both make
+//! under the acceleration a, a flight of T over the one before is R (1 − (1 + R²) γ T²/16) to first order, and so is the
+//! square root of the height after an impact over that before, h = a T²/8. Both make
 //! the ratios rise along the bounces: the one as if R were greater, the other as if it were less. So R is an average
 //! over both unknowns, each with the likelihood that the scatter of the ratios gives it ([`scatter`](super::scatter)).
 
 use nalgebra::DVector;
 
-use crate::methods::flight_times::rows::{Fitted, Row};
+use crate::methods::flight_times::rows::{Fitted, Listed, Row};
 use crate::methods::flight_times::scatter::{Ratios, RowEstimate, Weighing};
 use crate::statistics::quantile::NORMAL_975;
 use impact_records::motion::Observation;
@@ -50,7 +51,7 @@ impl Unlisted {
             .iter()
             .map(|length_s| {
                 let each = rows.iter().zip(estimates);
-                each.map(|((row, _), own)| RowChange::of(&row.times_s, own, *length_s))
+                each.map(|((row, _), own)| RowChange::of(row, own, *length_s))
                     .collect()
             })
             .collect();
@@ -97,15 +98,21 @@ impl Unlisted {
     }
 }
 
-/// Lengths of contacts that are tried, s: up to those that the list contains with both edges, as an instrument may
+/// Lengths of contacts that are tried, s: none of heights, which do not contain them; up to those that the list contains with both edges, as an instrument may
 /// make a pulse longer than the touch; else all usual ones that leave flights.
 fn lengths_s(rows: &[(&Row, Fitted)], observations: &[Observation]) -> Vec<f64> {
     let listed = rows.iter().flat_map(|(row, _)| {
         let impacts = observations[row.record].impacts.iter();
         impacts.filter_map(|i| i.contact_duration_s)
     });
-    let flights = rows.iter().flat_map(|(row, _)| row.times_s.windows(2));
-    let longest_s = 0.5 * flights.map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
+    if rows
+        .iter()
+        .any(|(row, _)| matches!(row.listed, Listed::Heights(_)))
+    {
+        return vec![0.0];
+    }
+    let flights = rows.iter().flat_map(|(row, _)| row.flights_s());
+    let longest_s = 0.5 * flights.flatten().fold(f64::INFINITY, f64::min);
     match robust::median(&listed.collect::<Vec<_>>()) {
         Some(pulse_s) => {
             let share = |k: usize| k as f64 / (TRIED - 1) as f64;
@@ -124,14 +131,14 @@ struct RowChange {
 }
 
 impl RowChange {
-    fn of(times_s: &[f64], own: &RowEstimate, length_s: f64) -> Self {
-        let flights: Vec<f64> = times_s.windows(2).map(|w| w[1] - w[0]).collect();
-        let count = flights.len().saturating_sub(1);
+    fn of(row: &Row, own: &RowEstimate, length_s: f64) -> Self {
+        let flights = row.flights_s();
+        let count = flights.len();
         let share = |flight: f64| (1.0 - length_s / flight).ln();
         let of_both = (1.0 + own.restitution.powi(2)) / 16.0;
         Self {
-            by_length: DVector::from_fn(count, |k, _| share(flights[k + 1]) - share(flights[k])),
-            by_air: DVector::from_fn(count, |k, _| of_both * (flights[k] - length_s).powi(2)),
+            by_length: DVector::from_fn(count, |k, _| share(flights[k][1]) - share(flights[k][0])),
+            by_air: DVector::from_fn(count, |k, _| of_both * (flights[k][0] - length_s).powi(2)),
         }
     }
 

@@ -5,7 +5,9 @@ use crate::parameters::effect::{Effect, EffectKind};
 use crate::parameters::own::log_speed;
 use crate::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
 use crate::solver::Block;
-use impact_records::event::{CornerShift, Impact, Lag, RigKind, extrapolation_error};
+use impact_records::event::{
+    CornerShift, DetectionSource, Impact, Lag, RigKind, extrapolation_error,
+};
 use impact_records::motion::Observation;
 use impact_records::record::Role;
 
@@ -215,6 +217,8 @@ impl ImpactBlock {
             .filter(|(_, o)| !o.excluded() && !o.low_pass && tells_speeds(o))
             .flat_map(|(i, o)| o.impacts.iter().map(move |impact| (i, impact)))
             .filter(|(_, impact)| impact.dead_zone_s == 0.0)
+            // heights are a method of their own
+            .filter(|(_, impact)| impact.source != DetectionSource::Heights)
             .filter(|(i, impact)| {
                 let unresolved = impact.contact_duration_s.is_none();
                 let least = if unresolved && observations[*i].jump_samples > 2 {

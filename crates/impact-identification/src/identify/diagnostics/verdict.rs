@@ -162,6 +162,7 @@ fn is_to_be_mended(remark: &Remark) -> bool {
         Remark::EarlyJumps { .. }
             | Remark::OddRecord { .. }
             | Remark::ImpactsMissed { .. }
+            | Remark::TopsMissed { .. }
             | Remark::DecaysHum { .. }
             | Remark::DecaysMode { .. }
             | Remark::DecaysStopped { .. }
@@ -177,6 +178,8 @@ fn is_plain(remark: &Remark) -> bool {
         Remark::TimesScatter { .. }
             | Remark::RestitutionScatters { .. }
             | Remark::FlightTimesOpen { .. }
+            | Remark::HeightsScatter { .. }
+            | Remark::HeightsOpen { .. }
             | Remark::MassRatio { .. }
             | Remark::FlightsLeftOut { .. }
     )

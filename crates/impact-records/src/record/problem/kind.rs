@@ -268,6 +268,40 @@ problems! {
         /// Another.
         second: String,
     };
+    /// Which heights are drops, and which follow.
+    Heights: HeightsTaken {
+        /// Impacts between heights.
+        impacts: usize,
+        /// Drops.
+        drops: usize,
+        /// The greatest, m.
+        highest_m: f64,
+        /// The least, m.
+        lowest_m: f64,
+    };
+    /// Heights rise about as often as they fall.
+    ContactUnclear: HeightsRise {
+        /// How many are not below the one before.
+        rise: usize,
+        /// How many have one before.
+        all: usize,
+    };
+    /// A rebound ends above its drop.
+    ContactUnclear: ReboundAboveDrop {
+        /// The row, from 1.
+        row: usize,
+        /// Height of the drop, m.
+        from_m: f64,
+        /// Height after it, m.
+        to_m: f64,
+    };
+    /// A height is negative.
+    ContactUnclear: HeightBelowPlate {
+        /// The row, from 1.
+        row: usize,
+    };
+    /// No height has one after it.
+    NoImpact: NoReboundHeight;
     /// Intervals between rows that grow.
     ContactUnclear: GrowingIntervals {
         /// All intervals.
@@ -435,6 +469,13 @@ problems! {
     };
     /// Nothing states when samples were taken.
     NoSampleRate: NoClock;
+    /// A rate stands beside a decimation.
+    RateContradicts: RateBesideDecimation {
+        /// The rate, Hz.
+        rate_hz: f64,
+        /// How many samples each stored one stands for.
+        decimation: f64,
+    };
     /// The header states another step than the time axis has.
     RateContradicts: StepContradicts {
         /// In the header, s.
@@ -627,6 +668,8 @@ problems! {
     };
     /// No free decay was found.
     NoFreeDecay: NoDecayFound;
+    /// The motion does not swing.
+    NoFreeDecay: ComesToRest;
     /// Contact pulses without a jump of velocity, of a record that is identified.
     ContactWithoutVelocityJump: PulsesWithoutJump {
         /// Pulses without one.

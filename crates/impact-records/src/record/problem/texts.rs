@@ -143,6 +143,17 @@ message_table! { "problem": Problem;
     Self::GroupsOfRows { closed_s, impacts } =>
         length = Value::Number(1e3 * closed_s, 3),
         impacts = Value::Count(*impacts);
+    Self::HeightsTaken { impacts, drops, highest_m, lowest_m } =>
+        impacts = Value::Count(*impacts),
+        drops = Value::Count(*drops),
+        high = Value::Number(*highest_m, 3),
+        low = Value::Number(*lowest_m, 3);
+    Self::HeightsRise { rise, all } => rise = Value::Count(*rise), all = Value::Count(*all);
+    Self::ReboundAboveDrop { row, from_m, to_m } =>
+        row = Value::Count(*row),
+        from = Value::Number(*from_m, 3),
+        to = Value::Number(*to_m, 3);
+    Self::HeightBelowPlate { row } => row = Value::Count(*row);
     Self::EitherLine { first, second } =>
         first = Value::Name(first),
         second = Value::Name(second);
@@ -207,6 +218,9 @@ message_table! { "problem": Problem;
     Self::TooLateChannel { channel, by_s } =>
         channel = Value::Name(channel),
         by = Value::Number(*by_s, 6);
+    Self::RateBesideDecimation { rate_hz, decimation } =>
+        rate = Value::Shortest(*rate_hz),
+        decimation = Value::Shortest(*decimation);
     Self::StepContradicts { stated_s, measured_s } =>
         stated = Value::Shortest(*stated_s),
         measured = Value::Number(*measured_s, 6);
@@ -318,6 +332,9 @@ message_table! { "remedy": Remedy, key = remedy_key;
         scale = Value::Name(scale);
     Self(Problem::UnknownUnit { role, .. }) => role = in_campaign(*role);
     Self(Problem::NoUnit { role, .. }) => role = in_campaign(*role);
+    Self(Problem::RateBesideDecimation { rate_hz, decimation }) =>
+        rate = Value::Shortest(*rate_hz),
+        divided = Value::Shortest(rate_hz / decimation);
     Self(Problem::RowsAreChanges { axis, .. }) => axis = Value::Name(axis);
     Self(Problem::OppositeChannels { quantity, rate }) =>
         quantity = in_campaign(*quantity),

@@ -9,6 +9,7 @@ mod beat;
 mod blows;
 mod breaks;
 mod change;
+mod creep;
 mod descent;
 mod fits;
 mod friction;
@@ -30,6 +31,7 @@ use shape::Shape;
 use crate::signal::{robust, whole};
 
 pub use change::{Course, DampingLaw, Drift, LEAST_TESTED, PartOfDecay, RESOLVED};
+pub use creep::comes_to_rest;
 pub use friction::BesideFriction;
 pub use prepared::Beside;
 pub use watched::{MotionSignal, Watched};

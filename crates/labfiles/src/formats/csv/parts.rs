@@ -5,6 +5,7 @@ use crate::formats::csv::header::Header;
 use crate::formats::csv::time_axis::heads_pair;
 use crate::text::table::Kind;
 use crate::timing::{is_time_name, is_unit_of_time, numbers_rows};
+use crate::units::{Dimension, parse_unit};
 
 /// A table beside others, or the only one.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -62,7 +63,7 @@ pub(crate) fn find(
     let used: Vec<usize> = (0..kinds.len())
         .filter(|&i| filled(i) || header.names[i] != format!("column_{}", i + 1))
         .collect();
-    if let Some(parts) = lists_of_times(header, kinds, &used) {
+    if let Some(parts) = lists_of_runs(header, kinds, &used) {
         return Makeup::Runs(parts);
     }
     let blocks = blocks(&used, times, header);
@@ -260,12 +261,13 @@ fn parts_of(
     named.then_some(parts)
 }
 
-/// What the only column of a list of times is called whose heading names its run alone.
+/// What the only column of a list is called whose heading names its run alone: of times, and of heights.
 const TIMES: &str = "time";
+const HEIGHTS: &str = "height";
 
-/// Lists of times that are called after runs alone (`Throw 1 (ms)`, `Throw 2 (ms)`), with no other column but such that
+/// Lists of times or of heights that are called after runs alone (`Throw 1 (ms)`, `Throw 2 (ms)`), with no other column but such that
 /// count the rows: one time axis for all would be wrong.
-fn lists_of_times(header: &Header, kinds: &[Kind], used: &[usize]) -> Option<Vec<Part>> {
+fn lists_of_runs(header: &Header, kinds: &[Kind], used: &[usize]) -> Option<Vec<Part>> {
     let numbers = |c: &usize| kinds[*c] == Kind::Number;
     if !used.iter().all(numbers) {
         return None;
@@ -274,12 +276,20 @@ fn lists_of_times(header: &Header, kinds: &[Kind], used: &[usize]) -> Option<Vec
     let list = |column: usize| {
         let (bare, run) = without_run(&header.names[column])?;
         let unit = header.units[column].as_deref()?;
+        let length = parse_unit(unit).is_some_and(|u| u.dimension == Dimension::Length);
+        let name = if is_unit_of_time(unit) {
+            TIMES
+        } else if length {
+            HEIGHTS
+        } else {
+            return None;
+        };
         let part = || Part {
             name: run,
             columns: vec![column],
-            names: vec![TIMES.to_owned()],
+            names: vec![name.to_owned()],
         };
-        (bare.is_empty() && is_unit_of_time(unit)).then(part)
+        bare.is_empty().then(part)
     };
     let parts: Vec<Part> = lists.map(list).collect::<Option<_>>()?;
     let known = |(k, part): (usize, &Part)| parts[..k].iter().any(|p| p.name == part.name);

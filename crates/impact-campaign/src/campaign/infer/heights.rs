@@ -1,0 +1,163 @@
+//! Tables of heights: which columns contain those of drops and of the tops after impacts.
+
+use super::place::Place;
+use impact_records::record::ContactContent;
+use impact_records::signal::robust;
+use labfiles::units::{self, Dimension};
+use labfiles::{ChannelInfo, StoredType, timing, without_run};
+
+/// Fewest rows of heights below each other, and most rows.
+const FEWEST_BELOW: usize = 3;
+const MOST_ROWS: u64 = 400;
+/// Stems of the word for a height, lower case.
+const HEIGHTS: [&str; 7] = [
+    "height",
+    "rebound",
+    "höhe",
+    "hoehe",
+    "rückprall",
+    "hauteur",
+    "altezza",
+];
+/// Words in the names of what is computed from other columns.
+const COMPUTED: [&str; 5] = ["mean", "average", "avg", "mittel", "moyenne"];
+/// Part of the heights below each other that are below the one before.
+const MOSTLY: f64 = 0.6;
+/// Least fall from the second column to the third over that from the first to the second, in logarithms, of heights
+/// that follow from one another: repeated rebounds of one drop are alike.
+const FOLLOWS: f64 = 0.4;
+
+/// How a table states heights: the columns in their order, and what they contain.
+pub(super) struct Heights {
+    pub(super) columns: Vec<usize>,
+    pub(super) content: ContactContent,
+}
+
+/// The heights of a table that has nothing else but numbers of its rows and what is computed from them.
+pub(super) fn of(place: Place<'_>) -> Option<Heights> {
+    let channels = &place.set().channels;
+    let rows = channels.iter().map(|c| c.samples).max().unwrap_or(0);
+    let counts =
+        |c: &ChannelInfo| c.stored == StoredType::Text || c.unit.is_none() && numbers_rows(&c.name);
+    let used: Vec<usize> = (0..channels.len())
+        .filter(|i| !counts(&channels[*i]) && !called(&channels[*i], &COMPUTED))
+        .collect();
+    let named = used.iter().any(|i| called(&channels[*i], &HEIGHTS));
+    let lengths = used.iter().all(|i| may_be_height(&channels[*i]));
+    if rows > MOST_ROWS || !named || !lengths {
+        return None;
+    }
+    let values: Vec<Vec<f64>> = used.iter().map(|i| place.numbers(*i)).collect();
+    let content = match values.as_slice() {
+        [] => None,
+        [below] => falls(below).then_some(ContactContent::Heights),
+        [first, second] => below(first, second).then_some(ContactContent::Heights),
+        [first, second, third, ..] => {
+            let all = values[1..].iter().all(|column| below(first, column));
+            let follow = fall(second, third) > FOLLOWS * fall(first, second);
+            all.then_some(if follow {
+                ContactContent::Heights
+            } else {
+                ContactContent::Rebounds
+            })
+        }
+    };
+    Some(Heights {
+        columns: used,
+        content: content?,
+    })
+}
+
+/// Whether a column numbers the rows, or the trials.
+fn numbers_rows(name: &str) -> bool {
+    let run = without_run(&format!("{} 1", name.trim()));
+    timing::numbers_rows(name) || run.is_some_and(|(bare, _)| bare.is_empty())
+}
+
+fn called(channel: &ChannelInfo, stems: &[&str]) -> bool {
+    let name = channel.name.to_lowercase();
+    stems.iter().any(|stem| name.contains(stem))
+}
+
+/// Whether a column is a length by its unit or, without one, a height by its name or a trial of one.
+fn may_be_height(channel: &ChannelInfo) -> bool {
+    match units::unit_of(channel.unit.as_deref(), &channel.name) {
+        Some(unit) => unit.dimension == Dimension::Length,
+        None => {
+            let run = without_run(&channel.name);
+            channel.unit.is_none()
+                && (called(channel, &HEIGHTS) || run.is_some_and(|(bare, _)| bare.is_empty()))
+        }
+    }
+}
+
+/// Whether heights below each other are those of a mass that bounces.
+fn falls(values: &[f64]) -> bool {
+    let filled: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    let lower = filled.windows(2).filter(|w| w[1] < w[0]).count();
+    filled.len() >= FEWEST_BELOW && lower as f64 >= MOSTLY * (filled.len() - 1) as f64
+}
+
+/// Whether each height of a column is below that in another.
+fn below(before: &[f64], after: &[f64]) -> bool {
+    let pairs = before.iter().zip(after);
+    let mut filled = pairs.filter(|(b, a)| b.is_finite() && a.is_finite());
+    filled.all(|(b, a)| *a > 0.0 && a < b)
+}
+
+/// The typical fall from one column to another, as a logarithm.
+fn fall(before: &[f64], after: &[f64]) -> f64 {
+    let each = before.iter().zip(after).map(|(b, a)| (b / a).ln());
+    let each: Vec<f64> = each.filter(|l| l.is_finite()).collect();
+    robust::median(&each).unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The heights of a text.
+    fn of_text(text: &str) -> Option<(Vec<usize>, ContactContent)> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("heights.csv");
+        std::fs::write(&path, text).unwrap();
+        let source = labfiles::open(&path).unwrap();
+        let place = Place {
+            source: source.as_ref(),
+            dataset: 0,
+        };
+        of(place).map(|found| (found.columns, found.content))
+    }
+
+    #[test]
+    fn heights_are_pairs_rows_repeated_rebounds_or_a_column() {
+        use ContactContent::{Heights, Rebounds};
+        let pairs =
+            "trial,drop_height_cm,rebound_height_cm\n1,50.0,27.6\n2,75.0,41.7\n3,100.0,55.7\n";
+        assert_eq!(of_text(pairs), Some((vec![1, 2], Heights)));
+        let german = "Fallhöhe (cm);Sprunghöhe (cm)\n50;27\n75;41\n100;55\n";
+        assert_eq!(of_text(german), Some((vec![0, 1], Heights)));
+        let along = "height 0 (m),height 1 (m),height 2 (m)\n1.0,0.64,0.41\n1.0,0.63,0.40\n";
+        assert_eq!(of_text(along), Some((vec![0, 1, 2], Heights)));
+        let trials = "Drop height (cm),Trial 1 (cm),Trial 2 (cm),Trial 3 (cm),Average (cm)\n\
+                      100,64,63,65,64\n80,51,50.5,52,51.2\n60,38,38.5,39,38.5\n";
+        assert_eq!(of_text(trials), Some((vec![0, 1, 2, 3], Rebounds)));
+        let column = "bounce,height (cm)\n0,100\n1,64.2\n2,40.9\n3,26.0\n";
+        assert_eq!(of_text(column), Some((vec![1], Heights)));
+    }
+
+    #[test]
+    fn other_tables_are_none_of_heights() {
+        assert_eq!(
+            of_text("height (cm),time (s)\n50,27\n75,41\n100,55\n"),
+            None
+        );
+        assert_eq!(of_text("volts,mm\n3.0,0.5\n2.1,0.3\n1.9,0.1\n"), None);
+        assert_eq!(
+            of_text("height (cm),mass (kg)\n170,70\n180,80\n190,90\n"),
+            None
+        );
+        // of people
+        assert_eq!(of_text("height (cm)\n170\n180\n165\n190\n"), None);
+    }
+}
