@@ -1,6 +1,7 @@
 //! What an identification starts from, and what the blocks of residuals of several methods have in common.
 
 pub mod direction;
+pub mod forces;
 pub mod high_pass;
 pub mod influence;
 pub mod options;

@@ -91,11 +91,14 @@ impl StrengthUnit {
 /// What an effect acts on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Acts {
-    /// The values of an orbit, by a small extra acceleration ([`crate::evidence`]) or at the channel, so
-    /// that its slopes are those of a perturbation.
-    Values,
-    /// The parameters that a record has of its own ([`super::own`]).
-    Parameters,
+    /// The masses, by a small extra acceleration along an orbit ([`crate::evidence::forces`]).
+    Masses,
+    /// What a channel shows of a mass ([`crate::evidence::pickup`]).
+    Channel,
+    /// f0, β or `x_st` that a record has of its own ([`super::own`]).
+    Oscillator,
+    /// R and the clearance that a record has of its own, so that it has no effect without impacts ([`super::own`]).
+    Impacts,
 }
 
 /// What is known of an effect.
@@ -153,56 +156,56 @@ macro_rules! effects {
 effects! {
     #[default]
     /// cos 2θ in the driving force, relative to F0
-    SecondHarmonicCos = "drive_harmonic_2_cos": Harmonics, 5e-3, Percent, Values;
+    SecondHarmonicCos = "drive_harmonic_2_cos": Harmonics, 5e-3, Percent, Masses;
     /// sin 2θ
-    SecondHarmonicSin = "drive_harmonic_2_sin": Harmonics, 5e-3, Percent, Values;
+    SecondHarmonicSin = "drive_harmonic_2_sin": Harmonics, 5e-3, Percent, Masses;
     /// cos 3θ
-    ThirdHarmonicCos = "drive_harmonic_3_cos": Harmonics, 5e-3, Percent, Values;
+    ThirdHarmonicCos = "drive_harmonic_3_cos": Harmonics, 5e-3, Percent, Masses;
     /// sin 3θ
-    ThirdHarmonicSin = "drive_harmonic_3_sin": Harmonics, 5e-3, Percent, Values;
+    ThirdHarmonicSin = "drive_harmonic_3_sin": Harmonics, 5e-3, Percent, Masses;
     /// Relative change of the force per unit of η, about η = 1
-    ForceSlope = "force_slope": ForceFrequency, 2e-2, Percent, Parameters;
+    ForceSlope = "force_slope": ForceFrequency, 2e-2, Percent, Oscillator;
     /// Relative change of the force per unit of (η − 1)²
-    ForceCurve = "force_curve": ForceFrequency, 1e-2, Percent, Parameters;
+    ForceCurve = "force_curve": ForceFrequency, 1e-2, Percent, Oscillator;
     /// Relative rise of the springs' secant stiffness at the greatest displacement measured
-    Hardening = "hardening": Hardening, 5e-3, Percent, Values;
+    Hardening = "hardening": Hardening, 5e-3, Percent, Masses;
     /// Coulomb friction relative to F0
-    Friction = "friction": Friction, 5e-3, Percent, Values;
+    Friction = "friction": Friction, 5e-3, Percent, Masses;
     /// Relative change of f0 from the first record to the last
-    FrequencyDrift = "frequency_drift": Drift, 3e-3, Percent, Parameters;
+    FrequencyDrift = "frequency_drift": Drift, 3e-3, Percent, Oscillator;
     /// Relative change of f0 in the middle of the campaign against both ends
-    FrequencyBend = "frequency_drift_bend": Drift, 1e-3, Percent, Parameters;
+    FrequencyBend = "frequency_drift_bend": Drift, 1e-3, Percent, Oscillator;
     /// Relative change of β from the first record to the last
-    DampingDrift = "damping_drift": Drift, 2e-2, Percent, Parameters;
+    DampingDrift = "damping_drift": Drift, 2e-2, Percent, Oscillator;
     /// Relative change of `x_st` (the force) from the first record to the last
-    DeflectionDrift = "deflection_drift": Drift, 5e-3, Percent, Parameters;
+    DeflectionDrift = "deflection_drift": Drift, 5e-3, Percent, Oscillator;
     /// Length of a contact, ms
-    ContactDuration = "contact_duration_ms": ContactDuration, 0.6, Milliseconds, Parameters;
+    ContactDuration = "contact_duration_ms": ContactDuration, 0.6, Milliseconds, Impacts;
     /// Relative departure of what a contact's length makes of R from that of a spring and a damper: as laws of
     /// contact depart from it
-    ContactLaw = "contact_law": ContactDuration, 0.45, Percent, Parameters;
+    ContactLaw = "contact_law": ContactDuration, 0.45, Percent, Impacts;
     /// What the masses' acceleration during a contact adds to the distance that they press into each
     /// other: relative, per unit of acceleration × duration / approach speed
-    ContactReach = "contact_reach": ContactDuration, 0.3, Percent, Parameters;
+    ContactReach = "contact_reach": ContactDuration, 0.3, Percent, Impacts;
     /// How a contact's length falls with the approach speed: the exponent, 0 of a linear spring, 1/5 of round bodies
     /// (Hertz), over the campaign's typical speed
-    ContactSpeed = "contact_speed": ContactDuration, 0.2, Percent, Parameters;
+    ContactSpeed = "contact_speed": ContactDuration, 0.2, Percent, Impacts;
     /// Change of R per factor e of the approach speed, about the median speed of the impacts
-    RestitutionSpeed = "restitution_speed": RestitutionSpeed, 2e-2, One, Parameters;
+    RestitutionSpeed = "restitution_speed": RestitutionSpeed, 2e-2, One, Impacts;
     /// Drag that grows with the square of the velocity, relative to F0 at the velocity 2πf0 times the
     /// greatest displacement measured
-    Drag = "drag": Drag, 1e-2, Percent, Values;
+    Drag = "drag": Drag, 1e-2, Percent, Masses;
     /// Relative rise of the springs' secant stiffness from rest to the greatest displacement measured
     /// toward the other mass, and fall as far on the other side
-    SpringAsymmetry = "spring_asymmetry": SpringAsymmetry, 5e-3, Percent, Values;
+    SpringAsymmetry = "spring_asymmetry": SpringAsymmetry, 5e-3, Percent, Masses;
     /// Share of the damping at η = 1 that is hysteretic (structural): it falls with the frequency
-    HystereticDamping = "hysteretic_damping": HystereticDamping, 0.1, Percent, Parameters;
+    HystereticDamping = "hysteretic_damping": HystereticDamping, 0.1, Percent, Oscillator;
     /// Change of every clearance from the first record to the last, relative to `x_st`
-    ClearanceDrift = "clearance_drift": Drift, 1e-2, Percent, Parameters;
+    ClearanceDrift = "clearance_drift": Drift, 1e-2, Percent, Impacts;
     /// What the channel of mass x picks up from the drive, relative to its greatest amplitude
-    PickupX = "pickup_x": Pickup, 1e-3, Percent, Values;
+    PickupX = "pickup_x": Pickup, 1e-3, Percent, Channel;
     /// The same of mass y
-    PickupY = "pickup_y": Pickup, 1e-3, Percent, Values;
+    PickupY = "pickup_y": Pickup, 1e-3, Percent, Channel;
 }
 
 impl Effect {
@@ -236,9 +239,14 @@ impl Effect {
         self.row().unit
     }
 
+    /// What it acts on.
+    pub fn acts(self) -> Acts {
+        self.row().acts
+    }
+
     /// Whether it changes the values of an orbit; the others change the parameters of a record.
     pub fn is_perturbation(self) -> bool {
-        self.row().acts == Acts::Values
+        matches!(self.acts(), Acts::Masses | Acts::Channel)
     }
 
     /// Name in `identification.json`.

@@ -205,17 +205,7 @@ impl Parameters {
                 Effect::RestitutionSpeed => only(0, at.log_speed()),
                 Effect::ContactLaw => only(0, contact_s * of_law),
                 Effect::ContactReach => clearance(contact_s * speed * contact.reach * pressed),
-                // of the values of an orbit, or at the channel
-                Effect::SecondHarmonicCos
-                | Effect::SecondHarmonicSin
-                | Effect::ThirdHarmonicCos
-                | Effect::ThirdHarmonicSin
-                | Effect::Hardening
-                | Effect::Friction
-                | Effect::Drag
-                | Effect::SpringAsymmetry
-                | Effect::PickupX
-                | Effect::PickupY => None,
+                _ => None,
             },
             _ => None,
         }
@@ -301,6 +291,7 @@ mod tests {
     use super::*;
     use crate::methods::impacts::block::PUSH_OF_LAWS;
     use crate::parameters::contact_laws::{Coefficients, Law};
+    use crate::parameters::effect::Acts;
 
     /// R, g and h from an independent program in Python that integrates flights and contact from first touch
     /// to last (Runge–Kutta), t = 0.004 natural radians.
@@ -399,5 +390,35 @@ mod tests {
             "{found:?}"
         );
         assert!((drag / press / DRAG_OF_LAW - 1.0).abs() < 0.25, "{found:?}");
+    }
+
+    #[test]
+    fn prop_each_effect_changes_of_a_record_what_its_row_has_it_act_on() {
+        let p = Parameters {
+            effects: [0.1; Effect::COUNT],
+            ..Parameters::symmetric(0.8, 12.6, 0.07, 1e-3)
+        };
+        let at = Circumstances {
+            frequency_hz: 14.0,
+            place: 0.3,
+            approach_m_s: 0.1,
+            typical_approach_m_s: 0.07,
+            press_per_s: 40.0,
+            masses: 2.0,
+            ..Circumstances::default()
+        };
+        for effect in Effect::ALL {
+            let slope = p.own_slope(&at, Coordinate::Effect(*effect));
+            let acts = slope.map(|slope| {
+                let [restitution, oscillator @ ..] = slope.physical;
+                if oscillator.iter().any(|s| *s != 0.0) {
+                    return Acts::Oscillator;
+                }
+                assert!(restitution != 0.0 || slope.clearance_m != 0.0);
+                Acts::Impacts
+            });
+            let expected = Some(effect.acts()).filter(|_| !effect.is_perturbation());
+            assert_eq!(acts, expected, "{effect:?}");
+        }
     }
 }

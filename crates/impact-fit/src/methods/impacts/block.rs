@@ -1,7 +1,7 @@
 //! R from the speeds after over before each impact.
 
 use crate::evidence::pickup::Pickups;
-use crate::parameters::effect::{Effect, EffectKind};
+use crate::parameters::effect::Effect;
 use crate::parameters::own::log_speed;
 use crate::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
 use crate::solver::Block;
@@ -316,7 +316,7 @@ impl ImpactBlock {
         }
     }
 
-    /// Whether the speeds depend on a corner, by its index.
+    /// Whether an effect is what the speeds pick up of the drive.
     fn picks_up(&self, effect: Effect) -> bool {
         let place = PICKUPS.iter().position(|p| *p == effect);
         let picked_up = |i| self.pairs.iter().any(|p| p.picked_up_m_s[i] != 0.0);
@@ -475,19 +475,8 @@ impl Block for ImpactBlock {
     fn touches(&self, coordinate: Coordinate) -> bool {
         match coordinate {
             Coordinate::Corner(index) => self.has_corner(index),
-            Coordinate::Effect(effect) => match effect.kind() {
-                EffectKind::RestitutionSpeed => !self.free,
-                EffectKind::Pickup => self.picks_up(effect),
-                EffectKind::Harmonics
-                | EffectKind::ForceFrequency
-                | EffectKind::Hardening
-                | EffectKind::Friction
-                | EffectKind::Drift
-                | EffectKind::ContactDuration
-                | EffectKind::Drag
-                | EffectKind::SpringAsymmetry
-                | EffectKind::HystereticDamping => false,
-            },
+            Coordinate::Effect(Effect::RestitutionSpeed) => !self.free,
+            Coordinate::Effect(effect) => self.picks_up(effect),
             _ => coordinate == Coordinate::Restitution,
         }
     }

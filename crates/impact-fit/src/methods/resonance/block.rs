@@ -3,16 +3,17 @@
 use nalgebra::Complex;
 
 use crate::evidence::direction::{change, relative_length};
+use crate::evidence::forces::{self, Forces, Lengths, Resistance};
 use crate::evidence::pickup::Pickups;
 use crate::evidence::shared_error::Whitening;
-use crate::parameters::effect::{Effect, EffectKind};
+use crate::parameters::effect::{Acts, Effect};
 use crate::parameters::own::Circumstances;
 use crate::parameters::{Coordinate, Parameters, gain_index};
 use crate::solver::Block;
 use crate::solver::group::Group;
 use impact_oscillator::model::flight::{Drive, dynamic_stiffness, forced_amplitude};
 use impact_oscillator::model::params::{Machine, Oscillator};
-use impact_oscillator::model::sensitivity::{Change, forced_slope};
+use impact_oscillator::model::sensitivity::{MassChange, forced_slope};
 use impact_records::event::RigKind;
 use impact_records::motion::Observation;
 use impact_records::motion::Response;
@@ -230,7 +231,7 @@ struct Predicted {
     /// Hardening, friction and drag.
     resistance: Resistance,
     /// Their forces at the amplitude for effects of strength 1.
-    forces: [Complex<f64>; EXTRA.len()],
+    forces: Forces,
     /// What further forces change of the amplitude.
     balance: Balance,
     oscillator: Oscillator,
@@ -269,66 +270,6 @@ fn respond(
         unit,
         order: f64::from(order),
         over_corner: Complex::new(0.0, 0.0),
-    }
-}
-
-/// The effects that change an impactless response, in the order of [`Resistance::coefficients`].
-const EXTRA: [Effect; 3] = [Effect::Hardening, Effect::Friction, Effect::Drag];
-
-/// Forces per mass of hardening springs, friction and drag by their describing functions: a force εX³ acts at
-/// the drive's frequency like ¾ε|F|²F, one of sign X' like (4/π)iF/|F|, one of |X'|X' like (8/3π)iη²|F|F.
-/// Krylov and Bogoliubov's method of equivalent linearisation.
-#[derive(Debug, Clone, Copy, Default)]
-struct Resistance {
-    /// ¾ε, (4/π) of the friction, (8/3π)η² of the drag, each for an effect of strength 1.
-    coefficients: [f64; EXTRA.len()],
-    /// Strengths of the effects.
-    strengths: [f64; EXTRA.len()],
-}
-
-impl Resistance {
-    /// `per_unit`: ε, friction and drag for effects of strength 1.
-    fn new(per_unit: [f64; EXTRA.len()], strengths: [f64; EXTRA.len()], eta: f64) -> Self {
-        use std::f64::consts::PI;
-        let [hardening, friction, drag] = per_unit;
-        let coefficients = [
-            0.75 * hardening,
-            4.0 / PI * friction,
-            8.0 / (3.0 * PI) * eta * eta * drag,
-        ];
-        Self {
-            coefficients,
-            strengths,
-        }
-    }
-
-    /// The forces at amplitude F for effects of strength 1.
-    fn forces(&self, amplitude: Complex<f64>) -> [Complex<f64>; EXTRA.len()] {
-        let size = amplitude.norm();
-        let [hardening, friction, drag] = self.coefficients;
-        [
-            amplitude * (hardening * size * size),
-            amplitude * Complex::new(0.0, friction / size),
-            amplitude * Complex::new(0.0, drag * size),
-        ]
-    }
-
-    fn force(&self, amplitude: Complex<f64>) -> Complex<f64> {
-        let forces = self.forces(amplitude).into_iter().zip(self.strengths);
-        forces.map(|(force, strength)| force * strength).sum()
-    }
-
-    /// a and b of the force's differential a dF + b dF*.
-    fn slope(&self, amplitude: Complex<f64>) -> [Complex<f64>; 2] {
-        let size = amplitude.norm();
-        let [hardening, friction, drag] =
-            [0, 1, 2].map(|i| self.coefficients[i] * self.strengths[i]);
-        let along = Complex::new(
-            2.0 * hardening * size * size,
-            0.5 * friction / size + 1.5 * drag * size,
-        );
-        let across = Complex::new(hardening, 0.5 * drag / size - 0.5 * friction / size.powi(3));
-        [along, across * amplitude * amplitude]
     }
 }
 
@@ -390,10 +331,8 @@ pub fn predicted(
 }
 
 impl Predicted {
-    /// With the effects of the campaign; `per_unit` holds ε and the other forces of effects of strength 1.
-    fn with_effects(self, parameters: &Parameters, eta: f64, per_unit: [f64; EXTRA.len()]) -> Self {
-        let strengths = EXTRA.map(|e| parameters.effect(e));
-        let resistance = Resistance::new(per_unit, strengths, eta);
+    /// With the effects of the campaign.
+    fn with_effects(self, resistance: Resistance) -> Self {
         let dynamic = self.balance.dynamic;
         let amplitude = balanced(dynamic, self.amplitude, &resistance);
         Self {
@@ -419,43 +358,35 @@ impl Predicted {
         }
     }
 
-    /// Slope over the strength of the effect at a place of [`EXTRA`].
-    fn over_effect(&self, place: usize) -> Complex<f64> {
-        self.balance.yields(-self.forces[place]) * self.unit
+    /// Slope over the strength of an effect on the mass.
+    fn over_effect(&self, effect: Effect) -> Complex<f64> {
+        forces::place(effect).map_or(Complex::default(), |place| {
+            self.balance.yields(-self.forces[place]) * self.unit
+        })
     }
 
     /// Slope where mass and η change, and the unit of length by a share; the drive's frequency, and with
-    /// it the unit of time, does not. `friction_over_length`: power of the inverse of that unit that
-    /// friction and drag, which are stated over the campaign's unit, go with: 1 where that of the record
-    /// alone changes, 0 where both do.
+    /// it the unit of time, does not; see [`Resistance::growth`] for `friction_over_length`.
     fn along(
         &self,
-        (of_y, change): (bool, &Change),
-        eta: f64,
-        (length, friction_over_length): (f64, f64),
+        mass: &MassChange,
+        [eta, eta_change]: [f64; 2],
+        length: f64,
+        friction_over_length: f64,
     ) -> Complex<f64> {
-        let mass = if of_y { &change.y } else { &change.x };
-        let linear = forced_slope(&self.oscillator, mass, self.amplitude, [eta, change.eta]);
+        let linear = forced_slope(&self.oscillator, mass, self.amplitude, [eta, eta_change]);
         let stiffness = mass.stiffness_per_mass / self.oscillator.stiffness_per_mass();
-        let relative = [
-            stiffness + 2.0 * length,
-            -length * friction_over_length,
-            2.0 * change.eta / eta + length * (2.0 - friction_over_length),
-        ];
-        let forces = self.forces.into_iter();
-        let forces = forces.zip(self.resistance.strengths).zip(relative);
-        let grown: Complex<f64> = forces.map(|((force, s), slope)| force * s * slope).sum();
+        let shares = [stiffness, eta_change / eta, length];
+        let grown = self
+            .resistance
+            .growth(&self.forces, shares, friction_over_length);
         let missing = self.balance.dynamic * linear - grown;
         self.balance.yields(missing) * self.unit + self.value * length
     }
 
     /// Slope over the logarithm of the drive's frequency.
     fn over_frequency(&self, eta: f64) -> Complex<f64> {
-        let change = Change {
-            eta,
-            ..Change::default()
-        };
-        self.along((false, &change), eta, (0.0, 0.0)) + self.value * self.order
+        self.along(&MassChange::default(), [eta, eta], 0.0, 0.0) + self.value * self.order
     }
 }
 
@@ -480,11 +411,13 @@ impl Model<'_> {
     /// Slopes of the responses over a coordinate of the machine and its setting.
     fn along(&self, coordinate: Coordinate, friction_over_length: f64) -> Vec<Complex<f64>> {
         let change = change(&self.machine, self.eta, 0.0, coordinate);
-        let length = (relative_length(coordinate), friction_over_length);
+        let length = relative_length(coordinate);
         let pairs = self.point.responses.iter().zip(&self.responses);
-        pairs
-            .map(|(r, p)| p.along((r.role.is_of_y(), &change), self.eta, length))
-            .collect()
+        let along = |(r, p): (&Response, &Predicted)| {
+            let mass = [&change.x, &change.y][usize::from(r.role.is_of_y())];
+            p.along(mass, [self.eta, change.eta], length, friction_over_length)
+        };
+        pairs.map(along).collect()
     }
 
     /// Those over the record's own coordinates; see [`Predicted::along`] for `friction_over_length`.
@@ -500,10 +433,11 @@ impl Model<'_> {
             Coordinate::Gain(_) | Coordinate::Corner(_) | Coordinate::Delay(_) => {
                 self.over_channel(coordinate)
             }
-            Coordinate::Effect(Effect::Hardening) => self.over_force(0),
-            Coordinate::Effect(Effect::Friction) => self.over_force(1),
-            Coordinate::Effect(Effect::Drag) => self.over_force(2),
-            Coordinate::Effect(effect @ (Effect::PickupX | Effect::PickupY)) => {
+            Coordinate::Effect(effect) if effect.acts() == Acts::Masses => {
+                let responses = self.responses.iter();
+                responses.map(|p| p.over_effect(effect)).collect()
+            }
+            Coordinate::Effect(effect) if effect.acts() == Acts::Channel => {
                 let responses = self.point.responses.iter();
                 let unit = |r: &Response| self.pickups.unit(effect, r.role);
                 let unit = |r| Complex::from(unit(r) * self.point.drive_amplitude);
@@ -534,11 +468,6 @@ impl Model<'_> {
             }
         }
         sum
-    }
-
-    fn over_force(&self, place: usize) -> Vec<Complex<f64>> {
-        let responses = self.responses.iter();
-        responses.map(|p| p.over_effect(place)).collect()
     }
 
     /// Over the gain, the corner or the delay of one channel.
@@ -578,18 +507,18 @@ impl ResonanceBlock {
         let (own, _) = parameters.own(&at);
         let machine = own.machine(self.rig);
         let setting = [point.frequency_hz, point.drive_amplitude];
-        let length_m = own.static_deflection_m * point.drive_amplitude;
-        let hardening = (length_m / self.reach_m).powi(2);
-        let friction = parameters.static_deflection_m / length_m;
-        let drag = friction * hardening;
+        let lengths = Lengths {
+            unit_m: own.static_deflection_m * point.drive_amplitude,
+            deflection_m: parameters.static_deflection_m,
+            reach_m: self.reach_m,
+        };
         let eta = point.frequency_hz / own.natural_frequency_hz;
         let responses = point.responses.iter();
         let responses = responses
             .map(|r| {
                 let found = respond(&own, &machine, r.role, setting);
-                let stiffness = found.oscillator.stiffness_per_mass();
-                let per_unit = [stiffness * hardening, friction, drag];
-                let found = found.with_effects(parameters, eta, per_unit);
+                let resistance = Resistance::new(&found.oscillator, parameters, &lengths, eta);
+                let found = found.with_effects(resistance);
                 match r.high_pass_hz {
                     Some(stated_hz) => {
                         let corner = own.corner(r.role);
@@ -694,20 +623,12 @@ impl Block for ResonanceBlock {
             Coordinate::Restitution
             | Coordinate::MassAsymmetry
             | Coordinate::ScrewZero
-            | Coordinate::Gap(_)
-            | Coordinate::Effect(Effect::ClearanceDrift) => false,
-            Coordinate::Effect(effect) => match effect.kind() {
-                EffectKind::Harmonics
-                | EffectKind::ContactDuration
-                | EffectKind::RestitutionSpeed
-                | EffectKind::SpringAsymmetry => false,
-                EffectKind::ForceFrequency
-                | EffectKind::Hardening
-                | EffectKind::Friction
-                | EffectKind::Drift
-                | EffectKind::Drag
-                | EffectKind::HystereticDamping => true,
-                EffectKind::Pickup => self.pickups.has(effect),
+            | Coordinate::Gap(_) => false,
+            Coordinate::Effect(effect) => match effect.acts() {
+                Acts::Masses => forces::place(effect).is_some(),
+                Acts::Channel => self.pickups.has(effect),
+                Acts::Oscillator => true,
+                Acts::Impacts => false,
             },
             _ => true,
         }

@@ -7,7 +7,7 @@ use crate::evidence::waveform::{Phases, Terms};
 use crate::methods::trajectories::nearest_orbit::NearestOrbit;
 use crate::methods::trajectories::record::{Perturbation, TrajectoryRecord};
 use crate::methods::trajectories::record_motion::{Column, RecordMotion, Slopes};
-use crate::parameters::effect::{Effect, EffectKind, Effects};
+use crate::parameters::effect::{Acts, Effect, Effects};
 use crate::parameters::{Coordinate, Parameters};
 use crate::solver::Block;
 use crate::solver::group::Group;
@@ -194,7 +194,7 @@ impl TrajectoryBlock {
         }
         let allowed = self.effects.iter().filter(|e| e.is_perturbation());
         let (picked_up, forces): (Vec<Effect>, Vec<Effect>) =
-            allowed.partition(|e| e.kind() == EffectKind::Pickup);
+            allowed.partition(|e| e.acts() == Acts::Channel);
         let forces = forces.into_iter();
         let mut perturbations = motion.perturbations(&points, forces, self.reach_m);
         let picked_up = picked_up.into_iter().filter(|e| self.pickups.has(*e));

@@ -2,6 +2,7 @@
 
 use super::points::MotionPoints;
 use super::{ChannelMotion, Measured, RecordMotion, measured};
+use crate::evidence::forces::{Lengths, MassCourse, acceleration};
 use crate::evidence::pickup::Pickups;
 use crate::methods::trajectories::record::Perturbation;
 use crate::parameters::effect::Effect;
@@ -41,7 +42,7 @@ impl RecordMotion<'_> {
         let effects: Vec<Effect> = effects.collect();
         let changes = effects.chunks(TOGETHER);
         changes
-            .flat_map(|together| self.perturbed(points, &course, (together, reach_m)))
+            .flat_map(|together| self.perturbed(points, &course, together, reach_m))
             .collect()
     }
 
@@ -83,13 +84,24 @@ impl RecordMotion<'_> {
         &self,
         points: &MotionPoints<'_>,
         course: &Course,
-        (effects, reach_m): (&[Effect], f64),
+        effects: &[Effect],
+        reach_m: f64,
     ) -> Vec<Perturbation> {
+        let lengths = Lengths {
+            unit_m: self.own.static_deflection_m * self.record.drive_amplitude,
+            deflection_m: self.common.static_deflection_m,
+            reach_m,
+        };
         let responses = course.masses.each_ref().map(|mass| {
             let (oscillator, states) = mass.as_ref()?;
+            let mass = MassCourse {
+                oscillator,
+                states,
+                turns: &course.turns,
+            };
             let mut p = vec![[0.0; TOGETHER]; states.len()];
             for (k, effect) in effects.iter().enumerate() {
-                let own = self.accelerations(oscillator, states, &course.turns, (*effect, reach_m));
+                let own = acceleration(*effect, &mass, &lengths);
                 p.iter_mut().zip(own).for_each(|(p, own)| p[k] = own);
             }
             Some(Responses::new(oscillator, course.grid, &p))
@@ -104,7 +116,7 @@ impl RecordMotion<'_> {
         let mut place = 0;
         for (channel, times) in self.channels.iter().zip(points.times()) {
             if let Some(responses) = &responses[usize::from(channel.role.is_of_y())] {
-                self.add_own((channel, times), responses, (&mut changes, place));
+                self.add_own(channel, times, responses, &mut changes, place);
             }
             place += times.len();
         }
@@ -120,9 +132,11 @@ impl RecordMotion<'_> {
     /// Add to changes, from a place on, what the responses of a channel's mass are at its points, SI.
     fn add_own(
         &self,
-        (channel, times): (&ChannelMotion, &[f64]),
+        channel: &ChannelMotion,
+        times: &[f64],
         responses: &Responses,
-        (changes, place): (&mut [Vec<f64>], usize),
+        changes: &mut [Vec<f64>],
+        place: usize,
     ) {
         let mut seen = match measured(channel.role) {
             Measured::Displacement => responses.displacements(),
@@ -140,70 +154,4 @@ impl RecordMotion<'_> {
             all.for_each(|(change, own)| change[place + i] += unit * own);
         }
     }
-
-    /// The extra acceleration of one mass at the nodes, per unit of an effect's strength.
-    fn accelerations(
-        &self,
-        oscillator: &Oscillator,
-        states: &[[f64; 2]],
-        turns: &[C64],
-        (effect, reach_m): (Effect, f64),
-    ) -> Vec<f64> {
-        let length_m = self.own.static_deflection_m * self.record.drive_amplitude;
-        let force = oscillator.drive_per_mass();
-        let cosine = |order: u32| turns.iter().map(move |turn| force * turn.powu(order).re);
-        let sine = |order: u32| turns.iter().map(move |turn| force * turn.powu(order).im);
-        match effect {
-            Effect::SecondHarmonicCos => cosine(2).collect(),
-            Effect::SecondHarmonicSin => sine(2).collect(),
-            Effect::ThirdHarmonicCos => cosine(3).collect(),
-            Effect::ThirdHarmonicSin => sine(3).collect(),
-            Effect::Hardening => {
-                let share = oscillator.stiffness_per_mass() * (length_m / reach_m).powi(2);
-                states.iter().map(|s| -share * s[0].powi(3)).collect()
-            }
-            Effect::Friction => {
-                let force = self.common.static_deflection_m / length_m;
-                friction(states).iter().map(|p| force * p).collect()
-            }
-            Effect::Drag => {
-                let share = self.common.static_deflection_m * length_m / reach_m.powi(2);
-                let drag = |s: &[f64; 2]| -share * s[1] * s[1].abs();
-                states.iter().map(drag).collect()
-            }
-            Effect::SpringAsymmetry => {
-                let share = oscillator.stiffness_per_mass() * length_m / reach_m;
-                states.iter().map(|s| -share * s[0].powi(2)).collect()
-            }
-            // at the channel
-            Effect::PickupX
-            | Effect::PickupY
-            // of the record's own parameters
-            | Effect::ForceSlope
-            | Effect::ForceCurve
-            | Effect::FrequencyDrift
-            | Effect::FrequencyBend
-            | Effect::DampingDrift
-            | Effect::DeflectionDrift
-            | Effect::ContactDuration
-            | Effect::ContactLaw
-            | Effect::ContactReach
-            | Effect::ContactSpeed
-            | Effect::RestitutionSpeed
-            | Effect::HystereticDamping
-            | Effect::ClearanceDrift => vec![0.0; states.len()],
-        }
-    }
-}
-
-/// Coulomb friction of unit size, −sign X', at the nodes; where X' changes its sign, the mean over
-/// the node's neighbourhood.
-fn friction(states: &[[f64; 2]]) -> Vec<f64> {
-    let change = |k: usize| {
-        let (a, b) = (k.saturating_sub(1), (k + 1).min(states.len() - 1));
-        0.5 * (states[b][1] - states[a][1]).abs()
-    };
-    let of =
-        |(k, s): (usize, &[f64; 2])| -(s[1] / change(k).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
-    states.iter().enumerate().map(of).collect()
 }
