@@ -94,8 +94,8 @@ impl Atlas {
         let mut study = self.machine.study(title)?;
         let plan = self.plan()?;
         study.regions.insert(NAME.into(), plan.clone());
-        if let Some(shard) = self.shard {
-            return self.part(&study, &plan, shard, verbosity);
+        if let Some((number, of)) = self.shard {
+            return self.part(&study, &plan, number, of, verbosity);
         }
         #[cfg(feature = "mpi")]
         if self.mpi {
@@ -133,7 +133,8 @@ impl Atlas {
         &self,
         study: &Study,
         plan: &RegionsPlan,
-        (number, of): (usize, usize),
+        number: usize,
+        of: usize,
         verbosity: Verbosity,
     ) -> Result<Exit, Failure> {
         let file = self
@@ -144,7 +145,7 @@ impl Atlas {
         interrupt::watch(self.out.folder().to_path_buf());
         // many parts of an array of jobs may share the folder: the lock is the part's own
         let _lock = Lock::take(&self.out.folder().join(format!(".part-{number}")))?;
-        let part = computed(study, plan, (number, of))?;
+        let part = computed(study, plan, number, of)?;
         write_json_line(&file, &part)?;
         drop(_lock);
         let _ = std::fs::remove_dir(self.out.folder().join(format!(".part-{number}")));

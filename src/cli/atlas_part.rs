@@ -17,7 +17,8 @@ pub(super) const NAME: &str = "atlas";
 pub(super) fn computed(
     study: &Study,
     plan: &RegionsPlan,
-    (number, of): (usize, usize),
+    number: usize,
+    of: usize,
 ) -> Result<AtlasPart, Failure> {
     let request = AtlasRequest::new(study.machine(), plan.settings());
     let part = part(&request, number, of).map_err(|e| refused(&e))?;

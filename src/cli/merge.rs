@@ -70,7 +70,7 @@ pub(super) fn whole(
     ));
     let key = serde_json::to_string(&first.request)
         .map_err(|e| Failure::new(e.to_string(), "please report it with the command line"))?;
-    out.complete((&key, &first.study), "merge", verbosity, |context| {
+    out.complete(&key, &first.study, "merge", verbosity, |context| {
         Ok(write_atlas(&first.request, &maps, NAME, context)?)
     })
 }

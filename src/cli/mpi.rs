@@ -32,7 +32,8 @@ pub fn run(
     let own = computed(
         study,
         plan,
-        (rank.unsigned_abs() as usize, size.unsigned_abs() as usize),
+        rank.unsigned_abs() as usize,
+        size.unsigned_abs() as usize,
     );
     if rank != 0 {
         let part: PartResult = own.as_ref().map(Clone::clone).map_err(Failure::text);

@@ -92,7 +92,7 @@ impl Progress {
     /// Another stage begins; with `-v` the time of the one before is printed.
     fn stage(&self, stage: &'static str) {
         let now = Instant::now();
-        let ended = {
+        let (ended, begin) = {
             let mut running = self.stage.lock().unwrap_or_else(PoisonError::into_inner);
             if running.0 == stage {
                 return;
@@ -102,10 +102,10 @@ impl Progress {
         let total = self.bar.length().unwrap_or(0);
         self.pace.next(now, self.bar.position(), total);
         self.bar.set_message(stage);
-        self.bar.suspend(|| self.print_time(ended));
+        self.bar.suspend(|| self.print_time(ended, begin));
     }
 
-    fn print_time(&self, (stage, begin): (&'static str, Instant)) {
+    fn print_time(&self, stage: &'static str, begin: Instant) {
         let seconds = begin.elapsed().as_secs_f64();
         self.verbosity.detail(&format!("{stage}: {seconds:.2} s"));
     }
@@ -114,8 +114,8 @@ impl Progress {
 impl Drop for Progress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
-        let running = *self.stage.lock().unwrap_or_else(PoisonError::into_inner);
-        self.print_time(running);
+        let (running, begin) = *self.stage.lock().unwrap_or_else(PoisonError::into_inner);
+        self.print_time(running, begin);
     }
 }
 

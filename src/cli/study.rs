@@ -76,8 +76,7 @@ impl Study {
                 continue;
             }
             verbosity.info(&format!("{name}: {}", study.title));
-            let place = (folder.as_path(), text.as_str(), self.resume);
-            in_folder(place, "study", verbosity, |context| {
+            in_folder(&folder, &text, self.resume, "study", verbosity, |context| {
                 Ok(theory::run(&study, context)?)
             })?;
             write_bytes(&folder.join(COPY), text.as_bytes())?;

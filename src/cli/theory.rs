@@ -40,7 +40,7 @@ impl OutArgs {
         verbosity: Verbosity,
     ) -> Result<Exit, Failure> {
         let text = study_text(study)?;
-        self.complete((&text, &text), what, verbosity, |context| {
+        self.complete(&text, &text, what, verbosity, |context| {
             Ok(run(study, context)?)
         })
     }
@@ -52,7 +52,8 @@ impl OutArgs {
     /// [`Failure`] of the work, or where an output cannot be written.
     pub(super) fn complete(
         &self,
-        (key, study): (&str, &str),
+        key: &str,
+        study: &str,
         what: &'static str,
         verbosity: Verbosity,
         work: impl FnOnce(&StudyContext<'_>) -> Result<(), Failure>,
@@ -60,7 +61,7 @@ impl OutArgs {
         let folder = self.folder();
         let _lock = out_folder::take(folder, Work::Study)?;
         refuse_other_study(folder, study)?;
-        in_folder((folder, key, self.resume), what, verbosity, work)?;
+        in_folder(folder, key, self.resume, what, verbosity, work)?;
         let copy = folder.join(COPY);
         write_bytes(&copy, study.as_bytes())?;
         verbosity.info(&format!(
@@ -107,7 +108,9 @@ pub(super) fn study_text(study: &Study) -> Result<String, Failure> {
 /// # Errors
 /// [`Failure`] of the work, or where the folder cannot be written into.
 pub(super) fn in_folder(
-    (folder, key, resume): (&Path, &str, bool),
+    folder: &Path,
+    key: &str,
+    resume: bool,
     what: &'static str,
     verbosity: Verbosity,
     work: impl FnOnce(&StudyContext<'_>) -> Result<(), Failure>,

@@ -45,7 +45,7 @@ pub fn fitted(
 }
 
 /// Records of a rig without effects: two equal masses with R, f0 in Hz, β = 0.06 and `x_st` = 1 mm.
-pub fn recorded((restitution, f0): (f64, f64), count: usize, seed: u64) -> Vec<Record> {
+pub fn recorded(restitution: f64, f0: f64, count: usize, seed: u64) -> Vec<Record> {
     let laboratory = Laboratory {
         truth: Truth::symmetric(restitution, f0, 0.06, 1e-3),
         faults: Faults::default(),

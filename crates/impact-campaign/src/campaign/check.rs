@@ -164,8 +164,8 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
         let supported = supported
             .filter(|i| i.source == DetectionSource::Both)
             .count();
-        let pulses = (observed.unsupported_pulses, supported);
-        flags.extend(contact_without_jump(&record, pulses));
+        let unsupported = observed.unsupported_pulses;
+        flags.extend(contact_without_jump(&record, unsupported, supported));
     }
     let diagnostics = flags
         .iter()
@@ -190,7 +190,7 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
 }
 
 /// A contact that closes again and again while no velocity changes is no contact of the masses.
-fn contact_without_jump(record: &Record, (unsupported, supported): (usize, usize)) -> Option<Flag> {
+fn contact_without_jump(record: &Record, unsupported: usize, supported: usize) -> Option<Flag> {
     let channel = record.channel(Role::Contact)?;
     (unsupported >= 3 && unsupported > 2 * supported).then(|| {
         let problem = Problem::ContactsWithoutJump {

@@ -280,7 +280,8 @@ impl Blocks {
         &self,
         nominal: &Nominal,
         fitted: &[(&dyn Block, f64)],
-        (free, priors): (&mut Vec<Coordinate>, &mut Vec<Prior>),
+        free: &mut Vec<Coordinate>,
+        priors: &mut Vec<Prior>,
     ) {
         let touched = |c: &Coordinate| fitted.iter().any(|(block, _)| block.touches(*c));
         let gain = |coordinate: Coordinate| {

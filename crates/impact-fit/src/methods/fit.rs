@@ -46,12 +46,13 @@ pub(super) fn alone(
     blocks: &Blocks,
     nominal: &Nominal,
     tells: &[Coordinate],
-    (start, precision): (Parameters, Precision),
+    start: Parameters,
+    precision: Precision,
 ) -> FitResult {
     let mut free = tells.to_vec();
     let mut priors = wide_priors(&start, &free);
     let list = vec![(block, 1.0)];
-    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
+    blocks.add_nuisances(nominal, &list, &mut free, &mut priors);
     let problem = Problem {
         precision,
         ..blocks.problem(list, free, priors)

@@ -23,7 +23,8 @@ impl Selection<'_> {
         &self,
         problem: &Problem<'_>,
         present: &[Method],
-        (at, most): (&Parameters, usize),
+        at: &Parameters,
+        most: usize,
     ) -> (Places, bool) {
         let (mut owners, mut records) = (Vec::new(), Vec::new());
         let mut others = problem.priors_normal(at);

@@ -56,7 +56,7 @@ pub fn problem<'b>(
         }
         priors.push(restitution);
     }
-    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
+    blocks.add_nuisances(nominal, &list, &mut free, &mut priors);
     Some(blocks.problem(list, free, priors))
 }
 
@@ -109,7 +109,7 @@ mod tests {
     #[test]
     fn prop_more_freedom_never_costs_likelihood() {
         for seed in [5, 6] {
-            let observations = observed(&recorded((0.75, 12.0), 50, seed));
+            let observations = observed(&recorded(0.75, 12.0, 50, seed));
             let evidence = evidence(&observations);
             let truth = Parameters::symmetric(0.75, 12.0, 0.06, 1e-3);
             let mut blocks = Blocks::new(&evidence);

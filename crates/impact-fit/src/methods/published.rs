@@ -144,7 +144,7 @@ pub fn fit(speeds: &[PublishedSpeed], printed: &[f64]) -> (MethodResult, Verdict
         damping_ratio: beta,
         deviation,
     });
-    let judged = printed.iter().map(|p| judge(speeds, *p, (beta, error)));
+    let judged = printed.iter().map(|p| judge(speeds, *p, beta, error));
     let verdict = Verdict {
         kind: if fits {
             VerdictKind::Identified
@@ -182,7 +182,7 @@ fn worst_deviation(speeds: &[PublishedSpeed], beta: f64) -> Option<f64> {
 }
 
 /// Whether a printed damping ratio fits.
-fn judge(speeds: &[PublishedSpeed], printed: f64, (beta, error): (f64, f64)) -> Finding {
+fn judge(speeds: &[PublishedSpeed], printed: f64, beta: f64, error: f64) -> Finding {
     let settings: Vec<PublishedSetting> = speeds
         .iter()
         .filter(|s| speed_at(s, printed, s.frequency_ratio).is_none())

@@ -351,7 +351,7 @@ impl<'a> IdentificationRun<'a> {
         let near = drawn.fit(at).ok()?.parameters;
         let present = joint::present(&self.selection.blocks, &self.found.weights);
         let most = most_influential(self.selection.judged());
-        let (found, _) = self.selection.influential(&drawn, &present, (&near, most));
+        let (found, _) = self.selection.influential(&drawn, &present, &near, most);
         (!found.is_empty()).then_some((near, found))
     }
 
@@ -372,8 +372,7 @@ impl<'a> IdentificationRun<'a> {
             let most = most_influential(judged).saturating_sub(left_out);
             // More than that do not err alone: it is the model, and their scatter widens the intervals.
             let (influential, too_many) =
-                self.selection
-                    .influential(&problem, &present, (&start, most));
+                self.selection.influential(&problem, &present, &start, most);
             if influential.is_empty() {
                 break;
             }
@@ -594,7 +593,7 @@ impl<'a> IdentificationRun<'a> {
             Some((found.parameters, mean_square))
         };
         let starts = [&start, &joint.fit.parameters];
-        let contradicting = contradicting_gap((blocks, lost), starts, &fit);
+        let contradicting = contradicting_gap(blocks, lost, starts, &fit);
         let lost = suspicion::lost_gap(&blocks.trajectory, lost, &joint.fit.parameters, *typical);
         let allowed = |odd: &OddGap| (odd.fitting_m - odd.stated_m).abs() > 4.0 * uncertainty_m;
         contradicting

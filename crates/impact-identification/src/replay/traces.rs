@@ -88,7 +88,7 @@ pub(super) fn traces(record: &Record, k: &Kinematics, cut: &Cut<'_>) -> Vec<Trac
     ];
     let compared = moving.into_iter().filter_map(|(role, dimension, series)| {
         let values = &series.as_ref()?.values;
-        Some(cut.compared((role, dimension), values, k.rate_hz))
+        Some(cut.compared(role, dimension, values, k.rate_hz))
     });
     let others = [Role::Contact, Role::FrameX, Role::FrameY].into_iter();
     let measured_alone = others.filter_map(|role| {
@@ -123,12 +123,7 @@ impl Cut<'_> {
     }
 
     /// One channel beside its simulation.
-    fn compared(
-        &self,
-        (role, dimension): (Role, Dimension),
-        values: &[f64],
-        rate_hz: f64,
-    ) -> Trace {
+    fn compared(&self, role: Role, dimension: Dimension, values: &[f64], rate_hz: f64) -> Trace {
         let mut measured = self.samples(values, rate_hz);
         let drift = self.drift_per_s(values, rate_hz);
         for (t, value) in measured.time_s.iter().zip(&mut measured.values) {
@@ -246,9 +241,13 @@ mod tests {
 
     #[test]
     fn valid_drift_and_offset_of_a_periodic_channel_are_found_from_the_record_alone() {
-        let place = (Role::DisplacementX, Dimension::Length);
         let [bent, clean] = [true, false].map(|drifts| {
-            let trace = cut(0.0, 4.0, &[]).compared(place, &saw(drifts), 1000.0);
+            let trace = cut(0.0, 4.0, &[]).compared(
+                Role::DisplacementX,
+                Dimension::Length,
+                &saw(drifts),
+                1000.0,
+            );
             trace.measured.values
         });
         let apart = bent.iter().zip(&clean).map(|(a, b)| (a - b).abs());

@@ -60,8 +60,7 @@ impl Watching<'_> {
         let strikes = cell.strikes.iter();
         let returns = strikes.map(|strike| bounce(&cell.start, restitution, *strike));
         let returns: Vec<Return> = returns.collect();
-        let at = (setting, interval);
-        let motion = of_returns(&returns, self.machine, at, self.watch);
+        let motion = of_returns(&returns, self.machine, setting, interval, self.watch);
         if motion != SettledMotion::Chaotic {
             return Seen::Motion(motion);
         }

@@ -110,12 +110,7 @@ pub(crate) fn observe(
         SettledMotion::Sticking
     } else {
         let interval = (start, simulator.tau());
-        of_returns(
-            &returns.list,
-            simulator.machine(),
-            (setting, interval),
-            watch,
-        )
+        of_returns(&returns.list, simulator.machine(), setting, interval, watch)
     };
     (motion, impacts)
 }
@@ -124,7 +119,8 @@ pub(crate) fn observe(
 pub(crate) fn of_returns(
     list: &[Return],
     machine: &Machine,
-    (setting, interval): (Setting, (f64, f64)),
+    setting: Setting,
+    interval: (f64, f64),
     watch: &Watch,
 ) -> SettledMotion {
     match list {

@@ -178,18 +178,13 @@ impl View {
         // At least three drive periods, or as many again, must overlap.
         let reach = whole::count((periods - 3.0).max(0.5 * periods).floor().max(1.0));
         let most = settings.most_periods.min(reach);
-        let size = |guard| closure::size(&velocity.values, (&times, guard));
+        let size = |guard| closure::size(&velocity.values, &times, guard);
         let first = size(of_jump);
         let [before, after] = ringing::beside_impacts(&velocity.values, &times, first);
         let guard = [of_jump[0].max(before), of_jump[1].max(after)];
         let level = if guard == of_jump { first } else { size(guard) };
         Self {
-            closures: closures_beside_hum(
-                &velocity.values,
-                period,
-                (&times, guard),
-                (most, rate_hz),
-            ),
+            closures: closures_beside_hum(&velocity.values, period, &times, guard, most, rate_hz),
             noise_ratio: (level > 0.0).then(|| velocity.noise / level),
             rest: level < 3.0 * velocity.noise,
         }
@@ -203,10 +198,12 @@ const MAINS_HZ: [f64; 6] = [50.0, 60.0, 100.0, 120.0, 150.0, 180.0];
 fn closures_beside_hum(
     values: &[f64],
     period: f64,
-    impacts: (&[f64], [f64; 2]),
-    (most, rate_hz): (u32, f64),
+    impacts: &[f64],
+    guard: [f64; 2],
+    most: u32,
+    rate_hz: f64,
 ) -> Vec<WaveformClosure> {
-    let closures = closure::waveform(values, period, impacts, most, &[]);
+    let closures = closure::waveform(values, period, impacts, guard, most, &[]);
     if closures
         .first()
         .is_some_and(|first| first.ratio <= slack(&closures))
@@ -219,7 +216,7 @@ fn closures_beside_hum(
         .filter(below)
         .map(|f| f / rate_hz)
         .collect();
-    closure::waveform(values, period, impacts, most, &hum)
+    closure::waveform(values, period, impacts, guard, most, &hum)
 }
 
 /// Up to what ratio a motion closes about as well as at its best: white noise leaves a few per cent of
@@ -259,12 +256,9 @@ impl Case<'_> {
         let open = (5.0 * self.noise).max(self.settings.open_ratio);
         let impacts = &self.detection.impacts;
         let early = impacts.iter().all(|i| i.time_s < 0.5 * self.duration_s);
-        let extent = (
-            closed,
-            evidence.periods_observed,
-            early && !impacts.is_empty(),
-        );
-        evidence.settling = settling::disturbance(closures, chosen, extent);
+        let calm = early && !impacts.is_empty();
+        evidence.settling =
+            settling::disturbance(closures, chosen, closed, evidence.periods_observed, calm);
         if evidence.settling.is_some() && (chosen.periods_n > 1 || chosen.ratio > closed) {
             return undetermined(Undetermined::NotSettled, evidence);
         }

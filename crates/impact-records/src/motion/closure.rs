@@ -29,7 +29,8 @@ pub(super) struct WaveformClosure {
 pub(super) fn waveform(
     values: &[f64],
     period: f64,
-    (impacts, guard): (&[f64], [f64; 2]),
+    impacts: &[f64],
+    guard: [f64; 2],
     most: u32,
     hum: &[f64],
 ) -> Vec<WaveformClosure> {
@@ -70,7 +71,7 @@ pub(super) fn waveform(
 
 /// Root mean square of a waveform about its mean, samples near impacts left out as for its closure: what its
 /// noise and its closure are relative to. An acceleration's spikes do not count.
-pub(super) fn size(values: &[f64], (impacts, guard): (&[f64], [f64; 2])) -> f64 {
+pub(super) fn size(values: &[f64], impacts: &[f64], guard: [f64; 2]) -> f64 {
     scale(values, &open_samples(values.len(), impacts, guard))
 }
 
@@ -252,7 +253,7 @@ mod tests {
             .map(|i| f64::from(i) * std::f64::consts::TAU / 157.3)
             .map(|a| a.cos() + 0.1 * (0.5 * a).sin())
             .collect();
-        let found = waveform(&values, 157.3, (&[], [2.0; 2]), 4, &[]);
+        let found = waveform(&values, 157.3, &[], [2.0; 2], 4, &[]);
         assert!(found[0].ratio > 0.05);
         assert!(found[1].ratio < 1e-5);
         assert!(found[3].ratio < 1e-5);
@@ -268,9 +269,9 @@ mod tests {
             .map(|t| (drive_hz * t).cos() + 0.02 * (hum_hz * t + 1.0).cos())
             .collect();
         let period = rate_hz / drive_hz;
-        let with = waveform(&values, period, (&[], [2.0; 2]), 2, &[]);
+        let with = waveform(&values, period, &[], [2.0; 2], 2, &[]);
         assert!(with[0].ratio > 3.0 * with[1].ratio);
-        let without = waveform(&values, period, (&[], [2.0; 2]), 2, &[hum_hz / rate_hz]);
+        let without = waveform(&values, period, &[], [2.0; 2], 2, &[hum_hz / rate_hz]);
         assert!(without.iter().all(|c| c.ratio < 1e-5), "{without:?}");
     }
 
@@ -280,7 +281,7 @@ mod tests {
             .map(|i| f64::from(i) * std::f64::consts::TAU / 157.3)
             .map(|a| a.cos() + 0.1 * (0.5 * a).sin())
             .collect();
-        let found = waveform(&values, 157.3, (&[], [2.0; 2]), 2, &[0.025, 0.03]);
+        let found = waveform(&values, 157.3, &[], [2.0; 2], 2, &[0.025, 0.03]);
         assert!(found[0].ratio > 0.05 && found[1].ratio < 1e-5);
     }
 
@@ -313,7 +314,7 @@ mod tests {
         };
         let values: Vec<f64> = (0..2000).map(value).collect();
         let impacts: Vec<f64> = (0..20).map(|k| 100.0 * f64::from(k) + 40.0).collect();
-        let size = size(&values, (&impacts, [2.5; 2]));
+        let size = size(&values, &impacts, [2.5; 2]);
         assert!((size - 0.5f64.sqrt()).abs() < 0.01, "{size}");
     }
 

@@ -72,7 +72,8 @@ impl Folded {
 /// nuisance of the fit. A high-pass is left in too, and the model is filtered: undoing it would integrate
 /// the noise, and jumps whose instants are known only roughly. Each sensor is folded once, as it measures.
 pub(super) fn fold(
-    (record, rig): (&Record, RigKind),
+    record: &Record,
+    rig: RigKind,
     detection: &Detection,
     drive: &DriveTone,
     periods_n: u32,
@@ -107,7 +108,7 @@ pub(super) fn fold(
     Folded {
         periods_n,
         impact_phase_rad,
-        channels: channels((record, rig), detection, &axis),
+        channels: channels(record, rig, detection, &axis),
     }
 }
 
@@ -235,7 +236,8 @@ fn decay(rate: f64, count: usize) -> Vec<f64> {
 
 /// Every sensor of a mass's motion, once and as it measures.
 fn channels(
-    (record, rig): (&Record, RigKind),
+    record: &Record,
+    rig: RigKind,
     detection: &Detection,
     axis: &Axis,
 ) -> Vec<FoldedChannel> {
@@ -342,7 +344,7 @@ mod tests {
             let impacts: Vec<Impact> = (0..12).map(|k| Impact::at(time(k), 1.0)).collect();
             let (record, detection, drive) = record(rate_hz, wave, impacts);
             let guard = turn * FREQUENCY_HZ * detection.guard_s();
-            let folded = fold((&record, RigKind::Single), &detection, &drive, 1);
+            let folded = fold(&record, RigKind::Single, &detection, &drive, 1);
             let points = &folded.channels[0].points;
             for point in points {
                 let apart = point.value - wave(point.phase_rad);
@@ -370,7 +372,7 @@ mod tests {
             let record = Record::of(RATE_HZ, &channels);
             let detection = detect(&record, RigKind::Double, &DetectSettings::default());
             let drive = detection.drive.unwrap();
-            let folded = fold((&record, RigKind::Double), &detection, &drive, 1);
+            let folded = fold(&record, RigKind::Double, &detection, &drive, 1);
             let found: Vec<Role> = folded.channels.iter().map(|c| c.role).collect();
             assert_eq!(found, of);
         }
@@ -380,7 +382,7 @@ mod tests {
     fn valid_a_known_waveform_is_found_in_every_bin() {
         let wave = |theta: f64| 0.5 * (theta - 0.3).cos() + 0.1 * (2.0 * theta).sin();
         let (record, detection, drive) = record(RATE_HZ, wave, Vec::new());
-        let folded = fold((&record, RigKind::Single), &detection, &drive, 1);
+        let folded = fold(&record, RigKind::Single, &detection, &drive, 1);
         assert_eq!((folded.periods_n, folded.impact_phase_rad), (1, None));
         let points = &folded.channels[0].points;
         assert_eq!(points.len(), BINS_PER_PERIOD);
@@ -399,7 +401,7 @@ mod tests {
         // An impact at phase 1.2 of every other period: (2πf t + 0.7) mod 4π = 1.2 + 2π.
         let impacts = (0..6).map(|k| Impact::at(time(2 * k + 1), 1.0)).collect();
         let (record, detection, drive) = record(RATE_HZ, wave, impacts);
-        let folded = fold((&record, RigKind::Single), &detection, &drive, 2);
+        let folded = fold(&record, RigKind::Single, &detection, &drive, 2);
         // The first impact is put into the first period, so the fold starts one turn later.
         let impact = folded.impact_phase_rad.unwrap();
         assert!((impact - 1.2).abs() < 1e-6, "{impact}");

@@ -274,7 +274,7 @@ pub fn observe(
             observation.response = responses(record, &tone);
         }
     } else if let (Some(drive), Some(n)) = (drive, observation.one_impact_in()) {
-        observation.folded = Some(Arc::new(fold((record, rig), &detection, &drive, n)));
+        observation.folded = Some(Arc::new(fold(record, rig, &detection, &drive, n)));
     }
     observation
 }

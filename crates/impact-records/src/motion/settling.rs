@@ -35,7 +35,9 @@ impl WaveformClosure {
 pub(super) fn disturbance(
     closures: &[WaveformClosure],
     chosen: &WaveformClosure,
-    (closed, periods, calm): (f64, f64, bool),
+    closed: f64,
+    periods: f64,
+    calm: bool,
 ) -> Option<f64> {
     let n = f64::from(chosen.periods_n);
     if chosen.ratio > closed {
@@ -78,13 +80,13 @@ mod tests {
         let values: Vec<f64> = (0..2045)
             .map(|i| of(f64::from(i) / PERIOD) + noise.sample(&mut random))
             .collect();
-        let closures = waveform(&values, PERIOD, (&[], [2.0; 2]), 6, &[]);
+        let closures = waveform(&values, PERIOD, &[], [2.0; 2], 6, &[]);
         let least = closures
             .iter()
             .map(|c| c.ratio)
             .fold(f64::INFINITY, f64::min);
         let chosen = closures.iter().find(|c| c.ratio < 1.12 * least + 1e-4);
-        disturbance(&closures, chosen.expect("a closure"), (0.02, 13.0, false))
+        disturbance(&closures, chosen.expect("a closure"), 0.02, 13.0, false)
     }
 
     const TURN: f64 = std::f64::consts::TAU;

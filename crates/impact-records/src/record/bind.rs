@@ -320,7 +320,7 @@ fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -
     use MeasuredQuantity::{Accepted, Of, OfThreshold, Times};
     let role = setup.role;
     let wrong = |expected| {
-        let problem = wrong_quantity(&info.name, role, (found, expected));
+        let problem = wrong_quantity(&info.name, role, found, expected);
         Err(flag(setup, &info.name, problem))
     };
     let list = setup.content.is_list();
@@ -345,7 +345,8 @@ fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -
 fn wrong_quantity(
     channel: &str,
     role: Role,
-    (found, expected): (Dimension, MeasuredQuantity),
+    found: Dimension,
+    expected: MeasuredQuantity,
 ) -> Problem {
     let channel = channel.to_owned();
     let turning = |found, scale: &str| Problem::TurningMotion {

@@ -108,7 +108,7 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
     let axes = samples.split_off(bound.len());
     let (kept, ranges) = scale_all(&mut record, dataset, &bound, samples);
     if !content.is_list() {
-        clocks.settle(&mut record, setup, dataset, (&kept, axes));
+        clocks.settle(&mut record, setup, dataset, &kept, axes);
     }
     if content.is_of_heights() {
         settle_heights(source, setup, dataset, &mut record);
@@ -116,7 +116,7 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
     }
     if content != ContactContent::Signal {
         let closed_s = match content {
-            ContactContent::Times => keep_closings(source, setup, dataset, (&mut record, &kept)),
+            ContactContent::Times => keep_closings(source, setup, dataset, &mut record, &kept),
             _ => 0.0,
         };
         events::settle(&mut record, content, closed_s);
@@ -223,7 +223,8 @@ fn keep_closings(
     source: &dyn Source,
     setup: &RecordSetup<'_>,
     dataset: &DatasetInfo,
-    (record, kept): (&mut Record, &[usize]),
+    record: &mut Record,
+    kept: &[usize],
 ) -> f64 {
     let contact = record.channels.iter_mut().zip(kept);
     let mut contact = contact.filter(|(c, _)| c.role == Role::Contact);

@@ -172,8 +172,7 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
                 None => Cow::Borrowed(channel),
             };
             let span = Span::of(&whole.values);
-            dead(&whole, &span, driven)
-                .or_else(|| clipped(&whole, (&span, crests), (*range, rate_hz)))
+            dead(&whole, &span, driven).or_else(|| clipped(&whole, &span, crests, *range, rate_hz))
         };
         let found = missing.into_iter().chain(of_values);
         // What is wrong with a frame's channel leaves no record out.
@@ -422,8 +421,10 @@ fn dead(channel: &Channel, span: &Span, driven: bool) -> Option<Flag> {
 /// for three samples or more and got there by a step that no quantised crest makes.
 fn clipped(
     channel: &Channel,
-    (span, crests): (&Span, Crests),
-    (range, rate_hz): (Option<f64>, f64),
+    span: &Span,
+    crests: Crests,
+    range: Option<f64>,
+    rate_hz: f64,
 ) -> Option<Flag> {
     if channel.role == Role::Contact {
         return None;
@@ -432,7 +433,7 @@ fn clipped(
     // Where the converter's range is stated, only samples at its end are clipped: a coarse
     // converter rests on one code at the top of any slow wave.
     let end = range.map(|r| (r - 1.5 * step).max(r * (1.0 - 1e-9) - 2.0 * step));
-    let spikes = spikes_at_rails(channel, (span, end), rate_hz);
+    let spikes = spikes_at_rails(channel, span, end, rate_hz);
     let all: usize = match end {
         Some(end) => channel.values.iter().filter(|v| v.abs() >= end).count(),
         None => at_rails(channel, span, crests),
@@ -462,7 +463,8 @@ const SPIKE_RISES_S: f64 = 3e-4;
 /// below half of the rail.
 fn spikes_at_rails(
     channel: &Channel,
-    (span, end): (&Span, Option<f64>),
+    span: &Span,
+    end: Option<f64>,
     rate_hz: f64,
 ) -> Vec<Range<usize>> {
     if !matches!(channel.role, Role::AccelerationX | Role::AccelerationY) {

@@ -261,7 +261,7 @@ fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag
         flag(
             record,
             v,
-            scales_contradict(compared, [d, v], (found.gain, suspected)),
+            scales_contradict(compared, [d, v], found.gain, suspected),
         )
     })
 }
@@ -269,7 +269,8 @@ fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag
 fn scales_contradict(
     compared: ComparedChannels,
     [quantity, rate]: [Role; 2],
-    (ratio, units): (f64, Option<MistakenUnits>),
+    ratio: f64,
+    units: Option<MistakenUnits>,
 ) -> Problem {
     match (compared, units) {
         (ComparedChannels::Displacement, Some(units)) => Problem::PathsDifferByUnits {

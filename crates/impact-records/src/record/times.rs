@@ -88,14 +88,15 @@ impl Clocks {
         record: &mut Record,
         setup: &RecordSetup<'_>,
         dataset: &DatasetInfo,
-        (kept, axes): (&[usize], Vec<Samples>),
+        kept: &[usize],
+        axes: Vec<Samples>,
     ) {
         let read = self.axes.iter().zip(axes);
         let mut times: Vec<Option<Vec<f64>>> = read
-            .map(|(axis, samples)| seconds(samples, setup, (dataset, *axis), &mut record.flags))
+            .map(|(axis, samples)| seconds(samples, setup, dataset, *axis, &mut record.flags))
             .collect();
         if self.apart {
-            self.align(record, setup, dataset, (kept, &times));
+            self.align(record, setup, dataset, kept, &times);
             condition::skip(record, None, setup.skip_s);
             return;
         }
@@ -108,7 +109,7 @@ impl Clocks {
         if times.is_some() {
             condition::skip(record, times.as_mut(), setup.skip_s);
         }
-        settle_rate(record, setup, dataset, (kept, times.as_deref()));
+        settle_rate(record, setup, dataset, kept, times.as_deref());
         if times.is_none() {
             condition::skip(record, None, setup.skip_s);
         }
@@ -123,7 +124,8 @@ impl Clocks {
         record: &mut Record,
         setup: &RecordSetup<'_>,
         dataset: &DatasetInfo,
-        (kept, times): (&[usize], &[Option<Vec<f64>>]),
+        kept: &[usize],
+        times: &[Option<Vec<f64>>],
     ) {
         let shared = shared_axis(setup, dataset).unwrap_or(None);
         let mut timings = Vec::with_capacity(kept.len());
@@ -197,7 +199,8 @@ fn advise_times(record: &mut Record, times: &[f64], axis: &str) {
 fn seconds(
     samples: Samples,
     setup: &RecordSetup<'_>,
-    (dataset, axis): (&DatasetInfo, usize),
+    dataset: &DatasetInfo,
+    axis: usize,
     flags: &mut Vec<Flag>,
 ) -> Option<Vec<f64>> {
     let Samples::Real(mut times) = samples else {
@@ -288,7 +291,8 @@ fn settle_rate(
     record: &mut Record,
     setup: &RecordSetup<'_>,
     dataset: &DatasetInfo,
-    (kept, times): (&[usize], Option<&[f64]>),
+    kept: &[usize],
+    times: Option<&[f64]>,
 ) {
     let measured = times.and_then(|times| time_axis::inspect(times, &mut record.flags));
     let stated = stated_rate(record, dataset, kept);

@@ -61,7 +61,7 @@ pub(crate) fn draw(content: &ReportContent, locale: Locale<'_>) -> Option<Figure
         let (column, row) = (i % columns, i / columns);
         let x = left + column as f64 * (width + gap);
         let rect = Rect::new(x, 2.0 + row as f64 * (height + 27.0), width, height);
-        parameter(&mut canvas, rect, (&PARAMETERS[k], k), &lines, locale);
+        parameter(&mut canvas, rect, &PARAMETERS[k], k, &lines, locale);
         if column == 0 {
             labels(&mut canvas, &rect, &lines);
         }
@@ -101,7 +101,8 @@ fn value(estimate: Option<&Estimate>) -> Option<f64> {
 fn parameter(
     canvas: &mut Canvas,
     rect: Rect,
-    (shown, k): (&ParameterLook, usize),
+    shown: &ParameterLook,
+    k: usize,
     lines: &[Line<'_>],
     locale: Locale<'_>,
 ) {
@@ -131,8 +132,15 @@ fn parameter(
     for (i, line) in lines.iter().enumerate() {
         let y = (lines.len() - i) as f64 - 0.5;
         if let Some(estimate) = line.estimates[k] {
-            let place = (y, line.joint);
-            mark(canvas, &panel, (estimate, shown.factor), place, locale);
+            mark(
+                canvas,
+                &panel,
+                estimate,
+                shown.factor,
+                y,
+                line.joint,
+                locale,
+            );
         }
     }
     panel.frame(
@@ -163,8 +171,10 @@ fn view(ends: &[f64]) -> Vec<f64> {
 fn mark(
     canvas: &mut Canvas,
     panel: &Panel,
-    (e, factor): (&Estimate, f64),
-    (y, joint): (f64, bool),
+    e: &Estimate,
+    factor: f64,
+    y: f64,
+    joint: bool,
     locale: Locale<'_>,
 ) {
     let colour = if joint { look::BLUE } else { look::INK };

@@ -34,7 +34,7 @@ pub(crate) fn draw(scatter: &ImpactScatter, name: &str, locale: Locale<'_>) -> O
     let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + look::BELOW_PANEL);
     let panels = panels(scatter, unit);
     lines(&mut canvas, &panels, scatter, unit);
-    points(&mut canvas, &panels, scatter, (unit, locale));
+    points(&mut canvas, &panels, scatter, unit, locale);
     for panel in &panels {
         panel.frame(&mut canvas, Sides::BOTH, locale);
     }
@@ -120,7 +120,8 @@ fn points(
     canvas: &mut Canvas,
     panels: &[Panel; 2],
     scatter: &ImpactScatter,
-    (unit, locale): (PrintUnit, Locale<'_>),
+    unit: PrintUnit,
+    locale: Locale<'_>,
 ) {
     canvas.layer(1);
     let radius = dots::radius(scatter.points.len());

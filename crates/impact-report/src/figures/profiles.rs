@@ -40,7 +40,7 @@ pub(crate) fn draw(id: &Identification, locale: Locale<'_>) -> Option<Figure> {
         let rect = Rect::new(left, top, step - 36.0, HEIGHT);
         let best = id.joint.parameters.get(profile.parameter);
         let best = best.and_then(|e| e.value);
-        one(&mut canvas, (profile, best), rect, locale);
+        one(&mut canvas, profile, best, rect, locale);
     }
     let title = locale.translate(Phrase::ProfileLikelihoods);
     Some(Figure::new("profiles", &title, canvas, csv(&drawn)))
@@ -48,7 +48,8 @@ pub(crate) fn draw(id: &Identification, locale: Locale<'_>) -> Option<Figure> {
 
 fn one(
     canvas: &mut Canvas,
-    (profile, best): (&ProfileCurve, Option<f64>),
+    profile: &ProfileCurve,
+    best: Option<f64>,
     rect: Rect,
     locale: Locale<'_>,
 ) {

@@ -50,7 +50,7 @@ pub(crate) fn draw(comparison: &Comparison, locale: Locale<'_>) -> Option<Figure
     legend::draw(&mut canvas, (LEFT[0], 0.0), width, &keys, locale);
     for (i, look) in shown.iter().enumerate() {
         let rect = Rect::new(LEFT[i % 2], top + (i / 2) as f64 * ROW, WIDTH, HEIGHT);
-        parameter(&mut canvas, rect, (comparison, look), locale);
+        parameter(&mut canvas, rect, comparison, look, locale);
     }
     let title = locale.translate(Phrase::Trend);
     Some(Figure::new("trend", &title, canvas, csv(comparison)))
@@ -92,7 +92,8 @@ fn alone(set: &ParameterSet, look: &ParameterLook) -> Option<[f64; 3]> {
 fn parameter(
     canvas: &mut Canvas,
     rect: Rect,
-    (comparison, look): (&Comparison, &ParameterLook),
+    comparison: &Comparison,
+    look: &ParameterLook,
     locale: Locale<'_>,
 ) {
     let count = comparison.campaigns.len();

@@ -215,7 +215,7 @@ pub(super) fn boundaries(state: &State, points: usize, job: &Job) -> Result<(), 
     let etas = boundary_etas(state, points)?;
     let both = |n| [("s2", n, rho_s2 as Boundary), ("s1", n, rho_s1)];
     let curves: Vec<_> = (1..=MOST_PERIODS).flat_map(both).collect();
-    let curve = &|c: &(&str, u32, Boundary)| curve(&machine, &etas, *c, job);
+    let curve = &|&(kind, n, of): &(&str, u32, Boundary)| curve(&machine, &etas, kind, n, of, job);
     job.wait_for_first_tiles();
     let tasks: Vec<_> = curves.iter().map(|c| carry(move || curve(c))).collect();
     let frames: Vec<Frame> = job.pools.boundaries(|| {
@@ -229,7 +229,9 @@ pub(super) fn boundaries(state: &State, points: usize, job: &Job) -> Result<(), 
 fn curve(
     machine: &Machine,
     etas: &[f64],
-    (kind, n, of): (&str, u32, Boundary),
+    kind: &str,
+    n: u32,
+    of: Boundary,
     job: &Job,
 ) -> Result<Frame, Stop> {
     let point = |eta: &f64| {

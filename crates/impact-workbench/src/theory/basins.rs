@@ -70,7 +70,7 @@ fn cells(
         ..MapSettings::default()
     };
     let rows = format!("{name} rows");
-    context.in_blocks(&rows, (plan.grid.rows(), BLOCK), |rows| {
+    context.in_blocks(&rows, plan.grid.rows(), BLOCK, |rows| {
         basin_rows(machine, plan.setting, &plan.grid, &settings, rows)
             .map_err(PipelineError::in_study(name))
     })

@@ -48,7 +48,8 @@ impl StudyContext<'_> {
     pub(super) fn in_blocks<T: Serialize + DeserializeOwned>(
         &self,
         name: &str,
-        (rows, size): (usize, usize),
+        rows: usize,
+        size: usize,
         of: impl Fn(Range<usize>) -> Result<Vec<T>, PipelineError>,
     ) -> Result<Vec<T>, PipelineError> {
         let mut all = Vec::new();

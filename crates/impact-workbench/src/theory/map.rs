@@ -25,7 +25,7 @@ pub fn run(
 ) -> Result<(), PipelineError> {
     let (eta, rho) = (even(plan.eta), even(plan.rho));
     let rows = format!("{name} rows");
-    let cells = context.in_blocks(&rows, (rho.len(), BLOCK), |rows| {
+    let cells = context.in_blocks(&rows, rho.len(), BLOCK, |rows| {
         let grid = MapGrid {
             eta: eta.clone(),
             rho: rho[rows].to_vec(),

@@ -84,7 +84,7 @@ fn all_columns(
     context: &StudyContext<'_>,
 ) -> Result<Vec<Vec<Slice>>, PipelineError> {
     let count = request.settings.grid.eta.len();
-    context.in_blocks(&format!("{name} columns"), (count, BLOCK), |chosen| {
+    context.in_blocks(&format!("{name} columns"), count, BLOCK, |chosen| {
         Ok(columns(&request.machine, &request.settings, maps, chosen))
     })
 }

@@ -201,7 +201,7 @@ impl Record<'_> {
             )?,
         }
         let points = values.len() / if complex { 2 } else { 1 };
-        self.header(channel, (points, complex), out)?;
+        self.header(channel, points, complex, out)?;
         if self.text {
             self.text(values, out)?;
         } else {
@@ -214,7 +214,8 @@ impl Record<'_> {
     fn header(
         &self,
         channel: &Channel<'_>,
-        (points, complex): (usize, bool),
+        points: usize,
+        complex: bool,
         out: &mut dyn Write,
     ) -> std::io::Result<()> {
         let info = channel.info;

@@ -225,7 +225,8 @@ fn resolve_one(
         content: of_contact(
             role,
             &written.content,
-            ("a content", &key("content")),
+            "a content",
+            &key("content"),
             context,
         )
         .map_or(ContactContent::Signal, |placed| *placed.get_ref()),
@@ -470,14 +471,15 @@ fn threshold(
     context: &mut ResolveContext<'_>,
 ) -> Option<units::Quantity> {
     let found = any_quantity(placed, key, context)?;
-    of_contact(role, placed, ("a threshold", key), context).map(|_| found)
+    of_contact(role, placed, "a threshold", key, context).map(|_| found)
 }
 
 /// What is stated of a contact; a fault where it is stated of another channel.
 fn of_contact<'a, T>(
     role: Role,
     placed: &'a Placed<T>,
-    (what, key): (&str, &str),
+    what: &str,
+    key: &str,
     context: &mut ResolveContext<'_>,
 ) -> Option<&'a Spanned<T>> {
     let placed = placed.as_ref()?;

@@ -147,7 +147,7 @@ pub(crate) fn resolve(rig: &RigTable, context: &mut ResolveContext<'_>) -> Nomin
 fn shared(placed: &Placed<Vec<String>>, context: &mut ResolveContext<'_>) -> Vec<Common> {
     let unknown = |name: &str| format!("campaigns cannot share '{name}'");
     let remedy = "remove the line";
-    named(placed, ("rig.shared", remedy), unknown, context).unwrap_or_default()
+    named(placed, "rig.shared", remedy, unknown, context).unwrap_or_default()
 }
 
 /// The effects that the fit allows, by their names.
@@ -157,13 +157,14 @@ fn effects(
 ) -> Option<Vec<EffectKind>> {
     let unknown = |name: &str| format!("no effect is called '{name}'");
     let remedy = "remove the line to allow all";
-    named(placed, ("rig.effects", remedy), unknown, context)
+    named(placed, "rig.effects", remedy, unknown, context)
 }
 
 /// The variants that a list names; a name that is `unknown` is a fault, with what else may be done.
 fn named<T: FromStr + VariantNames>(
     placed: &Placed<Vec<String>>,
-    (key, otherwise): (&str, &str),
+    key: &str,
+    otherwise: &str,
     unknown: impl Fn(&str) -> String,
     context: &mut ResolveContext<'_>,
 ) -> Option<Vec<T>> {

@@ -19,7 +19,7 @@ pub fn from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<Fit
     let mut list: Vec<(&dyn Block, f64)> = vec![(&blocks.boundary, 1.0)];
     if !blocks.resonance.points.is_empty() {
         list.push((&blocks.resonance, 1.0));
-        blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
+        blocks.add_nuisances(nominal, &list, &mut free, &mut priors);
     }
     Some(fit_blocks(blocks.problem(list, free, priors), start))
 }

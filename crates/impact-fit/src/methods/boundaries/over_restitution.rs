@@ -77,7 +77,7 @@ impl<'a> BoundaryCurves<'a> {
                 (Some(low), Some(high)) => {
                     let direction = low * (1.0 - share) + high * share;
                     let (block, surroundings) = (self.block, &self.surroundings);
-                    surroundings.boundary_along(block, bracket, (restitution, direction))
+                    surroundings.boundary_along(block, bracket, restitution, direction)
                 }
                 _ => self.surroundings.boundary(self.block, bracket, restitution),
             })

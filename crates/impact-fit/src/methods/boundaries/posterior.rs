@@ -150,9 +150,9 @@ fn early_jumps(boundaries: &BoundaryCurves<'_>, waveforms: &Parameters) -> Optio
 
 /// Posterior with jumps of these scales.
 fn over_grid(boundaries: &BoundaryCurves<'_>, scales: Scales<'_>) -> Posterior {
-    let at = |r: f64| likelihood(boundaries, (r, scales));
+    let at = |r: f64| likelihood(boundaries, r, scales);
     // The middle scale alone tells where R may be.
-    let (low, high) = support(&|r| likelihood(boundaries, (r, scales.middle())));
+    let (low, high) = support(&|r| likelihood(boundaries, r, scales.middle()));
     let grid: Vec<f64> = (0..FINE)
         .map(|i| low + (high - low) * i as f64 / (FINE - 1) as f64)
         .collect();
@@ -231,7 +231,7 @@ struct Held<'a> {
 
 /// Log-likelihood of all brackets at R. Each family of boundaries has its own scale of early jumps, which is
 /// summed out.
-fn likelihood(boundaries: &BoundaryCurves<'_>, (restitution, scales): (f64, Scales<'_>)) -> f64 {
+fn likelihood(boundaries: &BoundaryCurves<'_>, restitution: f64, scales: Scales<'_>) -> f64 {
     let places = boundaries.at(restitution);
     let mut log = 0.0;
     let mut families: BTreeMap<Family, usize> = BTreeMap::new();

@@ -65,7 +65,7 @@ impl Surroundings {
     ) -> Self {
         let block = &blocks.boundary;
         let (mut others, mut priors) = (Vec::new(), Vec::new());
-        blocks.add_nuisances(nominal, &[(block, 1.0)], (&mut others, &mut priors));
+        blocks.add_nuisances(nominal, &[(block, 1.0)], &mut others, &mut priors);
         priors.retain(|p| !free.contains(&p.coordinate));
         let correlated = correlated(block, free, covariance);
         let clearances = clearances(block, nominal.clearance_uncertainty_m);
@@ -142,7 +142,8 @@ impl Surroundings {
         &self,
         block: &BoundaryBlock,
         bracket: &Bracket,
-        (restitution, direction): (f64, DVector<f64>),
+        restitution: f64,
+        direction: DVector<f64>,
     ) -> Option<SimulatedBoundary> {
         let frequency_hz = predicted_hz(bracket, &self.at(restitution), block.rig)?;
         Some(self.without_length(frequency_hz, direction))

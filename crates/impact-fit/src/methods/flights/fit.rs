@@ -17,9 +17,15 @@ pub(super) fn from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Opt
     if blocks.flight.records.is_empty() {
         return None;
     }
-    let begin = (start, Precision::Result);
     let tells = &Coordinate::PHYSICAL;
-    let found = alone(&blocks.flight, blocks, nominal, tells, begin);
+    let found = alone(
+        &blocks.flight,
+        blocks,
+        nominal,
+        tells,
+        start,
+        Precision::Result,
+    );
     Some(found.map(|found| MethodFit {
         factor: found.factor * SHARED_IN_FLIGHTS,
         ..found

@@ -166,7 +166,7 @@ pub fn contact_law(block: &ImpactBlock) -> Option<ContactLaw> {
         .to_vec();
     let mut fits: Vec<Fitted> = Law::ALL
         .into_iter()
-        .map(|law| fit((&about_one, restitution), law, &knots))
+        .map(|law| fit(&about_one, restitution, law, &knots))
         .collect::<Option<_>>()?;
     let mut compared = Compared::of(&fits, about_one.len());
     if compared.criterion[0] > VERY_STRONG {
@@ -174,7 +174,7 @@ pub fn contact_law(block: &ImpactBlock) -> Option<ContactLaw> {
         for fitted in &mut fits[1..] {
             for _ in 0..ROUNDS {
                 let points = points(block, restitution, &|v| fitted.at(v, &knots));
-                *fitted = fit((&points, restitution), fitted.law, &knots)?;
+                *fitted = fit(&points, restitution, fitted.law, &knots)?;
             }
         }
         compared = Compared::of(&fits, about_one.len());
@@ -219,7 +219,7 @@ impl Compared {
 }
 
 /// Weighted least squares of the deviations from one R on the law less that, times the speed.
-fn fit((points, restitution): (&[Point], f64), law: Law, knots: &[f64]) -> Option<Fitted> {
+fn fit(points: &[Point], restitution: f64, law: Law, knots: &[f64]) -> Option<Fitted> {
     let rows: Vec<Vec<f64>> = points
         .iter()
         .map(|p| {
@@ -357,7 +357,7 @@ mod tests {
             let block = noisy(0.08, seed);
             let r = one_restitution(&block).unwrap();
             assert!((r - 0.835).abs() < 3e-3, "{r}");
-            let fitted = fit((&points(&block, r, &|_| r), r), Law::Linear, &[]).unwrap();
+            let fitted = fit(&points(&block, r, &|_| r), r, Law::Linear, &[]).unwrap();
             let error = fitted.covariance[(1, 1)].sqrt();
             slopes.push(fitted.coefficients[1] / error);
         }

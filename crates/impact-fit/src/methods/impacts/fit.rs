@@ -22,6 +22,6 @@ pub fn from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<Fit
     }
     let list: Vec<(&dyn Block, f64)> = vec![(&blocks.impact, 1.0)];
     let (mut free, mut priors) = (vec![Coordinate::Restitution], Vec::new());
-    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
+    blocks.add_nuisances(nominal, &list, &mut free, &mut priors);
     Some(fit_blocks(blocks.problem(list, free, priors), start))
 }

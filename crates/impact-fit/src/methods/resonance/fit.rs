@@ -28,7 +28,7 @@ pub fn first(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
 /// The best of several fits of few records without effects, from which that of all starts.
 pub fn start(blocks: &Blocks, nominal: &Nominal) -> Option<Parameters> {
     let (few, ideal) = (blocks.resonance.few(MOST_FOR_A_START), nominal.ideal());
-    let curve = |start| resonance_curve(&few, blocks, &ideal, (start, Precision::Start));
+    let curve = |start| resonance_curve(&few, blocks, &ideal, start, Precision::Start);
     let fits = starts(&few, nominal)
         .into_iter()
         .filter_map(|start| curve(start)?.ok());
@@ -38,17 +38,17 @@ pub fn start(blocks: &Blocks, nominal: &Nominal) -> Option<Parameters> {
 
 /// The same from a start near the optimum.
 pub fn from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
-    let begin = (start, Precision::Result);
-    resonance_curve(&blocks.resonance, blocks, nominal, begin)
+    resonance_curve(&blocks.resonance, blocks, nominal, start, Precision::Result)
 }
 
 fn resonance_curve(
     block: &ResonanceBlock,
     blocks: &Blocks,
     nominal: &Nominal,
-    begin: (Parameters, Precision),
+    start: Parameters,
+    precision: Precision,
 ) -> Option<FitResult> {
-    enough(blocks).then(|| alone(block, blocks, nominal, &TELLS, begin))
+    enough(blocks).then(|| alone(block, blocks, nominal, &TELLS, start, precision))
 }
 
 fn enough(blocks: &Blocks) -> bool {

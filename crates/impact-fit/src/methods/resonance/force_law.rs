@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn valid_forces_that_rise_with_a_power_of_the_frequency_are_told_from_the_resonance_curve() {
-        let constant = observed(&recorded((0.8, 12.0), 60, 44));
+        let constant = observed(&recorded(0.8, 12.0, 60, 44));
         for power in [-2.0, -1.0, 0.0, 0.1, 1.0, 2.0] {
             let mut observations = constant.clone();
             for o in &mut observations {

@@ -31,7 +31,7 @@ pub fn late_drive(evidence: &Evidence<'_>) -> Option<LateChannel> {
     let stated = fit::start(&blocks, &evidence.nominal)?;
     let at_once = left_by(&blocks, &stated)?;
     let fits = deviation(&blocks.resonance, &stated) < ONE_DEGREE_OF_FREEDOM;
-    let late = lag(&blocks, &evidence.nominal, (at_once, fits)).map(|(lag_s, left)| {
+    let late = lag(&blocks, &evidence.nominal, at_once, fits).map(|(lag_s, left)| {
         let late = LateChannel::by(Role::Drive, lag_s);
         (late, left)
     });
@@ -55,7 +55,7 @@ fn turned_around(blocks: &Blocks) -> Blocks {
 
 /// The lag of the drive's channel with which the phases fit best, s, if it is noticed, and the misfit that it leaves;
 /// `at_once`: that without one, and whether the responses are those of one degree of freedom then.
-fn lag(blocks: &Blocks, nominal: &Nominal, (at_once, fits): (f64, bool)) -> Option<(f64, f64)> {
+fn lag(blocks: &Blocks, nominal: &Nominal, at_once: f64, fits: bool) -> Option<(f64, f64)> {
     let points = blocks.resonance.points.iter();
     let fastest_hz = points.map(|p| p.frequency_hz).fold(0.0, f64::max);
     let misfit = |lag_s: f64| misfit(blocks, &behind(nominal, lag_s));
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn valid_a_late_drive_is_told_from_the_phases_and_none_where_there_is_none() {
-        let records = recorded((0.8, 12.0), 60, 41);
+        let records = recorded(0.8, 12.0, 60, 41);
         let step_s = 1.0 / records[0].sample_rate_hz;
         for samples in [-30, -6, 0, 1, 3, 10, 40] {
             let late: Vec<Record> = records
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn valid_a_drive_of_the_other_sign_is_told_from_the_phases_whether_it_is_late_or_not() {
-        let records = recorded((0.8, 12.0), 60, 43);
+        let records = recorded(0.8, 12.0, 60, 43);
         let turned = |record: &Record| {
             let mut record = record.clone();
             let drive = record.channels.iter_mut().filter(|c| c.role == Role::Drive);
@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn valid_a_high_pass_that_is_not_stated_is_no_late_drive() {
-        let mut observations = observed(&recorded((0.8, 12.0), 60, 42));
+        let mut observations = observed(&recorded(0.8, 12.0, 60, 42));
         for corner_hz in [0.5, 2.0, 4.0] {
             for o in &mut observations {
                 let Some(tone) = o.tone() else { continue };

@@ -17,5 +17,5 @@ pub fn from(
         return None;
     }
     let (block, tells) = (&blocks.trajectory, &Coordinate::PHYSICAL);
-    Some(alone(block, blocks, nominal, tells, (start, precision)))
+    Some(alone(block, blocks, nominal, tells, start, precision))
 }

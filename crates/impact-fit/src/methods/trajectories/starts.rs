@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn a_start_far_from_the_rig_is_replaced_and_one_near_it_is_kept() {
-        let observations = observed(&recorded((0.8, 12.0), 50, 3));
+        let observations = observed(&recorded(0.8, 12.0, 50, 3));
         let evidence = evidence(&observations);
         let blocks = Blocks::new(&evidence);
         let nominal = evidence.nominal.ideal();

@@ -82,7 +82,7 @@ pub fn between_methods(
             .filter_map(|(_, result)| known(result.parameters.get(parameter)?))
             .map(|(y, e)| (y / unit, e / unit))
             .collect();
-        Some((parameter, left_open(&found, (value / unit, error / unit))))
+        Some((parameter, left_open(&found, value / unit, error / unit)))
     };
     parameters.into_iter().filter_map(of).collect()
 }
@@ -102,7 +102,7 @@ pub fn carried_on(joint: &Fit, apart: &[(Coordinate, f64)]) -> Vec<(Coordinate, 
     others.map(of).filter(|(_, by)| *by > 0.0).collect()
 }
 
-fn left_open(found: &[(f64, f64)], (value, error): (f64, f64)) -> f64 {
+fn left_open(found: &[(f64, f64)], value: f64, error: f64) -> f64 {
     let sum = |of: &dyn Fn(&(f64, f64)) -> f64| found.iter().map(of).sum::<f64>();
     let weight = |e: f64| e.powi(-2);
     let (all, squares) = (sum(&|(_, e)| weight(*e)), sum(&|(_, e)| weight(*e).powi(2)));
@@ -263,9 +263,9 @@ mod tests {
     fn valid_what_two_methods_leave_open_is_half_their_distance() {
         // Two estimates of error 1, 20 apart: τ² = (200 − 1)/1 = 199, variance of the mean
         // (1 + 199)/2 = 100; the joint one in the middle had 1/2.
-        let open = left_open(&[(-10.0, 1.0), (10.0, 1.0)], (0.0, 0.5f64.sqrt()));
+        let open = left_open(&[(-10.0, 1.0), (10.0, 1.0)], 0.0, 0.5f64.sqrt());
         assert!((open - 99.5f64.sqrt()).abs() < 1e-12);
         // Of methods that agree nothing is left open.
-        assert!(left_open(&[(0.1, 1.0), (-0.1, 1.0)], (0.0, 0.5f64.sqrt())) < 1e-6);
+        assert!(left_open(&[(0.1, 1.0), (-0.1, 1.0)], 0.0, 0.5f64.sqrt()) < 1e-6);
     }
 }

@@ -16,7 +16,7 @@ const NAMED_PAIR: f64 = 15.3;
 /// The significant effects of a joint fit, in which R is that at an approach speed, m/s. The two parts of a harmonic
 /// are named as its amplitude.
 pub fn beyond(found: &MethodFit, speed_m_s: f64) -> Vec<Finding> {
-    let harmonic = |cos, sin| harmonic(found, (cos, sin), speed_m_s);
+    let harmonic = |cos, sin| harmonic(found, cos, sin, speed_m_s);
     Effect::ALL
         .iter()
         .copied()
@@ -47,7 +47,7 @@ fn estimated(found: &MethodFit, effect: Effect) -> Option<(f64, f64)> {
     (error > 0.0).then(|| (found.fit.parameters.coordinate(coordinate), error))
 }
 
-fn harmonic(found: &MethodFit, (cos, sin): (Effect, Effect), speed_m_s: f64) -> Option<Finding> {
+fn harmonic(found: &MethodFit, cos: Effect, sin: Effect, speed_m_s: f64) -> Option<Finding> {
     let ((a, ea), (b, eb)) = (estimated(found, cos)?, estimated(found, sin)?);
     let correlation = found
         .fit

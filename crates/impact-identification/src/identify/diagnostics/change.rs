@@ -615,7 +615,7 @@ mod tests {
 
     #[test]
     fn valid_a_campaign_of_two_rigs_is_named_where_the_rig_changes_and_one_of_one_is_not() {
-        let one = |rig, seed| recorded(rig, 36, seed);
+        let one = |(restitution, f0), seed| recorded(restitution, f0, 36, seed);
         let half = one((0.8, 12.0), 11);
         let of = |other: Vec<Record>| {
             let observations = observed(&[half.clone(), other].concat());
@@ -652,7 +652,7 @@ mod tests {
 
     #[test]
     fn valid_f0_of_parts_is_not_compared_where_no_phase_is_measured() {
-        let both = [(12.0, 11), (12.3, 12)].map(|(f0, seed)| recorded((0.8, f0), 36, seed));
+        let both = [(12.0, 11), (12.3, 12)].map(|(f0, seed)| recorded(0.8, f0, 36, seed));
         let mut observations = observed(&both.concat());
         for o in &mut observations {
             let Some(drive) = o.drive.take() else {
@@ -672,7 +672,7 @@ mod tests {
 
     #[test]
     fn valid_sweeps_down_on_another_rig_are_named() {
-        let records = recorded((0.8, 12.0), 72, 11);
+        let records = recorded(0.8, 12.0, 72, 11);
         let of = |down: &[Record]| {
             let mixed = records.iter().zip(down).enumerate().map(|(i, (up, down))| {
                 let mut record = if i % 2 == 0 { up } else { down }.clone();
@@ -691,7 +691,7 @@ mod tests {
             (found.verdict.kind, named)
         };
         assert_eq!(of(&records), (VerdictKind::Identified, None));
-        let (kind, named) = of(&recorded((0.76, 12.1), 72, 11));
+        let (kind, named) = of(&recorded(0.76, 12.1, 72, 11));
         assert_eq!(kind, VerdictKind::DoesNotFit);
         let truth = [
             (Coordinate::Restitution, 0.76),

@@ -26,7 +26,8 @@ pub type FittedWithMeanSquare = (Parameters, f64);
 /// `lost` are records that the blocks have no more. The fit of all starts at what was `found` of them, the others at
 /// `start`, which no gap has led astray.
 pub fn contradicting_gap(
-    (blocks, lost): (&Blocks, &[TrajectoryRecord]),
+    blocks: &Blocks,
+    lost: &[TrajectoryRecord],
     [start, found]: [&Parameters; 2],
     fit: &dyn Fn(&Blocks, &Parameters) -> Option<FittedWithMeanSquare>,
 ) -> Option<OddGap> {

@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn valid_amplitudes_at_stated_frequencies_tell_f0_beta_and_the_deflection() {
-        let mut records = recorded((0.8, 12.0), 80, 21);
+        let mut records = recorded(0.8, 12.0, 80, 21);
         for record in &mut records {
             let drive = record
                 .values(Role::Drive)

@@ -112,16 +112,14 @@ fn settled(
     channels: &[LateChannel],
     fit: &dyn Fn(&Evidence<'_>) -> Option<Costs>,
 ) -> Option<Refiltered> {
-    let refiltered = |filter| refiltered(evidence, channels, filter);
-    let costs = |order: u32, corner: f64| fit(&refiltered((order, corner, 1.0)).evidence(evidence));
+    let refiltered = |order, factor, share| refiltered(evidence, channels, order, factor, share);
+    let costs = |order: u32, corner: f64| fit(&refiltered(order, corner, 1.0).evidence(evidence));
     let one_pole = all(LOWERED.map(|lowered| costs(1, corner(lowered))))?;
     let two_poles = all(TURNED.map(|turned| costs(2, corner_of_two(turned))))?;
-    let lowered = (LOWERED, TOLD);
-    let parabola = Parabola::through(lowered, one_pole.map(|c| c.simple));
-    let open = Parabola::through(lowered, one_pole.map(|c| c.open)).least;
-    let turned = (TURNED, TURN_TOLD);
+    let parabola = Parabola::through(LOWERED, TOLD, one_pole.map(|c| c.simple));
+    let open = Parabola::through(LOWERED, TOLD, one_pole.map(|c| c.open)).least;
     let [shown, ..] = two_poles;
-    let coarse = Parabola::through(turned, two_poles.map(|c| c.simple));
+    let coarse = Parabola::through(TURNED, TURN_TOLD, two_poles.map(|c| c.simple));
     let typical_of = |least: f64| (least / shown.residuals.max(1) as f64).max(1.0);
     // the corner that jumps show, unless the waveforms surely have another one
     let moved = (shown.simple - coarse.least) / typical_of(coarse.least) > SURE;
@@ -135,13 +133,13 @@ fn settled(
     let better = (two_simple - parabola.least) / typical;
     let surely = (two_open - open) / typical;
     let error = (typical / parabola.curvature).sqrt() / parabola.at;
-    let filter = match (better > SURE, surely) {
+    let (order, factor, order_share) = match (better > SURE, surely) {
         (true, surely) if surely > SURE => (1, corner(parabola.at), error.min(1.0)),
         (true, _) => (1, corner(parabola.at), 1.0),
         (false, surely) if surely < -SURE => (2, factor, 0.0),
         (false, _) => (2, factor, 1.0),
     };
-    Some(refiltered(filter))
+    Some(refiltered(order, factor, order_share))
 }
 
 /// The best of two poles near a value of what they turn: its sums of squares, without and with a change of the force,
@@ -149,7 +147,7 @@ fn settled(
 fn nearer(turned: f64, costs: &dyn Fn(f64) -> Option<Costs>) -> Option<(f64, f64, f64)> {
     let at = NEARER.map(|factor| factor * turned);
     let found = all(at.map(costs))?;
-    let through = |of: fn(Costs) -> f64| Parabola::through((at, TURN_TOLD), found.map(of));
+    let through = |of: fn(Costs) -> f64| Parabola::through(at, TURN_TOLD, found.map(of));
     let simple = through(|c| c.simple);
     let factor = corner_of_two(simple.at);
     Some((simple.least, through(|c| c.open).least, factor))
@@ -182,7 +180,7 @@ struct Parabola {
 impl Parabola {
     /// Through the sums of squares at three values in equal steps, within the range that these tell; where they have no
     /// least one, the best of them.
-    fn through((at, told): ([f64; 3], [f64; 2]), [left, middle, right]: [f64; 3]) -> Self {
+    fn through(at: [f64; 3], told: [f64; 2], [left, middle, right]: [f64; 3]) -> Self {
         let step = at[1] - at[0];
         let slope = (right - left) / (2.0 * step);
         let curvature = (left - 2.0 * middle + right) / (2.0 * step * step);
@@ -208,7 +206,9 @@ impl Parabola {
 fn refiltered(
     evidence: &Evidence<'_>,
     channels: &[LateChannel],
-    (order, factor, order_share): (u32, f64, f64),
+    order: u32,
+    factor: f64,
+    order_share: f64,
 ) -> Refiltered {
     let mut observations = evidence.observations.to_vec();
     let mut nominal = evidence.nominal;

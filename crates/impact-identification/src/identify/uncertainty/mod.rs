@@ -145,7 +145,7 @@ fn bootstrap(
     let blocks = problem.item_parts(&fit.parameters);
     let replicas: Vec<Vec<f64>> = (0..options.replicas as u64)
         .into_par_iter()
-        .filter_map(|i| replica(problem, fit, &blocks, (options.seed, i)))
+        .filter_map(|i| replica(problem, fit, &blocks, options.seed, i))
         .collect();
     estimated
         .iter()
@@ -162,7 +162,8 @@ fn replica(
     problem: &Problem<'_>,
     fit: &Fit,
     blocks: &[Vec<Normal>],
-    (seed, index): (u64, u64),
+    seed: u64,
+    index: u64,
 ) -> Option<Vec<f64>> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(index);

@@ -25,7 +25,7 @@ impl Regions<'_> {
             .take_while(|&r| self.areas[r] as f64 >= least);
         for region in large {
             for size in [size, 0.8 * size] {
-                if let Some((text, (x, y))) = self.label((region, locale), occupancy, size) {
+                if let Some((text, (x, y))) = self.label(region, locale, occupancy, size) {
                     let bold = TextLook::new(size, Anchor::Middle).face(Face::Bold);
                     canvas.text((x, y + 0.33 * size), &text, bold.colour(look::INK));
                     break;
@@ -37,7 +37,8 @@ impl Regions<'_> {
     /// The text of a region's label and the middle of its place.
     fn label(
         &self,
-        (region, locale): (usize, Locale<'_>),
+        region: usize,
+        locale: Locale<'_>,
         occupancy: &mut Occupancy,
         size: f64,
     ) -> Option<(String, Point)> {

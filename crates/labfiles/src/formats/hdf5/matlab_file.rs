@@ -55,8 +55,9 @@ pub(crate) fn open(path: &Path, store: Store, tree: &Tree) -> Result<Box<dyn Sou
         let mut read = reader.read(dataset, &[channel]).ok()?;
         read.pop()?.into_real()
     };
-    let places = (&reader.found.variables, &reader.origins[..]);
-    notes.extend(arrange::take_unnamed_times(places, &mut datasets, values));
+    let tree = &reader.found.variables;
+    let more = arrange::take_unnamed_times(tree, &reader.origins, &mut datasets, values);
+    notes.extend(more);
     opened("mat", path, datasets, notes, reader)
 }
 

@@ -101,7 +101,8 @@ pub(crate) fn arrange(tree: &Tree) -> Arranged {
 /// Take the first columns of matrices that climb evenly for times, in datasets that have none; `values` reads a
 /// channel of a dataset. Gives what was assumed.
 pub(crate) fn take_unnamed_times(
-    (tree, origins): (&Tree, &[Vec<Origin>]),
+    tree: &Tree,
+    origins: &[Vec<Origin>],
     datasets: &mut [DatasetInfo],
     values: impl Fn(usize, usize) -> Option<Vec<f64>>,
 ) -> Vec<String> {

@@ -70,7 +70,7 @@ impl MatFile {
             let mut read = self.read(dataset, &[channel]).ok()?;
             read.pop()?.into_real()
         };
-        arrange::take_unnamed_times((&self.tree, &self.origins), datasets, values)
+        arrange::take_unnamed_times(&self.tree, &self.origins, datasets, values)
     }
 
     /// A variable's inflated bytes; `None` if it is not compressed.
