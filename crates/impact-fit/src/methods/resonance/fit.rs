@@ -27,28 +27,20 @@ pub fn first(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
 
 /// The best of several fits of few records without effects, from which that of all starts.
 pub fn start(blocks: &Blocks, nominal: &Nominal) -> Option<Parameters> {
+    if !enough(blocks) {
+        return None;
+    }
     let (few, ideal) = (blocks.resonance.few(MOST_FOR_A_START), nominal.ideal());
-    let curve = |start| resonance_curve(&few, blocks, &ideal, start, Precision::Start);
-    let fits = starts(&few, nominal)
-        .into_iter()
-        .filter_map(|start| curve(start)?.ok());
+    let curve = |start| alone(&few, blocks, &ideal, &TELLS, start, Precision::Start).ok();
+    let fits = starts(&few, nominal).into_iter().filter_map(curve);
     let best = fits.min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
     best.map(|best| best.fit.parameters)
 }
 
 /// The same from a start near the optimum.
 pub fn from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
-    resonance_curve(&blocks.resonance, blocks, nominal, start, Precision::Result)
-}
-
-fn resonance_curve(
-    block: &ResonanceBlock,
-    blocks: &Blocks,
-    nominal: &Nominal,
-    start: Parameters,
-    precision: Precision,
-) -> Option<FitResult> {
-    enough(blocks).then(|| alone(block, blocks, nominal, &TELLS, start, precision))
+    let (curve, precision) = (&blocks.resonance, Precision::Result);
+    enough(blocks).then(|| alone(curve, blocks, nominal, &TELLS, start, precision))
 }
 
 fn enough(blocks: &Blocks) -> bool {
