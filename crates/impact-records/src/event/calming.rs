@@ -1,70 +1,10 @@
 //! Records whose velocities ring beside impacts: behind the steep filters of converters before and after a jump, behind
 //! others after it. Smoothing takes the ringing away; a jump takes some samples more then.
 
-use crate::event::arcs::{Arcs, Candidate, DEGREE, flights};
 use crate::event::detect::Detection;
-use crate::event::kinematics::{Series, noise_with_converter};
+use crate::event::kinematics::noise_with_converter;
 use crate::record::{Record, Smoothing};
-use crate::signal::local_fit::LocalFit;
-use crate::signal::smoothing::{GAIN, reach, smoothed};
-use crate::signal::{ringing, robust};
-
-/// Height of a jump, over the third, from which it is one of those by which ringing is told.
-const STRONG: f64 = 0.5;
-
-/// How a velocity rings beside its strong jumps.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Ringing {
-    /// Samples before and after a jump in which it rings.
-    pub beside: [f64; 2],
-    /// Mean square of what the flights beside a jump leave, (m/s)².
-    left: f64,
-    /// Samples of these flights.
-    samples: usize,
-    /// Variance of a flight's value in the middle of the jump over that of its noise.
-    factor: f64,
-    /// Usual samples from one jump to the next.
-    apart: f64,
-}
-
-impl Ringing {
-    /// That of a velocity with jumps and flights beside these; `None` where few are strong.
-    pub(super) fn of(velocity: &Series, all: Arcs<'_>) -> Option<Self> {
-        let height = |c: &Candidate| c.jump.height.abs();
-        let mut heights: Vec<f64> = all.candidates.iter().map(height).collect();
-        heights.sort_by(|a, b| b.total_cmp(a));
-        // one or two may be misread
-        let usual = *heights.get(ringing::FEWEST - 1)?;
-        let strong = all.candidates.iter().filter(|c| height(c) > STRONG * usual);
-        let strong: Vec<Candidate> = strong.cloned().collect();
-        let jumps: Vec<f64> = strong.iter().map(|c| c.jump.middle()).collect();
-        let size = robust::robust_deviation(&velocity.values).unwrap_or(0.0);
-        let strong = all.of(&strong);
-        let mut beside: Vec<(LocalFit, f64)> = Vec::new();
-        for (i, at) in jumps.iter().enumerate() {
-            let both = flights(velocity, strong, i).into_iter().flatten();
-            beside.extend(both.map(|flight| (flight, *at)));
-        }
-        let left: Vec<f64> = beside.iter().map(|(flight, _)| left(flight)).collect();
-        let factors = beside
-            .iter()
-            .map(|(flight, at)| flight.error_factor(*at).powi(2));
-        let factors: Vec<f64> = factors.collect();
-        let apart: Vec<f64> = jumps.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        Some(Self {
-            beside: ringing::beside_impacts(&velocity.values, &jumps, size),
-            left: robust::median(&left)?,
-            samples: beside.iter().map(|(flight, _)| flight.samples).sum(),
-            factor: robust::median(&factors)?,
-            apart: robust::median(&apart)?,
-        })
-    }
-}
-
-/// Variance of the noise beside a polynomial of a flight, from what it leaves, (m/s)².
-fn left(flight: &LocalFit) -> f64 {
-    flight.residual_squares / flight.samples.saturating_sub(DEGREE + 1).max(1) as f64
-}
+use crate::signal::smoothing::{Kernel, LONG, SHORT};
 
 /// Distances of the taps, samples of the record: they take away what turns over in as many.
 const APART: [usize; 12] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24];
@@ -81,7 +21,7 @@ const NOISE: f64 = 4.0;
 pub(crate) fn calmed(
     record: &Record,
     found: &Detection,
-    detect: impl Fn(&Record, &[f64]) -> Detection,
+    detect: impl Fn(&Record) -> Detection,
 ) -> Option<(Record, Detection)> {
     let rings = found.ringing.filter(|r| r.beside[0] + r.beside[1] > 0.0)?;
     let error = (2.0 / rings.samples as f64).sqrt();
@@ -92,15 +32,18 @@ pub(crate) fn calmed(
     }
     let stride = record.sample_rate_hz / found.kinematics.rate_hz;
     let most = MOST * rings.apart * stride;
-    let fits = APART.into_iter().filter(|a| 2.0 * reach(*a) as f64 <= most);
     let jump_s = (found.contact_samples() - 1) as f64 / found.kinematics.rate_hz;
-    let times_s: Vec<f64> = found.impacts.iter().map(|i| i.time_s).collect();
-    let tried = fits.filter_map(|apart| {
-        let smooth = smoothed_record(record, apart, jump_s);
-        let found = detect(&smooth, &times_s);
+    let impacts = found.impacts.len() as f64;
+    let all = APART
+        .into_iter()
+        .flat_map(|apart| [(SHORT, apart), (LONG, apart)]);
+    let fit = all.filter(|(kernel, apart)| 2.0 * kernel.reach(*apart) as f64 <= most);
+    let tried = fit.filter_map(|(kernel, apart)| {
+        let smooth = smoothed_record(record, kernel, apart, jump_s);
+        let found = detect(&smooth);
         let rings = found.ringing?;
-        let left = (rings.left - GAIN * noise).max(0.0);
-        let variance = (noise / times_s.len() as f64 + left) * rings.factor;
+        let left = (rings.left - kernel.noise_gain() * noise).max(0.0);
+        let variance = (noise / impacts + left) * rings.factor;
         (left < LEFT * beyond).then_some((variance, smooth, found))
     });
     let (_, smooth, found) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -108,14 +51,14 @@ pub(crate) fn calmed(
 }
 
 /// The record with the channels of motion smoothed by taps so many samples apart, of jumps that took some time before.
-fn smoothed_record(record: &Record, apart: usize, jump_s: f64) -> Record {
+fn smoothed_record(record: &Record, kernel: Kernel, apart: usize, jump_s: f64) -> Record {
     let mut smooth = record.clone();
     for channel in smooth.channels.iter_mut().filter(|c| c.role.is_motion()) {
         channel.smoothing = Some(Smoothing {
-            reach_s: reach(apart) as f64 / record.sample_rate_hz + 0.5 * jump_s,
+            reach_s: kernel.reach(apart) as f64 / record.sample_rate_hz + 0.5 * jump_s,
             noise: noise_with_converter(&channel.values),
         });
-        channel.values = smoothed(&channel.values, apart);
+        channel.values = kernel.smoothed(&channel.values, apart);
     }
     smooth
 }
@@ -175,8 +118,11 @@ mod tests {
         added
     }
 
+    /// With the drive that the impacts follow.
     fn record(values: &[f64]) -> Record {
-        Record::of(RATE_HZ, &[(Role::VelocityX, values)])
+        let drive = |i: usize| (std::f64::consts::TAU * i as f64 / FLIGHT).cos();
+        let drive: Vec<f64> = (0..values.len()).map(drive).collect();
+        Record::of(RATE_HZ, &[(Role::Drive, &drive), (Role::VelocityX, values)])
     }
 
     fn found(record: &Record) -> Detection {
@@ -184,19 +130,20 @@ mod tests {
     }
 
     fn calm(record: &Record) -> Option<(Record, Detection)> {
-        calmed(record, &found(record), |smooth, times_s| {
+        let found = found(record);
+        calmed(record, &found, |smooth| {
             let settings = DetectSettings::default();
-            detect_at(smooth, RigKind::Single, &settings, Some(times_s))
+            detect_at(smooth, RigKind::Single, &settings, Some(&found))
         })
     }
 
-    /// Greatest deviation of a ratio of speeds from R.
+    /// Usual deviation of a ratio of speeds from R.
     fn off(found: &Detection) -> f64 {
         let ratio = |i: &crate::event::Impact| {
             -i.approach_speed_after_m_s.unwrap() / i.approach_speed_before_m_s.unwrap()
         };
         let off = found.impacts.iter().map(|i| (ratio(i) - RESTITUTION).abs());
-        off.fold(0.0, f64::max)
+        crate::signal::robust::median(&off.collect::<Vec<f64>>()).unwrap()
     }
 
     #[test]
@@ -206,13 +153,13 @@ mod tests {
         let rings = record(&rings);
         assert!(off(&found(&rings)) > 0.02, "{}", off(&found(&rings)));
         let (smooth, calm) = calm(&rings).expect("it rings");
-        assert_eq!(calm.impacts.len(), 15);
-        assert!(off(&calm) < 0.01, "{}", off(&calm));
+        assert_eq!(calm.impacts.len(), 16);
+        assert!(off(&calm) < 0.005, "{}", off(&calm));
         for (k, impact) in calm.impacts.iter().enumerate() {
             let late = impact.time_s * RATE_HZ - FLIGHT * (k as f64 + 0.4);
             assert!(late.abs() < 0.1, "{k}: {late}");
         }
-        let smoothing = smooth.channels[0].smoothing.expect("smoothed");
+        let smoothing = smooth.channels[1].smoothing.expect("smoothed");
         assert!(smoothing.reach_s < 10.0 / RATE_HZ);
     }
 

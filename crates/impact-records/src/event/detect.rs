@@ -1,16 +1,16 @@
 //! From a record to its impacts: contact pulses and velocity jumps fused, times refined.
 
 use crate::event::arcs::{self, Arcs, Candidate, DEGREE, Instant};
-use crate::event::calming::Ringing;
 use crate::event::channel_lags::{ChannelLag, channel_lags};
 use crate::event::contact::{Closed, closed_intervals};
 use crate::event::directions::{JumpDirections, jump_directions};
 use crate::event::drive::{self, DriveTone};
 use crate::event::finite_contact::{self, FiniteContact};
 use crate::event::impact::{DetectionSource, Impact};
-use crate::event::jumps::{Jump, JumpSearch};
+use crate::event::jumps::{Jump, JumpSearch, KnownJumps};
 use crate::event::kinematics::{Body, Kinematics, RigKind, Series};
 use crate::event::refine;
+use crate::event::ringing::Ringing;
 use crate::event::touches::touches;
 use crate::event::{drift, free_flight, impact_speeds, integrated};
 use crate::record::{Flag, ListedTimes, Problem, Record, Role};
@@ -49,6 +49,15 @@ impl Detection {
     /// Time from an impact in which a channel may show its jump, s: that of the jump and one sample.
     pub(crate) fn guard_s(&self) -> f64 {
         (self.jump_samples as f64 + 1.0) / self.kinematics.rate_hz
+    }
+
+    /// Its impacts, for a search in the same velocity when it is smoothed.
+    fn known_jumps(&self) -> KnownJumps {
+        let rate_hz = self.kinematics.rate_hz;
+        KnownJumps {
+            places: self.impacts.iter().map(|i| i.time_s * rate_hz).collect(),
+            rang: self.ringing.map_or(0.0, |r| r.beside[0].max(r.beside[1])),
+        }
     }
 
     /// Samples that a jump takes by its contact, without those that differentiating or integrating adds.
@@ -149,13 +158,12 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
     detect_at(record, rig, settings, None)
 }
 
-/// The same of a record that was smoothed: impacts are those that were found before, at these times in s, or that the
-/// contact shows.
+/// The same of a record that was smoothed: impacts are those that were found before, or that the contact shows.
 pub(crate) fn detect_at(
     record: &Record,
     rig: RigKind,
     settings: &DetectSettings,
-    known_s: Option<&[f64]>,
+    before: Option<&Detection>,
 ) -> Detection {
     let (drive, mut flags) = drive::measure(record, settings.drive_tolerance);
     let stride = stride(record, drive.as_ref(), settings.flight);
@@ -187,10 +195,9 @@ pub(crate) fn detect_at(
     let arc_samples = arc_samples(width);
     let found = match &kinematics.relative.velocity {
         Some(velocity) => {
-            let known =
-                known_s.map(|times| times.iter().map(|t| t * rate_hz).collect::<Vec<f64>>());
+            let known = before.map(Detection::known_jumps);
             let body = (&kinematics.relative, velocity);
-            let found = fuse(body, (&closed, known.as_deref()), width, dead_from);
+            let found = fuse(body, (&closed, known.as_ref()), width, dead_from);
             found.confirmed(velocity, arc_samples)
         }
         None => from_contact_alone(&closed, dead_from),
@@ -503,11 +510,11 @@ struct Fused {
 }
 
 /// Fuse jumps and contact pulses: a jump within reach of a pulse belongs to it; a pulse without a
-/// jump admits a weaker jump beside it, as does a touch; a long pulse is a dead zone. Where impacts are known already, in
-/// samples, no others are found without a pulse.
+/// jump admits a weaker jump beside it, as does a touch; a long pulse is a dead zone. Where impacts are known already,
+/// no others are found without a pulse.
 fn fuse(
     (relative, velocity): (&Body, &Series),
-    (closed, known): (&[Closed], Option<&[f64]>),
+    (closed, known): (&[Closed], Option<&KnownJumps>),
     width: usize,
     dead_from: usize,
 ) -> Fused {

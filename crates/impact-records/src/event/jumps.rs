@@ -38,6 +38,15 @@ impl Jump {
     }
 }
 
+/// Jumps that were found in the same velocity before it was smoothed, and for how long it rang beside these.
+#[derive(Debug, Clone)]
+pub(super) struct KnownJumps {
+    /// Where they are, samples.
+    pub places: Vec<f64>,
+    /// Samples from a jump in which another one may have been its ringing.
+    pub rang: f64,
+}
+
 /// A search for jumps in one velocity signal.
 #[derive(Debug, Clone)]
 pub(super) struct JumpSearch<'a> {
@@ -166,12 +175,14 @@ impl<'a> JumpSearch<'a> {
         self.remeasured(accepted)
     }
 
-    /// Only the jumps at known places, in samples, with weaker ones where none was found.
-    pub(super) fn keep_known(&self, jumps: &mut Vec<Jump>, known: &[f64]) {
-        let beside = |jump: &Jump, at: f64| (jump.middle() - at).abs() <= self.gap as f64 + 1.0;
-        jumps.retain(|jump| known.iter().any(|at| beside(jump, *at)));
-        for at in known {
-            if !jumps.iter().any(|jump| beside(jump, *at)) {
+    /// Only the jumps at known places, with weaker ones where none was found.
+    pub(super) fn keep_known(&self, jumps: &mut Vec<Jump>, known: &KnownJumps) {
+        let gap = self.gap as f64 + 1.0;
+        let beside = |jump: &Jump, at: f64, reach: f64| (jump.middle() - at).abs() <= reach;
+        jumps.retain(|jump| known.places.iter().any(|at| beside(jump, *at, gap)));
+        for at in &known.places {
+            let may_be_ringing = |jump: &Jump| beside(jump, *at, gap.max(known.rang));
+            if !jumps.iter().any(may_be_ringing) {
                 let first = whole::index((at - self.gap as f64).floor());
                 self.admit((first, first + self.gap), jumps);
             }

@@ -25,6 +25,7 @@ mod jumps;
 mod kinematics;
 mod lag;
 mod refine;
+mod ringing;
 mod touches;
 
 pub(crate) use calming::calmed;

@@ -232,8 +232,8 @@ pub fn observe(
         return observe_decay(record);
     }
     let first = detect(record, rig, detecting);
-    let calm = calmed(record, &first, |smooth, times_s| {
-        detect_at(smooth, rig, detecting, Some(times_s))
+    let calm = calmed(record, &first, |smooth| {
+        detect_at(smooth, rig, detecting, Some(&first))
     });
     let (calm, mut detection) = calm.map_or((None, first), |(calm, found)| (Some(calm), found));
     let record = calm.as_ref().unwrap_or(record);

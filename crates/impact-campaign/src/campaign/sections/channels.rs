@@ -268,7 +268,7 @@ fn then(
         let remedy = "write content = \"heights\" or \"rebounds\", or remove them";
         context.fault(Code::Conflict, &placed, &key("then"), what, remedy);
     }
-    let placed = of_contact(role, &written.then, ("then", &key("then")), context);
+    let placed = of_contact(role, &written.then, "then", &key("then"), context);
     let keys = placed.map(|placed| placed.get_ref().iter().map(|k| k.0.clone()));
     keys.map(Iterator::collect).unwrap_or_default()
 }

@@ -304,7 +304,7 @@ mod tests {
         let light: Vec<Vec<f64>> = (0..3).map(|_| drop(2.0, 6, 0.85, 0.13)).collect();
         let found = pooled(&[listed("a", &light, 1e-3)]).expect("a result");
         assert!(
-            said(&found).contains("the air slows the flights"),
+            said(&found).contains("as drag of the air does that slows a ball by 0.127"),
             "{}",
             said(&found)
         );

@@ -115,13 +115,13 @@ fn of_rows(fits: &[(&Row, Fitted)], known: Known, observations: &[Observation]) 
         fits: Some(true),
         ..MethodResult::default()
     };
-    let restitution = estimated((value, error), (&scatter, known), &unlisted);
+    let restitution = estimated(value, error, &scatter, known, &unlisted);
     result.parameters.restitution = Some(restitution);
     result.impact_groups = Some(ImpactGroups {
         by_record: all.clone(),
         ..structure::groups(&ratios, observations)
     });
-    let said = remarks(error, (&scatter, known), &unlisted);
+    let said = remarks(error, &scatter, known, &unlisted);
     result.remarks.extend(said);
     result.remarks.extend(odd.map(|odd| Remark::OddRecord {
         record: all[odd].group.clone(),
@@ -129,7 +129,7 @@ fn of_rows(fits: &[(&Row, Fitted)], known: Known, observations: &[Observation]) 
         others: value,
     }));
     if ratios.len() > 1 {
-        judge(&mut result, &rows, (&groups, &ratios), known);
+        judge(&mut result, &rows, &groups, &ratios, known);
     }
     result
 }
@@ -138,7 +138,8 @@ fn of_rows(fits: &[(&Row, Fitted)], known: Known, observations: &[Observation]) 
 fn judge(
     result: &mut MethodResult,
     rows: &[(&Row, Fitted)],
-    (groups, ratios): (&[ImpactGroup], &[GroupedRatio]),
+    groups: &[ImpactGroup],
+    ratios: &[GroupedRatio],
     known: Known,
 ) {
     let trend = scatter::trend(rows, known.least).filter(is_change);
@@ -157,8 +158,10 @@ fn judge(
 
 /// R with the error that the rows leave of it and what times do not contain.
 fn estimated(
-    (value, error): (f64, f64),
-    (scatter, known): (&Scatter, Known),
+    value: f64,
+    error: f64,
+    scatter: &Scatter,
+    known: Known,
     unlisted: &Unlisted,
 ) -> Estimate {
     let spread = Spread {
@@ -180,7 +183,8 @@ fn estimated(
 /// What scatters, and what times do not contain where it decides the interval; `error`: of R by the rows alone.
 fn remarks(
     error: f64,
-    (scatter, known): (&Scatter, Known),
+    scatter: &Scatter,
+    known: Known,
     unlisted: &Unlisted,
 ) -> impl Iterator<Item = Remark> {
     let listed = scatter.listed.map(|error| {
