@@ -230,7 +230,7 @@ pub(super) struct Ratios {
 
 impl Ratios {
     pub(super) fn of<'a>(rows: impl Iterator<Item = &'a Row>) -> Self {
-        let rows: Vec<RatioRow> = rows.map(|row| RatioRow::of(row)).collect();
+        let rows: Vec<RatioRow> = rows.map(RatioRow::of).collect();
         let diagonals = rows
             .iter()
             .flat_map(|r| r.by_errors.diagonal().data.as_vec().clone());

@@ -1,5 +1,5 @@
 //! Texts that are no tables of cells and become one: what a microcontroller prints with a label before each number, and
-//! the blocks of a NI SignalExpress export.
+//! the blocks of a NI `SignalExpress` export.
 
 use std::fmt::Write as _;
 
@@ -15,7 +15,7 @@ const LINES: usize = 60;
 const MOST_OF_TEN: usize = 8;
 /// Fewest lines.
 const FEWEST_LINES: usize = 4;
-/// What heads the blocks of SignalExpress.
+/// What heads the blocks of `SignalExpress`.
 const SIGNAL_EXPRESS: [&str; 4] = ["channel names:", "start times:", "dt:", "data:"];
 
 /// The text as a table of cells; as it is where it is one.
