@@ -2,8 +2,9 @@
 //! others after it. Smoothing takes the ringing away; a jump takes some samples more then.
 
 use crate::event::detect::Detection;
+use crate::event::impact::Impact;
 use crate::event::kinematics::noise_with_converter;
-use crate::record::{Record, Smoothing};
+use crate::record::{Channel, Record, Smoothing};
 use crate::signal::smoothing::{Kernel, LONG, SHORT};
 
 /// Distances of the taps, samples of the record: they take away what turns over in as many.
@@ -16,13 +17,18 @@ const LEFT: f64 = 0.25;
 const NOISE: f64 = 4.0;
 
 /// The record with its motion smoothed such that flights no more ring and speeds at its impacts have the least errors, and
-/// what was found in it; `None` where it does not ring or smoothing does not help. What still
+/// what was found in it; `None` where it does not ring or smoothing does not help, and where the low-pass is known or contacts that last explain it. What still
 /// rings is an error of all impacts, noise is one of each.
 pub(crate) fn calmed(
     record: &Record,
     found: &Detection,
     detect: impl Fn(&Record) -> Detection,
 ) -> Option<(Record, Detection)> {
+    let filtered = |c: &Channel| c.role.is_motion() && c.low_pass.is_some();
+    let lasting = |i: &Impact| i.contact_duration_s.is_some();
+    if record.channels.iter().any(filtered) || found.impacts.iter().any(lasting) {
+        return None;
+    }
     let rings = found.ringing.filter(|r| r.beside[0] + r.beside[1] > 0.0)?;
     let error = (2.0 / rings.samples as f64).sqrt();
     let noise = found.kinematics.relative.velocity.as_ref()?.noise.powi(2);
@@ -40,7 +46,11 @@ pub(crate) fn calmed(
     let fit = all.filter(|(kernel, apart)| 2.0 * kernel.reach(*apart) as f64 <= most);
     let tried = fit.filter_map(|(kernel, apart)| {
         let smooth = smoothed_record(record, kernel, apart, jump_s);
-        let found = detect(&smooth);
+        // how long a jump takes tells of a low-pass, and is that before smoothing
+        let found = Detection {
+            lags: found.lags.clone(),
+            ..detect(&smooth)
+        };
         let rings = found.ringing?;
         let left = (rings.left - kernel.noise_gain() * noise).max(0.0);
         let variance = (noise / impacts + left) * rings.factor;

@@ -31,6 +31,14 @@ pub(super) enum Listed {
 }
 
 impl Row {
+    /// Its falls, if it lists heights.
+    pub(super) fn falls(&self) -> Option<&[Fall]> {
+        match &self.listed {
+            Listed::Heights(falls) => Some(falls),
+            Listed::Times(_) => None,
+        }
+    }
+
     /// The flights before and after each impact between two, s.
     pub(super) fn flights_s(&self) -> Vec<[f64; 2]> {
         match &self.listed {

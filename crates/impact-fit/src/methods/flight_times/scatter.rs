@@ -396,7 +396,7 @@ impl Weighing {
         })
     }
 
-    fn mean(&self, values: &DVector<f64>) -> f64 {
+    pub(super) fn mean(&self, values: &DVector<f64>) -> f64 {
         self.weights.dot(values) / self.information
     }
 

@@ -9,7 +9,8 @@
 
 use nalgebra::DVector;
 
-use crate::methods::flight_times::rows::{Fitted, Listed, Row};
+use crate::methods::flight_times::fall::Fall;
+use crate::methods::flight_times::rows::{Fitted, Row};
 use crate::methods::flight_times::scatter::{Ratios, RowEstimate, Weighing};
 use crate::statistics::quantile::NORMAL_975;
 use impact_records::motion::Observation;
@@ -98,18 +99,31 @@ impl Unlisted {
     }
 }
 
-/// Lengths of contacts that are tried, s: none of heights, which do not contain them; up to those that the list contains with both edges, as an instrument may
+/// Least and greatest height, m, by which all may be too great, as of a ball's middle: half of a marble and of a
+/// basketball. Each factor between them is as likely, and that they are right as all of these.
+const OFFSETS_M: [f64; 2] = [5e-3, 0.12];
+
+/// Heights by which all may be too great, m, less than half the lowest.
+fn offsets_m(falls: &[&Fall]) -> Vec<f64> {
+    let lowest_m = falls
+        .iter()
+        .map(|f| f.after_m)
+        .fold(f64::INFINITY, f64::min);
+    let some = by_ratio(OFFSETS_M.map(|m| m.min(0.5 * lowest_m)), TRIED / 2);
+    some.chain(std::iter::repeat_n(0.0, TRIED / 2)).collect()
+}
+
+/// Lengths of contacts that are tried, s, of heights instead what may be wrong with all of these, m: up to those that the list contains with both edges, as an instrument may
 /// make a pulse longer than the touch; else all usual ones that leave flights.
 fn lengths_s(rows: &[(&Row, Fitted)], observations: &[Observation]) -> Vec<f64> {
     let listed = rows.iter().flat_map(|(row, _)| {
         let impacts = observations[row.record].impacts.iter();
         impacts.filter_map(|i| i.contact_duration_s)
     });
-    if rows
-        .iter()
-        .any(|(row, _)| matches!(row.listed, Listed::Heights(_)))
-    {
-        return vec![0.0];
+    let falls = rows.iter().filter_map(|(row, _)| row.falls());
+    let falls: Vec<&Fall> = falls.flatten().collect();
+    if !falls.is_empty() {
+        return offsets_m(&falls);
     }
     let flights = rows.iter().flat_map(|(row, _)| row.flights_s());
     let longest_s = 0.5 * flights.flatten().fold(f64::INFINITY, f64::min);
@@ -124,7 +138,7 @@ fn lengths_s(rows: &[(&Row, Fitted)], observations: &[Observation]) -> Vec<f64> 
     }
 }
 
-/// What contacts of one length change of the logarithms of a row's ratios, and what air of γ = 1/s² takes from them.
+/// What contacts of one length, or heights that are too great, change of the logarithms of a row's ratios, and what air of γ = 1/s² takes from them.
 struct RowChange {
     by_length: DVector<f64>,
     by_air: DVector<f64>,
@@ -134,10 +148,18 @@ impl RowChange {
     fn of(row: &Row, own: &RowEstimate, length_s: f64) -> Self {
         let flights = row.flights_s();
         let count = flights.len();
-        let share = |flight: f64| (1.0 - length_s / flight).ln();
+        let share = |of: f64| (1.0 - length_s / of).ln();
+        let changed = |[before, after]: [f64; 2]| share(after) - share(before);
         let of_both = (1.0 + own.restitution.powi(2)) / 16.0;
+        if let Some(falls) = row.falls() {
+            let by_offset = |f: &Fall| 0.5 * changed([f.before_m, f.after_m]);
+            return Self {
+                by_length: DVector::from_iterator(count, falls.iter().map(by_offset)),
+                by_air: DVector::from_fn(count, |k, _| of_both * flights[k][0].powi(2)),
+            };
+        }
         Self {
-            by_length: DVector::from_fn(count, |k, _| share(flights[k][1]) - share(flights[k][0])),
+            by_length: DVector::from_fn(count, |k, _| changed(flights[k])),
             by_air: DVector::from_fn(count, |k, _| of_both * (flights[k][0] - length_s).powi(2)),
         }
     }
