@@ -4,7 +4,7 @@
 use crate::event::detect::Detection;
 use crate::event::impact::Impact;
 use crate::event::kinematics::noise_with_converter;
-use crate::record::{Channel, Record, Smoothing};
+use crate::record::{Channel, Record, Role, Smoothing};
 use crate::signal::smoothing::{Kernel, LONG, SHORT};
 
 /// Distances of the taps, samples of the record: they take away what turns over in as many.
@@ -31,7 +31,12 @@ pub(crate) fn calmed(
     }
     let rings = found.ringing.filter(|r| r.beside[0] + r.beside[1] > 0.0)?;
     let error = (2.0 / rings.samples as f64).sqrt();
-    let noise = found.kinematics.relative.velocity.as_ref()?.noise.powi(2);
+    let velocity = found.kinematics.relative.velocity.as_ref()?;
+    // displacements have kinks, which hardly ring
+    if matches!(velocity.role, Role::DisplacementX | Role::DisplacementY) {
+        return None;
+    }
+    let noise = velocity.noise.powi(2);
     let beyond = rings.left - noise;
     if beyond < NOISE * error * noise {
         return None;
@@ -77,7 +82,6 @@ fn smoothed_record(record: &Record, kernel: Kernel, apart: usize, jump_s: f64) -
 mod tests {
     use super::*;
     use crate::event::{DetectSettings, RigKind, detect, detect_at};
-    use crate::record::Role;
 
     const RATE_HZ: f64 = 2000.0;
     /// Flight time in samples, approach speed in m/s, restitution.
