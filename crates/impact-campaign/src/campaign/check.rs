@@ -96,16 +96,20 @@ pub fn nothing_stated(
     silent.then(|| stated_nothing(campaign)).flatten()
 }
 
-/// That the records of a campaign show one impact.
-fn one_impact(campaign: &ResolvedCampaign) -> Diagnostic {
-    let place = Place {
+/// The place of what all records have in common.
+fn of_records(campaign: &ResolvedCampaign) -> Place {
+    Place {
         file: campaign.file.clone(),
         item: "records".to_owned(),
         ..Place::default()
-    };
+    }
+}
+
+/// That the records of a campaign show one impact.
+fn one_impact(campaign: &ResolvedCampaign) -> Diagnostic {
     Diagnostic::new(
         (Code::Missing, Severity::Note),
-        place,
+        of_records(campaign),
         "one impact is all that the records show: R is that of this impact, as sure as its speeds or heights are; whether \
          R scatters from impact to impact, or depends on the speed, is not known",
         "record more impacts, at unlike speeds",
@@ -125,14 +129,9 @@ fn stated_nothing(campaign: &ResolvedCampaign) -> Option<Diagnostic> {
     let drive = campaign.channels.iter().any(|c| c.role == Role::Drive);
     let undriven = |r: &RecordEntry| campaign.driven(r) && r.setting.stated_frequency_hz.is_none();
     (!drive && campaign.records.iter().all(undriven)).then(|| {
-        let place = Place {
-            file: campaign.file.clone(),
-            item: "records".to_owned(),
-            ..Place::default()
-        };
         Diagnostic::new(
             (Code::Missing, Severity::Campaign),
-            place,
+            of_records(campaign),
             "neither a drive nor free decays nor free flights are stated: nothing can be identified",
             "write excitation = \"free_decay\" in [records] for decays after a blow or a release, flight = \
              \"constant_force\" in [campaign] for masses that fly freely between impacts, or name the drive in \

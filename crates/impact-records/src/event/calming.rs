@@ -17,8 +17,8 @@ const LEFT: f64 = 0.25;
 const NOISE: f64 = 4.0;
 
 /// The record with its motion smoothed such that flights no more ring and speeds at its impacts have the least errors, and
-/// what was found in it; `None` where it does not ring or smoothing does not help, and where the low-pass is known or contacts that last explain it. What still
-/// rings is an error of all impacts, noise is one of each.
+/// what was found in it. What still rings is an error of all impacts, noise is one of each. `None` where it does not ring,
+/// where smoothing does not help, and where a known low-pass or contacts that last explain it.
 pub(crate) fn calmed(
     record: &Record,
     found: &Detection,
@@ -29,20 +29,20 @@ pub(crate) fn calmed(
     if record.channels.iter().any(filtered) || found.impacts.iter().any(lasting) {
         return None;
     }
-    let rings = found.ringing.filter(|r| r.beside[0] + r.beside[1] > 0.0)?;
-    let error = (2.0 / rings.samples as f64).sqrt();
+    let rough = found.ringing?.rough?;
+    let error = (2.0 / rough.samples as f64).sqrt();
     let velocity = found.kinematics.relative.velocity.as_ref()?;
     // displacements have kinks, which hardly ring
     if matches!(velocity.role, Role::DisplacementX | Role::DisplacementY) {
         return None;
     }
     let noise = velocity.noise.powi(2);
-    let beyond = rings.left - noise;
+    let beyond = rough.left - noise;
     if beyond < NOISE * error * noise {
         return None;
     }
     let stride = record.sample_rate_hz / found.kinematics.rate_hz;
-    let most = MOST * rings.apart * stride;
+    let most = MOST * rough.apart * stride;
     let jump_s = (found.contact_samples() - 1) as f64 / found.kinematics.rate_hz;
     let impacts = found.impacts.len() as f64;
     let all = APART
@@ -51,18 +51,16 @@ pub(crate) fn calmed(
     let fit = all.filter(|(kernel, apart)| 2.0 * kernel.reach(*apart) as f64 <= most);
     let tried = fit.filter_map(|(kernel, apart)| {
         let smooth = smoothed_record(record, kernel, apart, jump_s);
-        // how long a jump takes tells of a low-pass, and is that before smoothing
-        let found = Detection {
-            lags: found.lags.clone(),
-            ..detect(&smooth)
-        };
-        let rings = found.ringing?;
-        let left = (rings.left - kernel.noise_gain() * noise).max(0.0);
-        let variance = (noise / impacts + left) * rings.factor;
+        let found = detect(&smooth);
+        let rough = found.ringing?.rough?;
+        let left = (rough.left - kernel.noise_gain() * noise).max(0.0);
+        let variance = (noise / impacts + left) * rough.factor;
         (left < LEFT * beyond).then_some((variance, smooth, found))
     });
-    let (_, smooth, found) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some((smooth, found))
+    let (_, smooth, mut calm) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    // how long a jump takes tells of a low-pass, and is that before smoothing
+    calm.lags.clone_from(&found.lags);
+    Some((smooth, calm))
 }
 
 /// The record with the channels of motion smoothed by taps so many samples apart, of jumps that took some time before.

@@ -6,6 +6,7 @@ use crate::event::contact::{Closed, closed_intervals};
 use crate::event::directions::{JumpDirections, jump_directions};
 use crate::event::drive::{self, DriveTone};
 use crate::event::finite_contact::{self, FiniteContact};
+use crate::event::heights::by_heights;
 use crate::event::impact::{DetectionSource, Impact};
 use crate::event::jumps::{Jump, JumpSearch, KnownJumps};
 use crate::event::kinematics::{Body, Kinematics, RigKind, Series};
@@ -327,37 +328,6 @@ fn of_impacts(kinematics: Kinematics, impacts: Vec<Impact>) -> Detection {
         flags: Vec::new(),
         ringing: None,
     }
-}
-
-/// Gravity, m/s²: R does not depend on it.
-const GRAVITY: f64 = 9.81;
-
-/// Between a last top and the next drop, s: impacts so far apart beyond their flight are not of one drop.
-const BETWEEN_DROPS_S: f64 = 1.0;
-
-/// Impacts between heights, with NaN between drops, as one drop after the other would have them.
-fn by_heights(heights_m: &[f64], known: ListedTimes) -> Vec<Impact> {
-    let (mut impacts, mut drop_s) = (Vec::new(), 0.0);
-    for drop in heights_m.split(|h| h.is_nan()) {
-        let speed = |height_m: f64| (2.0 * GRAVITY * height_m).sqrt();
-        for pair in drop.windows(2) {
-            let [before, after] = [pair[0], pair[1]].map(speed);
-            let fall_s = before / GRAVITY;
-            let by_digit_s = known.digit_m / before;
-            let stated = Some(GRAVITY * known.height_m / before);
-            impacts.push(Impact {
-                approach_speed_before_m_s: Some(before),
-                approach_speed_after_m_s: Some(-after),
-                speed_error_m_s: stated.filter(|_| known.height_m > 0.0),
-                source: DetectionSource::Heights,
-                ..Impact::timed(drop_s + fall_s, by_digit_s)
-            });
-            // the rise, and the fall of the next one
-            drop_s += fall_s + after / GRAVITY;
-        }
-        drop_s += BETWEEN_DROPS_S;
-    }
-    impacts
 }
 
 fn is_without_flight(flag: &Flag) -> bool {

@@ -13,9 +13,16 @@ const STRONG: f64 = 0.5;
 pub(crate) struct Ringing {
     /// Samples before and after a jump in which it rings.
     pub(super) beside: [f64; 2],
-    /// Mean square of what the flights beside a jump leave, (m/s)².
+    /// What the flights beside the jumps leave; where it neither rings nor was smoothed nobody asks for it.
+    pub(super) rough: Option<Roughness>,
+}
+
+/// What the flights beside strong jumps leave of a velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Roughness {
+    /// Mean square of what they leave, (m/s)².
     pub(super) left: f64,
-    /// Samples of these flights.
+    /// Their samples.
     pub(super) samples: usize,
     /// Variance of a flight's value in the middle of the jump over that of its noise.
     pub(super) factor: f64,
@@ -35,7 +42,18 @@ impl Ringing {
         let strong: Vec<Candidate> = strong.cloned().collect();
         let jumps: Vec<f64> = strong.iter().map(|c| c.jump.middle()).collect();
         let size = robust::robust_deviation(&velocity.values).unwrap_or(0.0);
-        let strong = all.of(&strong);
+        let beside = ringing::beside_impacts(&velocity.values, &jumps, size);
+        let asked = beside != [0.0; 2] || velocity.spread > 0;
+        let rough = asked.then(|| Roughness::of(velocity, all.of(&strong), &jumps));
+        Some(Self {
+            beside,
+            rough: rough.flatten(),
+        })
+    }
+}
+
+impl Roughness {
+    fn of(velocity: &Series, strong: Arcs<'_>, jumps: &[f64]) -> Option<Self> {
         let mut beside: Vec<(LocalFit, f64)> = Vec::new();
         for (i, at) in jumps.iter().enumerate() {
             let both = flights(velocity, strong, i).into_iter().flatten();
@@ -48,7 +66,6 @@ impl Ringing {
         let factors: Vec<f64> = factors.collect();
         let apart: Vec<f64> = jumps.windows(2).map(|pair| pair[1] - pair[0]).collect();
         Some(Self {
-            beside: ringing::beside_impacts(&velocity.values, &jumps, size),
             left: robust::median(&left)?,
             samples: beside.iter().map(|(flight, _)| flight.samples).sum(),
             factor: robust::median(&factors)?,

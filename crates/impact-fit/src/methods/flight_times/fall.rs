@@ -1,7 +1,6 @@
 //! A fall and the rise after it, by their heights.
 
-/// Gravity, m/s², by which heights stand for flights: R does not depend on it.
-pub(super) const GRAVITY: f64 = 9.81;
+use impact_records::event::GRAVITY_M_S2;
 
 /// A fall to an impact and the rise after it.
 #[derive(Debug, Clone, Copy)]
@@ -15,7 +14,7 @@ pub(super) struct Fall {
 impl Fall {
     /// Flights of the duration that the heights have in free fall, s.
     pub(super) fn flights_s(&self) -> [f64; 2] {
-        [self.before_m, self.after_m].map(|h| (8.0 * h / GRAVITY).sqrt())
+        [self.before_m, self.after_m].map(|h| (8.0 * h / GRAVITY_M_S2).sqrt())
     }
 
     /// What an error of 1 m of the height before changes of the logarithm of R, and one of the height after.

@@ -7,10 +7,10 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::messages::{HeightsCause, Remark};
 use crate::methods::answer::MethodResult;
-use crate::methods::flight_times::fall::{Fall, GRAVITY};
+use crate::methods::flight_times::fall::Fall;
 use crate::methods::flight_times::rows::{Listed, Row, Rows};
 use crate::methods::flight_times::scatter::{Known, RatioRow, Trend, Weighing};
-use impact_records::event::{DetectionSource, Impact};
+use impact_records::event::{DetectionSource, GRAVITY_M_S2, Impact};
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
 
@@ -39,13 +39,13 @@ fn falls(o: &Observation) -> Vec<Fall> {
             .last()
             .filter(|_| goes_on)
             .map_or(0, |fall| fall.bounce + 1);
-        let [before_m, after_m] = [before, after].map(|speed| 0.5 * speed * speed / GRAVITY);
+        let [before_m, after_m] = [before, after].map(|speed| 0.5 * speed * speed / GRAVITY_M_S2);
         falls.push(Fall {
             before_m,
             after_m,
             bounce,
         });
-        end_s = impact.time_s + 2.0 * after / GRAVITY;
+        end_s = impact.time_s + 2.0 * after / GRAVITY_M_S2;
     }
     falls
 }
@@ -110,7 +110,7 @@ fn without(mut falls: Vec<Fall>, left_out: &dyn Fn(&Fall) -> bool) -> Vec<Fall> 
 pub(super) fn known(records: &[(usize, &Observation)]) -> Known {
     let impacts = || records.iter().flat_map(|(_, o)| &o.impacts);
     let speed = |i: &Impact| i.approach_speed_before_m_s.unwrap_or(0.0);
-    let stated = impacts().filter_map(|i| Some(i.speed_error_m_s? * speed(i) / GRAVITY));
+    let stated = impacts().filter_map(|i| Some(i.speed_error_m_s? * speed(i) / GRAVITY_M_S2));
     let stated = robust::median(&stated.collect::<Vec<_>>());
     let digit = impacts().map(|i| i.time_error_s * speed(i));
     let digit = robust::median(&digit.collect::<Vec<_>>());
@@ -142,13 +142,9 @@ const MOST_DRAG_PER_M: f64 = 0.3;
 /// What may make R change with the height: drag of the air, by which the logarithm falls as the mean of both heights
 /// rises, or a height that all contain too much or too little, as half the difference of the heights' reciprocals.
 fn cause(rows: &[&Row]) -> HeightsCause {
-    let falls = |row: &Row| match &row.listed {
-        Listed::Heights(falls) => falls.clone(),
-        Listed::Times(_) => Vec::new(),
-    };
-    let each: Vec<(RatioRow, Vec<Fall>)> = rows
+    let each: Vec<(RatioRow, &[Fall])> = rows
         .iter()
-        .map(|row| (RatioRow::of(row), falls(row)))
+        .filter_map(|row| Some((RatioRow::of(row), row.falls()?)))
         .collect();
     let air = explained(&each, &|f| -0.5 * (f.before_m + f.after_m));
     let offset = explained(&each, &|f| 0.5 * (f.after_m.recip() - f.before_m.recip()));
@@ -170,7 +166,7 @@ fn cause(rows: &[&Row]) -> HeightsCause {
 }
 
 /// How much of something per unit explains the logarithms best, and the squares that it leaves.
-fn explained(rows: &[(RatioRow, Vec<Fall>)], of: &dyn Fn(&Fall) -> f64) -> Option<(f64, f64)> {
+fn explained(rows: &[(RatioRow, &[Fall])], of: &dyn Fn(&Fall) -> f64) -> Option<(f64, f64)> {
     let [mut squares, mut products, mut values] = [0.0; 3];
     for (row, falls) in rows {
         // R itself scatters as much as the errors of the heights, in the median
@@ -204,16 +200,19 @@ mod tests {
         let mut o = Observation::of(name, 1.0, Motion::Impactless);
         let mut at_s = 0.0;
         for drop in drops {
-            let speeds: Vec<f64> = drop.iter().map(|h| (2.0 * GRAVITY * h).sqrt()).collect();
+            let speeds: Vec<f64> = drop
+                .iter()
+                .map(|h| (2.0 * GRAVITY_M_S2 * h).sqrt())
+                .collect();
             for pair in speeds.windows(2) {
-                at_s += pair[0] / GRAVITY;
+                at_s += pair[0] / GRAVITY_M_S2;
                 o.impacts.push(Impact {
                     approach_speed_after_m_s: Some(-pair[1]),
                     source: DetectionSource::Heights,
                     time_error_s: digit_m / 12f64.sqrt() / pair[0],
                     ..Impact::at(at_s, pair[0])
                 });
-                at_s += pair[1] / GRAVITY;
+                at_s += pair[1] / GRAVITY_M_S2;
             }
             at_s += 1.0;
         }
@@ -224,8 +223,8 @@ mod tests {
     /// v² = g/k (1 − exp(−2kh)), and it rises to ln(1 + k v²/g)/(2k).
     fn drop(height_m: f64, impacts: usize, restitution: f64, drag: f64) -> Vec<f64> {
         let next = |h: &f64| {
-            let down = GRAVITY / drag * -(-2.0 * drag * h).exp_m1();
-            Some((drag * restitution * restitution * down / GRAVITY).ln_1p() / (2.0 * drag))
+            let down = GRAVITY_M_S2 / drag * -(-2.0 * drag * h).exp_m1();
+            Some((drag * restitution * restitution * down / GRAVITY_M_S2).ln_1p() / (2.0 * drag))
         };
         std::iter::successors(Some(height_m), next)
             .take(impacts + 1)

@@ -1,5 +1,5 @@
 //! What times of impacts do not contain, yet bears on R: how long contacts last, as a flight begins where one opens,
-//! and how much the air slows the flights.
+//! and how much the air slows the flights. Of heights it is instead the level above which they are.
 //!
 //! Where a contact of length c begins each interval D, the flight lasts D − c. In air, of drag −γ v²/a at the speed v
 //! under the acceleration a, a flight of T over the one before is R (1 − (1 + R²) γ T²/16) to first order, and so is the
@@ -10,7 +10,7 @@
 use nalgebra::DVector;
 
 use crate::methods::flight_times::fall::Fall;
-use crate::methods::flight_times::rows::{Fitted, Row};
+use crate::methods::flight_times::rows::{Fitted, Listed, Row};
 use crate::methods::flight_times::scatter::{Ratios, RowEstimate, Weighing};
 use crate::statistics::quantile::NORMAL_975;
 use impact_records::motion::Observation;
@@ -46,13 +46,13 @@ impl Unlisted {
         observations: &[Observation],
         stated_s: Option<f64>,
     ) -> Self {
-        let lengths_s = lengths_s(rows, observations);
+        let unknowns = tried_of_all(rows, observations);
         let drags: Vec<f64> = by_ratio(DRAGS_PER_S2, TRIED).collect();
-        let changes: Vec<Vec<RowChange>> = lengths_s
+        let changes: Vec<Vec<RowChange>> = unknowns
             .iter()
-            .map(|length_s| {
+            .map(|unknown| {
                 let each = rows.iter().zip(estimates);
-                each.map(|((row, _), own)| RowChange::of(row, own, *length_s))
+                each.map(|((row, _), own)| RowChange::of(row, own, *unknown))
                     .collect()
             })
             .collect();
@@ -113,18 +113,19 @@ fn offsets_m(falls: &[&Fall]) -> Vec<f64> {
     some.chain(std::iter::repeat_n(0.0, TRIED / 2)).collect()
 }
 
-/// Lengths of contacts that are tried, s, of heights instead what may be wrong with all of these, m: up to those that the list contains with both edges, as an instrument may
-/// make a pulse longer than the touch; else all usual ones that leave flights.
-fn lengths_s(rows: &[(&Row, Fitted)], observations: &[Observation]) -> Vec<f64> {
-    let listed = rows.iter().flat_map(|(row, _)| {
-        let impacts = observations[row.record].impacts.iter();
-        impacts.filter_map(|i| i.contact_duration_s)
-    });
+/// What is tried of the unknown of all impacts: heights by which all may be too great, m, or lengths of contacts, s. These
+/// are up to those that the list contains with both edges, as an instrument may make a pulse longer than the touch; else
+/// all usual ones that leave flights.
+fn tried_of_all(rows: &[(&Row, Fitted)], observations: &[Observation]) -> Vec<f64> {
     let falls = rows.iter().filter_map(|(row, _)| row.falls());
     let falls: Vec<&Fall> = falls.flatten().collect();
     if !falls.is_empty() {
         return offsets_m(&falls);
     }
+    let listed = rows.iter().flat_map(|(row, _)| {
+        let impacts = observations[row.record].impacts.iter();
+        impacts.filter_map(|i| i.contact_duration_s)
+    });
     let flights = rows.iter().flat_map(|(row, _)| row.flights_s());
     let longest_s = 0.5 * flights.flatten().fold(f64::INFINITY, f64::min);
     match robust::median(&listed.collect::<Vec<_>>()) {
@@ -138,35 +139,37 @@ fn lengths_s(rows: &[(&Row, Fitted)], observations: &[Observation]) -> Vec<f64> 
     }
 }
 
-/// What contacts of one length, or heights that are too great, change of the logarithms of a row's ratios, and what air of γ = 1/s² takes from them.
+/// What the unknown of all impacts changes of the logarithms of a row's ratios, and what air of γ = 1/s² takes from them.
 struct RowChange {
-    by_length: DVector<f64>,
+    by_unknown: DVector<f64>,
     by_air: DVector<f64>,
 }
 
 impl RowChange {
-    fn of(row: &Row, own: &RowEstimate, length_s: f64) -> Self {
+    fn of(row: &Row, own: &RowEstimate, unknown: f64) -> Self {
         let flights = row.flights_s();
-        let count = flights.len();
-        let share = |of: f64| (1.0 - length_s / of).ln();
-        let changed = |[before, after]: [f64; 2]| share(after) - share(before);
+        let left = |of: f64| (1.0 - unknown / of).ln();
+        let changed = |[before, after]: [f64; 2]| left(after) - left(before);
+        let (by_unknown, length_s): (Vec<f64>, f64) = match &row.listed {
+            Listed::Times(_) => (flights.iter().map(|pair| changed(*pair)).collect(), unknown),
+            Listed::Heights(falls) => {
+                let root = |f: &Fall| 0.5 * changed([f.before_m, f.after_m]);
+                (falls.iter().map(root).collect(), 0.0)
+            }
+        };
         let of_both = (1.0 + own.restitution.powi(2)) / 16.0;
-        if let Some(falls) = row.falls() {
-            let by_offset = |f: &Fall| 0.5 * changed([f.before_m, f.after_m]);
-            return Self {
-                by_length: DVector::from_iterator(count, falls.iter().map(by_offset)),
-                by_air: DVector::from_fn(count, |k, _| of_both * flights[k][0].powi(2)),
-            };
-        }
+        let by_air = flights
+            .iter()
+            .map(|[before, _]| of_both * (before - length_s).powi(2));
         Self {
-            by_length: DVector::from_fn(count, |k, _| changed(flights[k])),
-            by_air: DVector::from_fn(count, |k, _| of_both * (flights[k][0] - length_s).powi(2)),
+            by_unknown: by_unknown.into(),
+            by_air: DVector::from_iterator(flights.len(), by_air),
         }
     }
 
     /// Change of the row's R, whose logarithm is a weighted mean of those of the ratios.
     fn of_mean(&self, own: &RowEstimate, drag: f64) -> f64 {
-        let each = self.by_length.iter().zip(&self.by_air).zip(&own.weights);
+        let each = self.by_unknown.iter().zip(&self.by_air).zip(&own.weights);
         let logarithm: f64 = each
             .map(|((l, air), weight)| weight * (l + drag * air))
             .sum();
@@ -227,7 +230,7 @@ impl Weighted {
     fn squares(&self, ratios: &Ratios, changes: &[RowChange]) -> [f64; 3] {
         let mut sums = [0.0; 3];
         for ((row, change), weighing) in ratios.rows.iter().zip(changes).zip(&self.rows) {
-            let values = weighing.centred(&(&row.values + &change.by_length));
+            let values = weighing.centred(&(&row.values + &change.by_unknown));
             let air = weighing.centred(&change.by_air);
             let [of_values, of_air] = [&values, &air].map(|v| weighing.factor.solve(v));
             sums[0] += values.dot(&of_values);
