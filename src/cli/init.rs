@@ -184,7 +184,7 @@ mod tests {
         found.refused = (1..=6).map(refused).collect();
         let (message, _) = only(&found);
         assert!(
-            message.ends_with("t5.mat: it holds a table T; 3 more files"),
+            message.ends_with("t5.mat: it holds a table T; 2 more files"),
             "{message}"
         );
         assert_eq!(only(&FolderContents::default()).1, name_records());
