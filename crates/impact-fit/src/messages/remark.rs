@@ -225,7 +225,7 @@ pub enum Remark {
         /// The height before it, m.
         height_m: f64,
     },
-    /// R of the flights' ratios scatters from impact to impact by more than the times do.
+    /// R scatters from impact to impact by more than the errors of what is measured explain.
     RestitutionScatters {
         /// Standard deviation over R.
         share: f64,

@@ -4,10 +4,13 @@
 use rayon::prelude::*;
 
 use crate::methods::blocks::Blocks;
+use crate::methods::flights::block::FlightBlock;
 use crate::methods::trajectories::block::TrajectoryBlock;
 use crate::methods::trajectories::record::Misfit;
 use crate::parameters::Parameters;
 use crate::solver::mean_squares;
+use crate::solver::scalar::least;
+use crate::statistics::quantile::chi_squared_99;
 use impact_records::signal::robust;
 
 impl Blocks {
@@ -56,6 +59,15 @@ impl Blocks {
         block.allow(allowed);
     }
 
+    /// Allow R the scatter from impact to impact that is most likely by the records that are shot from impact to
+    /// impact; tells whether it is another than before.
+    pub fn weigh_flights(&mut self, at: &Parameters) -> bool {
+        let before = self.flight.scatter().max(LEAST_ALLOWANCE);
+        let allowed = most_likely_scatter(&self.flight, at);
+        self.flight.allow(allowed);
+        (allowed / before).ln().abs() > SAME_ALLOWANCE
+    }
+
     /// Whether the relative error that periodic records are allowed is, but for a share of it, the least
     /// that explains what is left at parameters.
     pub fn allows_trajectories_the_least(&self, at: &Parameters, share: f64) -> bool {
@@ -66,6 +78,16 @@ impl Blocks {
         let less = allowed * (1.0 - share);
         explains(allowed * (1.0 + share)) && (less < LEAST_ALLOWANCE || !explains(less))
     }
+}
+
+/// The scatter of R with the greatest likelihood at parameters; next to none where chance explains it.
+pub fn most_likely_scatter(block: &FlightBlock, at: &Parameters) -> f64 {
+    let ends = [LEAST_ALLOWANCE, MOST_ALLOWANCE].map(f64::ln);
+    let deviance = |scatter: f64| block.deviance(at, scatter);
+    let found = least(|ln| deviance(ln.exp()), ends, 0.1 * SAME_ALLOWANCE).map(f64::exp);
+    let none = deviance(LEAST_ALLOWANCE);
+    let shown = found.filter(|scatter| none - deviance(*scatter) > chi_squared_99(1.0));
+    shown.unwrap_or(LEAST_ALLOWANCE)
 }
 
 /// What the model leaves of each periodic record that it has.
@@ -83,6 +105,8 @@ fn mean_squares_with(misfits: &[Misfit<'_>], allowance: f64) -> Vec<f64> {
 
 /// Relative error that is always allowed, so that weights stay finite on noiseless data.
 pub const LEAST_ALLOWANCE: f64 = 1e-6;
+/// Logarithm of the ratio of two allowances that weigh alike.
+const SAME_ALLOWANCE: f64 = 0.1;
 /// Greatest relative error that instruments and model may be allowed.
 const MOST_ALLOWANCE: f64 = 0.1;
 

@@ -86,6 +86,8 @@ pub struct FlightBlock {
     pub records: Vec<FlightRecord>,
     /// On which corners the speeds depend, by their index.
     corners: [bool; CHANNELS],
+    /// Standard deviation of R from impact to impact.
+    scatter: f64,
 }
 
 /// Fewest impacts of a record: fewer tell nothing but where they began.
@@ -116,7 +118,79 @@ impl FlightBlock {
             rig,
             records,
             corners,
+            scatter: 0.0,
         }
+    }
+
+    /// Allow R a standard deviation from impact to impact.
+    pub fn allow(&mut self, scatter: f64) {
+        self.scatter = scatter;
+    }
+
+    /// The standard deviation that R is allowed from impact to impact.
+    pub fn scatter(&self) -> f64 {
+        self.scatter
+    }
+
+    /// Minus twice the logarithm of the likelihood at parameters with a scatter of R, but for a constant, large
+    /// innovations bounded.
+    pub fn deviance(&self, at: &Parameters, scatter: f64) -> f64 {
+        let records = self.records.iter();
+        let innovations = records.flat_map(|record| self.innovations(record, at, scatter));
+        let terms =
+            innovations.map(|i| bounded(i.relative).powi(2) / NORMAL_BOUNDED + i.spread.ln());
+        terms.filter(|term| term.is_finite()).sum()
+    }
+
+    /// The innovations of one record, in their order, with a scatter of R.
+    fn innovations(
+        &self,
+        record: &FlightRecord,
+        parameters: &Parameters,
+        scatter: f64,
+    ) -> Vec<Innovation> {
+        let machine = parameters.machine(self.rig);
+        let (_, clearance_m) = parameters.own(&Circumstances {
+            frequency_hz: record.frequency_hz,
+            clearance_m: record.clearance_m,
+            gap: record.gap,
+            ..Circumstances::default()
+        });
+        let setting = parameters.setting(record.frequency_hz, clearance_m, record.drive_amplitude);
+        let gap = machine.gap(setting.clearance);
+        let rate = parameters.natural_rate();
+        let speed = parameters.static_deflection_m * record.drive_amplitude * rate;
+        let measured = record.measured(parameters, speed);
+        let masses = if machine.y.is_some() { 2 } else { 1 };
+        let mut belief = Belief::unknown();
+        if masses == 1 {
+            belief.covariance[(2, 2)] = 0.0;
+            belief.covariance[(3, 3)] = 0.0;
+        }
+        let mut out = Vec::with_capacity(record.nodes.len() * (1 + 2 * measured.len()));
+        for (k, node) in record.nodes.iter().enumerate() {
+            let [before, after] = node.speeds_m_s(parameters, record.sum_alone());
+            let closing = (before[0] + before[1]) / speed;
+            let time_error = node.time_error_s * rate;
+            let apart = Vector4::new(1.0, 0.0, 1.0, 0.0);
+            out.push(belief.learn(apart, gap, (closing * time_error).powi(2)));
+            let measure = |belief: &mut Belief, speeds: [f64; 2], out: &mut Vec<Innovation>| {
+                for (row, speed_m_s) in measured.iter().zip(speeds) {
+                    out.push(belief.learn(*row, speed_m_s, node.error_m_s.powi(2)));
+                }
+            };
+            measure(&mut belief, before, &mut out);
+            belief.bounce(&machine, time_error, scatter);
+            measure(&mut belief, after, &mut out);
+            if let Some(next) = record.nodes.get(k + 1) {
+                let drive = Drive {
+                    eta: setting.frequency_ratio,
+                    phase: node.drive_phase_rad,
+                };
+                belief.fly(&machine, drive, (next.time_s - node.time_s) * rate);
+            }
+        }
+        out
     }
 
     /// Whether the speeds depend on a corner, by its index.
@@ -244,6 +318,15 @@ fn node(together: bool, impact: &Impact, (missed, integrated): (f64, bool)) -> O
     })
 }
 
+/// What a measurement is off its prediction.
+#[derive(Debug, Clone, Copy)]
+struct Innovation {
+    /// Over its deviation.
+    relative: f64,
+    /// Its variance.
+    spread: f64,
+}
+
 /// Mean and covariance of (X, X', Y, Y'), dimensionless.
 #[derive(Debug, Clone, Copy)]
 struct Belief {
@@ -259,21 +342,24 @@ impl Belief {
         }
     }
 
-    /// Take a measurement of h·state with a variance in; gives its innovation over its deviation.
-    fn learn(&mut self, h: Vector4<f64>, value: f64, variance: f64) -> f64 {
+    /// Take a measurement of h·state with a variance in; gives its innovation.
+    fn learn(&mut self, h: Vector4<f64>, value: f64, variance: f64) -> Innovation {
         let along = self.covariance * h;
         let spread = h.dot(&along) + variance;
-        let innovation = value - h.dot(&self.mean);
+        let apart = value - h.dot(&self.mean);
         let gain = along / spread;
-        self.mean += gain * innovation;
+        self.mean += gain * apart;
         // Joseph's form, (1 − g hᵀ) P (1 − g hᵀ)ᵀ + v g gᵀ, which rounding cannot make indefinite.
         let once = self.covariance - gain * along.transpose();
         self.covariance = once + (gain * variance - once * h) * gain.transpose();
-        innovation / spread.sqrt()
+        Innovation {
+            relative: apart / spread.sqrt(),
+            spread,
+        }
     }
 
-    /// Newton's law at an impact whose time is off by a deviation.
-    fn bounce(&mut self, machine: &Machine, time_error: f64) {
+    /// Newton's law at an impact whose time is off by a deviation, with an R that scatters by another.
+    fn bounce(&mut self, machine: &Machine, time_error: f64, scatter: f64) {
         let before = self.mean;
         let r = machine.restitution().at((before[1] + before[3]).max(0.0));
         let (mx, my) = machine.mobility();
@@ -285,7 +371,10 @@ impl Belief {
         self.mean = jump * before;
         let change = self.mean - before;
         let moved = Vector4::new(change[1], 0.0, change[3], 0.0) * time_error;
-        self.covariance = jump * self.covariance * jump.transpose() + moved * moved.transpose();
+        let thrown = Vector4::new(0.0, change[1], 0.0, change[3]) * (scatter / (1.0 + r));
+        self.covariance = jump * self.covariance * jump.transpose()
+            + moved * moved.transpose()
+            + thrown * thrown.transpose();
     }
 
     /// Fly on for a time.
@@ -307,6 +396,9 @@ impl Belief {
 /// Deviations from which an innovation counts less than its square.
 const USUAL: f64 = 1.5;
 
+/// What makes the most likely deviation by bounded residuals that of normal ones: the mean of r²/√(1 + (r/`USUAL`)²).
+const NORMAL_BOUNDED: f64 = 0.699_75;
+
 /// A residual whose square is the pseudo-Huber loss: as it is where small, its root where large.
 fn bounded(residual: f64) -> f64 {
     let square = USUAL * USUAL;
@@ -324,49 +416,9 @@ impl Block for FlightBlock {
     }
 
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
-        let record = &self.records[item];
-        let machine = parameters.machine(self.rig);
-        let (_, clearance_m) = parameters.own(&Circumstances {
-            frequency_hz: record.frequency_hz,
-            clearance_m: record.clearance_m,
-            gap: record.gap,
-            ..Circumstances::default()
-        });
-        let setting = parameters.setting(record.frequency_hz, clearance_m, record.drive_amplitude);
-        let gap = machine.gap(setting.clearance);
-        let rate = parameters.natural_rate();
-        let speed = parameters.static_deflection_m * record.drive_amplitude * rate;
-        let measured = record.measured(parameters, speed);
-        let masses = if machine.y.is_some() { 2 } else { 1 };
-        let mut belief = Belief::unknown();
-        if masses == 1 {
-            belief.covariance[(2, 2)] = 0.0;
-            belief.covariance[(3, 3)] = 0.0;
-        }
-        let mut out = Vec::with_capacity(record.nodes.len() * (1 + 2 * measured.len()));
-        for (k, node) in record.nodes.iter().enumerate() {
-            let [before, after] = node.speeds_m_s(parameters, record.sum_alone());
-            let closing = (before[0] + before[1]) / speed;
-            let time_error = node.time_error_s * rate;
-            let apart = Vector4::new(1.0, 0.0, 1.0, 0.0);
-            out.push(belief.learn(apart, gap, (closing * time_error).powi(2)));
-            let measure = |belief: &mut Belief, speeds: [f64; 2], out: &mut Vec<f64>| {
-                for (row, speed_m_s) in measured.iter().zip(speeds) {
-                    out.push(belief.learn(*row, speed_m_s, node.error_m_s.powi(2)));
-                }
-            };
-            measure(&mut belief, before, &mut out);
-            belief.bounce(&machine, time_error);
-            measure(&mut belief, after, &mut out);
-            if let Some(next) = record.nodes.get(k + 1) {
-                let drive = Drive {
-                    eta: setting.frequency_ratio,
-                    phase: node.drive_phase_rad,
-                };
-                belief.fly(&machine, drive, (next.time_s - node.time_s) * rate);
-            }
-        }
-        out.iter_mut().for_each(|r| *r = bounded(*r));
+        let innovations = self.innovations(&self.records[item], parameters, self.scatter);
+        let innovations = innovations.into_iter();
+        let out: Vec<f64> = innovations.map(|i| bounded(i.relative)).collect();
         out.iter().all(|r| r.is_finite()).then_some(out)
     }
 
@@ -399,9 +451,13 @@ impl Block for FlightBlock {
 mod tests {
     use super::*;
     use crate::methods::fit::wide_priors;
+    use crate::methods::weighing::most_likely_scatter;
     use crate::solver::Problem;
     use impact_oscillator::model::params::Initial;
     use impact_oscillator::model::simulate::simulate;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, Normal};
 
     fn truth() -> Parameters {
         Parameters {
@@ -521,6 +577,89 @@ mod tests {
             let apart = found.coordinate(coordinate) - truth().coordinate(coordinate);
             assert!(apart.abs() < 1e-5, "{coordinate:?}: {apart}");
         }
+    }
+
+    /// Impacts one after the other, until two follow at once, each with an R of its own drawn around that of the truth.
+    fn scattered(scatter: f64, seed: u64) -> FlightBlock {
+        let p = truth();
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let own = Normal::new(p.restitution, scatter).expect("a distribution");
+        let mut block = block(RigKind::Double);
+        for record in &mut block.records {
+            let setting = p.setting(record.frequency_hz, record.clearance_m, 1.0);
+            let machine = p.machine(RigKind::Double);
+            let gap = machine.gap(setting.clearance);
+            let speed = p.static_deflection_m * p.natural_rate();
+            let first = record.nodes[0];
+            let (mut state, mut time, mut phase) = (State::default(), 0.0, first.drive_phase_rad);
+            (state.x, state.y) = (gap / 2.0, gap / 2.0);
+            [state.vx, state.vy] = first.after_m_s.map(|v| v / speed);
+            record.nodes.clear();
+            while record.nodes.len() < 40 {
+                let drive = Drive {
+                    eta: setting.frequency_ratio,
+                    phase,
+                };
+                let flight = free_flight(&machine, drive, &state);
+                let apart = |t: f64| flight.at(t).x + flight.at(t).y - gap;
+                let (mut low, mut high) = (0.0, 0.02);
+                while apart(high) < 0.0 {
+                    (low, high) = (high, high + 0.02);
+                }
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    *(if apart(middle) < 0.0 {
+                        &mut low
+                    } else {
+                        &mut high
+                    }) = middle;
+                }
+                let end = flight.at(high);
+                (time, phase) = (time + high, phase + setting.frequency_ratio * high);
+                let jump = 0.5 * (1.0 + own.sample(&mut rng)) * (end.vx + end.vy);
+                (state.x, state.y) = (end.x, end.y);
+                (state.vx, state.vy) = (end.vx - jump, end.vy - jump);
+                if high < 0.3 {
+                    break;
+                }
+                record.nodes.push(Node {
+                    time_s: time / p.natural_rate(),
+                    drive_phase_rad: phase,
+                    before_m_s: [end.vx, end.vy].map(|v| v * speed),
+                    after_m_s: [state.vx, state.vy].map(|v| v * speed),
+                    ..first
+                });
+            }
+        }
+        block
+            .records
+            .retain(|record| record.nodes.len() >= FEWEST_IMPACTS);
+        block
+    }
+
+    #[test]
+    fn valid_scatter_of_restitution_is_found_and_enters_the_interval() {
+        let mut squares = Vec::new();
+        for seed in 0..12 {
+            let mut selected = scattered(0.02, seed);
+            let start = truth();
+            let free = Coordinate::PHYSICAL.to_vec();
+            let found = most_likely_scatter(&selected, &start);
+            selected.allow(found);
+            assert!((found / 0.02 - 1.0).abs() < 0.25, "{found}");
+            let problem = Problem {
+                blocks: vec![(&selected, 1.0)],
+                priors: wide_priors(&start, &free),
+                free,
+                ..Problem::default()
+            };
+            let found = problem.fit(start).expect("a fit");
+            let apart = found.parameters.restitution - start.restitution;
+            let error = found.covariance[(0, 0)].sqrt();
+            squares.push((apart / error).powi(2));
+        }
+        let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+        assert!((0.2..2.5).contains(&mean), "{mean} {squares:?}");
     }
 
     #[test]

@@ -9,17 +9,17 @@ use crate::parameters::Parameters;
 use crate::solver::mean_squares;
 
 impl Selection<'_> {
-    /// Fit the records that are shot from impact to impact; those that fit far worse than the bulk,
-    /// as where an impact was missed, are left out and named.
+    /// Fit the records that are shot from impact to impact, R allowed the scatter that they show; those that fit far
+    /// worse than the bulk, as where an impact was missed, are left out and named.
     pub(super) fn fit_flights(&mut self, start: Parameters) -> Option<FitResult> {
         let mut parameters = start;
-        let mut found = None;
+        let (mut found, mut changed) = (None, false);
         for _ in 0..=ROUNDS {
             let scores = mean_squares(&self.blocks.flight, &parameters);
             let known: Vec<f64> = scores.iter().flatten().copied().collect();
             let limit = Bulk::of(&known).limit;
             let follows = |score: &Option<f64>| score.is_some_and(|s| s <= limit);
-            if found.is_some() && scores.iter().all(follows) {
+            if found.is_some() && scores.iter().all(follows) && !changed {
                 break;
             }
             let mut scores = scores.iter();
@@ -31,6 +31,7 @@ impl Selection<'_> {
             match fit::from(&self.blocks, &self.evidence.nominal, parameters)? {
                 Ok(fit) => {
                     parameters = fit.fit.parameters;
+                    changed = self.blocks.weigh_flights(&parameters);
                     found = Some(Ok(fit));
                 }
                 failed => return Some(failed),
