@@ -63,6 +63,19 @@ pub enum Finding {
         /// How sure.
         z_score: f64,
     },
+    /// From some record on a channel reads more or less for the same motion than before.
+    GainChanged {
+        /// The channel.
+        channel: Role,
+        /// The first record of the second gain.
+        record: String,
+        /// Its place in the order of acquisition, from 1.
+        number: usize,
+        /// Number of records.
+        of: usize,
+        /// How much more the channel reads from there on, relative.
+        deviation: f64,
+    },
     /// A channel is later or earlier than stated.
     LateChannel {
         /// The channel.
@@ -343,6 +356,7 @@ impl Finding {
             | Self::GainOrClearances { .. }
             | Self::GainsOrClearances { .. }
             | Self::GainsApart { .. }
+            | Self::GainChanged { .. }
             | Self::LateChannel { .. }
             | Self::UnsteadyChannel { .. }
             | Self::ForceLaw { .. }
@@ -377,6 +391,12 @@ message_table! { "finding": Finding, key = template_key;
         low = Value::Message(low),
         low_key = Value::Name(low.name()),
         share = Value::Percent(*deviation, 1);
+    Self::GainChanged { channel, record, number, of, deviation } =>
+        channel = Value::Message(channel),
+        record = Value::Name(record),
+        number = Value::Count(*number),
+        of = Value::Count(*of),
+        share = Value::Percent(deviation.abs(), 1);
     Self::LateChannel { channel, later_ms, .. } =>
         channel = Value::Message(channel),
         key = Value::Name(channel.name()),
@@ -502,6 +522,7 @@ fn template_key(finding: &Finding) -> String {
             };
             format!("{which}_{what}")
         }
+        Finding::GainChanged { deviation, .. } if *deviation < 0.0 => "gain_fell".to_owned(),
         Finding::UndeclaredLowPass { order: Some(1), .. } => "undeclared_low_pass_1".to_owned(),
         Finding::UndeclaredLowPass { order: Some(_), .. } => "undeclared_low_pass_2".to_owned(),
         _ => finding.kind().to_owned(),

@@ -426,6 +426,7 @@ impl<'a> IdentificationRun<'a> {
         results.by_clock(self.evidence.nominal.clock_uncertainty);
         let (cause, replaced) = self.one_cause(&mut suspicions, &mut results);
         results.by_doubts(&doubts, self.evidence);
+        let beyond = beyond::unexplained(beyond, &suspicions);
         let Widened {
             methods,
             joint,
@@ -519,7 +520,7 @@ impl<'a> IdentificationRun<'a> {
         let observations = self.evidence.observations;
         let Widened { methods, joint, .. } = results;
         suspicions.extend(settling::not_settled(observations, &joint.parameters));
-        let change = self.change(cause::leading(suspicions, methods));
+        let change = self.change(suspicions, cause::leading(suspicions, methods));
         suspicions.extend(change.as_ref().map(|c| c.finding(observations.len())));
         let leading = cause::leading(suspicions, methods);
         let withdraw = |cause| cause::withdraw(cause, joint, methods);
@@ -534,7 +535,18 @@ impl<'a> IdentificationRun<'a> {
 
     /// Which part of the campaign is of another rig, if one is: from some record on or, where nothing else than the
     /// contact explains the data, by clearance or direction of the sweep.
-    fn change(&self, cause: Option<Cause>) -> Option<Change> {
+    fn change(&self, suspicions: &[Finding], cause: Option<Cause>) -> Option<Change> {
+        let is_of_gain = |finding: &Finding| matches!(finding, Finding::GainChanged { .. });
+        let in_time = !suspicions.iter().any(is_of_gain);
+        let groups = cause.is_none_or(|cause| cause == Cause::Contact);
+        self.searched_in(|search| {
+            let by_time = in_time.then(|| search.in_time()).flatten();
+            by_time.or_else(|| groups.then(|| search.between_groups()).flatten())
+        })
+    }
+
+    /// What is found among the records of the joint fit by where they would be of two rigs.
+    fn searched_in<T>(&self, find: impl FnOnce(&Search<'_>) -> Option<T>) -> Option<T> {
         let joint = self.found.together()?;
         let blocks = &self.selection.blocks;
         // Speeds go with the gap, and the gap with the time: R over the speed would take up some of a change.
@@ -555,10 +567,7 @@ impl<'a> IdentificationRun<'a> {
             at: &joint.fit.parameters.with(over_speed, 0.0),
             factor: joint.factor,
         };
-        let groups = cause.is_none_or(|cause| cause == Cause::Contact);
-        let search = Search::new(self.evidence, fitted);
-        let between_groups = || groups.then(|| search.between_groups()).flatten();
-        search.in_time().or_else(between_groups)
+        find(&Search::new(self.evidence, fitted))
     }
 
     /// The share by which all clearances are off alike, if they are.
@@ -659,6 +668,8 @@ impl<'a> IdentificationRun<'a> {
             Some(scale) => Some(common_scale::suspicion(scale, joint)),
             None => wrong_gains::wrong_gain(joint, nominal),
         });
+        let changed = self.searched_in(|search| search.gain_in_time());
+        found.extend(changed.map(|change| change.suspicion(self.evidence, joint)));
         found
     }
 

@@ -112,8 +112,8 @@ pub struct Fitted<'a> {
 
 /// What tells where the records of a fit would most be of two rigs.
 pub struct Search<'a> {
-    evidence: &'a Evidence<'a>,
-    fitted: Fitted<'a>,
+    pub(super) evidence: &'a Evidence<'a>,
+    pub(super) fitted: Fitted<'a>,
     /// The rows of the records at the optimum, with their places among the observations.
     rows: Vec<(usize, PlacedRows)>,
 }
@@ -208,11 +208,17 @@ impl<'a> Search<'a> {
         (!one_rig).then_some(change)
     }
 
-    /// The rank from which on a change of all four parameters explains most, by the records' rows, and its χ²: with A
-    /// and g the information and the gradient of all, B the columns of the parameters in the information of the
+    /// What a change of all four parameters explains, if it is beyond chance.
+    pub(super) fn by_rows(&self, ranks: &[usize]) -> Option<(f64, usize)> {
+        let step = self.most(ranks, |c| Coordinate::PHYSICAL.contains(&c))?;
+        Some((step.chi2, step.rank))
+    }
+
+    /// The rank from which on a change of some coordinates explains most, by the records' rows: with A
+    /// and g the information and the gradient of all, B the columns of the coordinates in the information of the
     /// records after it, C their own block of that and h their part of its gradient, the change is δ of
     /// [A B; Bᵀ C] [θ; δ] = −[g; h]. Of very many records every second, third … is looked at.
-    fn by_rows(&self, ranks: &[usize]) -> Option<(f64, usize)> {
+    pub(super) fn most(&self, ranks: &[usize], of: impl Fn(Coordinate) -> bool) -> Option<Step> {
         let problem = self.fitted.problem;
         let mut records: Vec<(usize, &PlacedRows)> = self
             .rows
@@ -222,31 +228,27 @@ impl<'a> Search<'a> {
         records.sort_by_key(|(rank, _)| *rank);
         let stride = records.len().div_ceil(MOST).max(1);
         let records: Vec<(usize, &PlacedRows)> = records.into_iter().step_by(stride).collect();
-        let free = problem.free.iter();
-        let places: Vec<usize> = free
-            .enumerate()
-            .filter(|(_, c)| Coordinate::PHYSICAL.contains(c))
-            .map(|(i, _)| i)
-            .collect();
+        let free = problem.free.iter().enumerate();
+        let places: Vec<usize> = free.filter(|(_, c)| of(**c)).map(|(i, _)| i).collect();
         let mut all = problem.priors_normal(self.fitted.at);
         records.iter().for_each(|(_, rows)| all.inform(rows));
         let whole = Whole::of(&all)?;
         let mut after = Normal::zeros(problem.free.len());
-        let mut best: Option<(f64, usize)> = None;
+        let mut best: Option<Step> = None;
         for (k, (rank, rows)) in records.iter().enumerate().rev() {
             after.inform(rows);
             let enough = k >= FEWEST && records.len() - k >= FEWEST;
             // records of one rank stay together
             let begins = k > 0 && records[k - 1].0 < *rank;
-            if let Some(chi2) = (enough && begins)
-                .then(|| whole.gain(&after, &places))
+            if let Some(step) = (enough && begins)
+                .then(|| whole.step(&after, &places, *rank))
                 .flatten()
-                && best.is_none_or(|(most, _)| chi2 > most)
+                && best.as_ref().is_none_or(|most| step.chi2 > most.chi2)
             {
-                best = Some((chi2, *rank));
+                best = Some(step);
             }
         }
-        best.filter(|(chi2, _)| *chi2 > SUSPECT * self.fitted.factor)
+        best.filter(|step| step.chi2 > SUSPECT * self.fitted.factor)
     }
 }
 
@@ -301,7 +303,7 @@ fn differs(parameter: Coordinate, [(a, of_a), (b, of_b)]: &[(f64, Spread); 2]) -
 }
 
 /// The place of each record in the order of acquisition, from 0.
-fn ranks(observations: &[Observation]) -> Vec<usize> {
+pub(super) fn ranks(observations: &[Observation]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..observations.len()).collect();
     order.sort_by_key(|i| observations[*i].setting.sequence);
     let mut ranks = vec![0; order.len()];
@@ -317,6 +319,18 @@ struct Whole {
     step: DVector<f64>,
 }
 
+/// A change of some coordinates from a record on.
+pub(super) struct Step {
+    /// The record's place in the order of acquisition, from 0.
+    pub(super) rank: usize,
+    /// How much the change explains.
+    pub(super) chi2: f64,
+    /// The changes.
+    pub(super) change: DVector<f64>,
+    /// By how much the coordinates of all records are others with it.
+    pub(super) shift: DVector<f64>,
+}
+
 impl Whole {
     fn of(all: &Normal) -> Option<Self> {
         let inverse = inverse(&all.matrix)?;
@@ -324,13 +338,21 @@ impl Whole {
         Some(Self { inverse, step })
     }
 
-    /// χ² of a change of the coordinates at these places in the records of `after`, all others being fitted to all:
-    /// with S = C − BᵀA⁻¹B of what is left of their information, δ = −S⁻¹(h − BᵀA⁻¹g) and χ² = δᵀSδ.
-    fn gain(&self, after: &Normal, places: &[usize]) -> Option<f64> {
+    /// A change of the coordinates at these places in the records of `after`, all others being fitted to all:
+    /// with S = C − BᵀA⁻¹B of what is left of their information, δ = −S⁻¹(h − BᵀA⁻¹g), χ² = δᵀSδ and the shift of the
+    /// others −A⁻¹Bδ.
+    fn step(&self, after: &Normal, places: &[usize], rank: usize) -> Option<Step> {
         let columns = after.matrix.select_columns(places);
-        let own = columns.select_rows(places) - columns.tr_mul(&(&self.inverse * &columns));
+        let pulled = &self.inverse * &columns;
+        let own = columns.select_rows(places) - columns.tr_mul(&pulled);
         let gradient = after.gradient.select_rows(places) + columns.tr_mul(&self.step);
-        Some(gradient.dot(&(inverse(&own)? * &gradient)))
+        let change = -(inverse(&own)? * &gradient);
+        Some(Step {
+            rank,
+            chi2: -gradient.dot(&change),
+            shift: -(pulled * &change),
+            change,
+        })
     }
 }
 
@@ -581,7 +603,7 @@ mod tests {
         }
         // Two measurements in each of 8 and of 12, their difference 3: 9/(1/16 + 1/24).
         let whole = Whole::of(&all).expect("regular");
-        let chi2 = whole.gain(&after, &[0]).expect("regular");
+        let chi2 = whole.step(&after, &[0], 0).expect("regular").chi2;
         assert!(
             (chi2 - 9.0 / (1.0 / 16.0 + 1.0 / 24.0)).abs() < 1e-9,
             "{chi2}"
