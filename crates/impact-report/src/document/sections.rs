@@ -202,15 +202,24 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
         .map(|(n, c)| (n.as_str(), c.as_str()))
         .collect();
     blocks.extend(drawn.placed(&named, Placement::Filling));
-    // Three comparisons fill a page; below one or two there is room. Pages that begin anew are set beside
-    // each other.
-    let comparisons = content.compared.comparisons.len();
-    let new_page = comparisons > 0 && comparisons.is_multiple_of(3);
+    // Pages that begin anew are set beside each other.
     section(
         drawn.locale.translate(Phrase::MethodByMethod),
-        new_page,
+        comparisons_fill_pages(content, drawn),
         blocks,
     )
+}
+
+/// Height of a comparison of which three leave little of a page, points.
+const THIRD_OF_A_PAGE: f64 = 150.0;
+
+/// Whether the comparisons fill their pages, so that nothing has room below the last one.
+fn comparisons_fill_pages(content: &ReportContent, drawn: &Drawn<'_>) -> bool {
+    let comparisons = content.compared.comparisons.iter();
+    let figures = comparisons.filter_map(|c| drawn.figure(&comparison::name(c), ""));
+    let heights: Vec<f64> = figures.map(|f| f.height).collect();
+    let (count, all) = (heights.len(), heights.iter().sum::<f64>());
+    count > 0 && count.is_multiple_of(3) && all > THIRD_OF_A_PAGE * count as f64
 }
 
 /// What the rig has beyond the model, and the uncertainty budget.
