@@ -62,6 +62,10 @@ fn head(text: &mut String, name: &str, found: &FolderContents) -> std::fmt::Resu
         ("machine", machine),
         ("flight", flight),
     ];
+    let mut lines = init_lines(AboutTable::KEYS, &inferred);
+    if found.asks_machine {
+        lines = lines.replacen("machine = ", "# FILL IN, see the note below: machine = ", 1);
+    }
     writeln!(
         text,
         "# A campaign for impactid, inferred from {} ({}); check every line.\n\
@@ -70,7 +74,7 @@ fn head(text: &mut String, name: &str, found: &FolderContents) -> std::fmt::Resu
          [campaign]\n{}",
         counted(found.files, "file"),
         found.format,
-        init_lines(AboutTable::KEYS, &inferred)
+        lines
     )
 }
 

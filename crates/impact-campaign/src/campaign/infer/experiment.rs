@@ -1,21 +1,16 @@
 //! What was probably measured: a driven rig, free decays, free flights, or the times of impacts.
 
+use super::bodies;
 use super::found::{Experiment, FolderContents, InferredChannel};
 use super::heights::{self, Heights};
+use super::look::{Detected, correlation, notes, read, strikes, strikes_once};
 use super::place::{Place, spread};
 use super::{drive, lists};
-use impact_records::event::{
-    DetectSettings, Detection, FlightKind, Impact, MassSpeeds, RigKind, detect,
-};
-use impact_records::record::calibrate::{
-    ChannelKey, ChannelSetup, RecordSetup, StatedTimes, calibrate,
-};
-use impact_records::record::{ContactContent, FlagCode, Record, Role, Setting};
-use impact_records::signal::columns::dot;
+use impact_records::event::{Detection, RigKind};
+use impact_records::record::{ContactContent, FlagCode, Record, Role};
 use impact_records::signal::decay::{self, Decay, Watched};
-use impact_records::signal::{onsets, robust};
+use impact_records::signal::onsets;
 use labfiles::timing::AxisUnit;
-use labfiles::units;
 
 /// Records that are looked at.
 const MOST_RECORDS: usize = 6;
@@ -87,10 +82,7 @@ fn without_motion(some: &[Place<'_>], found: &mut FolderContents) {
 
 /// What records of motions show: a drive, free decays or free flights.
 fn of_motions(some: &[Place<'_>], found: &mut FolderContents) {
-    let records: Vec<Record> = some
-        .iter()
-        .map(|place| read(*place, &found.channels))
-        .collect();
+    let records = read_all(some, found);
     let decaying = records.iter().filter(|r| decays(r)).count();
     let mostly_decays = 2 * decaying > records.len();
     if mostly_decays {
@@ -99,33 +91,63 @@ fn of_motions(some: &[Place<'_>], found: &mut FolderContents) {
     if found.channels.iter().any(|c| c.role == Some(Role::Drive)) {
         return;
     }
+    let swinging = records.iter().filter(|r| swings(r)).count();
+    let mostly_swing = 2 * swinging > records.len();
+    if !mostly_swing {
+        bodies::take_second(some, found);
+    }
     let of_y = |c: &InferredChannel| c.role.is_some_and(Role::is_of_y);
     let two = found.channels.iter().any(of_y);
+    if mostly_decays {
+        // carts that come to rest strike each other once, which is seen along one axis too
+        let strike = |d: &Detection| match mostly_swing {
+            true => strikes(d),
+            false => strikes_once(d) || notes(d, FlagCode::OppositeSign),
+        };
+        if !(two && Detected::of(&read_all(some, found), RigKind::Double).most(strike)) {
+            free_decays(&records, found);
+            return;
+        }
+    }
     let rig = if two {
         RigKind::Double
     } else {
         RigKind::Single
     };
-    let detected = Detected::of(&records, rig);
-    if mostly_decays && !(two && detected.most(strikes)) {
-        free_decays(&records, found);
-        return;
+    let fly = flights(some, rig, found);
+    if found.experiment == Experiment::FreeFlight(rig) {
+        bodies::ask_or_note(some, rig, found);
     }
-    if two && detected.most(|d| notes(d, FlagCode::SeparateBodies)) {
+    if !fly && decaying > 0 && 2 * decaying >= records.len() {
+        free_decays(&records, found);
+    }
+}
+
+/// Some records by the roles found so far.
+fn read_all(some: &[Place<'_>], found: &FolderContents) -> Vec<Record> {
+    let read = |place: &Place<'_>| read(*place, &found.channels);
+    some.iter().map(read).collect()
+}
+
+/// Whether records show free flights; sets signs, roles and notes for them.
+fn flights(some: &[Place<'_>], rig: RigKind, found: &mut FolderContents) -> bool {
+    let detected = Detected::of(&read_all(some, found), rig);
+    if rig == RigKind::Double && detected.most(|d| notes(d, FlagCode::SeparateBodies)) {
         // balls thrown side by side: each is a rig of its own
+        found.notes.push(bodies::apart(&found.channels));
         keep_one_mass(&mut found.channels);
-        return of_motions(some, found);
+        return flights(some, RigKind::Single, found);
     }
     let flies = |d: &Detection| !d.impacts.is_empty();
     let along = |d: &Detection| notes(d, FlagCode::OppositeSign);
-    if detected.most(|d| flies(d) || along(d)) {
-        found.experiment = Experiment::FreeFlight(rig);
-        let away = detected.most(|d| flies(d) && notes(d, FlagCode::MeasuredAway));
-        orient(away, detected.most(along), &mut found.channels);
-        without_acceleration(&mut found.channels);
-    } else if decaying > 0 && 2 * decaying >= records.len() {
-        free_decays(&records, found);
+    if !detected.most(|d| flies(d) || along(d)) {
+        return false;
     }
+    found.experiment = Experiment::FreeFlight(rig);
+    let away = detected.most(|d| flies(d) && notes(d, FlagCode::MeasuredAway));
+    orient(away, detected.most(along), &mut found.channels);
+    without_acceleration(&mut found.channels);
+    true
 }
 
 /// The records are free decays, of one body where all sensors see one motion.
@@ -134,56 +156,6 @@ fn free_decays(records: &[Record], found: &mut FolderContents) {
     if records.iter().all(is_one_body) {
         keep_one_mass(&mut found.channels);
     }
-}
-
-/// What the detection under a constant force finds in some records.
-struct Detected {
-    each: Vec<Detection>,
-    /// All records, those too that have no rate.
-    records: usize,
-}
-
-impl Detected {
-    fn of(records: &[Record], rig: RigKind) -> Self {
-        let settings = DetectSettings {
-            flight: FlightKind::ConstantForce,
-            ..DetectSettings::default()
-        };
-        let sampled = records.iter().filter(|r| r.sample_rate_hz > 0.0);
-        Self {
-            each: sampled.map(|r| detect(r, rig, &settings)).collect(),
-            records: records.len(),
-        }
-    }
-
-    /// Whether most records are so.
-    fn most(&self, are: impl Fn(&Detection) -> bool) -> bool {
-        2 * self.each.iter().filter(|d| are(d)).count() > self.records
-    }
-}
-
-fn notes(found: &Detection, code: FlagCode) -> bool {
-    found.flags.iter().any(|f| f.code == code)
-}
-
-/// Fewest impacts by which two masses strike each other again and again.
-const FEWEST_STRIKES: usize = 3;
-/// Change of the approach speed over its error from which it is that of an impact.
-const STRIKES: f64 = 10.0;
-
-/// Whether two masses strike each other: most impacts turn their approach into a separation, and each mass loses speed
-/// toward the other.
-fn strikes(found: &Detection) -> bool {
-    let pushed = |mass: Option<MassSpeeds>| mass.is_some_and(|m| m.after_m_s < m.before_m_s);
-    let is = |impact: &&Impact| {
-        let before = impact.approach_speed_before_m_s.unwrap_or(0.0);
-        let after = impact.approach_speed_after_m_s.unwrap_or(0.0);
-        let error = impact.speed_error_m_s.unwrap_or(f64::INFINITY);
-        let turned = before > 0.0 && after < 0.0 && before - after > STRIKES * error;
-        turned && pushed(impact.x) && pushed(impact.y)
-    };
-    let count = found.impacts.iter().filter(is).count();
-    count >= FEWEST_STRIKES && 2 * count > found.impacts.len()
 }
 
 /// Channels whose names and units say nothing that are tried as the motion of a decay.
@@ -284,50 +256,17 @@ fn sounds(place: Place<'_>, channel: usize) -> bool {
     found.len() >= FEWEST_SOUNDS && 3 * shorter >= 2 * flights.len().saturating_sub(1)
 }
 
-/// A record by the inferred roles, in SI as far as units are known; of one with gaps the longest part between them.
-fn read(place: Place<'_>, channels: &[InferredChannel]) -> Record {
-    let setups: Vec<ChannelSetup> = channels
-        .iter()
-        .filter_map(|c| {
-            let role = c.role.filter(|r| r.is_motion())?;
-            Some(ChannelSetup {
-                unit: role.dimension().map(|dimension| units::Unit {
-                    dimension,
-                    to_si: 1.0,
-                }),
-                ignore_file_unit: true,
-                ..ChannelSetup::plain(role, ChannelKey::Name(c.name.clone()))
-            })
-        })
-        .collect();
-    let setup = RecordSetup {
-        id: "",
-        dataset: place.dataset,
-        channels: &setups,
-        times: &StatedTimes {
-            // of a camera: neither decays nor flights depend on it
-            sample_rate_hz: Some(USUAL_FRAMES_HZ),
-            ..StatedTimes::default()
-        },
-        setting: &Setting::default(),
-        driven: false,
-        skip_s: 0.0,
-    };
-    let record = calibrate(place.source, &setup);
-    let parts = match record.has_gaps() {
-        true => record.between_gaps(),
-        false => Vec::new(),
-    };
-    let longest = parts.into_iter().max_by_key(|(_, part)| part.samples());
-    longest.map_or(record, |(_, part)| part)
+/// Whether a record is a free decay: it swings, or comes to rest without.
+fn decays(record: &Record) -> bool {
+    swings(record) || watched(record).iter().any(decay::comes_to_rest)
 }
 
-/// Pictures a second by which records are looked at that number them, and state no rate.
-const USUAL_FRAMES_HZ: f64 = 240.0;
-
-/// Whether a record's longest oscillation is a free decay: a hold before its release, or noise, may be fitted first.
-fn decays(record: &Record) -> bool {
-    let channels: Vec<Watched<'_>> = record
+/// The motions of the first mass, where they can be looked at.
+fn watched(record: &Record) -> Vec<Watched<'_>> {
+    if record.sample_rate_hz <= 0.0 {
+        return Vec::new();
+    }
+    record
         .channels
         .iter()
         .filter(|c| !c.role.is_of_y() && c.values.iter().all(|v| v.is_finite()))
@@ -335,10 +274,11 @@ fn decays(record: &Record) -> bool {
             values: &c.values,
             quantity: c.role.motion_signal(),
         })
-        .collect();
-    if channels.is_empty() || record.sample_rate_hz <= 0.0 {
-        return false;
-    }
+        .collect()
+}
+
+/// Whether a record's longest oscillation is a free decay: a hold before its release, or noise, may be fitted first.
+fn swings(record: &Record) -> bool {
     let is_one = |d: &Decay| {
         let periods = d.samples as f64 / record.sample_rate_hz * d.natural_frequency_hz;
         let long = d.residual_ratio < DECAY_LEAVES && periods > DECAY_PERIODS;
@@ -346,9 +286,9 @@ fn decays(record: &Record) -> bool {
         let heavy = d.residual_ratio < HEAVY_LEAVES && periods > CLEAR_PERIODS;
         (long || clear) && d.damping_ratio < 0.5 || heavy && d.damping_ratio < MOST_DAMPED
     };
-    let found = decay::fit_channels(&channels, record.sample_rate_hz);
+    let found = decay::fit_channels(&watched(record), record.sample_rate_hz);
     let longest = found.iter().max_by_key(|d| d.samples);
-    longest.is_some_and(is_one) || channels.iter().any(decay::comes_to_rest)
+    longest.is_some_and(is_one)
 }
 
 /// Correlation from which two sensors see one body, whichever way they point: 1/(1 + q²) with noise of q times the motion
@@ -369,16 +309,6 @@ fn is_one_body(record: &Record) -> bool {
     let alike = |(x, y): (&[f64], &[f64])| correlation(x, y).abs() > ONE_BODY;
     let mut both = both.peekable();
     both.peek().is_some() && both.all(alike)
-}
-
-fn correlation(x: &[f64], y: &[f64]) -> f64 {
-    let centred = |v: &[f64]| -> Vec<f64> {
-        let mean = robust::mean(v);
-        v.iter().map(|value| value - mean).collect()
-    };
-    let (x, y) = (centred(x), centred(y));
-    let size = (dot(&x, &x) * dot(&y, &y)).sqrt();
-    if size > 0.0 { dot(&x, &y) / size } else { 0.0 }
 }
 
 /// Take the roles of the second mass away.
@@ -425,6 +355,7 @@ fn without_acceleration(channels: &mut [InferredChannel]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impact_records::signal::robust;
 
     #[test]
     fn valid_flights_that_fall_are_intervals_and_times_that_rise_are_not() {

@@ -41,6 +41,8 @@ pub struct FolderContents {
     pub others: Vec<String>,
     /// Columns of heights that follow those of the contact's channel in the same row.
     pub then: Vec<String>,
+    /// Whether the records leave open if one mass moves or two.
+    pub asks_machine: bool,
     /// What else a user should know of the files.
     pub notes: Vec<String>,
     /// Whether the run table or the files' attributes state drive frequencies.

@@ -1,11 +1,13 @@
 //! The records in a folder of files, and the role that each channel probably has.
 
+mod bodies;
 mod drive;
 mod experiment;
 mod found;
 mod globs;
 mod heights;
 mod lists;
+mod look;
 mod place;
 mod roles;
 
@@ -1094,6 +1096,80 @@ mod tests {
             .collect();
         let roles = roles_of(&named);
         assert!(roles.iter().flatten().all(|r| !r.is_of_y()), "{roles:?}");
+    }
+
+    /// A cart of 0.5 kg that strikes one of 0.8 kg at rest with R = 0.7, from their momentum, under two headings.
+    fn collision(heads: &str, speed: f64, sign: f64) -> String {
+        let (at, after_a) = (0.6 / speed, speed * (0.5 - 0.8 * 0.7) / 1.3);
+        let after_b = after_a + 0.7 * speed;
+        let row = |i: i32| {
+            let t = f64::from(i) * 0.02;
+            let (flown, since) = (t.min(at), (t - at).max(0.0));
+            // the last digit of a motion detector
+            let read = |v: f64| (v * 1e3 + 0.4 * f64::sin(f64::from(i * i))).round() / 1e3;
+            let a = read(0.2 + speed * flown + after_a * since);
+            let b = read(sign * (0.8 + after_b * since));
+            format!("{t:.2},{a:.3},{b:.3}\n")
+        };
+        let rows: String = (0..140).map(row).collect();
+        format!("Time (s),{heads}\n{rows}")
+    }
+
+    #[test]
+    fn valid_two_bodies_that_strike_each_other_are_two_masses_whatever_they_are_called() {
+        let double = Experiment::FreeFlight(impact_records::event::RigKind::Double);
+        for heads in [
+            "Position 3 (m),Position 4 (m)",
+            "front (m),rear (m)",
+            "Cart (m),Glider (m)",
+            "positionA,positionB",
+            "ultrasonic one (m),ultrasonic two (m)",
+        ] {
+            for sign in [1.0, -1.0] {
+                let record = |speed| collision(heads, speed, sign);
+                let (found, text) = toml_of(&[("a.csv", record(0.5)), ("b.csv", record(0.7))]);
+                assert_eq!(found.experiment, double, "{heads} {sign}: {text}");
+                assert!(text.contains("machine = \"double\""), "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_channel_that_moves_beside_a_mass_is_asked_for_unless_it_shows_the_same() {
+        let asks = |rows: &[(&str, String)]| {
+            let (found, text) = toml_of(rows);
+            let asked = text.contains("# FILL IN, see the note below: machine");
+            assert_eq!(found.asks_machine, asked, "{text}");
+            (asked, found.notes.join("; "), text)
+        };
+        // a ball of R = 0.8 and what is measured beside it
+        let ball = |heads: &str, other: &dyn Fn(f64, f64) -> f64| {
+            let mut at = 0.0;
+            let (mut height, mut speed) = (1.0, 0.0);
+            let mut rows = String::new();
+            for _ in 0..400 {
+                rows += &format!("{at:.3},{height:.4},{:.4}\n", other(at, height));
+                (at, height, speed) = (at + 0.005, height + 0.005 * speed, speed - 0.005 * 9.81);
+                if height <= 0.0 && speed < 0.0 {
+                    (height, speed) = (0.0, -0.8 * speed);
+                }
+            }
+            vec![("ball.csv", format!("Time (s),{heads}\n{rows}"))]
+        };
+        let (asked, note, text) = asks(&ball("Height (m),String (m)", &|t, _| {
+            0.3 * (2.0 * t).sin()
+        }));
+        assert!(
+            asked && note.starts_with("String moves too"),
+            "{note} {text}"
+        );
+        let (asked, _, text) = asks(&ball("Height (m),Laser (cm)", &|_, h| 100.0 * h));
+        assert!(!asked, "{text}");
+        let (asked, note, text) = asks(&ball("Height (m),Horizontal (m)", &|t, _| 0.2 * t));
+        assert!(
+            !asked && note.contains("other coordinates"),
+            "{note} {text}"
+        );
     }
 
     #[test]

@@ -50,6 +50,34 @@ fn leave_out_beside_rates(channels: &mut [InferredChannel]) {
     }
 }
 
+/// Part of the way of a mass from which a channel beside it moves too.
+const MOVES: f64 = 0.02;
+
+/// Whether a channel moves, and shows the quantity that another one shows.
+pub(super) fn moves_like(own: &InferredChannel, other: &InferredChannel) -> bool {
+    let far = |c: &InferredChannel| {
+        let unit = units::unit_of(c.unit.as_deref(), &c.name);
+        span(c) * unit.map_or(1.0, |u| u.to_si)
+    };
+    is_signal(other) && kind(other) == kind(own) && far(other) > MOVES * far(own)
+}
+
+/// Whether a channel is another coordinate of a body: by the letters of axes, or by a word.
+pub(super) fn is_other_axis(channels: &[InferredChannel], index: usize) -> bool {
+    const AXES: [&str; 7] = [
+        "horiz",
+        "vert",
+        "lateral",
+        "seit",
+        "abs",
+        "magnitude",
+        "betrag",
+    ];
+    let named = words(shown(&channels[index]));
+    Axes::of(channels).others.contains(&index)
+        || named.iter().any(|w| AXES.iter().any(|a| w.starts_with(a)))
+}
+
 /// Whether a channel may be a signal: neither the time nor a single number, which is an attribute of its record, nor
 /// without any value.
 fn is_signal(channel: &InferredChannel) -> bool {

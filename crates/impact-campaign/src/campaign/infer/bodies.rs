@@ -1,0 +1,131 @@
+//! Channels that move beside that of a mass: a second body, the same one once more, or something that only the user knows.
+
+use super::found::{FolderContents, InferredChannel};
+use super::look::{self, Detected};
+use super::place::Place;
+use super::roles;
+use impact_records::event::RigKind;
+use impact_records::record::{Record, Role};
+
+/// Give the channel that moves beside the only mass the role of the second one, where the records show that the two
+/// strike each other.
+pub(super) fn take_second(some: &[Place<'_>], found: &mut FolderContents) {
+    let Some((index, role)) = only_other(&found.channels) else {
+        return;
+    };
+    let mut with = found.channels.clone();
+    with[index].role = Some(role);
+    let mut records: Vec<Record> = some.iter().map(|p| look::read(*p, &with)).collect();
+    if records.iter().all(look::sees_same) {
+        return;
+    }
+    let strike =
+        |records: &[Record]| Detected::of(records, RigKind::Double).most(look::strikes_once);
+    let mut struck = strike(&records);
+    if !struck {
+        records.iter_mut().for_each(turn_second);
+        struck = strike(&records);
+    }
+    if struck {
+        found.channels = with;
+    }
+}
+
+/// That two bodies do not meet, of which the first alone is used.
+pub(super) fn apart(channels: &[InferredChannel]) -> String {
+    let of = |y: bool| {
+        let moving = channels.iter().filter(move |c| {
+            c.role
+                .is_some_and(|role| role.is_motion() && role.is_of_y() == y)
+        });
+        moving
+            .map(|c| c.name.as_str())
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let (first, second) = (of(false), of(true));
+    format!(
+        "{second} does not meet {first}: it needs a campaign of its own, and {first} alone is used here, against a stop"
+    )
+}
+
+/// Ask for the machine where a channel without a role moves as that of the mass does, unless it shows the same motion.
+pub(super) fn ask_or_note(some: &[Place<'_>], rig: RigKind, found: &mut FolderContents) {
+    let mut others = others(&found.channels);
+    if rig == RigKind::Single {
+        others.retain(|(index, role)| !is_same(some, &found.channels, *index, *role));
+    }
+    if others.is_empty() {
+        return;
+    }
+    let name = |index: usize| found.channels[index].name.clone();
+    let axes = rig == RigKind::Single
+        && others
+            .iter()
+            .all(|(i, _)| roles::is_other_axis(&found.channels, *i));
+    let names: Vec<String> = others.iter().map(|(index, _)| name(*index)).collect();
+    let names = names.join(", ");
+    let note = match rig {
+        RigKind::Single if axes => {
+            format!("{names}: taken for other coordinates of the same body, and not used")
+        }
+        RigKind::Single => {
+            found.asks_machine = true;
+            format!(
+                "{names} moves too: if it is a second body, write machine = \"double\" and give it the role of mass y; if it \
+                 shows the same body, or one that is not struck, write machine = \"single\""
+            )
+        }
+        RigKind::Double => {
+            format!("{names} moves too, and is not used: check which two bodies collide")
+        }
+    };
+    found.notes.push(note);
+}
+
+/// Channels without a role that move and show a quantity of motion that the first mass has, with that of the second.
+fn others(channels: &[InferredChannel]) -> Vec<(usize, Role)> {
+    let pairs = [
+        (Role::VelocityX, Role::VelocityY),
+        (Role::DisplacementX, Role::DisplacementY),
+    ];
+    let free = channels
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| c.role.is_none());
+    free.filter_map(|(index, channel)| {
+        let like = |(x, _): &&(Role, Role)| {
+            let own = channels.iter().find(|c| c.role == Some(*x));
+            own.is_some_and(|own| roles::moves_like(own, channel))
+        };
+        pairs.iter().find(like).map(|(_, y)| (index, *y))
+    })
+    .collect()
+}
+
+/// The only channel that may be a second body; none where it may be another coordinate of the first.
+fn only_other(channels: &[InferredChannel]) -> Option<(usize, Role)> {
+    let of_y = |c: &InferredChannel| c.role.is_some_and(Role::is_on_y_side);
+    if channels.iter().any(of_y) {
+        return None;
+    }
+    match others(channels)[..] {
+        [one] if !roles::is_other_axis(channels, one.0) => Some(one),
+        _ => None,
+    }
+}
+
+/// Whether a channel shows the same motion as that of the mass in all records.
+fn is_same(some: &[Place<'_>], channels: &[InferredChannel], index: usize, role: Role) -> bool {
+    let mut with = channels.to_vec();
+    with[index].role = Some(role);
+    some.iter()
+        .all(|place| look::sees_same(&look::read(*place, &with)))
+}
+
+/// Turn the motion of the second mass around.
+fn turn_second(record: &mut Record) {
+    let of_y = record.channels.iter_mut().filter(|c| c.role.is_of_y());
+    of_y.flat_map(|c| c.values.iter_mut())
+        .for_each(|v| *v = -*v);
+}
