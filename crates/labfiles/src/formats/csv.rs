@@ -4,6 +4,7 @@
 //! file block by block and keeps only the columns that are asked for.
 
 mod columns;
+mod commas;
 mod dialect;
 mod front;
 pub(crate) mod header;

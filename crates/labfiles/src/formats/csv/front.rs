@@ -2,6 +2,7 @@
 
 use crate::conventions::TEXTS_KEY;
 use crate::formats::csv::columns::{self, HeadRows};
+use crate::formats::csv::commas;
 use crate::formats::csv::dialect::{self, Dialect};
 use crate::formats::csv::header::{self, Header};
 use crate::source::ReadError;
@@ -48,6 +49,9 @@ impl Front {
                 (dialect, dialect::first_row(&plain, &dialect))
             }
         };
+        if let Some(at) = first.filter(|_| dialect.separator == Separator::Byte(b',')) {
+            refuse_decimal_commas(text, &plain, at)?;
+        }
         let first = first.and_then(|i| places.get(i));
         let first = *first.ok_or_else(|| no_table(text, "no row of numbers"))?;
         let offset = offsets[first];
@@ -94,6 +98,31 @@ impl Front {
             comments: dialect::COMMENTS,
         }
     }
+}
+
+/// Rows at the front of a table by which its decimal marks are judged.
+const JUDGED_ROWS: usize = 8;
+
+/// Refuse a table of numbers with decimal commas between commas; `at` is its first row.
+fn refuse_decimal_commas(text: &TextFile, lines: &[&[u8]], at: usize) -> Result<(), ReadError> {
+    let (above, rows) = lines.split_at(at.min(lines.len()));
+    let Some(heading) = above.last() else {
+        return Ok(());
+    };
+    let mut rows = rows.iter().take(JUDGED_ROWS);
+    let Some(row) = rows.find(|row| commas::are_decimals(heading, row)) else {
+        return Ok(());
+    };
+    Err(ReadError::new(
+        text.path(),
+        "cells between commas, or numbers with a decimal comma",
+        format!(
+            "'{}' below '{}', where commas are both",
+            crate::text::decode(row),
+            crate::text::decode(heading)
+        ),
+        "export the table with decimal points, or with semicolons or tabs between the cells",
+    ))
 }
 
 /// The rows at the front of a table.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::attribute;
+use crate::formats::csv::commas;
 use crate::formats::csv::dialect::{COMMENTS, Dialect, is_value};
 use crate::text::cells::{Cells, Separator, decode_cell};
 use crate::text::{decode, number};
@@ -37,7 +38,7 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header
         Vec::new()
     };
     let mut rows: Vec<Vec<String>> = if pairs.is_empty() {
-        plain.iter().map(|l| cells(l, dialect)).collect()
+        plain.iter().map(|l| heading(l, dialect)).collect()
     } else {
         Vec::new()
     };
@@ -280,6 +281,13 @@ fn cells(line: &[u8], dialect: &Dialect) -> Vec<String> {
     Cells::new(line, dialect.separator)
         .map(decode_cell)
         .collect()
+}
+
+/// The cells of a line above the table; between commas a name may contain some.
+fn heading(line: &[u8], dialect: &Dialect) -> Vec<String> {
+    let by_comma = dialect.separator == Separator::Byte(b',');
+    let joined = by_comma.then(|| commas::names(line, dialect.columns));
+    joined.flatten().unwrap_or_else(|| cells(line, dialect))
 }
 
 /// Whether a row of cells can head the table: its width, give or take an empty cell at the end.

@@ -37,6 +37,31 @@ fn plain_table_with_units_in_the_header() {
 }
 
 #[test]
+fn commas_in_headings_do_not_shift_columns_and_decimal_commas_between_commas_are_refused() {
+    let rows = "0.00,0.125,0.5\n0.05,0.130,0.4\n0.10,0.135,0.3\n";
+    let heading = "Time (s), Run #1,Position, Ch P1 (m), Run #1,Position, Ch P2 (m), Run #1";
+    let s = source(format!("{heading}\n{rows}").as_bytes());
+    let set = &s.datasets()[0];
+    assert_eq!(set.time_axis, Some(0));
+    assert_eq!(real(&*s, 1), [0.125, 0.130, 0.135]);
+    assert!(set.channels[1].name.contains("Ch P1"), "{set:?}");
+    assert!(set.channels[2].name.contains("Ch P2"), "{set:?}");
+    assert!((set.sample_rate_hz().unwrap() - 20.0).abs() < 1e-9);
+    let decimal = |heading: &str| format!("{heading}\n0,00,0,125\n0,05,-0,130\n0,10,0,135\n");
+    for heading in [
+        "Time (s), Run #1,Position (m), Run #1",
+        "Time (s),Position (m)",
+    ] {
+        let refused = open(file(decimal(heading).as_bytes()).path());
+        let error = refused.err().expect("a refusal");
+        assert!(error.found.contains("'0,00,0,125'"), "{error:?}");
+    }
+    // semicolons between the cells, commas in both
+    let s = source(b"Time (s), Run #1;Position (m), Run #1\n0,00;0,125\n0,05;-0,130\n");
+    assert_eq!(real(&*s, 1), [0.125, -0.130]);
+}
+
+#[test]
 fn lists_of_times_called_after_throws_are_records() {
     let s = source(b"bounce no.,Throw 1 (ms),Throw 2 (ms)\n1,0.1,0.2\n2,500.0,510.0\n3,900.0,930.0\n4,1220.0,\n");
     let sets: Vec<(&str, u64)> = s
