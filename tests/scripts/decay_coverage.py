@@ -4,7 +4,8 @@ Decays are drawn at random: frequency, damping ratio, phase, offset, rate, and h
 each lies noise of one kind, and dry friction may take a part of the first cycle's loss. `loud_hum` is a hum of 5 to 60 % of
 the first amplitude; `blow` and `stop` are white noise about a motion that a blow begins again before it is over, and that a
 hand ends within a period; `held` is white noise about a mass that is held up to six periods before it is released; `drift`
-is white noise and a line over the record of up to the first amplitude. Each record is a specimen of its
+is white noise and a line over the record of up to the first amplitude; `slow_stop` is a hand that takes one period to half of
+them, and `rub` is dry friction that begins on the way and lasts. Each record is a specimen of its
 own, so that `impactid` states f0 and β of each with an interval; one that is left open, or not found, counts for nothing.
 
     python3 decay_coverage.py --binary target/release/impactid --work FOLDER [--seed 1] [--records 200] [--kinds white,slow]
@@ -21,7 +22,7 @@ import subprocess
 
 import numpy
 
-KINDS = ["white", "coloured", "slow", "quantised", "hum", "loud_hum", "blow", "stop", "held", "drift"]
+KINDS = ["white", "coloured", "slow", "quantised", "hum", "loud_hum", "blow", "stop", "held", "drift", "slow_stop", "rub"]
 PERIODS = {"1.5-2": (1.5, 2.0), "2-5": (2.0, 5.0), "5-20": (5.0, 20.0), "20-200": (20.0, 200.0)}
 
 
@@ -89,9 +90,21 @@ def decay(rng, kind, periods, friction):
         since = times - times[-1] * rng.uniform(0.4, 0.8)
         takes = rng.uniform(0.05, 1.0) / f0
         values *= numpy.clip(1.0 - since / takes, 0.0, 1.0)
+    elif kind == "slow_stop":
+        since = times - times[-1] * rng.uniform(0.3, 0.9)
+        takes = rng.uniform(min(1.0, 0.25 * turns), 0.5 * turns) / f0
+        values *= numpy.clip(1.0 - since / takes, 0.0, 1.0)
+    elif kind == "rub":
+        # from a turning point on, at which it takes 2 to 50 % of the amplitude in each half swing
+        swings = max(1, int(2 * turns * rng.uniform(0.3, 0.9)))
+        begins = swings * numpy.pi / omega - phase / omega
+        there = amplitude * numpy.exp(-damping * natural * swings * numpy.pi / omega)
+        after = times >= begins
+        rubs = 0.5 * there * 10 ** rng.uniform(-1.7, -0.3)
+        values[after] = (-1) ** swings * rubbed(natural, damping, rubs, there, times[after] - begins)
     if kind == "drift":
         values += amplitude * rng.uniform(-1.0, 1.0) * times / times[-1]
-    if kind in ("white", "blow", "stop", "held", "drift"):
+    if kind in ("white", "blow", "stop", "held", "drift", "slow_stop", "rub"):
         values += noise * rng.standard_normal(count)
     elif kind == "coloured":
         values += noise * autoregressive(rng, count, rng.uniform(0.3, 0.9))
