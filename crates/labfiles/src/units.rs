@@ -12,11 +12,11 @@ mod table;
 
 pub use quantity::{Quantity, QuantityError, parse_quantity, parse_quantity_of};
 pub use scale::{Scale, parse_scale};
-pub(crate) use table::split_at_comma;
 pub use table::{
     Dimension, STANDARD_GRAVITY_M_S2, Unit, parse_split_unit, parse_unit, split_unit, symbol_of,
     symbols_of, unit_of,
 };
+pub(crate) use table::{split_at_comma, split_at_slash, without_slash};
 
 #[cfg(test)]
 mod tests {
@@ -104,6 +104,11 @@ mod tests {
         assert_eq!(split_unit("clearance [mm]"), ("clearance", Some("mm")));
         assert_eq!(split_unit("clearance_mm"), ("clearance", Some("mm")));
         assert_eq!(split_unit("clearance in mm"), ("clearance", Some("mm")));
+        assert_eq!(split_unit("gap / mm"), ("gap", Some("mm")));
+        assert_eq!(split_unit("v/(m/s)"), ("v", Some("m/s")));
+        assert_eq!(split_unit("v / m/s"), ("v", Some("m/s")));
+        assert_eq!(split_unit("m/s"), ("m/s", None));
+        assert_eq!(split_unit("left/right"), ("left/right", None));
         assert_eq!(split_unit("laser in use"), ("laser in use", None));
         assert_eq!(split_unit("Load, lbf"), ("Load", Some("lbf")));
         assert_eq!(split_unit("Sensor, 1"), ("Sensor, 1", None));

@@ -26,7 +26,7 @@ use headings::{
 
 use text::{decode, reader};
 
-pub(super) use headings::in_english;
+pub(super) use headings::{column_name, in_english};
 pub(super) use sheets::sheet_of;
 pub(super) use text::is_file;
 
@@ -647,6 +647,7 @@ mod tests {
             "sweep;file\n",
             "# made by hand\n\nsweep\tfile\n",
             "\u{feff}file;clearance in mm\n",
+            "file;gap / mm;f / Hz\n",
             "\"file\";\"note\"\n",
         ] {
             assert!(is_run_table(text.as_bytes(), &|_| false), "{text}");

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::diagnostic::first_of;
 use super::infer::{self, Experiment, FolderContents, InferredChannel};
 use super::keys::{KeyRow, init_lines};
+use super::run_table;
 use super::sections::about::AboutTable;
 use super::sections::analysis::AnalysisTable;
 use super::sections::records::RecordsTable;
@@ -148,7 +149,8 @@ fn records(text: &mut String, found: &FolderContents) -> std::fmt::Result {
     writeln!(text)
 }
 
-/// Which attributes may hold the setting; where the name bears no unit, the usual one.
+/// Which attributes may hold the setting, by the headings of a run table or parts of names; where the name bears no
+/// unit, the usual one.
 fn attributes(found: &FolderContents) -> Vec<(&'static str, String)> {
     /// Key, stems of attribute names, usual unit.
     const KEYS: [(&str, &[&str], &str); 4] = [
@@ -160,19 +162,19 @@ fn attributes(found: &FolderContents) -> Vec<(&'static str, String)> {
     // its FREQUENCY is that of the frames
     let motion_capture = found.attributes.contains_key("NO_OF_FRAMES");
     let driven = found.experiment == Experiment::Driven;
-    let find = |stems: &[&str]| {
+    let find = |key: &str, stems: &[&str]| {
         found.attributes.keys().find(|name| {
             let lower = name.to_lowercase();
             let sampling = motion_capture || lower.contains("sampl") || lower.contains("analog");
-            let alone = stems == ["freq"] && ["f", "f_hz"].contains(&last_field(&lower));
-            !sampling && (alone || stems.iter().any(|s| lower.contains(s)))
+            let is_heading = run_table::column_name(last_field(name)) == Some(key);
+            !sampling && (is_heading || stems.iter().any(|s| lower.contains(s)))
         })
     };
     let asked = KEYS
         .iter()
         .filter(|(key, ..)| driven || *key == "clearance");
     asked
-        .filter_map(|(key, stems, usual)| Some((*key, with_unit(find(stems)?, usual))))
+        .filter_map(|(key, stems, usual)| Some((*key, with_unit(find(key, stems)?, usual))))
         .collect()
 }
 

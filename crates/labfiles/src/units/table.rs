@@ -174,7 +174,7 @@ pub fn symbols_of(dimension: Dimension) -> Vec<&'static str> {
 }
 
 /// Split the unit off a column's or attribute's name: `clearance [mm]`, `clearance (mm)`, `clearance in mm`,
-/// `clearance, mm` or `clearance_mm` (after an underscore `m_s` means m/s, `m_s2` m/s²). Gives the bare name and
+/// `clearance / mm`, `v/(m/s)`, `clearance, mm` or `clearance_mm` (after an underscore `m_s` means m/s, `m_s2` m/s²). Gives the bare name and
 /// the unit's symbol as written; no symbol if the name has none.
 ///
 /// ```
@@ -187,8 +187,11 @@ pub fn split_unit(name: &str) -> (&str, Option<&str>) {
     let name = name.trim();
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some((bare, symbol)) = name.strip_suffix(close).and_then(|n| n.rsplit_once(open)) {
-            return (bare.trim(), Some(symbol.trim()));
+            return (without_slash(bare), Some(symbol.trim()));
         }
+    }
+    if let Some((bare, symbol)) = split_at_slash(name) {
+        return (bare, Some(symbol));
     }
     if let Some((bare, symbol)) = name.rsplit_once(" in ")
         && parse_unit(symbol).is_some()
@@ -210,6 +213,20 @@ pub fn split_unit(name: &str) -> (&str, Option<&str>) {
 /// Whether a suffix is a unit of more than numbers.
 fn has_dimension(suffix: &str) -> bool {
     parse_split_unit(suffix).is_some_and(|unit| unit.dimension != Dimension::Number)
+}
+
+/// A quantity and the unit after its first slash, as ISO 80000-1 writes them: `x / mm`, `t/s`, `v/m/s`. What is a unit
+/// as a whole has no name.
+pub(crate) fn split_at_slash(name: &str) -> Option<(&str, &str)> {
+    let (bare, symbol) = name.split_once('/')?;
+    let unit = parse_unit(symbol)?;
+    let measured = unit.dimension != Dimension::Number && !bare.trim().is_empty();
+    (measured && parse_unit(name).is_none()).then_some((bare.trim(), symbol.trim()))
+}
+
+/// The name before a bracket, without the slash of `v/(m/s)`.
+pub(crate) fn without_slash(name: &str) -> &str {
+    name.trim().trim_end_matches('/').trim_end()
 }
 
 /// A name and the unit after its last comma: `Displacement, in`. A plain number there counts channels: `Sensor, 1`.

@@ -62,6 +62,11 @@ pub(super) fn column_of(heading: &str) -> Option<usize> {
     of(heading).or_else(|| of(units::split_unit(heading).0))
 }
 
+/// The name of the column that a heading means.
+pub(in super::super) fn column_name(heading: &str) -> Option<&'static str> {
+    column_of(heading).map(|column| COLUMNS[column])
+}
+
 /// The column of a setting with whose word a heading begins: `Spalt 2r`, `gap width`.
 pub(super) fn begun_with(heading: &str) -> Option<usize> {
     let first = heading.split(|c: char| !c.is_alphanumeric()).next()?;

@@ -8,7 +8,7 @@ use crate::formats::csv::dialect::{COMMENTS, Dialect, is_value};
 use crate::text::cells::{Cells, Separator, decode_cell};
 use crate::text::{decode, number};
 use crate::timing::{is_time_name, is_unit_of_time};
-use crate::units::{parse_unit, split_at_comma};
+use crate::units::{parse_unit, split_at_comma, split_at_slash, without_slash};
 
 /// What the lines before the first row state.
 #[derive(Debug, Default, PartialEq)]
@@ -412,7 +412,7 @@ fn unwrapped(text: &str) -> &str {
         .trim()
 }
 
-/// A heading such as `velocity_x [mm/s]`, `Position (m) Run 1`, `x / mm`, `Zeit in s` or `Load, lbf` as name and unit.
+/// A heading such as `velocity_x [mm/s]`, `Position (m) Run 1`, `x / mm`, `v/(m/s)`, `Zeit in s` or `Load, lbf` as name and unit.
 ///
 /// Empty brackets at its end state that there is no unit: `mass (kg) []`.
 pub fn name_and_unit(heading: &str) -> (String, Option<String>) {
@@ -428,7 +428,8 @@ pub fn name_and_unit(heading: &str) -> (String, Option<String>) {
             continue;
         };
         let unit = heading[from + 1..from + length].trim();
-        let name = [heading[..from].trim(), heading[from + length + 1..].trim()].join(" ");
+        let before = without_slash(&heading[..from]);
+        let name = [before, heading[from + length + 1..].trim()].join(" ");
         if !unit.is_empty() && (any || is_unit(unit)) && !name.trim().is_empty() {
             return (name.trim().to_owned(), Some(unit.to_owned()));
         }
@@ -439,7 +440,7 @@ pub fn name_and_unit(heading: &str) -> (String, Option<String>) {
             return (name.trim().to_owned(), Some(unit.trim().to_owned()));
         }
     }
-    if let Some((name, unit)) = split_at_comma(heading) {
+    if let Some((name, unit)) = split_at_slash(heading).or_else(|| split_at_comma(heading)) {
         return (name.to_owned(), Some(unit.to_owned()));
     }
     (heading.to_owned(), None)
@@ -500,6 +501,11 @@ mod tests {
             ("Position (m) Run 1", "Position Run 1", Some("m")),
             ("Force (Trigger)", "Force (Trigger)", None),
             ("x / mm", "x", Some("mm")),
+            ("t/s", "t", Some("s")),
+            ("v / (m/s)", "v", Some("m/s")),
+            ("v/m/s", "v", Some("m/s")),
+            ("m/s", "m/s", None),
+            ("left/right", "left/right", None),
             ("Zeit in s", "Zeit", Some("s")),
             ("mass x in motion in mm/s", "mass x in motion", Some("mm/s")),
             ("signal in channel 1", "signal in channel 1", None),
