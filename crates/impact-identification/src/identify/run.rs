@@ -10,7 +10,7 @@ use crate::identify::diagnostics::change::{Change, Fitted, Search};
 use crate::identify::diagnostics::clock;
 use crate::identify::diagnostics::common_scale::{self, CommonScale, common_scale};
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
-use crate::identify::diagnostics::doubt::{self, Suspicion};
+use crate::identify::diagnostics::doubt::{self, Doubt, Suspicion};
 use crate::identify::diagnostics::drives::drives;
 use crate::identify::diagnostics::late_channel;
 use crate::identify::diagnostics::refuted_gains::{self, Opened};
@@ -193,6 +193,15 @@ fn contacts_last(found: &MethodFit) -> bool {
     let duration = Coordinate::Effect(Effect::ContactDuration);
     let spread = found.spread(duration);
     spread.is_some_and(|s| found.fit.parameters.coordinate(duration) > LASTS * s.error)
+}
+
+/// What changes between the records of a campaign.
+#[derive(Default)]
+struct Changes {
+    /// A channel whose gain changes.
+    of_gain: Option<Suspicion>,
+    /// Records of another rig.
+    of_rig: Option<Change>,
 }
 
 struct IdentificationRun<'a> {
@@ -416,7 +425,7 @@ impl<'a> IdentificationRun<'a> {
 
     /// What to make of the fits.
     fn identification(&self) -> Identification {
-        let (mut suspicions, doubts) = doubt::parted(self.suspicions());
+        let (mut suspicions, mut doubts) = doubt::parted(self.suspicions());
         let speed_m_s = self.selection.blocks.typical_approach_m_s;
         let joint = self.found.together();
         let beyond = joint.map_or_else(Vec::new, |found| beyond::beyond(found, speed_m_s));
@@ -424,7 +433,7 @@ impl<'a> IdentificationRun<'a> {
         results.by_impacts(&self.selection);
         let agreement = results.by_agreement(&self.found, beyond.is_empty() && self.is_on_time());
         results.by_clock(self.evidence.nominal.clock_uncertainty);
-        let (cause, replaced) = self.one_cause(&mut suspicions, &mut results);
+        let (cause, replaced) = self.one_cause(&mut suspicions, &mut doubts, &mut results);
         results.by_doubts(&doubts, self.evidence);
         let beyond = beyond::unexplained(beyond, &suspicions);
         let Widened {
@@ -515,12 +524,20 @@ impl<'a> IdentificationRun<'a> {
     fn one_cause(
         &self,
         suspicions: &mut Vec<Finding>,
+        doubts: &mut Vec<Doubt>,
         results: &mut Widened,
     ) -> (Option<Cause>, Vec<Coordinate>) {
         let observations = self.evidence.observations;
         let Widened { methods, joint, .. } = results;
         suspicions.extend(settling::not_settled(observations, &joint.parameters));
-        let change = self.change(suspicions, cause::leading(suspicions, methods));
+        let changes = self.changes(cause::leading(suspicions, methods));
+        let Changes {
+            of_gain,
+            of_rig: change,
+        } = changes.unwrap_or_default();
+        let (named, open) = doubt::parted(Vec::from_iter(of_gain));
+        suspicions.extend(named);
+        doubts.extend(open);
         suspicions.extend(change.as_ref().map(|c| c.finding(observations.len())));
         let leading = cause::leading(suspicions, methods);
         let withdraw = |cause| cause::withdraw(cause, joint, methods);
@@ -533,20 +550,9 @@ impl<'a> IdentificationRun<'a> {
         (leading, replaced)
     }
 
-    /// Which part of the campaign is of another rig, if one is: from some record on or, where nothing else than the
-    /// contact explains the data, by clearance or direction of the sweep.
-    fn change(&self, suspicions: &[Finding], cause: Option<Cause>) -> Option<Change> {
-        let is_of_gain = |finding: &Finding| matches!(finding, Finding::GainChanged { .. });
-        let in_time = !suspicions.iter().any(is_of_gain);
-        let groups = cause.is_none_or(|cause| cause == Cause::Contact);
-        self.searched_in(|search| {
-            let by_time = in_time.then(|| search.in_time()).flatten();
-            by_time.or_else(|| groups.then(|| search.between_groups()).flatten())
-        })
-    }
-
-    /// What is found among the records of the joint fit by where they would be of two rigs.
-    fn searched_in<T>(&self, find: impl FnOnce(&Search<'_>) -> Option<T>) -> Option<T> {
+    /// What changes in the course of the campaign, and which part of it is of another rig, if one is: from some record on
+    /// or, where nothing else than the contact explains the data, by clearance or direction of the sweep.
+    fn changes(&self, cause: Option<Cause>) -> Option<Changes> {
         let joint = self.found.together()?;
         let blocks = &self.selection.blocks;
         // Speeds go with the gap, and the gap with the time: R over the speed would take up some of a change.
@@ -567,7 +573,15 @@ impl<'a> IdentificationRun<'a> {
             at: &joint.fit.parameters.with(over_speed, 0.0),
             factor: joint.factor,
         };
-        find(&Search::new(self.evidence, fitted))
+        let search = Search::new(self.evidence, fitted);
+        let groups = cause.is_none_or(|cause| cause == Cause::Contact);
+        let between_groups = || groups.then(|| search.between_groups()).flatten();
+        let of_gain = search.gain_in_time();
+        let in_time = || of_gain.is_none().then(|| search.in_time()).flatten();
+        Some(Changes {
+            of_rig: in_time().or_else(between_groups),
+            of_gain: of_gain.map(|change| change.suspicion(self.evidence, joint)),
+        })
     }
 
     /// The share by which all clearances are off alike, if they are.
@@ -668,8 +682,6 @@ impl<'a> IdentificationRun<'a> {
             Some(scale) => Some(common_scale::suspicion(scale, joint)),
             None => wrong_gains::wrong_gain(joint, nominal),
         });
-        let changed = self.searched_in(|search| search.gain_in_time());
-        found.extend(changed.map(|change| change.suspicion(self.evidence, joint)));
         found
     }
 
