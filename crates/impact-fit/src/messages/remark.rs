@@ -318,6 +318,13 @@ pub enum Remark {
         /// When the first was, s from its record's first sample.
         seconds: f64,
     },
+    /// Dry friction begins on the way.
+    DecaysRubbedLater {
+        /// Number of decays in which it does.
+        count: usize,
+        /// Periods after which it begins in the first of them.
+        periods: f64,
+    },
     /// Another mode beside the decays, fitted with them.
     DecaysMode {
         /// Number of decays with one.
@@ -500,6 +507,9 @@ message_table! { "remark": Remark, key = template_key;
     Self::DecaysStopped { count, seconds } =>
         count = Value::Count(*count),
         seconds = Value::Number(*seconds, 2);
+    Self::DecaysRubbedLater { count, periods } =>
+        count = Value::Count(*count),
+        periods = Value::Number(*periods, 1);
     Self::DecaysMode { count, frequency_hz, ratio } =>
         count = Value::Count(*count),
         frequency = Value::Number(*frequency_hz, 1),

@@ -12,7 +12,7 @@
 //! to first order in what the amplitude loses: r is an estimate of ρ − δ, and with −r in the place of r the profile has
 //! what drag leaves of β.
 
-use impact_records::signal::decay::{BesideFriction, Decay};
+use impact_records::signal::decay::{BesideFriction, Decay, OpenOnset};
 
 use crate::estimate::{self, Estimate, Status};
 use crate::messages::{Note, Remark};
@@ -31,6 +31,8 @@ pub(super) struct Shared {
     viscous: (f64, Spread),
     /// What friction is worth of it, with its error.
     friction: (f64, Spread),
+    /// What is open of it, below and above, because it is not known when friction begins.
+    open: [f64; 2],
     /// Whether drag of the air may have part of it.
     drag: bool,
 }
@@ -50,6 +52,7 @@ impl Shared {
         Self {
             viscous: mean(0),
             friction: mean(1),
+            open: open(decays, &weights, |o| o.damping_ratio),
             drag: false,
         }
     }
@@ -129,7 +132,8 @@ impl Shared {
     pub(super) fn estimate(&self, periods: f64) -> Estimate {
         let [low, high] = self.interval();
         let (viscous, spread) = self.viscous;
-        let high = spread.upper_end(viscous, high);
+        let [below, above] = self.open;
+        let (low, high) = (low - below, spread.upper_end(viscous, high + above));
         let value = self.value();
         let most = estimate::limits(Coordinate::Damping).0;
         let undamped = viscous <= spread.half95();
@@ -166,6 +170,20 @@ impl Shared {
             note,
         }
     }
+}
+
+/// What is open of a quantity, below and above, because it is not known when friction begins in decays with weights.
+pub(super) fn open(
+    decays: &[&Decay],
+    weights: &[f64],
+    of: impl Fn(&OpenOnset) -> [f64; 2],
+) -> [f64; 2] {
+    let all: f64 = weights.iter().sum();
+    let own = |d: &Decay| d.beside_friction.map_or([0.0; 2], |b| of(&b.open));
+    [0, 1].map(|k| {
+        let weighed = decays.iter().zip(weights).map(|(d, w)| w * own(d)[k]);
+        weighed.sum::<f64>() / all
+    })
 }
 
 /// Damping ratio of a viscous fit and what friction is worth of it. Where friction is not told from the rest, it may be
@@ -214,6 +232,7 @@ mod tests {
         Shared {
             viscous: (viscous, Spread::known(errors[0])),
             friction: (friction, Spread::known(errors[1])),
+            open: [0.0; 2],
             drag: false,
         }
     }

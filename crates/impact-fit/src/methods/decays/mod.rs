@@ -91,15 +91,24 @@ pub fn pooled(observations: &[Observation], effects: Effects) -> Option<MethodRe
         records,
         ..MethodResult::default()
     };
-    let (f, spread) = weighted::mean(&frequencies, &weighted::by_errors(&frequencies));
-    let found = estimate::estimate_within(Coordinate::Frequency, f, spread, None);
+    let weights = weighted::by_errors(&frequencies);
+    let (f, spread) = weighted::mean(&frequencies, &weights);
+    let mut found = estimate::estimate_within(Coordinate::Frequency, f, spread, None);
+    if let Some([low, high]) = found.interval95.as_mut().filter(|_| shared.is_some()) {
+        let [below, above] = dry_friction::open(&decays, &weights, |o| o.natural_frequency);
+        *low *= 1.0 - below;
+        *high *= 1.0 + above;
+    }
     result.parameters.natural_frequency_hz = Some(found);
     let longest = decays.iter().map(|d| d.periods).fold(0.0, f64::max);
     result.parameters.damping_ratio = Some(match shared {
         Some(shared) => shared.estimate(longest),
         None => damping_estimate(&decays),
     });
-    result.remarks.extend(shared.and_then(|s| s.remark()));
+    let rubbed_later = shared.and_then(|_| rubbed_later(&decays));
+    result
+        .remarks
+        .extend(rubbed_later.or_else(|| shared?.remark()));
     let apart = frequencies.iter().map(|p| (p.value - f).abs());
     let apart = apart.fold(0.0, f64::max);
     judge(&mut result, &decays, (apart, shared.is_some()));
@@ -202,6 +211,17 @@ fn are_most(
     let all: f64 = decays.iter().map(|d| information(&d)).sum();
     let of_some = decays.iter().filter(|d| some(d));
     2.0 * of_some.map(|d| information(&d)).sum::<f64>() > all
+}
+
+/// Decays in which dry friction begins on the way, if they are most of what is known of β.
+fn rubbed_later(decays: &[&Decay]) -> Option<Remark> {
+    let begins = |d: &Decay| d.beside_friction.and_then(|b| b.begins);
+    let all: Vec<f64> = decays.iter().filter_map(|d| begins(d)).collect();
+    let most = are_most(decays, &|d| begins(d).is_some(), &|d| d.damping_ratio_error);
+    Some(Remark::DecaysRubbedLater {
+        count: all.len(),
+        periods: *all.first().filter(|_| most)?,
+    })
 }
 
 /// Decays that a hand ended.

@@ -5,7 +5,10 @@ use impact_records::signal::decay::{self, Decay};
 use std::f64::consts::TAU;
 
 use super::pooled;
-use crate::estimate::Status;
+use rand::{Rng, SeedableRng};
+use rand_distr::{Distribution, StandardNormal};
+
+use crate::estimate::{Estimate, Status};
 use crate::messages::{Note, Remark};
 use crate::parameters::effect::Effects;
 
@@ -114,4 +117,43 @@ fn a_stop_by_hand_is_named() {
     });
     assert!((named.unwrap() - 3.0).abs() < 0.02, "{:?}", found.remarks);
     assert_eq!(found.fits, Some(true));
+}
+
+#[test]
+fn prop_a_hand_that_stops_the_mass_over_some_periods_is_no_friction_of_the_rig() {
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(20_261_130);
+    let (f0, drawn) = (6.0, 24);
+    let (mut held_f0, mut held_beta, mut named) = (0, 0, 0);
+    for _ in 0..drawn {
+        let beta: f64 = rng.random_range(0.003..0.012);
+        let stop: f64 = rng.random_range(12.0..40.0) / f0;
+        let takes: f64 = rng.random_range(2.0..8.0) / f0;
+        let phase: f64 = rng.random_range(0.0..TAU);
+        let natural = TAU * f0;
+        let damped = natural * f64::sqrt(1.0 - beta * beta);
+        let samples: Vec<f64> = (0..impact_records::signal::whole::index(1.5 * stop * 300.0))
+            .map(|i| {
+                let t = i as f64 / 300.0;
+                let free = f64::exp(-beta * natural * t) * (damped * t + phase).cos();
+                let noise: f64 = StandardNormal.sample(&mut rng);
+                free * (1.0 - (t - stop) / takes).clamp(0.0, 1.0) + 3e-3 * noise
+            })
+            .collect();
+        let decay = decay::fit(&samples, 300.0).unwrap();
+        let found = pooled(&[observation(vec![decay])], Effects::all()).unwrap();
+        let holds = |estimate: Option<Estimate>, value: f64| {
+            let [low, high] = estimate.and_then(|e| e.interval95).unwrap();
+            usize::from((low..=high).contains(&value))
+        };
+        held_f0 += holds(found.parameters.natural_frequency_hz, f0);
+        held_beta += holds(found.parameters.damping_ratio, beta);
+        let later = |r: &Remark| matches!(r, Remark::DecaysRubbedLater { .. });
+        named += usize::from(found.remarks.iter().any(later));
+    }
+    // 95 % less three standard deviations
+    assert!(
+        held_f0.min(held_beta) >= 20,
+        "{held_f0} {held_beta} of {drawn}"
+    );
+    assert!(2 * named > drawn, "{named} of {drawn}");
 }

@@ -166,6 +166,7 @@ fn is_to_be_mended(remark: &Remark) -> bool {
             | Remark::DecaysHum { .. }
             | Remark::DecaysMode { .. }
             | Remark::DecaysStopped { .. }
+            | Remark::DecaysRubbedLater { .. }
             | Remark::DecaysBackground { .. }
             | Remark::DecaysSlowNoise { .. }
     )

@@ -13,6 +13,7 @@
 use super::fits::fitted;
 use super::least_squares::{Point, Series};
 use super::natural::{GROWS, Natural, damping_slopes};
+use super::onset::{self, OpenOnset};
 use super::prepared::Prepared;
 use super::response::{Response, rate};
 use super::shape::Shape;
@@ -42,6 +43,12 @@ pub struct BesideFriction {
     pub periods: f64,
     /// Whether it sticks before that.
     pub sticks: bool,
+    /// Periods from the first fitted sample on after which friction begins; `None` if with the motion.
+    #[serde(default)]
+    pub begins: Option<f64>,
+    /// What is open because it is not known when friction begins.
+    #[serde(default)]
+    pub open: OpenOnset,
 }
 
 /// The first turning point, in samples, from which no more than a swing is left: the displacement falls by 2 r from
@@ -154,7 +161,9 @@ fn settled(prepared: &Prepared, viscous: &Point) -> Option<(Series, Point)> {
 /// all damping that the rest grows: what looks like friction is something else then.
 pub(super) fn beside(prepared: &Prepared, viscous: &Point, hz: f64) -> Option<BesideFriction> {
     let (series, point) = settled(prepared, viscous)?;
-    let covariance = series.covariance(&point)?;
+    let begun = onset::find(series, point)?;
+    let (series, point) = (&begun.series, &begun.point);
+    let covariance = series.covariance(point)?;
     let of_rates = covariance.view((1, 1), (2, 2)).into_owned();
     let natural = Natural::of(&point.rates, &of_rates);
     if natural.damping_ratio < -GROWS * natural.damping_ratio_error {
@@ -172,9 +181,11 @@ pub(super) fn beside(prepared: &Prepared, viscous: &Point, hz: f64) -> Option<Be
         known_friction_error: known.max(0.0).sqrt(),
         added: sigma / omega.hypot(sigma) - natural.damping_ratio,
         added_error,
-        freedom: series.freedom(&point),
+        freedom: series.freedom(point),
         rest_ratio: point.friction()? / point.displacement(series.quantity).norm(),
         periods: series.values.len() as f64 * natural.frequency,
         sticks: series.values.len() < prepared.series.values.len(),
+        begins: begun.after().map(|t| t * natural.frequency),
+        open: begun.open,
     })
 }

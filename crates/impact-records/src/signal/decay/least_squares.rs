@@ -23,6 +23,8 @@ pub(super) struct Series {
     pub(super) factor: usize,
     /// Rates, per value, of oscillations that were taken from the values: what their errors leave is fitted too.
     pub(super) taken: Vec<[f64; 2]>,
+    /// Swings after the turning point near the first value from which on dry friction acts; none if it acts all the time.
+    pub(super) rubbed_from: usize,
 }
 
 /// A fit: the best linear part at given rates.
@@ -57,6 +59,7 @@ impl Series {
             quantity: MotionSignal::default(),
             factor: 1,
             taken: Vec::new(),
+            rubbed_from: 0,
         }
     }
 
@@ -66,6 +69,7 @@ impl Series {
             count: self.values.len(),
             factor: self.factor,
             quantity: self.quantity,
+            rubbed_from: self.rubbed_from,
         }
     }
 

@@ -18,6 +18,7 @@ mod least_squares;
 mod modes;
 mod natural;
 mod noise;
+mod onset;
 mod prepared;
 mod response;
 mod shape;
@@ -33,6 +34,7 @@ use crate::signal::{robust, whole};
 pub use change::{Course, DampingLaw, Drift, LEAST_TESTED, PartOfDecay, RESOLVED};
 pub use creep::comes_to_rest;
 pub use friction::BesideFriction;
+pub use onset::OpenOnset;
 pub use prepared::Beside;
 pub use watched::{MotionSignal, Watched};
 

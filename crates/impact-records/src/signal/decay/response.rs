@@ -35,11 +35,18 @@ pub(super) struct Response {
     /// Displacement at turning points; the one at the time that the rates name has the number `named`.
     pub(super) turns: Vec<f64>,
     named: usize,
+    /// The first swing in which there is friction.
+    begins: usize,
 }
 
 impl Response {
-    /// From a sample before the first one to a last time, in samples.
+    /// From a sample before the first one to a last time, in samples, to friction that acts all the time.
     pub(super) fn of(rates: Rates, quantity: MotionSignal, last: f64) -> Self {
+        Self::from(0, (rates, quantity), last)
+    }
+
+    /// The same to friction from a number of swings after the named turning point on; all the time from none.
+    fn from(swings: usize, (rates, quantity): (Rates, MotionSignal), last: f64) -> Self {
         let [omega, sigma, _, begin] = rates;
         let half = std::f64::consts::PI / omega;
         let left = (-sigma * half).exp();
@@ -50,12 +57,13 @@ impl Response {
             quantity,
             turns: vec![0.0; named + later + 1],
             named,
+            begins: if swings == 0 { 0 } else { named + swings },
         };
-        for k in (0..named).rev() {
+        for k in (own.begins..named).rev() {
             let about = own.about(k);
             own.turns[k] = about + (about - own.turns[k + 1]) / left;
         }
-        for k in named..named + later {
+        for k in named.max(own.begins)..named + later {
             let about = own.about(k);
             own.turns[k + 1] = about - (own.turns[k] - about) * left;
         }
@@ -86,6 +94,9 @@ impl Response {
 
     /// At a time of a swing, in samples.
     fn at(&self, t: f64, swing: usize) -> f64 {
+        if swing < self.begins {
+            return 0.0;
+        }
         let [omega, sigma, ..] = self.rates;
         let about = self.about(swing);
         let own = t - self.turn(swing);
@@ -120,6 +131,15 @@ pub(super) struct Means {
     pub(super) count: usize,
     pub(super) factor: usize,
     pub(super) quantity: MotionSignal,
+    /// Swings after the named turning point from which on there is friction; none if there is all the time.
+    pub(super) rubbed_from: usize,
+}
+
+impl Means {
+    /// The response at given rates, as far as a sample.
+    fn response(&self, rates: Rates, last: f64) -> Response {
+        Response::from(self.rubbed_from, (rates, self.quantity), last)
+    }
 }
 
 /// Most points of a mean: a step of q is then where it is within a twentieth of a mean.
@@ -130,20 +150,20 @@ const STEP: f64 = 1e-6;
 
 /// q at the samples of a series.
 pub(super) fn column(series: &Means, rates: Rates) -> Vec<f64> {
-    let response = Response::of(rates, series.quantity, series.count as f64);
+    let response = series.response(rates, series.count as f64);
     response.means(&response, series)
 }
 
 /// Slopes of q over `ω_d` and σ at the samples of a series, the named turning point where it is.
 pub(super) fn slopes(series: &Means, rates: Rates) -> [Vec<f64>; 2] {
     let last = series.count as f64;
-    let here = Response::of(rates, series.quantity, last);
+    let here = series.response(rates, last);
     let step = STEP * rates[0];
     [0, 1].map(|k| {
         let moved = |by: f64| {
             let mut rates = rates;
             rates[k] += by;
-            Response::of(rates, series.quantity, last + 1.0).means(&here, series)
+            series.response(rates, last + 1.0).means(&here, series)
         };
         let (after, before) = (moved(step), moved(-step));
         let pairs = after.iter().zip(&before);

@@ -501,6 +501,49 @@ fn prop_a_stop_by_hand_is_no_friction() {
     held.assert_as_many_as_stated();
 }
 
+/// Friction that begins at a turning point: the motion is integrated swing by swing.
+#[test]
+fn valid_friction_that_begins_on_the_way_is_told_from_that_of_the_rig() {
+    let (f0, beta, rate_hz) = (2.0, 0.01, 100.0);
+    let natural = TAU * f0;
+    let damped = natural * f64::sqrt(1.0 - beta * beta);
+    let half = std::f64::consts::PI / damped;
+    let left = f64::exp(-beta * natural * half);
+    let (begins, rest) = (14, 0.01);
+    let count = whole::index(20.0 * rate_hz);
+    let mut samples = vec![0.0; count];
+    let (mut place, mut swing) = (1.0f64, 0);
+    let mut time = 0.0;
+    let mut next = 0;
+    while next < count {
+        let side = if swing % 2 == 0 { 1.0 } else { -1.0 };
+        let about = if swing < begins { 0.0 } else { side * rest };
+        let sticks = swing >= begins && place.abs() <= rest;
+        while next < count && (sticks || next as f64 / rate_hz < time + half) {
+            let own = next as f64 / rate_hz - time;
+            let (sin, cos) = (damped * own).sin_cos();
+            let swung = (place - about) * f64::exp(-beta * natural * own);
+            samples[next] = if sticks {
+                place
+            } else {
+                about + swung * (cos + beta * natural / damped * sin)
+            };
+            next += 1;
+        }
+        place = about - (place - about) * left;
+        time += half;
+        swing += 1;
+    }
+    white(&mut samples, 1e-3, 7);
+    let found = fit_channels(&[Watched::displacement(&samples)], rate_hz);
+    let friction = found[0].beside_friction.unwrap();
+    let begun = friction.begins.unwrap();
+    assert!((begun - 0.5 * f64::from(begins)).abs() < 0.6, "{begun}");
+    let off = (friction.damping_ratio - beta).abs();
+    let error = friction.known_friction_error.hypot(friction.added_error);
+    assert!(off < 3.0 * error && error < 0.05 * beta, "{off} {error}");
+}
+
 /// A mass that sticks under dry friction was not stopped.
 #[test]
 fn prop_a_mass_that_sticks_is_not_stopped() {
