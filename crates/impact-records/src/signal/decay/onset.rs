@@ -70,9 +70,6 @@ impl Trials {
             let sides = [best.saturating_sub(step), best + step];
             let inside = sides.into_iter().filter(|s| (1..=last).contains(s));
             inside.for_each(|s| own.add(s));
-            if step == 1 {
-                break;
-            }
         }
         own
     }

@@ -42,11 +42,11 @@ pub(super) struct Response {
 impl Response {
     /// From a sample before the first one to a last time, in samples, to friction that acts all the time.
     pub(super) fn of(rates: Rates, quantity: MotionSignal, last: f64) -> Self {
-        Self::from(0, (rates, quantity), last)
+        Self::from(0, rates, quantity, last)
     }
 
     /// The same to friction from a number of swings after the named turning point on; all the time from none.
-    fn from(swings: usize, (rates, quantity): (Rates, MotionSignal), last: f64) -> Self {
+    fn from(swings: usize, rates: Rates, quantity: MotionSignal, last: f64) -> Self {
         let [omega, sigma, _, begin] = rates;
         let half = std::f64::consts::PI / omega;
         let left = (-sigma * half).exp();
@@ -138,7 +138,7 @@ pub(super) struct Means {
 impl Means {
     /// The response at given rates, as far as a sample.
     fn response(&self, rates: Rates, last: f64) -> Response {
-        Response::from(self.rubbed_from, (rates, self.quantity), last)
+        Response::from(self.rubbed_from, rates, self.quantity, last)
     }
 }
 
