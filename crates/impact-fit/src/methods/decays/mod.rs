@@ -15,7 +15,8 @@ use crate::methods::identifier::Identifier;
 use crate::methods::selection::Selection;
 use crate::parameters::Coordinate;
 use crate::parameters::effect::{Effect, Effects};
-use crate::statistics::quantile::NORMAL_975;
+use crate::statistics::quantile::{NORMAL_975, student_975};
+use crate::statistics::scatter::Spread;
 use crate::statistics::weighted::{self, Measured};
 use impact_records::motion::Observation;
 use impact_records::signal::decay::{DampingLaw, Decay, LEAST_TESTED, RESOLVED};
@@ -94,10 +95,9 @@ pub fn pooled(observations: &[Observation], effects: Effects) -> Option<MethodRe
     let weights = weighted::by_errors(&frequencies);
     let (f, spread) = weighted::mean(&frequencies, &weights);
     let mut found = estimate::estimate_within(Coordinate::Frequency, f, spread, None);
-    if let Some([low, high]) = found.interval95.as_mut().filter(|_| shared.is_some()) {
-        let [below, above] = dry_friction::open(&decays, &weights, |o| o.natural_frequency);
-        *low *= 1.0 - below;
-        *high *= 1.0 + above;
+    if shared.is_some() {
+        let beyond = dry_friction::open(&decays, &weights, |o| o.natural_frequency);
+        found = reaching(found, beyond, spread);
     }
     result.parameters.natural_frequency_hz = Some(found);
     let longest = decays.iter().map(|d| d.periods).fold(0.0, f64::max);
@@ -164,6 +164,28 @@ fn undamped_error_hz(decay: &Decay) -> f64 {
     }
     let lowered = 1.0 - (1.0 - decay.damping_ratio.powi(2)).max(0.0).sqrt();
     lowered * decay.natural_frequency_hz
+}
+
+/// f0 whose interval reaches further below and above, relative; its standard error is that of an interval of this width.
+fn reaching(mut estimate: Estimate, [below, above]: [f64; 2], spread: Spread) -> Estimate {
+    let (Some(value), Some([low, high])) = (estimate.value, estimate.interval95) else {
+        return estimate;
+    };
+    if below.max(above) == 0.0 {
+        return estimate;
+    }
+    let (low, high) = (low * (1.0 - below), high * (1.0 + above));
+    let half = 0.5 * (high - low);
+    let error = half / student_975(spread.freedom);
+    estimate.interval95 = Some([low, high]);
+    estimate.standard_error = Some(error);
+    if half >= estimate::limits(Coordinate::Frequency).0 * value {
+        estimate.doubt(Note::Open {
+            parameter: Coordinate::Frequency,
+            standard_error: error / value,
+        });
+    }
+    estimate
 }
 
 /// Periods of the motion in a decay, which may stick before the decay is over.

@@ -4,10 +4,10 @@ use impact_records::motion::{Motion, Observation};
 use impact_records::signal::decay::{self, Decay};
 use std::f64::consts::TAU;
 
-use super::pooled;
 use rand::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 
+use super::pooled;
 use crate::estimate::{Estimate, Status};
 use crate::messages::{Note, Remark};
 use crate::parameters::effect::Effects;
@@ -117,6 +117,27 @@ fn a_stop_by_hand_is_named() {
     });
     assert!((named.unwrap() - 3.0).abs() < 0.02, "{:?}", found.remarks);
     assert_eq!(found.fits, Some(true));
+}
+
+#[test]
+fn f0_whose_friction_may_begin_later_has_the_error_of_its_interval() {
+    let decay = |t: f64| (-0.4 * t).exp() * (TAU * 4.0 * t).cos();
+    let mut open = fitted(4.0, decay);
+    let of = |decay: &Decay| {
+        let found = pooled(&[observation(vec![decay.clone()])], Effects::all()).unwrap();
+        found.parameters.natural_frequency_hz.unwrap()
+    };
+    let plain = of(&open);
+    let friction = open.beside_friction.as_mut().unwrap();
+    friction.open.natural_frequency = [0.02, 0.05];
+    let wide = of(&open);
+    let [low, high] = wide.interval95.unwrap();
+    let [least, most] = plain.interval95.unwrap();
+    assert!(low < 0.985 * least && high > 1.045 * most, "{low} {high}");
+    let error = wide.standard_error.unwrap();
+    assert!((0.2..0.26).contains(&(error / (high - low))), "{error}");
+    assert_eq!(wide.status, Status::Weak);
+    assert!(matches!(wide.note, Some(Note::Open { .. })), "{wide:?}");
 }
 
 #[test]

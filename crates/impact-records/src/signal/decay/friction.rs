@@ -12,7 +12,7 @@
 
 use super::fits::fitted;
 use super::least_squares::{Point, Series};
-use super::natural::{GROWS, Natural, damping_slopes};
+use super::natural::{GROWS, damping_slopes};
 use super::onset::{self, OpenOnset};
 use super::prepared::Prepared;
 use super::response::{Response, rate};
@@ -163,9 +163,7 @@ pub(super) fn beside(prepared: &Prepared, viscous: &Point, hz: f64) -> Option<Be
     let (series, point) = settled(prepared, viscous)?;
     let begun = onset::find(series, point)?;
     let (series, point) = (&begun.series, &begun.point);
-    let covariance = series.covariance(point)?;
-    let of_rates = covariance.view((1, 1), (2, 2)).into_owned();
-    let natural = Natural::of(&point.rates, &of_rates);
+    let (covariance, natural) = (&begun.covariance, &begun.natural);
     if natural.damping_ratio < -GROWS * natural.damping_ratio_error {
         return None;
     }

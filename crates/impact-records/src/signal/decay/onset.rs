@@ -5,6 +5,7 @@
 //! the beginning is in β and f0 by the profile of the likelihood: the fit with friction from a turning point on, whose χ² is
 //! d above the least, reaches as far as the squared quantile less d allows.
 
+use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use super::fits::fitted;
@@ -33,6 +34,9 @@ pub struct OpenOnset {
 pub(super) struct Begun {
     pub(super) series: Series,
     pub(super) point: Point,
+    /// Covariance of friction and the rates.
+    pub(super) covariance: DMatrix<f64>,
+    pub(super) natural: Natural,
     pub(super) open: OpenOnset,
 }
 
@@ -124,14 +128,15 @@ impl Trials {
         self.best().0
     }
 
-    /// How far the fits reach beyond the interval of one of them.
-    fn open(&self, of: &Natural) -> OpenOnset {
+    /// How far the other fits reach beyond the interval of the one with friction from a number of swings on.
+    fn open(&self, own: usize, of: &Natural) -> OpenOnset {
         let least = self.best().1.squares;
         let variance = self.variance();
-        let reaches = self.fits.iter().filter_map(|(swings, point)| {
+        let others = self.fits.iter().filter(|f| f.0 != own);
+        let reaches = others.filter_map(|(swings, point)| {
             let left = QUANTILE.powi(2) - (point.squares - least) / variance;
             let allowed = (left > 0.0).then(|| natural(&self.begun(*swings), point));
-            Some((allowed.flatten()?, left.sqrt()))
+            Some((allowed.flatten()?.1, left.sqrt()))
         });
         let none = OpenOnset::default();
         reaches.fold(none, |open, (found, reach)| {
@@ -192,11 +197,12 @@ impl OpenOnset {
     }
 }
 
-/// f0 and β of a fit beside friction.
-pub(super) fn natural(series: &Series, point: &Point) -> Option<Natural> {
+/// Covariance of friction and the rates of a fit, with f0 and β.
+fn natural(series: &Series, point: &Point) -> Option<(DMatrix<f64>, Natural)> {
     let covariance = series.covariance(point)?;
     let of_rates = covariance.view((1, 1), (2, 2)).into_owned();
-    Some(Natural::of(&point.rates, &of_rates))
+    let natural = Natural::of(&point.rates, &of_rates);
+    Some((covariance, natural))
 }
 
 /// The series, and the fit of friction all the time to it, with what follows from when friction begins.
@@ -205,16 +211,18 @@ pub(super) fn find(series: Series, point: Point) -> Option<Begun> {
     let swings = trials.settle();
     let (_, point) = trials.fits.iter().find(|f| f.0 == swings)?;
     let series = trials.begun(swings);
-    let found = natural(&series, point)?;
+    let (covariance, natural) = natural(&series, point)?;
     let mut begun = Begun {
         point: point.clone(),
         series,
-        open: trials.open(&found),
+        open: trials.open(swings, &natural),
+        covariance,
+        natural,
     };
     // what stops a mass need not be dry friction, which has a form of its own within a period
     if let Some(before) = trials.before(&begun) {
         begun.open = begun.open.with(&OpenOnset {
-            natural_frequency: beyond(frequency(&found), frequency(&before), QUANTILE),
+            natural_frequency: beyond(frequency(&begun.natural), frequency(&before), QUANTILE),
             ..OpenOnset::default()
         });
     }

@@ -65,23 +65,40 @@ pub(super) fn released(
     rest_m: f64,
     (rate_hz, periods): (f64, f64),
 ) -> Vec<f64> {
+    rubbed_from(0, rest_m, [f0_hz, beta], [rate_hz, periods])
+}
+
+/// The same with friction from a number of swings on: f0, Hz, and β; rate, Hz, and periods.
+fn rubbed_from(
+    swings: usize,
+    rest_m: f64,
+    [f0_hz, beta]: [f64; 2],
+    [rate_hz, periods]: [f64; 2],
+) -> Vec<f64> {
     let sigma = beta * TAU * f0_hz;
     let omega = TAU * f0_hz * (1.0 - beta * beta).sqrt();
     let half = std::f64::consts::PI / omega;
-    let (mut turn, mut place, mut about) = (0.0, 1.0f64, rest_m);
+    let shift = |swing: usize| match swing {
+        _ if swing < swings => 0.0,
+        _ if swing.is_multiple_of(2) => rest_m,
+        _ => -rest_m,
+    };
+    let (mut swing, mut place) = (0, 1.0f64);
     (0..whole::index(periods * rate_hz / f0_hz))
         .map(|i| {
             let t = i as f64 / rate_hz + 0.125 / f0_hz;
-            while t >= turn + half && place.abs() > rest_m {
+            let sticks = |swing: usize, place: f64| place.abs() <= shift(swing).abs();
+            while t >= (swing + 1) as f64 * half && !sticks(swing, place) {
+                let about = shift(swing);
                 place = about - (place - about) * (-sigma * half).exp();
-                turn += half;
-                about = -about;
+                swing += 1;
             }
-            if place.abs() <= rest_m {
+            if sticks(swing, place) {
                 return place;
             }
-            let (sin, cos) = (omega * (t - turn)).sin_cos();
-            about + (place - about) * (-sigma * (t - turn)).exp() * (cos + sigma / omega * sin)
+            let (about, own) = (shift(swing), t - swing as f64 * half);
+            let (sin, cos) = (omega * own).sin_cos();
+            about + (place - about) * (-sigma * own).exp() * (cos + sigma / omega * sin)
         })
         .collect()
 }
@@ -501,39 +518,11 @@ fn prop_a_stop_by_hand_is_no_friction() {
     held.assert_as_many_as_stated();
 }
 
-/// Friction that begins at a turning point: the motion is integrated swing by swing.
+/// Friction that begins at a turning point.
 #[test]
 fn valid_friction_that_begins_on_the_way_is_told_from_that_of_the_rig() {
-    let (f0, beta, rate_hz) = (2.0, 0.01, 100.0);
-    let natural = TAU * f0;
-    let damped = natural * f64::sqrt(1.0 - beta * beta);
-    let half = std::f64::consts::PI / damped;
-    let left = f64::exp(-beta * natural * half);
-    let (begins, rest) = (14, 0.01);
-    let count = whole::index(20.0 * rate_hz);
-    let mut samples = vec![0.0; count];
-    let (mut place, mut swing) = (1.0f64, 0);
-    let mut time = 0.0;
-    let mut next = 0;
-    while next < count {
-        let side = if swing % 2 == 0 { 1.0 } else { -1.0 };
-        let about = if swing < begins { 0.0 } else { side * rest };
-        let sticks = swing >= begins && place.abs() <= rest;
-        while next < count && (sticks || next as f64 / rate_hz < time + half) {
-            let own = next as f64 / rate_hz - time;
-            let (sin, cos) = (damped * own).sin_cos();
-            let swung = (place - about) * f64::exp(-beta * natural * own);
-            samples[next] = if sticks {
-                place
-            } else {
-                about + swung * (cos + beta * natural / damped * sin)
-            };
-            next += 1;
-        }
-        place = about - (place - about) * left;
-        time += half;
-        swing += 1;
-    }
+    let (beta, rate_hz, begins) = (0.01, 100.0, 14u8);
+    let mut samples = rubbed_from(begins.into(), 0.01, [2.0, beta], [rate_hz, 40.0]);
     white(&mut samples, 1e-3, 7);
     let found = fit_channels(&[Watched::displacement(&samples)], rate_hz);
     let friction = found[0].beside_friction.unwrap();
