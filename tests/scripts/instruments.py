@@ -108,7 +108,9 @@ def motion_channel(c, d, kind, speed):
         scale = float(f"{(spike if kind.spikes_fit else 0.1 * spike) / 10.0:.2g}")
         unit = "m/s^2/V"
     c = replace(c, scale=scale, scale_text=f"{scale:g} {unit}", gain=gain)
-    c = replace(c, high_passed=kind.high_pass_hidden or c.role == "velocity_y", low_pass=kind.low_pass)
+    c = replace(c, high_passed=kind.high_pass_hidden or c.role == "velocity_y")
+    if c.role[-1] in kind.low_pass_of:
+        c = replace(c, low_pass=kind.low_pass)
     c = replace(c, band_limit=kind.band_limit)
     if kind.smear:
         c = replace(c, smear=kind.smear if kind.smear > 0.0 else d["smear_x"] if of_x else d["smear_y"])
@@ -203,6 +205,18 @@ def converted(channel, volts, rng):
     noisy = volts + channel.noise_v * rng.standard_normal(len(volts))
     limit = 2 ** (channel.bits - 1)
     return np.clip(np.round(noisy / count), -limit, limit - 1).astype(np.int16 if channel.bits <= 16 else np.int32), count
+
+
+FROZEN_S = 0.027
+
+
+def freeze(columns, kind, rng):
+    """In a share of the records all columns repeat one row for some time."""
+    if rng.random() < kind.frozen:
+        count = round(FROZEN_S * kind.rate_hz)
+        at = int(rng.integers(0, len(columns[0]) - count))
+        for counts in columns:
+            counts[at : at + count] = counts[at]
 
 
 def low_passed(channel, motion, times, value):

@@ -36,6 +36,7 @@ class Kind:
     force_lag_rad: float = 0.0  # by which the force on y follows that on x
     force_power: float = 0.0  # the forces rise with this power of the frequency
     speed_exponent: float = 0.0  # 1 - R rises with this power of the approach speed
+    scatter: float = 0.0  # of R from impact to impact, relative
     contact: str = "rigid"  # "spring-damper", "hunt-crossley"
     contact_s: float = 6.4e-4
     second_mode: float = 0.0  # mass of the second mode over that of the part that is struck
@@ -47,10 +48,14 @@ class Kind:
     gap_off_m: float = 0.0  # by how much the second clearance is larger than stated
     # instruments that are off
     gain_x: float = 1.0
+    gain_step: float = 0.0  # by how much the gain of x is larger in the second half, relative
+    gain_drift: float = 0.0  # by how much it rises from the first record to the last, relative
     clock: float = 0.0  # relative error of the sampler's period
     late_s: tuple = ()  # (role, s) pairs
     low_pass: tuple = (0, 0.0)  # order and corner in Hz, of the channels of motion
     low_pass_stated: bool = False
+    low_pass_of: str = "xy"  # the channels of motion that it has
+    frozen: float = 0.0  # share of the records in which the converter repeats a value for some time
     band_limit: float = 0.0  # corner over the rate of the filter of linear phase in a delta-sigma converter
     high_pass_hidden: bool = False  # both velocities behind the high-pass, which is not stated
     noise: float = 1.0  # over that of the typical converter
@@ -102,6 +107,8 @@ KINDS = {
     "gain_1": Kind("a gain off by 0.5 %", gain_x=1.005),
     "gain_10": Kind("a gain off by 5 %", gain_x=1.05),
     "gain_40": Kind("a gain off by 20 %", gain_x=1.2),
+    "gain_step": Kind("the gain of x rises by 3 % in the middle", gain_step=0.03),
+    "gain_drift": Kind("the gain of x rises by 2 % over the campaign", gain_drift=0.02),
     "gain_half": Kind("a gain off by half", gain_x=0.5),
     "gap_1": Kind("one clearance off by 0.01 mm", gap_off_m=1e-5),
     "gap_10": Kind("one clearance off by 0.1 mm", gap_off_m=1e-4),
@@ -118,6 +125,9 @@ KINDS = {
     "low_pass_stated": Kind("low-pass of order 2 at 200 Hz, stated", low_pass=(2, 200.0), low_pass_stated=True),
     "low_pass_1300": Kind("an anti-alias filter of order 4 at 1.3 kHz, 10 kHz", low_pass=(4, 1300.0), rate_hz=1e4),
     "low_pass_4000": Kind("an anti-alias filter of order 8 at 4 kHz, 10 kHz", low_pass=(8, 4000.0), rate_hz=1e4),
+    "low_pass_one": Kind(
+        "displacement x behind a low-pass of order 2 at 70 Hz", roles=DISPLACEMENTS, low_pass=(2, 70.0), low_pass_of="x"
+    ),
     "delta_sigma": Kind("velocities from a delta-sigma converter", band_limit=0.48, bits=24),
     "delta_sigma_10k": Kind("the same at 10 kHz", band_limit=0.48, bits=24, rate_hz=1e4),
     "delta_sigma_displacement": Kind("displacements from such a converter", roles=DISPLACEMENTS, band_limit=0.48, bits=24),
@@ -131,12 +141,15 @@ KINDS = {
     "noise_10": Kind("ten times the noise", noise=10.0),
     "bits_8": Kind("a converter of 8 bits", bits=8),
     "contact_missed": Kind("the contact misses 5 % of the impacts", contact_missed=0.05),
+    "frozen": Kind("a quarter of the records repeats a value for 27 ms", frozen=0.25),
     "chatter": Kind("the contact chatters", chatter=True),
     "damping_y": Kind("mass y damped 1.5 times as much", damping_ratio_y=1.5),
     "force_lag": Kind("the force on y lags by 0.05 rad", force_lag_rad=0.05),
     "force_square": Kind("forces as the square of the frequency", force_power=2.0),
     "force_inverse": Kind("forces as the inverse of the frequency", force_power=-1.0),
     "speed": Kind("R falls with speed", speed_exponent=0.2),
+    "scatter": Kind("R scatters by 1.5 % from impact to impact", scatter=0.015),
+    "scatter_displacements": Kind("the same, displacements alone", scatter=0.015, roles=DISPLACEMENTS),
     "speed_mild": Kind("R falls with speed, mildly", speed_exponent=0.05),
     "contact_linear": Kind("contacts of 0.64 ms, spring and damper", contact="spring-damper"),
     "contact_hunt": Kind("contacts of 0.64 ms, Hunt and Crossley", contact="hunt-crossley"),

@@ -15,8 +15,8 @@ from numba import njit
 # Indices of the array of parameters that the integrator is given.
 (MX, BX, KX, FX, MY, BY, KY, FY, IX, IY, HARDENING, FRICTION, SPEED_OF_FRICTION, A2, PHI2, A3, PHI3, GAP, OMEGA,
  PHASE, LAW, CONTACT_K, CONTACT_C, RESTITUTION, SPEED_EXPONENT, SPEED_REFERENCE, CORNER_X, CORNER_Y, MODE_M,
- MODE_K, MODE_B, STEP, CONTACT_STEP, STICK_SPEED, TOUCH_SPEED, LAG_Y) = range(36)
-PARAMETERS = 36
+ MODE_K, MODE_B, STEP, CONTACT_STEP, STICK_SPEED, TOUCH_SPEED, LAG_Y, SCATTER, DRAWN) = range(38)
+PARAMETERS = 38
 # The state: x, x', y, y', the second mode's mass in x and in y, and what a high-pass takes off x' and y'.
 STATES = 10
 RIGID, SPRING_DAMPER, HUNT_CROSSLEY = 0.0, 1.0, 2.0
@@ -147,10 +147,23 @@ def locate(what, t, h, s, p, stuck, k, out):
 
 @njit(cache=True)
 def restitution_at(w, p):
-    """Restitution of a rigid impact at the approach speed w."""
+    """Restitution of a rigid impact at the approach speed w; where it scatters, the next one that is drawn."""
+    restitution = p[RESTITUTION] * (1.0 + p[SCATTER] * drawn(p))
     if p[SPEED_EXPONENT] == 0.0:
-        return p[RESTITUTION]
-    return max(0.0, 1.0 - (1.0 - p[RESTITUTION]) * (w / p[SPEED_REFERENCE]) ** p[SPEED_EXPONENT])
+        return restitution
+    return max(0.0, 1.0 - (1.0 - restitution) * (w / p[SPEED_REFERENCE]) ** p[SPEED_EXPONENT])
+
+
+@njit(cache=True)
+def drawn(p):
+    """The next of pseudorandom numbers of mean 0 and deviation 1: the sum of four even ones."""
+    if p[SCATTER] == 0.0:
+        return 0.0
+    total = 0.0
+    for _ in range(4):
+        p[DRAWN] = (1103515245.0 * p[DRAWN] + 12345.0) % 2147483648.0
+        total += p[DRAWN] / 2147483648.0 - 0.5
+    return total * math.sqrt(3.0)
 
 
 @njit(cache=True)

@@ -62,6 +62,7 @@ def machine(d, kind):
         p[rig.MODE_K] = m2 * (kind.second_mode_ratio * omega) ** 2
         p[rig.MODE_B] = 2.0 * 0.02 * m2 * kind.second_mode_ratio * omega
     p[rig.RESTITUTION] = d["R"]
+    p[rig.SCATTER], p[rig.DRAWN] = kind.scatter, d["seed"] + 1.0
     speed = d["xst_m"] * omega
     p[rig.SPEED_EXPONENT], p[rig.SPEED_REFERENCE] = kind.speed_exponent, 4.0 * speed
     p[rig.CORNER_X] = p[rig.CORNER_Y] = 2.0 * math.pi * d["high_pass_hz"]

@@ -39,7 +39,8 @@ fn mass_asymmetry(rig: &NominalValues) -> Option<[f64; 2]> {
     Some([(x / y).ln(), deviation])
 }
 
-/// Uncertainty of the delay of a low-pass whose corner and order jumps told, relative.
+/// Greatest uncertainty of the delay of a low-pass that is not stated, relative: its corner and order as jumps tell
+/// them.
 const ROUGHLY: f64 = 0.5;
 
 /// What is left of the delays of the motion channels beside the drive's, and their uncertainties.
@@ -58,9 +59,9 @@ fn delays(campaign: &ResolvedCampaign, observations: &[Observation]) -> Nominal 
         };
         nominal.delays_s[i] = remainder_s(setup, rate_hz) - of_drive_s;
         let found = late.iter().find(|l| l.role == setup.role);
-        let filter = found.and_then(|l| l.low_pass);
+        let filter = found.and_then(|l| Some((l.low_pass?, l.order_share.min(ROUGHLY))));
         // its corner is known roughly, and with it its delay
-        let of_filter_s = filter.map(|filter| ROUGHLY * filter.delay_s());
+        let of_filter_s = filter.map(|(filter, open)| open * filter.delay_s());
         nominal.delay_uncertainties_s[i] = of_filter_s.or(setup.delay_uncertainty_s);
     }
     nominal

@@ -9,8 +9,8 @@ use super::evidence;
 use super::observe;
 use crate::campaign::resolved::ResolvedCampaign;
 use impact_fit::evidence::Evidence;
+use impact_fit::methods::resonance::channels::misstated_channels;
 use impact_fit::methods::resonance::force_law::force_law;
-use impact_fit::methods::resonance::late_drive::late_drive;
 use impact_identification::identify::identify_campaign;
 use impact_records::motion::{
     Bracket, ForceLaw, LateChannel, Observation, brackets, follow_force_law, inverted_channels,
@@ -131,8 +131,8 @@ impl Observed {
 }
 
 /// The observations; made again where they show that channels are not as stated, with these corrected: signs by the
-/// directions of jumps, channels beside each other by the times of impacts, then the drive's by the phases of the
-/// motion. The drive amplitudes are as measured, and follow the law of the force that the resonance curve shows.
+/// directions of jumps, channels beside each other by the times of impacts, then the drive's, and a low-pass that no
+/// jump shows, by the phases of the motion. The drive amplitudes are as measured, and follow the law of the force that the resonance curve shows.
 fn aligned(
     campaign: &ResolvedCampaign,
     observations: Vec<Observation>,
@@ -145,10 +145,10 @@ fn aligned(
     // of a drive of the other sign the delay is told once its sign is right
     for _ in 0..2 {
         scale_drives(&mut observations);
-        let found = late_drive(&evidence::evidence(campaign, &observations, &[]));
-        let Some(found) = found else { break };
-        observations = corrected(campaign, observations, vec![found], progress)?;
-        if !found.inverted {
+        let found = misstated_channels(&evidence::evidence(campaign, &observations, &[]));
+        let again = found.iter().any(|channel| channel.inverted);
+        observations = corrected(campaign, observations, found, progress)?;
+        if !again {
             break;
         }
     }

@@ -22,6 +22,16 @@ pub struct Influence {
     pub directions: usize,
 }
 
+impl Influence {
+    /// That of a record of which nothing is used.
+    fn none() -> Self {
+        Self {
+            chi2: 0.0,
+            directions: 0,
+        }
+    }
+}
+
 /// Share of the information in a direction from which a record informs it.
 const LEAST_SHARE: f64 = 1e-6;
 /// Share of the information in a direction that the others must have to contradict the record.
@@ -36,6 +46,9 @@ pub fn influences(records: &[PlacedRows], others: &Normal) -> Option<Vec<Influen
     });
     let lower = scaled.cholesky()?.l();
     let influence = |record: &PlacedRows| {
+        if record.residuals.is_empty() {
+            return Some(Influence::none());
+        }
         let mut turned = record.transposed(scale.len());
         for (mut row, scale) in turned.row_iter_mut().zip(scale.iter()) {
             row *= *scale;
@@ -45,10 +58,7 @@ pub fn influences(records: &[PlacedRows], others: &Normal) -> Option<Vec<Influen
         }
         let axes = SymmetricEigen::try_new(turned.tr_mul(&turned), f64::EPSILON, 1000)?;
         let along = axes.eigenvectors.tr_mul(&record.residuals);
-        let mut influence = Influence {
-            chi2: 0.0,
-            directions: 0,
-        };
+        let mut influence = Influence::none();
         for (h, u) in axes.eigenvalues.iter().zip(along.iter()) {
             if *h > LEAST_SHARE && *h < 1.0 - LEAST_OTHERS {
                 influence.chi2 += u * u / (1.0 - h);
@@ -148,6 +158,19 @@ mod tests {
             let others = (3.0 * mean - value) / 2.0;
             assert!((influence.chi2 - (value - others).powi(2) / 1.5).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn a_record_of_which_nothing_is_used_has_no_influence() {
+        let nothing = PlacedRows {
+            places: vec![0],
+            slopes: DMatrix::zeros(0, 1),
+            residuals: DVector::zeros(0),
+        };
+        let records = [record(&[1.0], 0.3), nothing];
+        let found = influences(&records, &Normal::zeros(1)).expect("regular");
+        assert_eq!(found[1].directions, 0);
+        assert_eq!(strongest(&found, &[false; 2]), Vec::<usize>::new());
     }
 
     #[test]

@@ -262,6 +262,9 @@ impl Case<'_> {
         if evidence.settling.is_some() && (chosen.periods_n > 1 || chosen.ratio > closed) {
             return undetermined(Undetermined::NotSettled, evidence);
         }
+        if chosen.ratio > closed && impacts.is_empty() && self.has_harmonics_of_impacts() {
+            return undetermined(Undetermined::HarmonicsWithoutImpact, evidence);
+        }
         if chosen.ratio > open {
             return self.aperiodic(evidence);
         }
@@ -374,9 +377,7 @@ impl Case<'_> {
         if periods_n > 1 && evidence.shorter_closure > evidence.waveform_closure.map(|c| 2.0 * c) {
             return undetermined(Undetermined::RepeatsWithoutImpact { periods_n }, evidence);
         }
-        let velocity = self.detection.kinematics.relative.velocity.as_ref();
-        let period = self.period_s * self.detection.kinematics.rate_hz;
-        if velocity.is_some_and(|v| harmonics::are_of_impacts(&v.values, v.noise, period)) {
+        if self.has_harmonics_of_impacts() {
             return undetermined(Undetermined::HarmonicsWithoutImpact, evidence);
         }
         let confidence = quality * count.agreement.powi(2);
@@ -385,6 +386,14 @@ impl Case<'_> {
             confidence,
             evidence,
         }
+    }
+
+    /// Whether the motion has the harmonics of impacts, be they found or not.
+    fn has_harmonics_of_impacts(&self) -> bool {
+        let kinematics = &self.detection.kinematics;
+        let velocity = kinematics.relative.velocity.as_ref();
+        let period = self.period_s * kinematics.rate_hz;
+        velocity.is_some_and(|v| harmonics::are_of_impacts(&v.values, v.noise, period))
     }
 
     fn aperiodic(&self, mut evidence: MotionEvidence) -> Classification {

@@ -192,14 +192,26 @@ impl Observation {
         self.decays.iter().min_by(by)
     }
 
-    /// Whether the masses never touched: no impact was detected and nothing indicates one. Motion
-    /// that is not harmonic widens the error of such a record's response.
-    fn has_no_impact(&self) -> bool {
+    /// Whether no impact was detected.
+    fn shows_no_impact(&self) -> bool {
         self.impacts.is_empty()
             && self.unsupported_pulses == 0
             && matches!(
                 self.classification.motion,
                 Motion::Impactless | Motion::Undetermined { .. }
+            )
+    }
+
+    /// Whether the masses never touched: no impact was detected and nothing indicates one. Motion
+    /// that is not harmonic widens the error of such a record's response.
+    fn has_no_impact(&self) -> bool {
+        self.shows_no_impact()
+            && !matches!(
+                self.classification.motion,
+                Motion::Undetermined {
+                    reason: Undetermined::HarmonicsWithoutImpact
+                        | Undetermined::RepeatsWithoutImpact { .. }
+                }
             )
     }
 
@@ -265,7 +277,7 @@ pub fn observe(
         classification,
         ..undriven(record)
     };
-    if observation.has_no_impact() && detecting.flight == FlightKind::Harmonic {
+    if observation.shows_no_impact() && detecting.flight == FlightKind::Harmonic {
         observation.flags.extend(beyond_stop(record, rig));
     }
     if let Some(tone) = observation.tone().filter(|_| observation.has_no_impact()) {

@@ -34,7 +34,9 @@ impl Response {
         self.real.hypot(self.imaginary)
     }
 
-    fn times(&self, factor: Complex<f64>) -> Self {
+    /// The same measured values times a factor.
+    #[must_use]
+    pub fn times(&self, factor: Complex<f64>) -> Self {
         let value = Complex::new(self.real, self.imaginary) * factor;
         Self {
             real: value.re,

@@ -1,9 +1,9 @@
 //! The resonance curve: f0, β and `x_st` from the records without impacts.
 
 pub mod block;
+pub mod channels;
 pub mod fit;
 pub mod force_law;
-pub mod late_drive;
 mod misfit;
 mod result;
 mod select;

@@ -87,10 +87,12 @@ pub fn behind(evidence: &Evidence<'_>) -> Option<Refiltered> {
     settled(evidence, &channels, &fit)
 }
 
-/// The channels whose jumps show a low-pass that is not stated.
+/// The channels whose jumps show a low-pass that is not stated, of an order that they do not tell.
 fn filtered(evidence: &Evidence<'_>) -> Vec<LateChannel> {
     let late = evidence.observations.first().map_or(&[][..], |o| &o.late);
-    let filtered = late.iter().filter(|l| l.low_pass.is_some());
+    let filtered = late
+        .iter()
+        .filter(|l| l.low_pass.is_some() && l.order_share >= 1.0);
     filtered.copied().collect()
 }
 

@@ -1,0 +1,339 @@
+//! Channels that are not as stated, as impactless records show them: a drive's channel that is later than the channels
+//! of the motion, or of the other sign; channels of the motion behind a low-pass of one pole. Phases tell them, as the
+//! amplitudes tell f0 and β. More poles turn phases as a delay does.
+
+use nalgebra::Complex;
+use std::f64::consts::TAU;
+
+use crate::evidence::{Evidence, Nominal};
+use crate::messages::ONE_DEGREE_OF_FREEDOM;
+use crate::methods::blocks::Blocks;
+use crate::methods::resonance::fit;
+use crate::methods::resonance::misfit::{least_of, left_by, misfit};
+use crate::methods::resonance::result::deviation;
+use impact_records::motion::{LateChannel, Observation};
+use impact_records::record::{LowPass, Role};
+
+/// Greatest lag that is looked for, in periods of the fastest drive.
+const WIDEST: f64 = 1.0;
+/// Steps of the search in such a period: a tenth of a radian apart.
+const STEPS: f64 = 60.0;
+/// Times the stated uncertainty of delays from which a lag counts.
+const SURE: f64 = 4.0;
+/// Part of the misfit without a lag that one with it may leave: an unstated high-pass, whose phase lag falls with the
+/// frequency instead of rising with it, leaves more, as `valid_a_high_pass_that_is_not_stated_is_no_late_drive` has it
+/// over corners of 0.5 to 4 Hz.
+const LEFT: f64 = 0.1;
+/// Misfit, a mean square in units of the errors, up to which nothing is left to explain.
+const EXPLAINED: f64 = 4.0;
+/// Greatest time constant of a pole that is looked for, and the steps of the search, in radians of the fastest drive: a
+/// corner at a third of it.
+const SLOWEST: f64 = 3.0;
+const POLE_STEP: f64 = 0.1;
+
+/// The channels that impactless records show not to be as stated, by the one cause that leaves least of the misfit; none
+/// where no cause leaves little of it.
+pub fn misstated_channels(evidence: &Evidence<'_>) -> Vec<LateChannel> {
+    let all = evidence.observations.iter();
+    let impactless = all.filter(|o| !o.response.is_empty()).cloned();
+    let impactless: Vec<Observation> = impactless.collect();
+    let of_impactless = Evidence {
+        observations: &impactless,
+        brackets: &[],
+        ..*evidence
+    };
+    let found = causes(&of_impactless, &Blocks::new(&of_impactless)).unwrap_or_default();
+    let best = found.into_iter().min_by(|a, b| a.left.total_cmp(&b.left));
+    best.map(|best| best.channels).unwrap_or_default()
+}
+
+/// Channels that are not as stated, and the misfit that is left with them.
+struct Cause {
+    channels: Vec<LateChannel>,
+    left: f64,
+}
+
+/// The causes that leave little of the misfit without them; `None` where the phases tell nothing.
+fn causes(evidence: &Evidence<'_>, blocks: &Blocks) -> Option<Vec<Cause>> {
+    if blocks.resonance.points.is_empty() || !blocks.resonance.has_phases() {
+        return None;
+    }
+    let stated = fit::start(blocks, &evidence.nominal)?;
+    let at_once = left_by(blocks, &stated)?;
+    let fits = deviation(&blocks.resonance, &stated) < ONE_DEGREE_OF_FREEDOM;
+    let by_drive = |late, left| Cause {
+        channels: vec![late],
+        left,
+    };
+    let late = lag(blocks, &evidence.nominal, at_once, fits)
+        .map(|(lag_s, left)| by_drive(LateChannel::by(Role::Drive, lag_s), left));
+    let turned = misfit(&turned_around(blocks), &evidence.nominal)
+        .map(|left| by_drive(LateChannel::inverted(Role::Drive), left));
+    let sets = sets(blocks, evidence.observations);
+    let open = sets.iter().filter(|_| at_once > EXPLAINED);
+    let filtered = open.filter_map(|set| {
+        let pole = OnePole {
+            blocks,
+            nominal: &evidence.nominal,
+            set,
+        };
+        pole.cause(at_once)
+    });
+    let all = late.into_iter().chain(turned).chain(filtered);
+    Some(all.filter(|cause| cause.left < LEFT * at_once).collect())
+}
+
+/// Channels of the motion that may have passed one filter, with what is known of each: all, those of one mass, those of
+/// one quantity, each alone.
+fn sets(blocks: &Blocks, observations: &[Observation]) -> Vec<Vec<LateChannel>> {
+    let mut roles: Vec<Role> = blocks.resonance.channels().map(|(role, _)| role).collect();
+    roles.sort_unstable();
+    roles.dedup();
+    let together = |alike: &dyn Fn(Role) -> bool| -> Vec<Role> {
+        roles.iter().copied().filter(|role| alike(*role)).collect()
+    };
+    let masses = [false, true].map(|y| together(&|role| role.is_of_y() == y));
+    let quantities = [0, 1, 2].map(|order| together(&|role| role.derivative() == Some(order)));
+    let alone = roles.iter().map(|role| vec![*role]);
+    let candidates = masses.into_iter().chain(quantities).chain(alone);
+    let mut sets = vec![roles.clone()];
+    for set in candidates {
+        if !set.is_empty() && !sets.contains(&set) {
+            sets.push(set);
+        }
+    }
+    let known = observations.first().map_or(&[][..], |o| &o.late);
+    let of = |role: &Role| {
+        let known = known.iter().find(|late| late.role == *role);
+        known.copied().unwrap_or(LateChannel::by(*role, 0.0))
+    };
+    let with_known = sets.iter().map(|set| set.iter().map(of).collect());
+    let passed_none = |set: &Vec<LateChannel>| set.iter().all(|c| c.low_pass.is_none());
+    with_known.filter(passed_none).collect()
+}
+
+/// A low-pass of one pole that some channels have passed, in place of the delay with which they were corrected.
+struct OnePole<'a> {
+    blocks: &'a Blocks,
+    nominal: &'a Nominal,
+    set: &'a [LateChannel],
+}
+
+impl OnePole<'_> {
+    /// The pole with which the responses fit best, if the channels have passed one: better than with a delay.
+    fn cause(&self, at_once: f64) -> Option<Cause> {
+        let points = self.blocks.resonance.points.iter();
+        let fastest_hz = points.map(|p| p.frequency_hz).fold(0.0, f64::max);
+        let unit_s = 1.0 / (TAU * fastest_hz);
+        let with_pole = |constant_s: f64| {
+            let undone = || self.misfit(|rate| 1.0 + rate * constant_s);
+            (constant_s >= 0.0).then(undone).flatten()
+        };
+        let uncorrected = self.set.iter().all(|c| c.delay_s == 0.0);
+        // a pole that is far too fast fits better than none
+        if uncorrected && with_pole(POLE_STEP * unit_s)? > at_once {
+            return None;
+        }
+        let constant_s = least_of(SLOWEST * unit_s, POLE_STEP * unit_s, &with_pole)?;
+        let left = with_pole(constant_s)?;
+        let with_delay = |delay_s: f64| self.misfit(|rate| (rate * delay_s).exp());
+        let delay_s = least_of(2.0 * constant_s, 0.25 * constant_s, &with_delay);
+        let of_delay = delay_s.and_then(with_delay).unwrap_or(at_once);
+        if left >= of_delay {
+            return None;
+        }
+        let low_pass = LowPass {
+            corner_hz: 1.0 / (TAU * constant_s),
+            order: 1,
+        };
+        let passed = |known: &LateChannel| LateChannel {
+            low_pass: Some(low_pass),
+            order_share: self.open(left, of_delay).min(1.0),
+            ..LateChannel::by(known.role, -known.delay_s)
+        };
+        Some(Cause {
+            channels: self.set.iter().map(passed).collect(),
+            left,
+        })
+    }
+
+    /// Standard error of a part between a delay, of 0, and the pole, of 1, whose misfits are mean squares of each record:
+    /// of the amplitudes that the pole lowers nothing else tells.
+    fn open(&self, of_pole: f64, of_delay: f64) -> f64 {
+        let records = self.blocks.resonance.points.len() as f64;
+        (of_pole / (records * (of_delay - of_pole))).sqrt()
+    }
+
+    /// The misfit of the responses times a factor of iω, 1/s, and with the delays of which the channels were
+    /// corrected.
+    fn misfit(&self, factor: impl Fn(Complex<f64>) -> Complex<f64>) -> Option<f64> {
+        let mut blocks = self.blocks.clone();
+        for point in &mut blocks.resonance.points {
+            let rate = Complex::new(0.0, TAU * point.frequency_hz);
+            for response in &mut point.responses {
+                let known = self.set.iter().find(|c| c.role == response.role);
+                if let Some(known) = known {
+                    *response = response.times(factor(rate) * (-rate * known.delay_s).exp());
+                }
+            }
+        }
+        let relative_error = blocks.resonance.relative_error();
+        blocks.resonance.allow(relative_error);
+        misfit(&blocks, self.nominal)
+    }
+}
+
+/// The blocks with all responses of the other sign.
+fn turned_around(blocks: &Blocks) -> Blocks {
+    let mut turned = blocks.clone();
+    let points = turned.resonance.points.iter_mut();
+    for response in points.flat_map(|p| &mut p.responses) {
+        *response = response.times(Complex::new(-1.0, 0.0));
+    }
+    turned
+}
+
+/// The lag of the drive's channel with which the phases fit best, s, if it is noticed, and the misfit that it leaves;
+/// `at_once`: that without one, and whether the responses are those of one degree of freedom then.
+fn lag(blocks: &Blocks, nominal: &Nominal, at_once: f64, fits: bool) -> Option<(f64, f64)> {
+    let points = blocks.resonance.points.iter();
+    let fastest_hz = points.map(|p| p.frequency_hz).fold(0.0, f64::max);
+    let misfit = |lag_s: f64| misfit(blocks, &behind(nominal, lag_s));
+    let stated = nominal.delay_uncertainties_s.iter();
+    let stated_s = stated.map(|own| own.unwrap_or(blocks.half_sample_s()));
+    let unnoticed_s = SURE * stated_s.fold(0.0, f64::max);
+    // the phases fit, and best near no lag
+    if fits
+        && [-unnoticed_s, unnoticed_s]
+            .into_iter()
+            .all(|lag_s| misfit(lag_s).is_none_or(|with| with > at_once))
+    {
+        return None;
+    }
+    let step_s = 1.0 / (STEPS * fastest_hz);
+    let lag_s = least_of(WIDEST * STEPS * step_s, step_s, &misfit)?;
+    let left = misfit(lag_s)?;
+    (lag_s.abs() > unnoticed_s).then_some((lag_s, left))
+}
+
+/// What is stated, with the motion's channels as much earlier as the drive is later.
+fn behind(nominal: &Nominal, lag_s: f64) -> Nominal {
+    Nominal {
+        delays_s: nominal.delays_s.map(|delay_s| delay_s - lag_s),
+        ..*nominal
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{evidence, observed, recorded};
+    use impact_records::record::Record;
+
+    /// The record with the drive's channel so many samples later than the others, or earlier.
+    fn with_late_drive(record: &Record, samples: isize) -> Record {
+        let mut record = record.clone();
+        for channel in &mut record.channels {
+            let from_end = (channel.role == Role::Drive) == (samples > 0);
+            let count = channel.values.len();
+            let kept = count - samples.unsigned_abs();
+            if from_end {
+                channel.values.truncate(kept);
+            } else {
+                channel.values.drain(..count - kept);
+            }
+        }
+        record
+    }
+
+    #[test]
+    fn valid_a_late_drive_is_told_from_the_phases_and_none_where_there_is_none() {
+        let records = recorded(0.8, 12.0, 60, 41);
+        let step_s = 1.0 / records[0].sample_rate_hz;
+        for samples in [-30, -6, 0, 1, 3, 10, 40] {
+            let late: Vec<Record> = records
+                .iter()
+                .map(|r| with_late_drive(r, samples))
+                .collect();
+            let observations = observed(&late);
+            let found = misstated_channels(&evidence(&observations));
+            if samples.abs() < 2 {
+                assert_eq!(found, [], "{samples} samples");
+            } else {
+                let [found] = found[..] else {
+                    panic!("{samples} samples: {found:?}");
+                };
+                assert!(!found.inverted && found.role == Role::Drive, "{found:?}");
+                let off = found.delay_s / step_s - samples as f64;
+                assert!(off.abs() < 0.5, "{samples} samples: {off} off");
+            }
+        }
+    }
+
+    #[test]
+    fn valid_a_drive_of_the_other_sign_is_told_from_the_phases_whether_it_is_late_or_not() {
+        let records = recorded(0.8, 12.0, 60, 43);
+        let turned = |record: &Record| {
+            let mut record = record.clone();
+            let drive = record.channels.iter_mut().filter(|c| c.role == Role::Drive);
+            let values = drive.flat_map(|c| &mut c.values);
+            values.for_each(|v| *v = -*v);
+            record
+        };
+        for samples in [0, 6] {
+            let as_stated: Vec<Record> = records
+                .iter()
+                .map(|r| with_late_drive(r, samples))
+                .collect();
+            let other: Vec<Record> = as_stated.iter().map(turned).collect();
+            let observations = observed(&other);
+            let found = misstated_channels(&evidence(&observations));
+            assert_eq!(found, [LateChannel::inverted(Role::Drive)]);
+        }
+    }
+
+    #[test]
+    fn valid_a_high_pass_that_is_not_stated_is_no_late_drive() {
+        let mut observations = observed(&recorded(0.8, 12.0, 60, 42));
+        for corner_hz in [0.5, 2.0, 4.0] {
+            for o in &mut observations {
+                let Some(tone) = o.tone() else { continue };
+                let lag = corner_hz / tone.frequency_hz;
+                for r in &mut o.response {
+                    // 1/(1 − i f_c/f)
+                    let passed = nalgebra::Complex::new(r.real, r.imaginary)
+                        / nalgebra::Complex::new(1.0, -lag);
+                    (r.real, r.imaginary) = (passed.re, passed.im);
+                }
+            }
+            let found = misstated_channels(&evidence(&observations));
+            assert_eq!(found, [], "{corner_hz} Hz");
+        }
+    }
+
+    #[test]
+    fn valid_a_low_pass_of_one_pole_is_told_from_a_delay_and_which_channels_have_passed_it() {
+        let known = observed(&recorded(0.8, 12.0, 60, 42));
+        let both = [Role::VelocityX, Role::VelocityY];
+        for (roles, corner_hz) in [(&both[..], 60.0), (&both[..], 250.0), (&both[1..], 120.0)] {
+            let mut observations = known.clone();
+            for o in &mut observations {
+                let Some(tone) = o.tone() else { continue };
+                let passed = Complex::new(1.0, tone.frequency_hz / corner_hz).inv();
+                let responses = o.response.iter_mut();
+                for r in responses.filter(|r| roles.contains(&r.role)) {
+                    *r = r.times(passed);
+                }
+            }
+            let found = misstated_channels(&evidence(&observations));
+            assert_eq!(found.iter().map(|c| c.role).collect::<Vec<_>>(), roles);
+            for channel in found {
+                let filter = channel.low_pass.expect("a low-pass");
+                assert_eq!(filter.order, 1);
+                let off = filter.corner_hz / corner_hz - 1.0;
+                assert!(off.abs() < 0.05, "{off} at {corner_hz} Hz");
+                assert!(channel.order_share < 0.3, "{channel:?}");
+            }
+        }
+    }
+}
