@@ -1,6 +1,6 @@
 //! Faults in campaign.toml itself.
 
-use super::{Case, refused};
+use super::{Case, edited, refused};
 
 /// The cases.
 pub(super) fn cases() -> Vec<Case> {
@@ -40,24 +40,22 @@ fn form() -> Vec<Case> {
                 "impactid init",
             ],
         ),
-        refused(
+        edited(
             "a backslash in a pattern of files",
-            |lab| lab.edit("run_table = \"runs.csv\"", "files = \"sub\\*.csv\""),
+            "run_table = \"runs.csv\"",
+            "files = \"sub\\*.csv\"",
             &["campaign.toml:7", "write / between folders"],
         ),
-        refused(
+        edited(
             "a quote is not closed",
-            |lab| lab.edit("\"Test rig\"", "\"Test rig"),
+            "\"Test rig\"",
+            "\"Test rig",
             &["campaign.toml:2", "not valid TOML"],
         ),
-        refused(
+        edited(
             "a key is there twice",
-            |lab| {
-                lab.edit(
-                    "machine = \"double\"",
-                    "machine = \"double\"\nmachine = \"single\"",
-                );
-            },
+            "machine = \"double\"",
+            "machine = \"double\"\nmachine = \"single\"",
             &["campaign.toml:4", "duplicate key"],
         ),
         refused(
@@ -65,48 +63,55 @@ fn form() -> Vec<Case> {
             |lab| lab.write_bytes("campaign.toml", b"[campaign]\nname = \"\xe9\"\n"),
             &["campaign.toml cannot be read", "UTF-8"],
         ),
-        refused(
+        edited(
             "an unknown key",
-            |lab| lab.edit("run_table =", "clearence = \"1 mm\"\nrun_table ="),
+            "run_table =",
+            "clearence = \"1 mm\"\nrun_table =",
             &[
                 "campaign.toml:7: records.clearence",
                 "did you mean 'clearance'",
             ],
         ),
-        refused(
+        edited(
             "an unknown section",
-            |lab| lab.edit("[report]", "[reprot]"),
+            "[report]",
+            "[reprot]",
             &["unknown field `reprot`", "did you mean 'report'"],
         ),
-        refused(
+        edited(
             "an unknown role",
-            |lab| lab.edit("[channels.velocity_y]", "[channels.velocity_z]"),
+            "[channels.velocity_y]",
+            "[channels.velocity_z]",
             &["velocity_z", "did you mean 'velocity_"],
         ),
-        refused(
+        edited(
             "a number where a text is needed",
-            |lab| lab.edit("\"Test rig\"", "3"),
+            "\"Test rig\"",
+            "3",
             &[
                 "campaign.toml:2: campaign.name",
                 "invalid type: integer `3`, expected a string",
             ],
         ),
-        refused(
+        edited(
             "a machine that is not known",
-            |lab| lab.edit("\"double\"", "\"triple\""),
+            "\"double\"",
+            "\"triple\"",
             &[
                 "campaign.toml:3: campaign.machine",
                 "unknown variant `triple`",
             ],
         ),
-        refused(
+        edited(
             "a paper size that is not known",
-            |lab| lab.edit("\"a4\"", "\"a3\""),
+            "\"a4\"",
+            "\"a3\"",
             &["unknown variant `a3`", "did you mean 'a4'"],
         ),
-        refused(
+        edited(
             "a negative seed",
-            |lab| lab.edit("seed = 1", "seed = -1"),
+            "seed = 1",
+            "seed = -1",
             &["analysis.seed", "-1"],
         ),
     ]
@@ -114,43 +119,32 @@ fn form() -> Vec<Case> {
 
 fn quantities() -> Vec<Case> {
     vec![
-        refused(
+        edited(
             "a clearance without unit",
-            |lab| lab.edit("run_table =", "clearance = 1.0\nrun_table ="),
+            "run_table =",
+            "clearance = 1.0\nrun_table =",
             &[
                 "campaign.toml:7: records.clearance",
                 "a clearance without unit: 1",
                 "\"1 mm\"",
             ],
         ),
-        refused(
+        edited(
             "a negative uncertainty of the clearances",
-            |lab| {
-                lab.edit(
-                    "restitution = 0.9",
-                    "restitution = 0.9\nclearance_uncertainty = \"-3 um\"",
-                );
-            },
+            "restitution = 0.9",
+            "restitution = 0.9\nclearance_uncertainty = \"-3 um\"",
             &["rig.clearance_uncertainty", "is out of range"],
         ),
-        refused(
+        edited(
             "an uncertainty of the clock that no clock has",
-            |lab| {
-                lab.edit(
-                    "restitution = 0.9",
-                    "restitution = 0.9\nclock_uncertainty = \"20 %\"",
-                );
-            },
+            "restitution = 0.9",
+            "restitution = 0.9\nclock_uncertainty = \"20 %\"",
             &["rig.clock_uncertainty", "write a value from 0 to 0.05"],
         ),
-        refused(
+        edited(
             "an effect that is not known",
-            |lab| {
-                lab.edit(
-                    "restitution = 0.9",
-                    "restitution = 0.9\neffects = [\"stiction\"]",
-                );
-            },
+            "restitution = 0.9",
+            "restitution = 0.9\neffects = [\"stiction\"]",
             &[
                 "rig.effects",
                 "no effect is called 'stiction'",
@@ -158,81 +152,87 @@ fn quantities() -> Vec<Case> {
                 "remove the line to allow all",
             ],
         ),
-        refused(
+        edited(
             "something shared between campaigns that is not known",
-            |lab| {
-                lab.edit(
-                    "restitution = 0.9",
-                    "restitution = 0.9\nshared = [\"weather\"]",
-                );
-            },
+            "restitution = 0.9",
+            "restitution = 0.9\nshared = [\"weather\"]",
             &[
                 "rig.shared",
                 "campaigns cannot share 'weather'",
                 "gains, corners, delays",
             ],
         ),
-        refused(
+        edited(
             "a delay that is longer than a period of the drive",
-            |lab| lab.edit("sign = 1", "sign = 1\ndelay = \"100 ms\""),
+            "sign = 1",
+            "sign = 1\ndelay = \"100 ms\"",
             &[
                 "channels.velocity_x.delay",
                 "longer than a period of the drive",
             ],
         ),
-        refused(
+        edited(
             "a clearance in quotes without unit",
-            |lab| lab.edit("run_table =", "clearance = \"1.0\"\nrun_table ="),
+            "run_table =",
+            "clearance = \"1.0\"\nrun_table =",
             &[
                 "a clearance without unit",
                 "write number and unit in quotes",
             ],
         ),
-        refused(
+        edited(
             "a clearance in Hz",
-            |lab| lab.edit("run_table =", "clearance = \"1 Hz\"\nrun_table ="),
+            "run_table =",
+            "clearance = \"1 Hz\"\nrun_table =",
             &[
                 "'1 Hz' is a frequency, where a length is expected",
                 "write a number and a unit of length",
             ],
         ),
-        refused(
+        edited(
             "a decimal comma",
-            |lab| lab.edit("\"12.6 Hz\"", "\"12,6 Hz\""),
+            "\"12.6 Hz\"",
+            "\"12,6 Hz\"",
             &[
                 "rig.natural_frequency",
                 "is written with a comma",
                 "write a decimal point",
             ],
         ),
-        refused(
+        edited(
             "a unit that is not known",
-            |lab| lab.edit("\"12.6 Hz\"", "\"12.6 Hertzes\""),
+            "\"12.6 Hz\"",
+            "\"12.6 Hertzes\"",
             &["the unit 'Hertzes' is not known", "rad/s"],
         ),
-        refused(
+        edited(
             "a natural frequency below zero",
-            |lab| lab.edit("\"12.6 Hz\"", "\"-12.6 Hz\""),
+            "\"12.6 Hz\"",
+            "\"-12.6 Hz\"",
             &["rig.natural_frequency", "write a positive value"],
         ),
-        refused(
+        edited(
             "a restitution above 1",
-            |lab| lab.edit("restitution = 0.9", "restitution = 1.2"),
+            "restitution = 0.9",
+            "restitution = 1.2",
             &["rig.restitution", "write a value from 0 to 1"],
         ),
-        refused(
+        edited(
             "a negative damping ratio",
-            |lab| lab.edit("damping_ratio = 0.07", "damping_ratio = -0.07"),
+            "damping_ratio = 0.07",
+            "damping_ratio = -0.07",
             &["rig.damping_ratio", "write a value from 0 to 0.999"],
         ),
-        refused(
+        edited(
             "a restitution that is not a number",
-            |lab| lab.edit("restitution = 0.9", "restitution = nan"),
+            "restitution = 0.9",
+            "restitution = nan",
             &["rig.restitution", "not a number"],
         ),
-        refused(
+        edited(
             "no impact motion looked for",
-            |lab| lab.edit("longest_period_n = 6", "longest_period_n = 0"),
+            "longest_period_n = 6",
+            "longest_period_n = 0",
             &["analysis.longest_period_n", "write a number from 1 to 64"],
         ),
     ]
@@ -240,123 +240,117 @@ fn quantities() -> Vec<Case> {
 
 fn channels() -> Vec<Case> {
     vec![
-        refused(
+        edited(
             "a channel's unit that is not known",
-            |lab| {
-                lab.edit(
-                    "channel = \"vx\"\nunit = \"V\"",
-                    "channel = \"vx\"\nunit = \"Vlt\"",
-                );
-            },
+            "channel = \"vx\"\nunit = \"V\"",
+            "channel = \"vx\"\nunit = \"Vlt\"",
             &["channels.velocity_x.unit", "the unit 'Vlt' is not known"],
         ),
-        refused(
+        edited(
             "a scale that does not say per what",
-            |lab| {
-                lab.edit(
-                    "scale = \"50 mm/s per V\"\nhigh",
-                    "scale = \"50 mm/s\"\nhigh",
-                );
-            },
+            "scale = \"50 mm/s per V\"\nhigh",
+            "scale = \"50 mm/s\"\nhigh",
             &["channels.velocity_x.scale", "\"50 mm/s per V\""],
         ),
-        refused(
+        edited(
             "a scale of zero",
-            |lab| {
-                lab.edit(
-                    "scale = \"50 mm/s per V\"\nhigh",
-                    "scale = \"0 mm/s per V\"\nhigh",
-                );
-            },
+            "scale = \"50 mm/s per V\"\nhigh",
+            "scale = \"0 mm/s per V\"\nhigh",
             &["channels.velocity_x.scale", "a scale must be positive"],
         ),
-        refused(
+        edited(
             "a scale from another unit than the channel's",
-            |lab| {
-                lab.edit(
-                    "scale = \"50 mm/s per V\"\nhigh",
-                    "scale = \"50 mm/s per N\"\nhigh",
-                );
-            },
+            "scale = \"50 mm/s per V\"\nhigh",
+            "scale = \"50 mm/s per N\"\nhigh",
             &[
                 "the scale of channel 'vx' does not start from its unit",
                 "[channels.velocity_x]",
             ],
         ),
-        refused(
+        edited(
             "a velocity channel left in V",
-            |lab| lab.edit("scale = \"50 mm/s per V\"\nhigh", "high"),
+            "scale = \"50 mm/s per V\"\nhigh",
+            "high",
             &[
                 "comes out as a voltage, not as a velocity",
                 "correct unit and scale",
             ],
         ),
-        refused(
+        edited(
             "a sign of 2",
-            |lab| lab.edit("sign = 1", "sign = 2"),
+            "sign = 1",
+            "sign = 2",
             &[
                 "channels.velocity_x.sign",
                 "a sign is 1 or -1",
                 "put a factor into scale",
             ],
         ),
-        refused(
+        edited(
             "a negative high-pass corner",
-            |lab| lab.edit("\"0.5 Hz\"", "\"-0.5 Hz\""),
+            "\"0.5 Hz\"",
+            "\"-0.5 Hz\"",
             &[
                 "channels.velocity_x.high_pass",
                 "write 0 or a positive value",
             ],
         ),
-        refused(
+        edited(
             "a low-pass of nine poles",
-            |lab| lab.edit("sign = 1", "low_pass = \"200 Hz\"\nlow_pass_order = 9"),
+            "sign = 1",
+            "low_pass = \"200 Hz\"\nlow_pass_order = 9",
             &[
                 "channels.velocity_x.low_pass_order",
                 "write a number from 1 to 8",
             ],
         ),
-        refused(
+        edited(
             "the order of no low-pass",
-            |lab| lab.edit("sign = 1", "low_pass_order = 2"),
+            "sign = 1",
+            "low_pass_order = 2",
             &[
                 "channels.velocity_x.low_pass_order",
                 "write low_pass = \"200 Hz\"",
             ],
         ),
-        refused(
+        edited(
             "a threshold for a velocity",
-            |lab| lab.edit("sign = 1", "threshold = \"1 V\""),
+            "sign = 1",
+            "threshold = \"1 V\"",
             &[
                 "a threshold means nothing for velocity_x",
                 "[channels.contact]",
             ],
         ),
-        refused(
+        edited(
             "a threshold without unit",
-            |lab| lab.edit("threshold = \"2.5 V\"", "threshold = 2.5"),
+            "threshold = \"2.5 V\"",
+            "threshold = 2.5",
             &[
                 "channels.contact.threshold",
                 "a level without unit",
                 "\"2.5 V\"",
             ],
         ),
-        refused(
+        edited(
             "a threshold in another unit than its channel",
-            |lab| lab.edit("threshold = \"2.5 V\"", "threshold = \"2.5 N\""),
+            "threshold = \"2.5 V\"",
+            "threshold = \"2.5 N\"",
             &["contact", "as its threshold does"],
         ),
-        refused(
+        edited(
             "a role without a channel",
-            |lab| lab.edit("channel = \"drive\"\n", ""),
+            "channel = \"drive\"\n",
+            "",
             &[
                 "channels.drive.channel",
                 "the channel of the file is not given",
             ],
         ),
-        refused(
+        edited(
             "one channel for two roles",
-            |lab| lab.edit("channel = \"vy\"", "channel = \"vx\""),
+            "channel = \"vy\"",
+            "channel = \"vx\"",
             &[
                 "channels.velocity_y.channel",
                 "already serves as velocity_x",
@@ -374,22 +368,19 @@ fn channels() -> Vec<Case> {
             },
             &["no channel of motion is named", "[channels.velocity_x]"],
         ),
-        refused(
+        edited(
             "a second mass against a stop",
-            |lab| lab.edit("\"double\"", "\"single\""),
+            "\"double\"",
+            "\"single\"",
             &[
                 "channels.velocity_y",
                 "one mass against a stop has no mass y",
             ],
         ),
-        refused(
+        edited(
             "times of impacts of a driven rig",
-            |lab| {
-                lab.edit(
-                    "channel = \"contact\"\n",
-                    "channel = \"contact\"\ncontent = \"times\"\n",
-                );
-            },
+            "channel = \"contact\"\n",
+            "channel = \"contact\"\ncontent = \"times\"\n",
             &[
                 "channels.contact.content",
                 "set flight = \"constant_force\"",
@@ -400,54 +391,62 @@ fn channels() -> Vec<Case> {
 
 fn records() -> Vec<Case> {
     vec![
-        refused(
+        edited(
             "files and run_table both given",
-            |lab| lab.edit("run_table =", "files = \"*.csv\"\nrun_table ="),
+            "run_table =",
+            "files = \"*.csv\"\nrun_table =",
             &["files and run_table are both given", "keep one of them"],
         ),
-        refused(
+        edited(
             "neither files nor run_table given",
-            |lab| lab.edit("run_table = \"runs.csv\"", ""),
+            "run_table = \"runs.csv\"",
+            "",
             &[
                 "the location of the records is not given",
                 "files = \"records/*.h5\"",
             ],
         ),
-        refused(
+        edited(
             "a pattern that no file matches",
-            |lab| lab.edit("run_table = \"runs.csv\"", "files = \"*.tdms\""),
+            "run_table = \"runs.csv\"",
+            "files = \"*.tdms\"",
             &["no file matches '*.tdms'", "relative to campaign.toml"],
         ),
-        refused(
+        edited(
             "exclude names no record",
-            |lab| lab.edit("seed = 1", "seed = 1\nexclude = [\"r9\"]"),
+            "seed = 1",
+            "seed = 1\nexclude = [\"r9\"]",
             &["analysis.exclude", "no record is called 'r9'"],
         ),
-        refused(
+        edited(
             "report.points names no record",
-            |lab| lab.edit("paper = \"a4\"", "points = [\"r11\"]"),
+            "paper = \"a4\"",
+            "points = [\"r11\"]",
             &[
                 "report.points",
                 "no record is called 'r11'",
                 "did you mean 'r1'?",
             ],
         ),
-        refused(
+        edited(
             "an attribute for a clearance without unit",
-            |lab| lab.edit("[rig]", "[records.attributes]\nclearance = \"gap\"\n[rig]"),
+            "[rig]",
+            "[records.attributes]\nclearance = \"gap\"\n[rig]",
             &[
                 "an attribute 'gap' for a clearance without unit",
                 "\"gap [m]\"",
             ],
         ),
-        refused(
+        edited(
             "a time channel that no file has",
-            |lab| lab.edit("run_table =", "time = \"clock\"\nrun_table ="),
+            "run_table =",
+            "time = \"clock\"\nrun_table =",
             &["in all 3 records", "no channel 'clock' for the time axis"],
         ),
-        refused(
+        edited(
             "more is skipped than a record holds",
-            |lab| lab.edit("seed = 1", "skip = \"2 s\""),
+            "seed = 1",
+            "skip = \"2 s\"",
             &[
                 "the record lasts 1 s, and 2 s of it are skipped",
                 "lower skip in [analysis]",

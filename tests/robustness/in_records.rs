@@ -1,6 +1,6 @@
 //! Faults in the record files.
 
-use super::{Case, noted, refused};
+use super::{Case, edited, noted, refused};
 use crate::support::{Lab, SAMPLES, wav_format};
 
 /// The cases.
@@ -241,14 +241,16 @@ fn channels() -> Vec<Case> {
                 "2 of 3 records can be used",
             ],
         ),
-        refused(
+        edited(
             "a channel missing in all files",
-            |lab| lab.edit("channel = \"vy\"", "channel = \"laser 2\""),
+            "channel = \"vy\"",
+            "channel = \"laser 2\"",
             &["in all 3 records: no channel 'laser 2'", "velocity_y"],
         ),
-        refused(
+        edited(
             "an index beyond the last channel",
-            |lab| lab.edit("channel = \"vy\"", "channel = 12"),
+            "channel = \"vy\"",
+            "channel = 12",
             &["in all 3 records: no channel 'number 12'"],
         ),
         refused(
@@ -468,14 +470,16 @@ fn units_of_time() -> Vec<Case> {
             |lab| lab.replace("r2.csv", "time [s]", "time"),
             &["time axis 'time' has no unit: taken as seconds"],
         ),
-        refused(
+        edited(
             "times of unlike units",
-            |lab| lab.edit("[records]", "[records]\ntime_unit = \"ms\""),
+            "[records]",
+            "[records]\ntime_unit = \"ms\"",
             &["the time axis 'time' has a unit of 1 s, campaign.toml states time_unit as 0.001 s"],
         ),
-        refused(
+        edited(
             "a unit of time that is none",
-            |lab| lab.edit("[records]", "[records]\ntime_unit = \"mm\""),
+            "[records]",
+            "[records]\ntime_unit = \"mm\"",
             &["'mm' is no unit of time", "write s, ms, us, ns or min"],
         ),
         refused(

@@ -1,6 +1,6 @@
 //! Faults in the run table.
 
-use super::{Case, refused};
+use super::{Case, refused, table_edited};
 
 /// The cases.
 pub(super) fn cases() -> Vec<Case> {
@@ -39,36 +39,41 @@ fn header() -> Vec<Case> {
             },
             &["the run table has no column 'file'"],
         ),
-        refused(
+        table_edited(
             "a clearance column without unit",
-            |lab| lab.replace("runs.csv", "clearance_mm", "clearance"),
+            "clearance_mm",
+            "clearance",
             &[
                 "runs.csv:1: clearance",
                 "a clearance without unit",
                 "call it clearance_mm",
             ],
         ),
-        refused(
+        table_edited(
             "a frequency column without unit",
-            |lab| lab.replace("runs.csv", "drive_frequency_hz", "drive_frequency"),
+            "drive_frequency_hz",
+            "drive_frequency",
             &[
                 "a drive frequency without unit",
                 "call it drive_frequency_hz",
             ],
         ),
-        refused(
+        table_edited(
             "a frequency column in mm",
-            |lab| lab.replace("runs.csv", "drive_frequency_hz", "drive_frequency [mm]"),
+            "drive_frequency_hz",
+            "drive_frequency [mm]",
             &["'mm' is no unit of frequency"],
         ),
-        refused(
+        table_edited(
             "an unknown column",
-            |lab| lab.replace("runs.csv", "sweep", "swep"),
+            "sweep",
+            "swep",
             &["the column 'swep' is not known", "did you mean 'sweep'"],
         ),
-        refused(
+        table_edited(
             "a column that is there twice",
-            |lab| lab.replace("runs.csv", "sweep", "clearance_mm"),
+            "sweep",
+            "clearance_mm",
             &["the column 'clearance' is there twice"],
         ),
     ]
@@ -76,24 +81,28 @@ fn header() -> Vec<Case> {
 
 fn rows() -> Vec<Case> {
     vec![
-        refused(
+        table_edited(
             "a cell that is no number",
-            |lab| lab.replace("runs.csv", "r2.csv,12,", "r2.csv,twelve,"),
+            "r2.csv,12,",
+            "r2.csv,twelve,",
             &["runs.csv:3: drive_frequency", "'twelve' is not a number"],
         ),
-        refused(
+        table_edited(
             "a row with a decimal comma",
-            |lab| lab.replace("runs.csv", "r2.csv,12,1.0", "r2.csv,12,1,0"),
+            "r2.csv,12,1.0",
+            "r2.csv,12,1,0",
             &["runs.csv:3", "the row has 5 cells, the header 4"],
         ),
-        refused(
+        table_edited(
             "a row cut short",
-            |lab| lab.replace("runs.csv", "r2.csv,12,1.0,up", "r2.csv,12"),
+            "r2.csv,12,1.0,up",
+            "r2.csv,12",
             &["runs.csv:3", "the row has 2 cells, the header 4"],
         ),
-        refused(
+        table_edited(
             "a sweep direction that is none",
-            |lab| lab.replace("runs.csv", "down", "sideways"),
+            "down",
+            "sideways",
             &[
                 "runs.csv:4: sweep",
                 "'sideways' is not one of up, down, unknown",
@@ -113,14 +122,16 @@ fn rows() -> Vec<Case> {
                 "'sideways' is not one of up, down, unknown",
             ],
         ),
-        refused(
+        table_edited(
             "a row without a file",
-            |lab| lab.replace("runs.csv", "r2.csv,", ","),
+            "r2.csv,",
+            ",",
             &["runs.csv:3: file", "no file is named"],
         ),
-        refused(
+        table_edited(
             "the same file in two rows",
-            |lab| lab.replace("runs.csv", "r3.csv", "r1.csv"),
+            "r3.csv",
+            "r1.csv",
             &["runs.csv:4", "'r1.csv' is already in line 2"],
         ),
         refused(
@@ -147,9 +158,10 @@ fn rows() -> Vec<Case> {
             },
             &["a clearance of 15 m", "check its unit: mm?"],
         ),
-        refused(
+        table_edited(
             "a drive frequency of zero",
-            |lab| lab.replace("runs.csv", "r2.csv,12", "r2.csv,0"),
+            "r2.csv,12",
+            "r2.csv,0",
             &["r2.csv: drive_frequency", "a drive frequency of 0 Hz"],
         ),
     ]

@@ -14,7 +14,7 @@ pub(crate) struct Case {
     /// What is wrong, for the table.
     pub input: &'static str,
     /// How a good campaign is made wrong.
-    pub spoil: fn(&Lab),
+    pub spoil: Box<dyn Fn(&Lab)>,
     /// The command.
     pub run: &'static [&'static str],
     /// What the message must contain.
@@ -26,34 +26,64 @@ pub(crate) struct Case {
 /// The command of most cases.
 pub(crate) const CHECK: &[&str] = &["check", "campaign.toml"];
 
-/// A case of `impactid check` that ends with 2.
-pub(crate) const fn refused(
-    input: &'static str,
-    spoil: fn(&Lab),
-    says: &'static [&'static str],
-) -> Case {
-    Case {
-        input,
-        spoil,
-        run: CHECK,
-        says,
-        code: 2,
+impl Case {
+    /// A case of `impactid check`.
+    fn checked(
+        input: &'static str,
+        spoil: impl Fn(&Lab) + 'static,
+        says: &'static [&'static str],
+        code: i32,
+    ) -> Self {
+        Self {
+            input,
+            spoil: Box::new(spoil),
+            run: CHECK,
+            says,
+            code,
+        }
     }
 }
 
-/// A case of `impactid check` that is noted and goes on.
-pub(crate) const fn noted(
+/// A case of `impactid check` that ends with 2.
+pub(crate) fn refused(
     input: &'static str,
-    spoil: fn(&Lab),
+    spoil: impl Fn(&Lab) + 'static,
     says: &'static [&'static str],
 ) -> Case {
-    Case {
+    Case::checked(input, spoil, says, 2)
+}
+
+/// The same of words of campaign.toml that are replaced.
+pub(crate) fn edited(
+    input: &'static str,
+    from: &'static str,
+    to: &'static str,
+    says: &'static [&'static str],
+) -> Case {
+    refused(input, move |lab: &Lab| lab.edit(from, to), says)
+}
+
+/// The same of words of the run table.
+pub(crate) fn table_edited(
+    input: &'static str,
+    from: &'static str,
+    to: &'static str,
+    says: &'static [&'static str],
+) -> Case {
+    refused(
         input,
-        spoil,
-        run: CHECK,
+        move |lab: &Lab| lab.replace("runs.csv", from, to),
         says,
-        code: 0,
-    }
+    )
+}
+
+/// A case of `impactid check` that is noted and goes on.
+pub(crate) fn noted(
+    input: &'static str,
+    spoil: impl Fn(&Lab) + 'static,
+    says: &'static [&'static str],
+) -> Case {
+    Case::checked(input, spoil, says, 0)
 }
 
 fn groups() -> [(&'static str, Vec<Case>); 5] {

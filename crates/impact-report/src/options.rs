@@ -100,7 +100,7 @@ pub struct ReportOptions {
     pub catalog: Option<Catalog>,
     /// Whether numbers have a decimal comma.
     pub decimal_comma: bool,
-    /// A typst template instead of the built-in one; it reads `report.json` and the figures.
+    /// A typst template instead of the built-in one; it reads `report.json`, `layout.json` and the figures.
     pub template: Option<String>,
     /// A logo.
     pub logo: Option<Logo>,

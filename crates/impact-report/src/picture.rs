@@ -1,5 +1,6 @@
 //! One figure by itself, as SVG, PNG and PDF.
 
+use super::document::breaks::Layout;
 use super::document::world::{MemoryWorld, Unset};
 use super::error::ReportError;
 use super::kit::Figure;
@@ -34,12 +35,14 @@ pub(super) fn pdf(figure: &Figure, language: &str) -> Result<Vec<u8>, ReportErro
         ..figure.clone()
     }];
     let world = MemoryWorld::new(PAGE, &shown, language, []).ok_or(ReportError::FileName)?;
-    world.pdf(&figure.title).map_err(|e| match e {
-        Unset::Template(why) | Unset::Pages(why) => ReportError::Picture {
-            name: figure.name.clone(),
-            why,
-        },
-    })
+    world
+        .pdf(&figure.title, Layout::default())
+        .map_err(|e| match e {
+            Unset::Template(why) | Unset::Pages(why) => ReportError::Picture {
+                name: figure.name.clone(),
+                why,
+            },
+        })
 }
 
 #[cfg(test)]

@@ -84,14 +84,42 @@ macro_rules! optional {
 
 pub(super) use {keys, optional};
 
-/// The lines of `impactid init` for the keys of a section, with the values that it inferred, by key.
-pub(super) fn init_lines(keys: &[KeyRow], inferred: &[(&str, &str)]) -> String {
+/// What `impactid init` found for a key.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Inferred<'a> {
+    /// The key's name.
+    pub name: &'a str,
+    /// Its value.
+    pub value: &'a str,
+    /// Why the user has to state it, if the files do not tell: a value that nobody has stated must not count.
+    pub asked: Option<&'a str>,
+}
+
+impl<'a> Inferred<'a> {
+    /// A value that the files tell.
+    pub(super) const fn known(name: &'a str, value: &'a str) -> Self {
+        let asked = None;
+        Self { name, value, asked }
+    }
+
+    /// The same value, to be filled in if there is a reason.
+    pub(super) const fn asked_if(self, asked: Option<&'a str>) -> Self {
+        Self { asked, ..self }
+    }
+}
+
+/// The lines of `impactid init` for the keys of a section, with what it found of them.
+pub(super) fn init_lines(keys: &[KeyRow], inferred: &[Inferred<'_>]) -> String {
     let mut text = String::new();
     for key in keys {
         let Some(line) = key.init else { continue };
-        let value = inferred.iter().find(|(name, _)| *name == key.name);
-        let line = line.replacen("{}", value.map_or("", |(_, value)| value), 1);
+        let found = inferred.iter().find(|found| found.name == key.name);
+        let line = line.replacen("{}", found.map_or("", |found| found.value), 1);
         let line = line.replace(LANGUAGES, &languages(str::to_owned));
+        if let Some(why) = found.and_then(|found| found.asked) {
+            // writing to a String cannot fail
+            let _ = write!(text, "# FILL IN, {why}: ");
+        }
         // writing to a String cannot fail
         let _ = writeln!(text, "{line}");
     }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::diagnostic::first_of;
 use super::infer::{self, Experiment, FolderContents, InferredChannel};
-use super::keys::{KeyRow, init_lines};
+use super::keys::{Inferred, KeyRow, init_lines};
 use super::run_table;
 use super::sections::about::AboutTable;
 use super::sections::analysis::AnalysisTable;
@@ -58,15 +58,13 @@ fn head(text: &mut String, name: &str, found: &FolderContents) -> std::fmt::Resu
     };
     let machine = if is_double(found) { "double" } else { "single" };
     let name = quoted(name);
+    let asked = found.asks_machine.then_some("see the note below");
     let inferred = [
-        ("name", name.as_str()),
-        ("machine", machine),
-        ("flight", flight),
+        Inferred::known("name", &name),
+        Inferred::known("machine", machine).asked_if(asked),
+        Inferred::known("flight", flight),
     ];
-    let mut lines = init_lines(AboutTable::KEYS, &inferred);
-    if found.asks_machine {
-        lines = lines.replacen("machine = ", "# FILL IN, see the note below: machine = ", 1);
-    }
+    let lines = init_lines(AboutTable::KEYS, &inferred);
     writeln!(
         text,
         "# A campaign for impactid, inferred from {} ({}); check every line.\n\

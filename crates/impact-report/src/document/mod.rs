@@ -1,5 +1,6 @@
 //! The document: from content and figures to plain document data, and from there to PDF.
 
+pub(super) mod breaks;
 mod campaigns;
 mod captions;
 mod conventions;

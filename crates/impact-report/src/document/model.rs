@@ -253,6 +253,8 @@ pub(crate) struct Table {
     pub rows: Vec<Vec<Rich>>,
     /// Size of the type, points.
     pub size: f64,
+    /// Whether the cells are codes and names of files: in the type of code, of which nothing is broken that has room.
+    pub code: bool,
     /// How many copies of the columns are side by side.
     pub side_by_side: u8,
     /// Where the rows are many and short: whole columns as text, one line a row, and no `rows`.
@@ -278,6 +280,7 @@ impl Table {
             widths: Vec::new(),
             rows,
             size: TABLE_SIZE,
+            code: false,
             side_by_side: 1,
             dense: false,
             columns_text: Vec::new(),

@@ -1,5 +1,6 @@
 //! The PDF: the template set with the document's data and figures.
 
+use super::breaks::Layout;
 use super::model::Document;
 use super::world::{MemoryWorld, Unset};
 use crate::error::ReportError;
@@ -23,7 +24,8 @@ pub(crate) fn pdf(
     let files = files(document, options)?;
     let world = MemoryWorld::new(template, figures, options.spoken(), files)
         .ok_or(ReportError::FileName)?;
-    world.pdf(&document.title).map_err(|e| match e {
+    let layout = Layout::of(&document.sections);
+    world.pdf(&document.title, layout).map_err(|e| match e {
         Unset::Template(why) => ReportError::Template(why),
         Unset::Pages(why) => ReportError::Pdf(why),
     })

@@ -285,7 +285,8 @@ fn provenance(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
         });
     }
     blocks.extend(versions(content, drawn.locale));
-    blocks.extend(tables::hashes(content, drawn.locale).map(|t| t.block("hashes")));
+    let inputs = &content.provenance.inputs_sha256;
+    blocks.extend(tables::hashes(inputs, drawn.locale).map(|t| t.block("hashes")));
     if !content.provenance.settings.is_null() {
         blocks.push(paragraph(
             drawn.locale.translate(Phrase::SettingsAsResolved),

@@ -13,8 +13,14 @@ use typst::{Library, LibraryExt, World, WorldExt};
 use typst_layout::PagedDocument;
 use typst_pdf::PdfOptions;
 
+use super::breaks::{self, Layout, SetPage};
 use super::placed::{self, Placed};
 use crate::kit::{Figure, fonts};
+
+/// The file in which the template finds the layout.
+const LAYOUT: &str = "layout.json";
+/// How often other breaks are tried.
+const MOST_BREAKS: usize = 4;
 
 /// Files in memory; there is no clock and no access to the disk.
 pub(crate) struct MemoryWorld<'a> {
@@ -57,11 +63,34 @@ pub(crate) enum Unset {
     Pages(String),
 }
 
+/// A document as set.
+struct Attempt {
+    document: PagedDocument,
+    pages: Vec<SetPage>,
+    /// What its pages lack.
+    lack: f64,
+}
+
+impl Attempt {
+    fn of(document: PagedDocument) -> Self {
+        let pages = SetPage::all(&document);
+        let lack = breaks::lack(&pages);
+        Self {
+            document,
+            pages,
+            lack,
+        }
+    }
+}
+
 impl MemoryWorld<'_> {
-    /// The template set and exported as PDF. The same world gives the same bytes.
-    pub(crate) fn pdf(&self, title: &str) -> Result<Vec<u8>, Unset> {
-        let (pages, figures) =
-            rayon::join(|| self.pages(), || Placed::new(self.figures, self.language));
+    /// The template set and exported as PDF, in the layout that is asked for, or in another one if that
+    /// fills the pages better. The same world gives the same bytes.
+    pub(crate) fn pdf(&self, title: &str, asked_for: Layout) -> Result<Vec<u8>, Unset> {
+        let (pages, figures) = rayon::join(
+            || self.filled_pages(asked_for),
+            || Placed::new(self.figures, self.language),
+        );
         let pages = pages?;
         let options = PdfOptions {
             ident: Smart::Custom(title.to_owned()),
@@ -86,9 +115,61 @@ impl MemoryWorld<'_> {
         bytes.map_err(|e| Unset::Pages(self.first(&e)))
     }
 
-    /// The pages with stand-ins for the figures.
-    fn pages(&self) -> Result<PagedDocument, Unset> {
-        let pages = typst::compile(self).output;
+    /// The pages with stand-ins for the figures, in the layout that leaves them fullest.
+    fn filled_pages(&self, asked_for: Layout) -> Result<PagedDocument, Unset> {
+        let close = Layout {
+            close: true,
+            ..asked_for.clone()
+        };
+        let usual = self.with_breaks(asked_for)?;
+        if usual.lack == 0.0 {
+            return Ok(usual.document);
+        }
+        let close = self.with_breaks(close)?;
+        let better = if close.lack < usual.lack {
+            close
+        } else {
+            usual
+        };
+        Ok(better.document)
+    }
+
+    /// The pages with the breaks that leave them fullest.
+    fn with_breaks(&self, mut layout: Layout) -> Result<Attempt, Unset> {
+        let mut best = self.attempt(&layout)?;
+        let mut last = best.pages.clone();
+        for _ in 0..MOST_BREAKS {
+            match breaks::improved(&last, &layout.breaks) {
+                Some(next) if best.lack > 0.0 => layout.breaks = next,
+                _ => break,
+            }
+            let next = self.attempt(&layout)?;
+            last.clone_from(&next.pages);
+            if next.lack < best.lack {
+                best = next;
+            }
+        }
+        Ok(best)
+    }
+
+    fn attempt(&self, layout: &Layout) -> Result<Attempt, Unset> {
+        let document = self.pages(layout)?;
+        Ok(Attempt::of(document))
+    }
+
+    /// The pages with stand-ins for the figures, in a layout.
+    fn pages(&self, layout: &Layout) -> Result<PagedDocument, Unset> {
+        let unset = |why: String| Unset::Template(why);
+        let bytes = serde_json::to_vec(layout).map_err(|e| unset(e.to_string()))?;
+        let file = id(LAYOUT).ok_or_else(|| unset(LAYOUT.into()))?;
+        let mut files = self.files.clone();
+        files.insert(file, Bytes::new(bytes));
+        let world = Self {
+            main: self.main.clone(),
+            files,
+            ..*self
+        };
+        let pages = typst::compile(&world).output;
         pages.map_err(|e| Unset::Template(self.first(&e)))
     }
 
@@ -200,7 +281,7 @@ mod tests {
         let template = "#image(\"map.svg\")\n#rotate(5deg, image(\"map.svg\", width: 50pt))\n\
                         #hide(image(\"map.svg\"))";
         let world = MemoryWorld::new(template, &figures, "en", []).expect("a world");
-        let pages = world.pages().ok().expect("pages");
+        let pages = world.pages(&Layout::default()).ok().expect("pages");
         let pages = Placed::new(&figures, Lang::ENGLISH).in_pages(pages);
         let mut found = (Vec::new(), 0, 0);
         contents(&pages.pages()[0].frame, 1.0, &mut found);

@@ -19,9 +19,12 @@ use impact_identification::compare::{Comparison, Difference};
 const HEIGHT: f64 = 96.0;
 /// Height of a row with its numbers and title, points.
 const ROW: f64 = HEIGHT + 30.0;
-/// Left edges of the two panels of a row, and their width, points: numbers of seven digits fit before them.
-const LEFT: [f64; 2] = [50.0, 294.0];
-const WIDTH: f64 = 184.0;
+/// Room before a panel, points: numbers of seven digits fit into it.
+const LEFT: f64 = 50.0;
+/// Room behind a panel, points.
+const RIGHT: f64 = 7.0;
+/// Up to how many campaigns all panels have room in one row.
+const FEW_CAMPAIGNS: usize = 4;
 /// Where a difference stands beside its campaign, in campaigns.
 const BESIDE: f64 = 0.16;
 
@@ -43,13 +46,18 @@ pub(crate) fn draw(comparison: &Comparison, locale: Locale<'_>) -> Option<Figure
         Key::new(Sign::dot(look::GREY), Phrase::EachAlone),
         Key::new(Sign::dot(look::BLUE), Phrase::AgainstTheFirst),
     ];
-    let width = look::FULL_WIDTH - LEFT[0];
+    let width = look::FULL_WIDTH - LEFT;
     let top = legend::height(&keys, width, locale) + 6.0;
-    let rows = shown.len().div_ceil(2);
+    let few = comparison.campaigns.len() <= FEW_CAMPAIGNS;
+    let columns = if few { shown.len().max(2) } else { 2 };
+    let rows = shown.len().div_ceil(columns);
     let mut canvas = Canvas::new(look::FULL_WIDTH, top + rows as f64 * ROW);
-    legend::draw(&mut canvas, (LEFT[0], 0.0), width, &keys, locale);
+    legend::draw(&mut canvas, (LEFT, 0.0), width, &keys, locale);
+    let pitch = look::FULL_WIDTH / columns as f64;
     for (i, look) in shown.iter().enumerate() {
-        let rect = Rect::new(LEFT[i % 2], top + (i / 2) as f64 * ROW, WIDTH, HEIGHT);
+        let x = LEFT + (i % columns) as f64 * pitch;
+        let y = top + (i / columns) as f64 * ROW;
+        let rect = Rect::new(x, y, pitch - LEFT - RIGHT, HEIGHT);
         parameter(&mut canvas, rect, comparison, look, locale);
     }
     let title = locale.translate(Phrase::Trend);

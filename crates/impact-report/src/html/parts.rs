@@ -250,7 +250,8 @@ fn table(table: &Table) -> String {
     } else {
         format!("<caption>{caption}</caption>\n")
     };
-    let mut text = format!("<table>\n{caption}<thead><tr>{heads}</tr></thead>\n<tbody>\n");
+    let class = if table.code { " class=\"code\"" } else { "" };
+    let mut text = format!("<table{class}>\n{caption}<thead><tr>{heads}</tr></thead>\n<tbody>\n");
     for row in rows {
         let cells: String = row
             .iter()

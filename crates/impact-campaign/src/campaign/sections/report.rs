@@ -40,7 +40,8 @@ keys! {
         logo: Placed<String>, default "none",
             init r#"# logo = "logo.svg"          # an image for the first page (svg, png or jpg)"#;
         /// a typst template instead of the built-in one (`crates/impact-report/src/template.typ`), relative to the
-        /// folder of campaign.toml; it reads `report.json` and places a figure as `image("NAME.svg")`; while the
+        /// folder of campaign.toml; it reads `report.json` (and `layout.json`: which marked parts begin a page) and places a
+        /// figure as `image("NAME.svg")`; while the
         /// pages are set, that file has the figure's size alone
         template: Placed<String>, default "built in",
             init r#"# template = "report.typ"    # a typst template instead of the built-in one"#;

@@ -7,6 +7,8 @@ mod column;
 mod estimates;
 mod records;
 
+use std::collections::BTreeMap;
+
 pub(super) use brackets::brackets;
 pub(super) use budget::budget;
 pub use budget::budget_source;
@@ -115,13 +117,56 @@ fn unusable(unusable: &Unusable, locale: Locale<'_>) -> String {
     }
 }
 
-/// SHA-256 of the inputs.
-pub(super) fn hashes(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
-    let inputs = &content.provenance.inputs_sha256;
-    let rows = inputs
-        .iter()
-        .map(|(k, v)| vec![Rich::verbatim(k.clone()), Rich::verbatim(v.clone())])
-        .collect();
-    let columns = vec![Column::wide(Phrase::Input, 2), Column::left("SHA-256")];
-    table(Phrase::TableHashes, columns, rows, locale).map(|t| Table { size: 6.2, ..t })
+/// SHA-256 of the inputs. A folder of several is stated once, before them.
+pub(super) fn hashes(inputs: &BTreeMap<String, String>, locale: Locale<'_>) -> Option<Table> {
+    let mut folders: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
+    for (path, hash) in inputs {
+        let (folder, name) = path.split_at(path.rfind(['/', '\\']).map_or(0, |at| at + 1));
+        folders.entry(folder).or_default().push((name, hash));
+    }
+    let row = |name: String, hash: &str| {
+        let cells = [name, hash.to_owned()];
+        cells.map(Rich::verbatim).to_vec()
+    };
+    let mut rows = Vec::new();
+    for (folder, files) in folders {
+        let shared = !folder.is_empty() && files.len() > 1;
+        if shared {
+            rows.push(row(folder.to_owned(), ""));
+        }
+        let before = if shared { INDENT } else { folder };
+        rows.extend(
+            files
+                .iter()
+                .map(|(n, hash)| row(format!("{before}{n}"), hash)),
+        );
+    }
+    let columns = vec![Column::wide(Phrase::Input, 1), Column::left("SHA-256")];
+    table(Phrase::TableHashes, columns, rows, locale).map(|t| Table {
+        size: 5.6,
+        code: true,
+        ..t
+    })
+}
+
+/// Before the name of a file that is listed under its folder.
+const INDENT: &str = "\u{2003}";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_of_inputs_is_stated_once() {
+        let paths = ["campaign.toml", "hall 3/a.csv", "hall 3/b.csv", "one/c.csv"];
+        let hash = |path: &str| (path.to_owned(), format!("{:064x}", path.len()));
+        let inputs = paths.into_iter().map(hash).collect();
+        let table = hashes(&inputs, Locale::default()).expect("a table");
+        let names: Vec<String> = table.rows.iter().map(|row| row[0].plain()).collect();
+        let listed = ["campaign.toml", "hall 3/", "\u{2003}a.csv", "\u{2003}b.csv"];
+        assert_eq!(names[..4], listed);
+        assert_eq!(names[4..], ["one/c.csv"]);
+        let of_folders = table.rows.iter().filter(|row| row[1] == Rich::default());
+        assert_eq!(of_folders.count(), 1);
+    }
 }
