@@ -305,6 +305,25 @@ fn valid_a_phone_on_a_spring_from_init_to_the_report() {
     assert!(holds(&found, "damping_ratio", 0.01), "{joint}");
 }
 
+/// The same of a phone that is late now and then, so that samples are missing.
+#[test]
+fn valid_a_phone_that_drops_samples() {
+    let dropped = |(name, bytes): (String, Vec<u8>)| {
+        let text = String::from_utf8(bytes).expect("text");
+        let rows = text.lines().enumerate().filter(|(i, _)| i % 97 != 50);
+        let rows: Vec<&str> = rows.map(|(_, row)| row).collect();
+        (name, rows.join("\n").into_bytes())
+    };
+    let folder = Folder::of(&phone().into_iter().map(dropped).collect::<Vec<_>>());
+    let found = folder.play();
+    let joint = &found["joint"];
+    assert!(holds(&found, "natural_frequency_hz", 1.2), "{joint}");
+    assert!(holds(&found, "damping_ratio", 0.01), "{joint}");
+    let (said, code) = folder.run(&["check", "day/campaign.toml"]);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("the samples are at uneven times"), "{said}");
+}
+
 /// The same as Physics Toolbox names it: multiples of gravity without a unit.
 #[test]
 fn valid_g_forces_of_a_phone_are_accelerations() {

@@ -153,7 +153,9 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
     }
     let mut flags = Vec::new();
     if !driven {
-        flags.extend(record.channels.iter_mut().filter_map(gaps::fill));
+        let excitation = record.setting.excitation;
+        let channels = record.channels.iter_mut();
+        flags.extend(channels.filter_map(|channel| gaps::fill(channel, excitation)));
     }
     let rate_hz = record.sample_rate_hz;
     let crests = Crests::of(record.setting.excitation);

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Channel, Flag, Problem, Record, Role};
+use super::{Channel, Excitation, Flag, Problem, Record, Role};
 use crate::signal::{interpolation, robust};
 
 /// Samples of the shortest record in which a constant channel is told from one that was cut short.
@@ -16,14 +16,16 @@ const FILLED: f64 = 0.1;
 /// Root mean square by which a polynomial misses samples that are known, over the motion's, at most.
 const MISSED: f64 = 0.05;
 
-/// Fill the gaps of a displacement or a velocity that are as short as repeated pictures may be, and as well surrounded,
-/// where a polynomial through as many samples foretells those that are known.
-pub(super) fn fill(channel: &mut Channel) -> Option<Flag> {
-    use Role::{DisplacementX, DisplacementY, VelocityX, VelocityY};
-    let moves = matches!(
-        channel.role,
-        DisplacementX | DisplacementY | VelocityX | VelocityY
-    );
+/// Fill the gaps of a displacement, a velocity or, of a motion without impacts, an acceleration that are as short as
+/// repeated pictures may be, and as well surrounded, where a polynomial through as many samples foretells those that
+/// are known.
+pub(super) fn fill(channel: &mut Channel, excitation: Excitation) -> Option<Flag> {
+    use Role::{AccelerationX, AccelerationY, DisplacementX, DisplacementY, VelocityX, VelocityY};
+    let moves = match channel.role {
+        DisplacementX | DisplacementY | VelocityX | VelocityY => true,
+        AccelerationX | AccelerationY => excitation == Excitation::FreeDecay,
+        _ => false,
+    };
     let values = &channel.values;
     let whole = |range: Range<usize>| values[range].iter().all(|v| v.is_finite());
     let gaps: Vec<Range<usize>> = runs(values, |v| !v.is_finite())

@@ -12,6 +12,7 @@ mod condition;
 pub mod consistency;
 mod contact_levels;
 mod content;
+mod even;
 mod events;
 mod flag;
 mod flag_code;

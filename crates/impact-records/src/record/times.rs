@@ -3,7 +3,7 @@
 use super::alignment::{self, Timing};
 use super::bind::{BoundRole, RecordSetup};
 use super::{Channel, Flag, FlagCode, Problem, Record, Role};
-use super::{changes, condition, time_axis};
+use super::{changes, condition, even, time_axis};
 use labfiles::timing::AxisUnit;
 use labfiles::units::symbol_of;
 use labfiles::{Clock, DatasetInfo, Samples, StoredType};
@@ -108,6 +108,10 @@ impl Clocks {
         condition::trim_missing(record, times.as_mut());
         if times.is_some() {
             condition::skip(record, times.as_mut(), setup.skip_s);
+        }
+        if let Some(times) = times.as_mut().filter(|_| !setup.driven) {
+            let note = even::resample(record, times);
+            record.flags.extend(note);
         }
         settle_rate(record, setup, dataset, kept, times.as_deref());
         if times.is_none() {

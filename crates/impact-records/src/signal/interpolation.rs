@@ -44,6 +44,24 @@ pub fn through(samples: &[f64], places: &[usize], at: usize) -> f64 {
     places.iter().map(term).sum()
 }
 
+/// Value at a time by the polynomial through the samples at some places, whose times need not be even (Lagrange).
+///
+/// ```
+/// use impact_records::signal::interpolation::at;
+///
+/// let times = [0.0, 1.0, 1.5, 4.0];
+/// let cubes = times.map(|t: f64| t.powi(3));
+/// assert!((at(&times, &cubes, &[0, 1, 2, 3], 2.0) - 8.0).abs() < 1e-12);
+/// ```
+pub fn at(times: &[f64], samples: &[f64], places: &[usize], time: f64) -> f64 {
+    let term = |i: &usize| {
+        let others = places.iter().filter(|k| *k != i);
+        let factor = others.map(|k| (time - times[*k]) / (times[*i] - times[*k]));
+        samples[*i] * factor.product::<f64>()
+    };
+    places.iter().map(term).sum()
+}
+
 /// Weights of the samples at −1, 0, 1, 2 in the value at a place between 0 and 1 (Lagrange's cubic).
 fn cubic(u: f64) -> [f64; 4] {
     let outer = u * (1.0 - u) / 6.0;

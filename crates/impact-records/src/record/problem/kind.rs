@@ -385,6 +385,15 @@ problems! {
         /// Their mean, s.
         mean_s: f64,
     };
+    /// The steps scatter, or samples are missing, in a slow motion: its values at even times are interpolated.
+    TimeNotUniform: PutOnEvenTimes {
+        /// How many samples are missing.
+        lost: usize,
+        /// Standard deviation of the steps, s.
+        spread_s: f64,
+        /// The step, s.
+        step_s: f64,
+    };
     /// The times stray from equal steps.
     TimeNotUniform: StrayingTimes {
         /// By how much, s.

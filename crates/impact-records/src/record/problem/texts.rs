@@ -187,6 +187,10 @@ message_table! { "problem": Problem;
     Self::ScatteredSteps { spread_s, mean_s } =>
         spread = power(*spread_s),
         mean = power(*mean_s);
+    Self::PutOnEvenTimes { lost, spread_s, step_s } =>
+        lost = Value::Count(*lost),
+        spread = power(*spread_s),
+        step = power(*step_s);
     Self::StrayingTimes { stray_s, step_s } =>
         stray = power(*stray_s),
         step = power(*step_s);
