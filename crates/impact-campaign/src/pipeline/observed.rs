@@ -132,7 +132,8 @@ impl Observed {
 
 /// The observations; made again where they show that channels are not as stated, with these corrected: signs by the
 /// directions of jumps, channels beside each other by the times of impacts, then the drive's, and a low-pass that no
-/// jump shows, by the phases of the motion. The drive amplitudes are as measured, and follow the law of the force that the resonance curve shows.
+/// jump shows, by the phases of the motion. The drive amplitudes are as measured, and follow the law of the force that
+/// the resonance curve shows.
 fn aligned(
     campaign: &ResolvedCampaign,
     observations: Vec<Observation>,

@@ -36,12 +36,7 @@ pub fn interpolate(samples: &[f64], position: f64) -> Option<f64> {
 /// assert!((through(&cubes, &[0, 1, 3, 4], 2) - 8.0).abs() < 1e-12);
 /// ```
 pub fn through(samples: &[f64], places: &[usize], at: usize) -> f64 {
-    let term = |i: &usize| {
-        let others = places.iter().filter(|k| *k != i);
-        let factor = others.map(|k| (at as f64 - *k as f64) / (*i as f64 - *k as f64));
-        samples[*i] * factor.product::<f64>()
-    };
-    places.iter().map(term).sum()
+    polynomial(|i| i as f64, samples, places, at as f64)
 }
 
 /// Value at a time by the polynomial through the samples at some places, whose times need not be even (Lagrange).
@@ -54,9 +49,14 @@ pub fn through(samples: &[f64], places: &[usize], at: usize) -> f64 {
 /// assert!((at(&times, &cubes, &[0, 1, 2, 3], 2.0) - 8.0).abs() < 1e-12);
 /// ```
 pub fn at(times: &[f64], samples: &[f64], places: &[usize], time: f64) -> f64 {
+    polynomial(|i| times[i], samples, places, time)
+}
+
+/// Value at a time by Lagrange's polynomial through the samples at some places, of which `time_of` tells the times.
+fn polynomial(time_of: impl Fn(usize) -> f64, samples: &[f64], places: &[usize], time: f64) -> f64 {
     let term = |i: &usize| {
         let others = places.iter().filter(|k| *k != i);
-        let factor = others.map(|k| (time - times[*k]) / (times[*i] - times[*k]));
+        let factor = others.map(|k| (time - time_of(*k)) / (time_of(*i) - time_of(*k)));
         samples[*i] * factor.product::<f64>()
     };
     places.iter().map(term).sum()

@@ -67,11 +67,15 @@ fn causes(evidence: &Evidence<'_>, blocks: &Blocks) -> Option<Vec<Cause>> {
     };
     let late = lag(blocks, &evidence.nominal, at_once, fits)
         .map(|(lag_s, left)| by_drive(LateChannel::by(Role::Drive, lag_s), left));
-    let turned = misfit(&turned_around(blocks), &evidence.nominal)
+    let turned = with_responses(blocks, |_, _| -ONE);
+    let turned = misfit(&turned, &evidence.nominal)
         .map(|left| by_drive(LateChannel::inverted(Role::Drive), left));
-    let sets = sets(blocks, evidence.observations);
-    let open = sets.iter().filter(|_| at_once > EXPLAINED);
-    let filtered = open.filter_map(|set| {
+    let sets = if at_once > EXPLAINED {
+        sets(blocks, evidence.observations)
+    } else {
+        Vec::new()
+    };
+    let filtered = sets.iter().filter_map(|set| {
         let pole = OnePole {
             blocks,
             nominal: &evidence.nominal,
@@ -122,9 +126,7 @@ struct OnePole<'a> {
 impl OnePole<'_> {
     /// The pole with which the responses fit best, if the channels have passed one: better than with a delay.
     fn cause(&self, at_once: f64) -> Option<Cause> {
-        let points = self.blocks.resonance.points.iter();
-        let fastest_hz = points.map(|p| p.frequency_hz).fold(0.0, f64::max);
-        let unit_s = 1.0 / (TAU * fastest_hz);
+        let unit_s = 1.0 / (TAU * fastest_hz(self.blocks));
         let with_pole = |constant_s: f64| {
             let undone = || self.misfit(|rate| 1.0 + rate * constant_s);
             (constant_s >= 0.0).then(undone).flatten()
@@ -167,37 +169,40 @@ impl OnePole<'_> {
     /// The misfit of the responses times a factor of iω, 1/s, and with the delays of which the channels were
     /// corrected.
     fn misfit(&self, factor: impl Fn(Complex<f64>) -> Complex<f64>) -> Option<f64> {
-        let mut blocks = self.blocks.clone();
-        for point in &mut blocks.resonance.points {
-            let rate = Complex::new(0.0, TAU * point.frequency_hz);
-            for response in &mut point.responses {
-                let known = self.set.iter().find(|c| c.role == response.role);
-                if let Some(known) = known {
-                    *response = response.times(factor(rate) * (-rate * known.delay_s).exp());
-                }
-            }
-        }
-        let relative_error = blocks.resonance.relative_error();
-        blocks.resonance.allow(relative_error);
-        misfit(&blocks, self.nominal)
+        let of_channel = |role: Role, rate: Complex<f64>| {
+            let known = self.set.iter().find(|c| c.role == role);
+            known.map_or(ONE, |c| factor(rate) * (-rate * c.delay_s).exp())
+        };
+        misfit(&with_responses(self.blocks, of_channel), self.nominal)
     }
 }
 
-/// The blocks with all responses of the other sign.
-fn turned_around(blocks: &Blocks) -> Blocks {
-    let mut turned = blocks.clone();
-    let points = turned.resonance.points.iter_mut();
-    for response in points.flat_map(|p| &mut p.responses) {
-        *response = response.times(Complex::new(-1.0, 0.0));
+/// The factor that changes nothing.
+const ONE: Complex<f64> = Complex::new(1.0, 0.0);
+
+/// The blocks with all responses times a factor of their channel and iω, 1/s.
+fn with_responses(blocks: &Blocks, factor: impl Fn(Role, Complex<f64>) -> Complex<f64>) -> Blocks {
+    let mut changed = blocks.clone();
+    for point in &mut changed.resonance.points {
+        let rate = Complex::new(0.0, TAU * point.frequency_hz);
+        for response in &mut point.responses {
+            *response = response.times(factor(response.role, rate));
+        }
     }
-    turned
+    let relative_error = changed.resonance.relative_error();
+    changed.resonance.allow(relative_error);
+    changed
+}
+
+/// The frequency of the fastest drive, Hz.
+fn fastest_hz(blocks: &Blocks) -> f64 {
+    let points = blocks.resonance.points.iter();
+    points.map(|p| p.frequency_hz).fold(0.0, f64::max)
 }
 
 /// The lag of the drive's channel with which the phases fit best, s, if it is noticed, and the misfit that it leaves;
 /// `at_once`: that without one, and whether the responses are those of one degree of freedom then.
 fn lag(blocks: &Blocks, nominal: &Nominal, at_once: f64, fits: bool) -> Option<(f64, f64)> {
-    let points = blocks.resonance.points.iter();
-    let fastest_hz = points.map(|p| p.frequency_hz).fold(0.0, f64::max);
     let misfit = |lag_s: f64| misfit(blocks, &behind(nominal, lag_s));
     let stated = nominal.delay_uncertainties_s.iter();
     let stated_s = stated.map(|own| own.unwrap_or(blocks.half_sample_s()));
@@ -210,7 +215,7 @@ fn lag(blocks: &Blocks, nominal: &Nominal, at_once: f64, fits: bool) -> Option<(
     {
         return None;
     }
-    let step_s = 1.0 / (STEPS * fastest_hz);
+    let step_s = 1.0 / (STEPS * fastest_hz(blocks));
     let lag_s = least_of(WIDEST * STEPS * step_s, step_s, &misfit)?;
     let left = misfit(lag_s)?;
     (lag_s.abs() > unnoticed_s).then_some((lag_s, left))
