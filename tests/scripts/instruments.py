@@ -220,26 +220,35 @@ def freeze(columns, kind, rng):
 
 
 def low_passed(channel, motion, times, value):
-    """A Butterworth filter on a signal that is even between its jumps."""
+    """A Butterworth filter on a signal that is even between its jumps and kinks."""
     order, corner = channel.low_pass
-    jumps, smooth = without_jumps(channel, motion, times, value)
+    smooth = value.copy()
     poles, residues = butterworth(order, corner)
+    breaks, integrals = breaks_of(channel, motion, times)
+    for at, height in breaks:
+        smooth -= height * np.maximum(0.0, times - at) ** integrals * (times >= at)
     out = linear_response(smooth, times[1] - times[0], poles, residues)
-    for at, jump in jumps:
+    for at, height in breaks:
         since = np.maximum(0.0, times - at)
-        step = sum(r / p * (np.exp(p * since) - 1.0) for p, r in zip(poles, residues))
-        out += jump * step.real * (times >= at)
+        response = sum(r / p * (np.exp(p * since) - 1.0) for p, r in zip(poles, residues))
+        if integrals:
+            response = sum(r / p * ((np.exp(p * since) - 1.0) / p - since) for p, r in zip(poles, residues))
+        out += height * response.real * (times >= at)
     return out
+
+
+def breaks_of(channel, motion, times):
+    """Times of the impacts and the jumps of the velocity there, and whether they are kinks of what is measured."""
+    index = 4 if channel.role.endswith("x") else 5
+    hits = motion.impacts
+    hits = hits[(hits[:, 0] > times[0]) & (hits[:, 0] < times[-1])]
+    return hits[:, [0, index]], int(channel.role.startswith("displacement"))
 
 
 def without_jumps(channel, motion, times, value):
     """Times and heights of a signal's jumps, and the signal without them."""
-    index = 4 if channel.role.endswith("x") else 5
-    jumps = np.zeros((0, 2))
-    if not channel.role.startswith("displacement"):
-        hits = motion.impacts
-        hits = hits[(hits[:, 0] > times[0]) & (hits[:, 0] < times[-1])]
-        jumps = hits[:, [0, index]]
+    breaks, integrals = breaks_of(channel, motion, times)
+    jumps = np.zeros((0, 2)) if integrals else breaks
     smooth = value.copy()
     for at, jump in jumps:
         smooth -= jump * (times >= at)

@@ -31,6 +31,12 @@ impl LowPass {
         self.poles().map(|pole| pole / (pole - s)).product()
     }
 
+    /// Slope of [`Self::transfer`] over s, s.
+    pub fn transfer_slope(&self, s: Complex<f64>) -> Complex<f64> {
+        let relative: Complex<f64> = self.poles().map(|pole| (pole - s).inv()).sum();
+        self.transfer(s) * relative
+    }
+
     /// How much later it shows slow motion, s.
     pub fn delay_s(&self) -> f64 {
         self.poles().map(|pole| -pole.inv().re).sum()

@@ -65,23 +65,30 @@ impl ChannelMotion {
 
     /// What the channel shows between impacts, without its delay.
     fn shown(&self, eta: f64) -> Passed {
-        let shown = match measured(self.role) {
+        let passed = self.unsmoothed(eta);
+        self.low_pass.map_or(passed, |filter| filter.pass(&passed))
+    }
+
+    /// The measured quantity behind the high-pass, before the low-pass.
+    fn unsmoothed(&self, eta: f64) -> Passed {
+        match measured(self.role) {
             Measured::Acceleration => Passed {
                 motion: velocity(&self.passed.motion, eta),
                 tail: -self.corner() * self.passed.tail,
             },
             _ => self.passed,
-        };
-        self.smoothed(shown)
+        }
     }
 
-    /// What a motion, or its change, is behind the low-pass.
-    fn smoothed(&self, passed: Passed) -> Passed {
-        self.low_pass.map_or(passed, |filter| filter.pass(&passed))
-    }
-
-    /// Differential of [`Self::shown`] where the motion behind the filter and the filter change.
-    fn shown_slope(&self, change: &Passed, moved: &HighPassSlope, eta: f64) -> Passed {
+    /// Differential of [`Self::shown`] where the motion behind the high-pass and the filters change, and the natural
+    /// frequency by a share.
+    fn shown_slope(
+        &self,
+        change: &Passed,
+        moved: &HighPassSlope,
+        eta: f64,
+        relative_rate: f64,
+    ) -> Passed {
         let slope = match measured(self.role) {
             Measured::Acceleration => Passed {
                 motion: velocity_slope(&self.passed.motion, &change.motion, [eta, moved.eta]),
@@ -89,8 +96,18 @@ impl ChannelMotion {
             },
             _ => *change,
         };
-        // What changes of the low-pass itself is a share ω/ω_c of that.
-        self.smoothed(slope)
+        let Some(filter) = self.low_pass else {
+            return slope;
+        };
+        let poles = filter.poles.map(|pole| pole * relative_rate);
+        let moved = PolesSlope {
+            motion: [
+                poles[0] + C64::new(0.0, moved.eta),
+                poles[1] + change.motion.exponent,
+            ],
+            tail: -moved.corner - self.corner() * relative_rate,
+        };
+        filter.pass_slope(&self.unsmoothed(eta), &slope, &moved)
     }
 }
 
@@ -98,21 +115,38 @@ impl ChannelMotion {
 /// what a jump leaves of it for many periods, and the jump is whole only before the low-pass.
 #[derive(Clone, Copy)]
 struct SettledLowPass {
-    /// Of the drive's term and of the free vibration's.
+    /// Poles of the drive's term and of the free vibration's, dimensionless.
+    poles: [C64; 2],
+    /// Of these terms, and the slopes over their poles.
     passed: [C64; 2],
-    /// Of what the high-pass has kept.
+    passed_slope: [C64; 2],
+    /// Of what the high-pass has kept, and its slope.
     tail: f64,
+    tail_slope: f64,
     /// How much later it shows slow motion, dimensionless.
     delay: f64,
+}
+
+/// Change of the poles of a motion's terms, dimensionless, as a low-pass has them: over its own corner.
+struct PolesSlope {
+    /// Of the drive's term and of the free vibration's.
+    motion: [C64; 2],
+    /// Of what the high-pass has kept.
+    tail: f64,
 }
 
 impl SettledLowPass {
     /// Of a filter, for terms with the poles of drive and free vibration, behind a high-pass with a corner.
     fn new(filter: LowPass, poles: [C64; 2], corner: f64, natural_rate: f64) -> Self {
         let transfer = |pole: C64| filter.transfer(pole * natural_rate);
+        let slope = |pole: C64| filter.transfer_slope(pole * natural_rate) * natural_rate;
+        let tail = C64::new(-corner, 0.0);
         Self {
+            poles,
             passed: poles.map(transfer),
-            tail: transfer(C64::new(-corner, 0.0)).re,
+            passed_slope: poles.map(slope),
+            tail: transfer(tail).re,
+            tail_slope: slope(tail).re,
             delay: filter.delay_s() * natural_rate,
         }
     }
@@ -126,6 +160,20 @@ impl SettledLowPass {
                 ..before.motion
             },
             tail: before.tail * self.tail,
+        }
+    }
+
+    /// Differential of [`Self::pass`] where the motion before it and the poles of its terms change.
+    fn pass_slope(&self, before: &Passed, change: &Passed, moved: &PolesSlope) -> Passed {
+        let [drive, free] = [0, 1].map(|i| self.passed_slope[i] * moved.motion[i]);
+        let passed = self.pass(change);
+        Passed {
+            motion: MassMotion {
+                force: passed.motion.force + before.motion.force * drive,
+                mode: passed.motion.mode + before.motion.mode * free,
+                ..passed.motion
+            },
+            tail: passed.tail + before.tail * self.tail_slope * moved.tail,
         }
     }
 }
@@ -505,7 +553,8 @@ impl<'a> RecordMotion<'a> {
             h.pass_slope(&channel.motion, channel.passed.tail, &change, &moved)
         });
         let shown = channel.shown(self.eta);
-        let slope = channel.shown_slope(&passed, &moved, self.eta);
+        let relative_rate = direction.coordinate.map_or(0.0, relative_rate);
+        let slope = channel.shown_slope(&passed, &moved, self.eta, relative_rate);
         let here = delayed(&shown.motion, self.eta, channel.delay);
         let change = delayed_slope(&shown.motion, &slope.motion, eta, delay);
         let later = (corner * delay[0]).exp();
@@ -619,7 +668,10 @@ pub(super) mod tests {
                     role,
                     noise: 1.0,
                     high_pass_hz: (role != Role::VelocityX).then_some(0.5),
-                    low_pass: None,
+                    low_pass: role.is_of_y().then_some(LowPass {
+                        corner_hz: 60.0,
+                        order: 2,
+                    }),
                     points: points.clone(),
                 })
                 .to_vec(),
