@@ -1,7 +1,7 @@
 //! Statuses of f0 and β beside what is said of the decays.
 
 use impact_records::motion::{Motion, Observation};
-use impact_records::signal::decay::{self, Decay};
+use impact_records::signal::decay::{self, Decay, MotionSignal, Watched};
 use std::f64::consts::TAU;
 
 use rand::{Rng, SeedableRng};
@@ -66,17 +66,17 @@ fn valid_a_long_decay_that_drifts_does_not_draw_f0_from_short_ones_that_do_not()
 
 #[test]
 fn an_interval_that_what_changes_made_wide_is_weak_with_that_reason() {
-    // heavier from the middle on, beside a steady decay that tells more
-    let heavier = |t: f64| {
+    // lighter from the middle on, beside a steady decay that tells more
+    let lighter = |t: f64| {
         let lost = if t < 1.0 {
-            0.5 * t
+            0.9 * t
         } else {
-            0.5 + 0.9 * (t - 1.0)
+            0.9 + 0.5 * (t - 1.0)
         };
         f64::exp(-lost) * (TAU * 8.0 * t).cos()
     };
     let steady = |t: f64| (-0.5 * t).exp() * (TAU * 8.0 * t).cos();
-    let decays = vec![fitted(2.0, heavier), fitted(8.0, steady)];
+    let decays = vec![fitted(2.0, lighter), fitted(8.0, steady)];
     let found = pooled(&[observation(decays)], Effects::none()).unwrap();
     let beta = found.parameters.damping_ratio.unwrap();
     assert_eq!(beta.status, Status::Weak, "{beta:?}");
@@ -138,6 +138,88 @@ fn f0_whose_friction_may_begin_later_has_the_error_of_its_interval() {
     assert!((0.2..0.26).contains(&(error / (high - low))), "{error}");
     assert_eq!(wide.status, Status::Weak);
     assert!(matches!(wide.note, Some(Note::Open { .. })), "{wide:?}");
+}
+
+/// A motion under x'' + 2βω x' + ω² x = −ω² r(t) sign x' from rest at one, in small steps: displacement, velocity over ω and
+/// acceleration over ω² at a number of samples for each period.
+fn rubbed(
+    beta: f64,
+    rest: &dyn Fn(f64) -> f64,
+    [periods, per_period]: [usize; 2],
+) -> Vec<[f64; 3]> {
+    const STEPS: usize = 40;
+    let step = TAU / (per_period * STEPS) as f64;
+    let (mut x, mut v, mut sticks) = (1.0f64, 0.0f64, false);
+    let mut out = Vec::new();
+    for k in 0..periods * per_period * STEPS {
+        let rest = rest(k as f64 * step / TAU);
+        let force = |x: f64, v: f64| {
+            let side = if v == 0.0 { -x.signum() } else { v.signum() };
+            -2.0 * beta * v - x - rest * side
+        };
+        if k % STEPS == 0 {
+            out.push([x, v, if sticks { 0.0 } else { force(x, v) }]);
+        }
+        let mut left = step;
+        while left > 0.0 && !sticks {
+            let half = v + 0.5 * left * force(x, v);
+            let after = v + left * force(x + 0.5 * left * half, half);
+            let turns = v != 0.0 && after * v <= 0.0;
+            // the part of the step until it turns
+            let part = if turns { left * v / (v - after) } else { left };
+            x += 0.5 * part * (v + if turns { 0.0 } else { after });
+            v = if turns { 0.0 } else { after };
+            left -= part;
+            sticks = turns && x.abs() <= rest;
+        }
+    }
+    out
+}
+
+#[test]
+fn prop_what_is_pressed_on_midway_is_no_friction_of_the_rig_whatever_the_sensor() {
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(20_261_129);
+    let (f0, per_period) = (5.0, 60);
+    for quantity in [
+        MotionSignal::Displacement,
+        MotionSignal::Velocity,
+        MotionSignal::Acceleration,
+    ] {
+        let (mut held_f0, mut held_beta, mut named) = (0, 0, 0);
+        let drawn = 8;
+        for _ in 0..drawn {
+            let beta: f64 = rng.random_range(0.005..0.02);
+            let rig: f64 = rng.random_range(0.0..0.004);
+            let begins: f64 = rng.random_range(5.0..8.0);
+            let takes: f64 = rng.random_range(0.01..2.0);
+            let more: f64 = rng.random_range(0.01..0.06);
+            let rest = |t: f64| rig + more * ((t - begins) / takes).clamp(0.0, 1.0);
+            let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+            let motion = rubbed(beta, &rest, [14, per_period]);
+            let values: Vec<f64> = motion
+                .iter()
+                .map(|m| m[quantity as usize] + 1e-3 * normal())
+                .collect();
+            let channel = Watched {
+                values: &values,
+                quantity,
+            };
+            let decays = decay::fit_channels(&[channel], f0 * per_period as f64);
+            let found = pooled(&[observation(decays)], Effects::all()).unwrap();
+            let holds = |estimate: Option<Estimate>, value: f64| {
+                let [low, high] = estimate.and_then(|e| e.interval95).unwrap();
+                usize::from((low..=high).contains(&value))
+            };
+            held_f0 += holds(found.parameters.natural_frequency_hz, f0);
+            held_beta += holds(found.parameters.damping_ratio, beta);
+            let later = |r: &Remark| matches!(r, Remark::DecaysRubbedLater { .. });
+            named += usize::from(found.remarks.iter().any(later));
+        }
+        assert!(
+            held_f0.min(held_beta) >= 6 && named >= 6,
+            "{quantity:?}: {held_f0} {held_beta} {named} of {drawn}"
+        );
+    }
 }
 
 #[test]

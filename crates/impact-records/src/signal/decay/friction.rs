@@ -10,6 +10,7 @@
 //! β, and by their difference ρ with an error that is not correlated with that of v: least squares at a fixed value
 //! of a parameter are not correlated with the estimate of that parameter.
 
+use super::change::LEAST_TESTED;
 use super::fits::fitted;
 use super::least_squares::{Point, Series};
 use super::natural::{GROWS, damping_slopes};
@@ -43,12 +44,22 @@ pub struct BesideFriction {
     pub periods: f64,
     /// Whether it sticks before that.
     pub sticks: bool,
-    /// Periods from the first fitted sample on after which friction begins; `None` if with the motion.
+    /// Periods from the first fitted sample on after which more friction begins; `None` if it does not change.
     #[serde(default)]
     pub begins: Option<f64>,
+    /// Periods until which it does not begin.
+    #[serde(default)]
+    pub unchanged: Option<f64>,
     /// What is open because it is not known when friction begins.
     #[serde(default)]
     pub open: OpenOnset,
+}
+
+impl BesideFriction {
+    /// Periods until dry friction holds the mass, if they are enough to test what damps it.
+    pub(super) fn rest(&self) -> Option<f64> {
+        Some(self.periods).filter(|periods| self.sticks && *periods >= LEAST_TESTED)
+    }
 }
 
 /// The first turning point, in samples, from which no more than a swing is left: the displacement falls by 2 r from
@@ -167,23 +178,33 @@ pub(super) fn beside(prepared: &Prepared, viscous: &Point, hz: f64) -> Option<Be
     if natural.damping_ratio < -GROWS * natural.damping_ratio_error {
         return None;
     }
-    let [omega, sigma, ..] = viscous.rates;
     let slopes = damping_slopes(&point.rates);
     let with_rest = slopes[0] * covariance[(0, 1)] + slopes[1] * covariance[(0, 2)];
     let added_error = with_rest.abs() / covariance[(0, 0)].sqrt();
+    let rest = point.friction()?;
+    let [omega, sigma, ..] = viscous.rates;
+    // a viscous fit has what begins on the way too
+    let added = if series.frictions.len() > 1 {
+        -with_rest / covariance[(0, 0)] * rest
+    } else {
+        sigma / omega.hypot(sigma) - natural.damping_ratio
+    };
     let known = natural.damping_ratio_error.powi(2) - added_error.powi(2);
+    let periods = begun.after();
+    let periods = periods.map(|times| times.map(|t| t * natural.frequency));
     Some(BesideFriction {
         natural_frequency_hz: natural.frequency * hz,
         natural_frequency_error_hz: natural.frequency_error * hz,
         damping_ratio: natural.damping_ratio,
         known_friction_error: known.max(0.0).sqrt(),
-        added: sigma / omega.hypot(sigma) - natural.damping_ratio,
+        added,
         added_error,
         freedom: series.freedom(point),
-        rest_ratio: point.friction()? / point.displacement(series.quantity).norm(),
+        rest_ratio: rest / point.displacement(series.quantity).norm(),
         periods: series.values.len() as f64 * natural.frequency,
         sticks: series.values.len() < prepared.series.values.len(),
-        begins: begun.after().map(|t| t * natural.frequency),
+        begins: periods.map(|p| p[0]),
+        unchanged: periods.map(|p| p[1]),
         open: begun.open,
     })
 }

@@ -23,8 +23,9 @@ pub(super) struct Series {
     pub(super) factor: usize,
     /// Rates, per value, of oscillations that were taken from the values: what their errors leave is fitted too.
     pub(super) taken: Vec<[f64; 2]>,
-    /// Swings after the turning point near the first value from which on dry friction acts; none if it acts all the time.
-    pub(super) rubbed_from: usize,
+    /// When dry friction begins, a column of a fit for each: swings after the turning point near the first value, none if it acts
+    /// all the time, which is the last one.
+    pub(super) frictions: Vec<usize>,
 }
 
 /// A fit: the best linear part at given rates.
@@ -32,7 +33,8 @@ pub(super) struct Series {
 pub(super) struct Point {
     pub(super) shape: Shape,
     pub(super) rates: Rates,
-    /// Background and what is left of oscillations that were taken, then friction where it has a column, then the factors of cosine and sine.
+    /// Background and what is left of oscillations that were taken, then friction where it has columns, that which begins later
+    /// first, then the factors of cosine and sine.
     linear: DVector<f64>,
     /// Whitened residuals and the sum of their squares.
     rest: Vec<f64>,
@@ -59,7 +61,7 @@ impl Series {
             quantity: MotionSignal::default(),
             factor: 1,
             taken: Vec::new(),
-            rubbed_from: 0,
+            frictions: vec![0],
         }
     }
 
@@ -69,7 +71,15 @@ impl Series {
             count: self.values.len(),
             factor: self.factor,
             quantity: self.quantity,
-            rubbed_from: self.rubbed_from,
+        }
+    }
+
+    /// When dry friction begins under a shape.
+    fn frictions(&self, shape: Shape) -> &[usize] {
+        if shape == Shape::Rubbed {
+            &self.frictions
+        } else {
+            &[]
         }
     }
 
@@ -129,9 +139,8 @@ impl Series {
     pub(super) fn linear_columns(&self, shape: Shape, rates: &Rates) -> Vec<Vec<f64>> {
         let mut columns = self.background();
         columns.extend(self.left_of_taken());
-        if shape == Shape::Rubbed {
-            columns.push(response::column(&self.means(), *rates));
-        }
+        let of = |swings: &usize| response::column(&self.means(), *rates, *swings);
+        columns.extend(self.frictions(shape).iter().map(of));
         columns.extend(self.oscillation(shape, rates));
         columns
     }
@@ -178,8 +187,9 @@ impl Series {
         let mut columns = self.linear_columns(point.shape, &point.rates);
         let first = columns.len();
         columns.extend(self.slopes(point.shape, &point.rates, point.amplitudes()));
-        if let Some(rest) = point.friction() {
-            let of_response = response::slopes(&self.means(), point.rates);
+        let frictions = self.frictions(point.shape);
+        for (swings, rest) in frictions.iter().zip(point.last(frictions.len())) {
+            let of_response = response::slopes(&self.means(), point.rates, *swings);
             for (column, slopes) in columns[first..].iter_mut().zip(&of_response) {
                 crate::signal::columns::subtract(column, -rest, slopes);
             }
@@ -241,7 +251,7 @@ impl Series {
         let (normal, _) = equations(&columns, &columns[0]);
         let inverse = normal.cholesky()?.inverse();
         let first = columns.len() - point.shape.free();
-        // friction is before the cosine, the sine and the rates
+        // the friction that is last is before the cosine, the sine and the rates
         let of_friction = point.friction().map(|_| first - 3);
         let wanted: Vec<usize> = of_friction
             .into_iter()
@@ -358,9 +368,20 @@ impl Point {
         [self.linear[count - 2], self.linear[count - 1]]
     }
 
-    /// Friction over stiffness, where it has a column.
+    /// Friction over stiffness that begins first, where it has a column.
     pub(super) fn friction(&self) -> Option<f64> {
-        (self.shape == Shape::Rubbed).then(|| self.linear[self.linear.len() - 3])
+        (self.shape == Shape::Rubbed).then(|| self.last(1)[0])
+    }
+
+    /// Friction that begins last of a number of them, over stiffness.
+    pub(super) fn later_friction(&self, frictions: usize) -> f64 {
+        self.last(frictions)[0]
+    }
+
+    /// The last factors before those of cosine and sine.
+    fn last(&self, count: usize) -> &[f64] {
+        let end = self.linear.len() - 2;
+        &self.linear.as_slice()[end - count..end]
     }
 
     /// Constant part of the background.

@@ -109,6 +109,13 @@ impl Decay {
         (0..self.samples).map(at).collect()
     }
 
+    /// A part of a record up to a number of periods of the decay, if that is before its end.
+    fn part<'a>(&self, part: &Cleared<'a>, periods: f64, rate_hz: f64) -> Option<Cleared<'a>> {
+        let frequency_hz = self.beside_friction?.natural_frequency_hz;
+        let end = self.first + whole::index((periods / frequency_hz * rate_hz).ceil());
+        (end < part.cleared.len()).then(|| part.between(0, end))
+    }
+
     /// Count samples from an earlier one on.
     pub(crate) fn shift(&mut self, by: usize, rate_hz: f64) {
         self.first += by;
@@ -288,23 +295,31 @@ const MOST_LEFT: f64 = 1.0;
 /// Relative difference of the frequencies of motions of one oscillator, at most.
 const SAME: f64 = 0.02;
 
-/// The decay of a part of a record with one blow or release, up to where dry friction holds the mass, if it does: the rest
-/// that follows is no part of the motion.
+/// The decay of a part of a record with one blow or release, up to where dry friction holds the mass or something begins to
+/// rub on the way, if it does: what follows is no part of the motion.
 fn of_part(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {
     let decay = fitted(part, rate_hz)?;
-    let moving = decay
-        .beside_friction
-        .filter(|b| b.sticks && b.periods >= LEAST_TESTED);
-    let until_rest = moving.and_then(|b| {
-        let samples = b.periods / b.natural_frequency_hz * rate_hz;
-        let end = decay.first + whole::index(samples.ceil());
-        let end = Some(end).filter(|e| *e < part.cleared.len())?;
-        let mut cut = fitted(&part.between(0, end), rate_hz)?;
-        let friction = cut.beside_friction.as_mut()?;
-        friction.sticks = true;
-        Some(cut)
-    });
-    Some(until_rest.unwrap_or(decay))
+    let decay = until_rest(part, &decay, rate_hz).unwrap_or(decay);
+    let before = before_rub(part, &decay, rate_hz);
+    Some(before.unwrap_or(decay))
+}
+
+/// A decay of a part up to where dry friction holds the mass.
+fn until_rest(part: &Cleared<'_>, decay: &Decay, rate_hz: f64) -> Option<Decay> {
+    let moving = decay.beside_friction?.rest()?;
+    let mut cut = fitted(&decay.part(part, moving, rate_hz)?, rate_hz)?;
+    cut.beside_friction.as_mut()?.sticks = true;
+    Some(cut)
+}
+
+/// A decay of a part up to where something begins to rub.
+fn before_rub(part: &Cleared<'_>, decay: &Decay, rate_hz: f64) -> Option<Decay> {
+    let friction = decay.beside_friction?;
+    let before = decay.part(part, friction.unchanged?, rate_hz)?;
+    let mut cut = of_part(&before, rate_hz)?;
+    let own = cut.beside_friction.as_mut()?;
+    own.begins = own.begins.or(friction.begins);
+    Some(cut)
 }
 
 /// Greatest excursion of samples from an offset.

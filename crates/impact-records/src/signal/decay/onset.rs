@@ -1,23 +1,25 @@
 //! When dry friction begins: with the motion, or on the way, as where a hand stops the mass over some periods or a cable
 //! begins to rub.
 //!
-//! A fit has friction from one of its turning points on, all other parts as in [`super::friction`]. What is not known of
-//! the beginning is in β and f0 by the profile of the likelihood: the fit with friction from a turning point on, whose χ² is
-//! d above the least, reaches as far as the squared quantile less d allows.
+//! A fit has friction all the time, from one of its turning points on, or more of it from there on, all other parts as in
+//! [`super::friction`]. What acts on the way need not be dry friction, nor begin at a turning point or at once: where it is told,
+//! the motion before it alone is that of the rig. Where it is not told, what is not known of it is in β and f0 by the profile of the
+//! likelihood: a fit whose criterion is d above the least reaches as far as the squared quantile less d allows.
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-use super::fits::fitted;
+use super::fits::{fitted, laws};
 use super::least_squares::{Point, Series};
 use super::natural::Natural;
+use super::noise::Noise;
 use super::shape::Shape;
 use crate::signal::whole;
 
 /// Turning points that are tried at first, evenly over the motion.
 const TRIED: usize = 12;
-/// Periods before friction that tell f0 alone, at least.
-const LEAST_PERIODS: f64 = 1.5;
+/// What a fit leaves over the motion, below which it is exact.
+const EXACT: f64 = 1e-6;
 /// Normal deviate of the 95 % interval.
 const QUANTILE: f64 = 1.96;
 
@@ -38,39 +40,69 @@ pub(super) struct Begun {
     pub(super) covariance: DMatrix<f64>,
     pub(super) natural: Natural,
     pub(super) open: OpenOnset,
+    /// The swings after which more friction begins, and those until which it does not.
+    begins: Option<[usize; 2]>,
 }
 
 impl Begun {
-    /// When friction begins, in values from the first one on; `None` if with the motion.
-    pub(super) fn after(&self) -> Option<f64> {
+    /// When more friction begins, in values from the first one on, and until when it does not; `None` if it does not change.
+    pub(super) fn after(&self) -> Option<[f64; 2]> {
         let [omega, _, _, turn] = self.point.rates;
-        let swings = Some(self.series.rubbed_from).filter(|s| *s > 0)?;
-        Some(turn + swings as f64 * std::f64::consts::PI / omega)
+        let time = |swings: usize| turn + swings as f64 * std::f64::consts::PI / omega;
+        self.begins.map(|b| b.map(time))
     }
 }
 
-/// A fit with friction from a number of swings on.
-type Trial = (usize, Point);
+/// A fit with friction that begins at turning points.
+#[derive(Debug, Clone)]
+struct Trial {
+    /// As in a series.
+    frictions: Vec<usize>,
+    point: Point,
+}
 
-/// The fits that a series allows, of which the first has friction all the time.
+impl Trial {
+    /// Swings after which friction begins that is not there all the time; none without.
+    fn begins(&self) -> usize {
+        self.frictions[0]
+    }
+
+    /// Numbers that it has beyond a fit with one friction.
+    fn more(&self) -> f64 {
+        2.0 * (self.frictions.len() as f64 - 1.0)
+    }
+}
+
+/// The fits that a series allows, of which the first has the same friction all the time. They are looked for in white noise: noise that
+/// is fitted beside the same friction all the time holds what begins on the way.
 struct Trials {
     series: Series,
+    /// Noise beside the same friction all the time, and the fit.
+    steady: (Noise, Point),
     fits: Vec<Trial>,
 }
 
 impl Trials {
-    fn of(series: Series, point: Point) -> Self {
+    fn of(mut series: Series, point: Point) -> Self {
         let swings = series.values.len() as f64 * point.rates[0] / std::f64::consts::PI;
         let last = whole::index((swings - 1.0).max(0.0));
+        let frictions = vec![0];
+        let noise = std::mem::take(&mut series.noise);
+        let white = series.descend(Shape::Rubbed, point.rates);
+        let first = white.unwrap_or_else(|| point.clone());
         let mut own = Self {
             series,
-            fits: vec![(0, point)],
+            steady: (noise, point),
+            fits: vec![Trial {
+                frictions,
+                point: first,
+            }],
         };
         let mut step = last.div_ceil(TRIED).max(1);
         (1..=last).step_by(step).for_each(|s| own.add(s));
         while step > 1 {
             step = step.div_ceil(2);
-            let best = own.best().0;
+            let best = own.best().begins();
             let sides = [best.saturating_sub(step), best + step];
             let inside = sides.into_iter().filter(|s| (1..=last).contains(s));
             inside.for_each(|s| own.add(s));
@@ -78,64 +110,123 @@ impl Trials {
         own
     }
 
-    /// Fit friction from a number of swings on.
+    /// Fit friction from a number of swings on, with and without another one that is there all the time.
     fn add(&mut self, swings: usize) {
-        if self.fits.iter().all(|f| f.0 != swings) {
-            let rates = self.best().1.rates;
-            self.fits.extend(self.fit(swings, rates));
+        if self.fits.iter().all(|f| f.begins() != swings) {
+            let rates = self.best().point.rates;
+            for frictions in [vec![swings], vec![swings, 0]] {
+                self.fits.extend(self.fit(&frictions, rates));
+            }
         }
     }
 
-    fn begun(&self, swings: usize) -> Series {
+    fn begun(&self, frictions: &[usize]) -> Series {
         Series {
-            rubbed_from: swings,
+            frictions: frictions.to_vec(),
             ..self.series.clone()
         }
     }
 
     /// Friction that begins on the way does not drive the motion.
-    fn fit(&self, swings: usize, rates: [f64; 4]) -> Option<Trial> {
-        let point = self.begun(swings).descend(Shape::Rubbed, rates)?;
-        let rubs = swings == 0 || point.friction() > Some(0.0);
-        rubs.then_some((swings, point))
+    fn fit(&self, frictions: &[usize], rates: [f64; 4]) -> Option<Trial> {
+        let point = self.begun(frictions).descend(Shape::Rubbed, rates)?;
+        let rubs = frictions == [0] || point.later_friction(frictions.len()) > 0.0;
+        let frictions = frictions.to_vec();
+        rubs.then_some(Trial { frictions, point })
+    }
+
+    /// χ² of a fit with what Bayes' criterion adds for numbers beyond those of one friction.
+    fn score(&self, trial: &Trial) -> f64 {
+        let count = self.series.values.len() as f64;
+        trial.point.squares / self.variance() + trial.more() * count.ln()
     }
 
     fn best(&self) -> &Trial {
-        let by = |a: &&Trial, b: &&Trial| a.1.squares.total_cmp(&b.1.squares);
+        let by = |a: &&Trial, b: &&Trial| self.score(a).total_cmp(&self.score(b));
         self.fits.iter().min_by(by).unwrap_or(&self.fits[0])
     }
 
-    /// The noise that is beside the best fit, and all fits in it, if that fit is better than friction all the time by
-    /// Bayes' criterion (Schwarz 1978): one number more.
-    fn settle(&mut self) -> usize {
-        let (swings, best) = self.best();
-        let swings = *swings;
-        if swings == 0 {
-            return 0;
-        }
-        let mut own = self.begun(swings);
-        let Some(point) = fitted(&mut own, Shape::Rubbed, best) else {
-            return 0;
-        };
-        let more = (own.values.len() as f64).ln();
-        if own.criterion(&point) + more > self.series.criterion(&self.fits[0].1) {
-            return 0;
-        }
-        self.series.noise = own.noise;
+    /// The noise that is beside the best fit, and all fits in it, if that fit is better than the same friction all the time
+    /// by Bayes' criterion (Schwarz 1978): of its numbers the parameters do not hold the beginning.
+    fn settle(&mut self) -> Trial {
+        let told = self.told();
+        self.series.noise = told.clone().unwrap_or_else(|| self.steady.0.clone());
         let again = self.fits.iter();
-        let again: Vec<Trial> = again.filter_map(|f| self.fit(f.0, f.1.rates)).collect();
-        self.fits = again;
-        self.best().0
+        let again = again.filter_map(|f| self.fit(&f.frictions, f.point.rates));
+        let again: Vec<Trial> = again.collect();
+        if !again.is_empty() {
+            self.fits = again;
+        }
+        match told {
+            Some(_) => self.best().clone(),
+            None => Trial {
+                frictions: vec![0],
+                point: self.steady.1.clone(),
+            },
+        }
     }
 
-    /// How far the other fits reach beyond the interval of the one with friction from a number of swings on.
-    fn open(&self, own: usize, of: &Natural) -> OpenOnset {
-        let least = self.best().1.squares;
-        let variance = self.variance();
-        let others = self.fits.iter().filter(|f| f.0 != own);
-        let reaches = others.filter_map(|(swings, point)| {
-            let left = QUANTILE.powi(2) - (point.squares - least) / variance;
-            let allowed = (left > 0.0).then(|| natural(&self.begun(*swings), point));
+    /// The noise beside the best fit, if that begins on the way and is told.
+    fn told(&self) -> Option<Noise> {
+        let best = Some(self.best()).filter(|b| b.begins() > 0)?;
+        let (noise, steady) = &self.steady;
+        let count = self.series.values.len();
+        let exact = (EXACT * steady.level(count)).powi(2);
+        let mut own = self.begun(&best.frictions);
+        let point = fitted(&mut own, Shape::Rubbed, &best.point)?;
+        let more = (count as f64).ln();
+        let series = Series {
+            noise: noise.clone(),
+            ..self.begun(&[0])
+        };
+        let other = self.smooth().fold(series.criterion(steady), f64::min);
+        let told = own.criterion(&point) + more < other;
+        (told && steady.squares > exact * count as f64).then_some(own.noise)
+    }
+
+    /// Bayes' criterion of frequencies and rates of decay that change smoothly from the first value on, each in the noise
+    /// beside it: what these explain as well does not begin on the way.
+    fn smooth(&self) -> impl Iterator<Item = f64> {
+        let rates = self.steady.1.rates;
+        let bent = self
+            .series
+            .descend(Shape::Bent, [rates[0], rates[1], 0.0, 0.0]);
+        let laws = bent.iter().flat_map(|bent| laws(&self.series, bent));
+        let points: Vec<Point> = laws.chain(bent.clone()).collect();
+        points.into_iter().filter_map(|point| {
+            let mut own = self.series.clone();
+            let point = fitted(&mut own, point.shape, &point)?;
+            Some(own.criterion(&point))
+        })
+    }
+
+    /// The swings after which friction of a fit begins, and the last ones until which it does not: fits of a beginning there or
+    /// before are excluded.
+    fn between(&mut self, found: &Trial) -> [usize; 2] {
+        loop {
+            let most = self.score(found) + QUANTILE.powi(2);
+            let later = self.fits.iter().filter(|f| f.begins() > 0);
+            let possible = later.clone().filter(|f| self.score(f) <= most);
+            let first = possible.map(Trial::begins).fold(found.begins(), usize::min);
+            let excluded = later.map(Trial::begins).filter(|s| *s < first);
+            let last = excluded.fold(0, usize::max);
+            let fits = self.fits.len();
+            if first - last > 1 {
+                self.add(last.midpoint(first));
+            }
+            if self.fits.len() == fits {
+                return [found.begins(), last];
+            }
+        }
+    }
+
+    /// How far the other fits reach beyond the interval of one.
+    fn open(&self, own: &Trial, of: &Natural) -> OpenOnset {
+        let least = self.score(self.best());
+        let others = self.fits.iter().filter(|f| f.frictions != own.frictions);
+        let reaches = others.filter_map(|fit| {
+            let left = QUANTILE.powi(2) - (self.score(fit) - least);
+            let allowed = (left > 0.0).then(|| natural(&self.begun(&fit.frictions), &fit.point));
             Some((allowed.flatten()?.1, left.sqrt()))
         });
         let none = OpenOnset::default();
@@ -147,27 +238,12 @@ impl Trials {
         })
     }
 
-    /// Mean square of the noise.
+    /// Mean square of the noise: what the least fit leaves.
     fn variance(&self) -> f64 {
-        let (_, best) = self.best();
+        let by = |a: &&Trial, b: &&Trial| a.point.squares.total_cmp(&b.point.squares);
+        let best = &self.fits.iter().min_by(by).unwrap_or(&self.fits[0]).point;
         let freedom = self.series.values.len().saturating_sub(best.parameters());
         (best.squares / freedom.max(1) as f64).max(f64::MIN_POSITIVE)
-    }
-
-    /// What the motion before friction alone tells.
-    fn before(&self, begun: &Begun) -> Option<Natural> {
-        let values = whole::index(begun.after()?.max(0.0)).min(self.series.values.len());
-        let [omega, sigma, ..] = begun.point.rates;
-        if (values as f64) * omega < LEAST_PERIODS * std::f64::consts::TAU {
-            return None;
-        }
-        let own = Series {
-            values: self.series.values[..values].to_vec(),
-            ..self.series.clone()
-        };
-        let point = own.descend(Shape::Viscous, [omega, sigma, 0.0, 0.0])?;
-        let covariance = own.inverse(&point)? * self.variance();
-        Some(Natural::of(&point.rates, &covariance))
     }
 }
 
@@ -205,26 +281,20 @@ fn natural(series: &Series, point: &Point) -> Option<(DMatrix<f64>, Natural)> {
     Some((covariance, natural))
 }
 
-/// The series, and the fit of friction all the time to it, with what follows from when friction begins.
+/// The series, and the fit of the same friction all the time to it, with what follows from when more of it begins.
 pub(super) fn find(series: Series, point: Point) -> Option<Begun> {
     let mut trials = Trials::of(series, point);
-    let swings = trials.settle();
-    let (_, point) = trials.fits.iter().find(|f| f.0 == swings)?;
-    let series = trials.begun(swings);
-    let (covariance, natural) = natural(&series, point)?;
-    let mut begun = Begun {
-        point: point.clone(),
+    let found = trials.settle();
+    let begins = (found.begins() > 0).then(|| trials.between(&found));
+    let series = trials.begun(&found.frictions);
+    let (covariance, natural) = natural(&series, &found.point)?;
+    let open = trials.open(&found, &natural);
+    Some(Begun {
+        point: found.point,
         series,
-        open: trials.open(swings, &natural),
+        open,
         covariance,
         natural,
-    };
-    // what stops a mass need not be dry friction, which has a form of its own within a period
-    if let Some(before) = trials.before(&begun) {
-        begun.open = begun.open.with(&OpenOnset {
-            natural_frequency: beyond(frequency(&begun.natural), frequency(&before), QUANTILE),
-            ..OpenOnset::default()
-        });
-    }
-    Some(begun)
+        begins,
+    })
 }

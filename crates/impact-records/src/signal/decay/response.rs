@@ -131,15 +131,6 @@ pub(super) struct Means {
     pub(super) count: usize,
     pub(super) factor: usize,
     pub(super) quantity: MotionSignal,
-    /// Swings after the named turning point from which on there is friction; none if there is all the time.
-    pub(super) rubbed_from: usize,
-}
-
-impl Means {
-    /// The response at given rates, as far as a sample.
-    fn response(&self, rates: Rates, last: f64) -> Response {
-        Response::from(self.rubbed_from, rates, self.quantity, last)
-    }
 }
 
 /// Most points of a mean: a step of q is then where it is within a twentieth of a mean.
@@ -148,22 +139,23 @@ const MOST_PARTS: usize = 20;
 /// Step of a difference over a rate, relative.
 const STEP: f64 = 1e-6;
 
-/// q at the samples of a series.
-pub(super) fn column(series: &Means, rates: Rates) -> Vec<f64> {
-    let response = series.response(rates, series.count as f64);
+/// q at the samples of a series, to friction from a number of swings after the named turning point on; all the time from none.
+pub(super) fn column(series: &Means, rates: Rates, swings: usize) -> Vec<f64> {
+    let response = Response::from(swings, rates, series.quantity, series.count as f64);
     response.means(&response, series)
 }
 
-/// Slopes of q over `ω_d` and σ at the samples of a series, the named turning point where it is.
-pub(super) fn slopes(series: &Means, rates: Rates) -> [Vec<f64>; 2] {
+/// Slopes of the same over `ω_d` and σ, the named turning point where it is.
+pub(super) fn slopes(series: &Means, rates: Rates, swings: usize) -> [Vec<f64>; 2] {
     let last = series.count as f64;
-    let here = series.response(rates, last);
+    let response = |rates: Rates, last: f64| Response::from(swings, rates, series.quantity, last);
+    let here = response(rates, last);
     let step = STEP * rates[0];
     [0, 1].map(|k| {
         let moved = |by: f64| {
             let mut rates = rates;
             rates[k] += by;
-            series.response(rates, last + 1.0).means(&here, series)
+            response(rates, last + 1.0).means(&here, series)
         };
         let (after, before) = (moved(step), moved(-step));
         let pairs = after.iter().zip(&before);

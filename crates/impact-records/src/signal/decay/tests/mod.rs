@@ -236,6 +236,27 @@ fn valid_a_frequency_that_rises_over_the_decay_is_a_drift() {
 }
 
 #[test]
+fn valid_a_frequency_that_goes_with_the_amplitude_is_no_rub_that_ends_the_decay() {
+    // ω = ω0(1 − h A²), A = e^(−σt): the phase is ω0 t − h ω0 (1 − e^(−2σt))/(2σ)
+    let (natural, beta) = (TAU * 19.8, 0.02);
+    let sigma = beta * natural;
+    for softening in [-0.02, -0.008, -0.003, 0.003, 0.008, 0.02] {
+        for noise in [1e-4, 1e-3, 1e-2] {
+            let mut samples = sampled(1400, 1000.0, |t| {
+                let slower = softening * natural * -(-2.0 * sigma * t).exp_m1() / (2.0 * sigma);
+                (-sigma * t).exp() * (natural * t - slower).cos()
+            });
+            white(&mut samples, noise, 4);
+            let found = fit(&samples, 1000.0).expect("a decay");
+            let case = format!("softening {softening}, noise {noise}");
+            assert!(found.periods > 15.0, "{case}: {} periods", found.periods);
+            let begins = found.beside_friction.and_then(|b| b.begins);
+            assert_eq!(begins, None, "{case}");
+        }
+    }
+}
+
+#[test]
 fn valid_hum_drift_and_another_mode_are_fitted_beside_and_do_not_widen_the_interval() {
     let plain = decay(3.0, 0.02, 0.0);
     let other = decay(21.0, 0.01, 1.0);
