@@ -76,6 +76,21 @@ pub enum Finding {
         /// How much more the channel reads from there on, relative.
         deviation: f64,
     },
+    /// From some record on a channel reads more or less against another one than before; which of both changes is open.
+    GainsPart {
+        /// The channel.
+        channel: Role,
+        /// The channel that may change instead, the other way.
+        other: Role,
+        /// The first record after the change.
+        record: String,
+        /// Its place in the order of acquisition, from 1.
+        number: usize,
+        /// Number of records.
+        of: usize,
+        /// How much more the channel reads from there on, relative.
+        deviation: f64,
+    },
     /// A channel is later or earlier than stated.
     LateChannel {
         /// The channel.
@@ -357,6 +372,7 @@ impl Finding {
             | Self::GainsOrClearances { .. }
             | Self::GainsApart { .. }
             | Self::GainChanged { .. }
+            | Self::GainsPart { .. }
             | Self::LateChannel { .. }
             | Self::UnsteadyChannel { .. }
             | Self::ForceLaw { .. }
@@ -393,6 +409,13 @@ message_table! { "finding": Finding, key = template_key;
         share = Value::Percent(*deviation, 1);
     Self::GainChanged { channel, record, number, of, deviation } =>
         channel = Value::Message(channel),
+        record = Value::Name(record),
+        number = Value::Count(*number),
+        of = Value::Count(*of),
+        share = Value::Percent(deviation.abs(), 1);
+    Self::GainsPart { channel, other, record, number, of, deviation } =>
+        channel = Value::Message(channel),
+        other = Value::Message(other),
         record = Value::Name(record),
         number = Value::Count(*number),
         of = Value::Count(*of),
@@ -523,6 +546,7 @@ fn template_key(finding: &Finding) -> String {
             format!("{which}_{what}")
         }
         Finding::GainChanged { deviation, .. } if *deviation < 0.0 => "gain_fell".to_owned(),
+        Finding::GainsPart { deviation, .. } if *deviation < 0.0 => "gains_part_less".to_owned(),
         Finding::UndeclaredLowPass { order: Some(1), .. } => "undeclared_low_pass_1".to_owned(),
         Finding::UndeclaredLowPass { order: Some(_), .. } => "undeclared_low_pass_2".to_owned(),
         _ => finding.kind().to_owned(),

@@ -36,13 +36,23 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         z_score: 0.0,
     });
     // a gain that fell too
-    let fallen = Finding::GainChanged {
-        channel: Role::default(),
-        record: String::new(),
-        number: 1,
-        of: 2,
-        deviation: -1.0,
-    };
+    let fallen = [
+        Finding::GainChanged {
+            channel: Role::default(),
+            record: String::new(),
+            number: 1,
+            of: 2,
+            deviation: -1.0,
+        },
+        Finding::GainsPart {
+            channel: Role::default(),
+            other: Role::default(),
+            record: String::new(),
+            number: 1,
+            of: 2,
+            deviation: -1.0,
+        },
+    ];
     // as has a low-pass whose order is known
     let filters = [1, 2].map(|order| Finding::UndeclaredLowPass {
         channel: Role::default(),
@@ -74,7 +84,7 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         .chain(boxed(Reason::iter()))
         .chain(boxed(findings))
         .chain(boxed(late.into_iter()))
-        .chain(boxed([fallen].into_iter()))
+        .chain(boxed(fallen.into_iter()))
         .chain(boxed(filters.into_iter()))
         .chain(boxed(beyond))
         .chain(boxed(Undetermined::iter()))

@@ -12,6 +12,7 @@ use crate::identify::diagnostics::common_scale::{self, CommonScale, common_scale
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::doubt::{self, Doubt, Suspicion};
 use crate::identify::diagnostics::drives::drives;
+use crate::identify::diagnostics::gain_change;
 use crate::identify::diagnostics::late_channel;
 use crate::identify::diagnostics::refuted_gains::{self, Opened};
 use crate::identify::diagnostics::settling;
@@ -536,6 +537,9 @@ impl<'a> IdentificationRun<'a> {
             of_rig: change,
         } = changes.unwrap_or_default();
         let (named, open) = doubt::parted(Vec::from_iter(of_gain));
+        if !named.is_empty() {
+            suspicions.retain(|finding| !gain_change::explains(finding));
+        }
         suspicions.extend(named);
         doubts.extend(open);
         suspicions.extend(change.as_ref().map(|c| c.finding(observations.len())));

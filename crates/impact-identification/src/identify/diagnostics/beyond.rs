@@ -43,7 +43,12 @@ pub fn beyond(found: &MethodFit, speed_m_s: f64) -> Vec<Finding> {
 
 /// The effects without those that other findings explain: what drifts where a gain changes.
 pub fn unexplained(mut beyond: Vec<Finding>, suspicions: &[Finding]) -> Vec<Finding> {
-    let changed = |finding: &Finding| matches!(finding, Finding::GainChanged { .. });
+    let changed = |finding: &Finding| {
+        matches!(
+            finding,
+            Finding::GainChanged { .. } | Finding::GainsPart { .. }
+        )
+    };
     let drifts = |finding: &Finding| matches!(finding, Finding::BeyondModel { effect, .. } if effect.kind() == EffectKind::Drift);
     let gain_changed = suspicions.iter().any(changed);
     beyond.retain(|finding| !(gain_changed && drifts(finding)));

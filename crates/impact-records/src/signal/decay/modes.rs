@@ -13,7 +13,7 @@ pub(super) const STEADY: f64 = 0.5;
 /// Share of what the decay leaves that another oscillation explains.
 const STANDS_OUT: f64 = 0.5;
 /// Periods that another oscillation lasts.
-const LEAST_TURNS: f64 = 3.0;
+pub(super) const LEAST_TURNS: f64 = 3.0;
 /// Rounds in which all oscillations are fitted again beside each other.
 const ROUNDS: usize = 3;
 

@@ -32,7 +32,7 @@ const FAR_LESS: f64 = 0.2;
 const OVER: f64 = 3.0;
 /// Damping ratio of two motions, one of which outlasts the other, at most.
 const LIGHT: f64 = 0.15;
-/// Frequency of the first motion over that of the one that lasts, from which it is another mode.
+/// Ratio of the frequencies of the first motion and of the one that lasts, from which one is another mode.
 const ANOTHER_MODE: f64 = 1.5;
 /// Rate of the motion that lasts over that of the first one, at most.
 const SLOWER: f64 = 0.7;
@@ -97,7 +97,7 @@ pub(super) struct AtEverySample {
 impl Prepared {
     /// The decay of a part of a record with one blow or release. Where its first motion and all of it have
     /// unlike frequencies, as after a hammer's blow that excites a higher mode too, the one that lasts, if it
-    /// decays at all.
+    /// decays at all; of two modes at once the lower one, if it begins with the greater amplitude.
     pub(super) fn of(part: &Cleared<'_>) -> Option<Self> {
         let begun = blows::begin(&part.cleared)?;
         let tail = &part.cleared[begun.1..];
@@ -114,6 +114,10 @@ impl Prepared {
             let slower = slower && found.rates[1] < LIGHT * found.rates[0];
             (slower && decays && found.explains > EXPLAINS).then_some(found)
         });
+        let longest = lasts.map_or(begins.rates, |l| l.rates);
+        if let Some(lower) = lower_mode(tail, longest) {
+            return Self::about(part, begun, lower, Some(longest));
+        }
         let Some(lasts) = lasts else {
             return Self::about(part, begun, begins.rates, None);
         };
@@ -247,6 +251,21 @@ impl Prepared {
             samples: series.values.len(),
         })
     }
+}
+
+/// The rates of a mode below the one of given rates, beside which it begins with the greater amplitude though it may be over
+/// sooner.
+fn lower_mode(samples: &[f64], rates: [f64; 2]) -> Option<[f64; 2]> {
+    let known = modes::fitted(samples, rates)?;
+    let mut rest = samples.to_vec();
+    columns::subtract(&mut rest, 1.0, &known.values);
+    let lower = rough(&rest, peak(&rest)?)?;
+    let [omega, sigma] = lower.rates;
+    let lasts = (samples.len() as f64).min(1.0 / sigma.abs().max(f64::MIN_POSITIVE));
+    let is_motion = lasts * omega > modes::LEAST_TURNS * std::f64::consts::TAU;
+    let stands_out = is_motion && sigma > 0.0 && lower.explains > EXPLAINS;
+    let below = ANOTHER_MODE * omega < known.mode.rates[0];
+    (stands_out && below && lower.amplitude > known.mode.amplitude).then_some(lower.rates)
 }
 
 /// Lines of the spectrum, and half widths of the resonance, from which two oscillations do not move each other: they

@@ -257,6 +257,34 @@ fn valid_a_frequency_that_goes_with_the_amplitude_is_no_rub_that_ends_the_decay(
 }
 
 #[test]
+fn valid_a_weaker_higher_mode_that_lasts_longer_is_not_the_decay() {
+    let (f0_hz, beta) = (5.0, 0.035);
+    for (ratio, amplitude) in [(1.8, 0.3), (3.3, 0.28), (6.6, 0.07), (6.6, 0.2)] {
+        let lower = decay(f0_hz, beta, 0.4);
+        let higher = decay(ratio * f0_hz, 0.0015, 1.9);
+        let mut samples = sampled(6000, 1000.0, |t| lower(t) + amplitude * higher(t));
+        white(&mut samples, 1e-3, 12);
+        let found = fit(&samples, 1000.0).expect("a decay");
+        let case = format!("{ratio} times the frequency, {amplitude} of the amplitude");
+        let apart = (found.natural_frequency_hz - f0_hz).abs() / found.natural_frequency_error_hz;
+        assert!(apart < 4.0, "{case}: {} Hz", found.natural_frequency_hz);
+        let apart = (found.damping_ratio - beta).abs() / found.damping_ratio_error;
+        assert!(apart < 4.0, "{case}: {}", found.damping_ratio);
+        let [mode_hz, share] = found
+            .beside
+            .mode
+            .or(found.beside.hum)
+            .expect("the other mode");
+        assert!(
+            (mode_hz / (ratio * f0_hz) - 1.0).abs() < 1e-3,
+            "{case}: {mode_hz} Hz"
+        );
+        // both amplitudes are those where the fit begins
+        assert!((share / amplitude - 1.0).abs() < 0.25, "{case}: {share}");
+    }
+}
+
+#[test]
 fn valid_hum_drift_and_another_mode_are_fitted_beside_and_do_not_widen_the_interval() {
     let plain = decay(3.0, 0.02, 0.0);
     let other = decay(21.0, 0.01, 1.0);
