@@ -200,7 +200,6 @@ impl Report {
         let (folder, _lock) = folder.take()?;
         let mut campaign = store::read_resolved(&folder)?;
         self.options.apply(&mut campaign.report, verbosity)?;
-        let (observed, found) = store::read_for_report(&folder)?;
         let command = if store::is_staged(&folder) {
             commands(&campaign.file, &folder, &self.options)
         } else {
@@ -208,7 +207,16 @@ impl Report {
         };
         note_missing(&campaign, verbosity);
         let bar = Progress::new(verbosity, "report", 1);
-        let report = pipeline::report::files(&campaign, &observed, &found, &command)?;
+        let report = match &campaign.published {
+            Some(published) => {
+                let found = store::read_identification(&folder)?;
+                pipeline::published::report_files(&campaign, published, &found, &command)?
+            }
+            None => {
+                let (observed, found) = store::read_for_report(&folder)?;
+                pipeline::report::files(&campaign, &observed, &found, &command)?
+            }
+        };
         pipeline::report::write(&report, &folder)?;
         drop(bar);
         let speech = Speech::of(&campaign.report)?;

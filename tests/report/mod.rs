@@ -165,6 +165,21 @@ fn paper_logo_template_and_decimal_sign_are_the_user_s() {
     );
 }
 
+#[test]
+fn a_report_of_published_speeds_is_made_again_in_another_format_and_language() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let published = text(&root().join("data-samples/published-speeds/campaign.toml"));
+    let out = text(&folder.path().join("out"));
+    let (code, told) = impactid(&["-q", "run", &published, "--out", &out, "--format", "pdf"]);
+    assert_eq!(code, 0, "{told}");
+    let again = ["-q", "report", &out, "--format", "html", "--language", "de"];
+    let (code, told) = impactid(&again);
+    assert_eq!(code, 0, "{told}");
+    let page = fs::read_to_string(Path::new(&out).join("report.html")).expect("a page");
+    let stated = page.contains("veröffentlicht") && page.contains("0,005");
+    assert!(stated, "{}", page.len());
+}
+
 /// Each table as LaTeX, in a paper of its own.
 #[test]
 fn every_table_compiles_with_pdflatex() {

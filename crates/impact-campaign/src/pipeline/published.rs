@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::sections::published::Published;
 use crate::pipeline::identify::{IdentificationFile, provenance};
+use crate::pipeline::report::ReportFile;
 use crate::pipeline::{PipelineError, report, store};
 use impact_fit::methods::published::{PublishedSpeed, Where, predicted};
 use impact_identification::identify::Identification;
@@ -29,8 +30,39 @@ pub fn run(
         identification: identify(&speeds, &published.damping_ratio_hypotheses),
         provenance: provenance(campaign)?,
     };
+    let content = content(campaign, published, &speeds, &found, command_line);
+    let report = report::render(&content, campaign, None)?;
+    store::write_resolved(campaign, out)?;
+    super::identify::write(&found, out)?;
+    report::write(&report, out)?;
+    Ok(found.identification)
+}
+
+/// The files of a report of what was identified from published speeds.
+///
+/// # Errors
+/// Where the table cannot be read, or the document cannot be set.
+pub fn report_files(
+    campaign: &ResolvedCampaign,
+    published: &Published,
+    found: &IdentificationFile,
+    command_line: &str,
+) -> Result<Vec<ReportFile>, PipelineError> {
+    let speeds = read(&campaign.folder().join(&published.speeds))?;
+    let content = content(campaign, published, &speeds, found, command_line);
+    report::render(&content, campaign, None)
+}
+
+/// What the report shows.
+fn content(
+    campaign: &ResolvedCampaign,
+    published: &Published,
+    speeds: &[PublishedSpeed],
+    found: &IdentificationFile,
+    command_line: &str,
+) -> ReportContent {
     let damping_ratio = found_damping(&found.identification);
-    let content = ReportContent {
+    ReportContent {
         title: campaign.report.title.clone(),
         campaign: CampaignFacts {
             name: campaign.about.name.clone(),
@@ -41,15 +73,10 @@ pub fn run(
         provenance: found.provenance.clone(),
         compared: Compared::default(),
         proposals: Vec::new(),
-        tables: vec![table(&speeds, damping_ratio, published)],
+        tables: vec![table(speeds, damping_ratio, published)],
         command_line: command_line.to_owned(),
         date: campaign.report.date.clone(),
-    };
-    let report = report::render(&content, campaign, None)?;
-    store::write_resolved(campaign, out)?;
-    super::identify::write(&found, out)?;
-    report::write(&report, out)?;
-    Ok(found.identification)
+    }
 }
 
 fn found_damping(found: &Identification) -> Option<f64> {
