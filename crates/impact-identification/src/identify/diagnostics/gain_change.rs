@@ -20,15 +20,15 @@ const AS_WELL: f64 = 0.7;
 /// A gain that changes in the course of a campaign.
 pub struct GainChange {
     channel: Role,
-    /// The channel whose gain may change instead.
-    other: Option<Role>,
+    /// The channel whose gain may change instead, with its change.
+    other: Option<(Role, Step)>,
     step: Step,
     /// What is fitted, in the order of the step's shifts.
     free: Vec<Coordinate>,
 }
 
 impl GainChange {
-    /// The finding, and what it leaves open of each parameter: what the fit would change with it.
+    /// The finding, and what it leaves open of each parameter: what the fit would change with it, whichever gain it is.
     pub fn suspicion(&self, evidence: &Evidence<'_>, found: &MethodFit) -> Suspicion {
         let observations = evidence.observations;
         let of = observations.len();
@@ -36,17 +36,30 @@ impl GainChange {
             .iter()
             .position(|r| *r == self.step.rank);
         let record = first.map_or_else(String::new, |i| observations[i].record.clone());
-        let shifts = self.free.iter().zip(&self.step.shift);
-        let physical = shifts.filter(|(parameter, _)| Coordinate::PHYSICAL.contains(parameter));
-        let doubts = physical.filter_map(|(parameter, by)| {
-            Doubt::material(found, *parameter, by.abs(), Note::InstrumentOff)
+        // for which part the stated gain holds is not known
+        let stated = |parameter: Coordinate| match parameter {
+            Coordinate::Deflection => self.step.change[0].abs(),
+            _ => 0.0,
+        };
+        let shift = |place: usize| {
+            let other = self
+                .other
+                .as_ref()
+                .map_or(0.0, |(_, step)| step.shift[place]);
+            self.step.shift[place].abs().max(other.abs())
+        };
+        let places = self.free.iter().enumerate();
+        let physical = places.filter(|(_, parameter)| Coordinate::PHYSICAL.contains(parameter));
+        let doubts = physical.filter_map(|(place, parameter)| {
+            let by = shift(place).max(stated(*parameter));
+            Doubt::material(found, *parameter, by, Note::InstrumentOff)
         });
         let (channel, number) = (self.channel, self.step.rank + 1);
         let deviation = self.step.change[0].exp_m1();
-        let finding = match self.other {
-            Some(other) => Finding::GainsPart {
+        let finding = match &self.other {
+            Some((other, _)) => Finding::GainsPart {
                 channel,
-                other,
+                other: *other,
                 record,
                 number,
                 of,
@@ -94,7 +107,7 @@ impl Search<'_> {
         let mut changes = changes.into_iter();
         let mut found = changes.next()?;
         let as_well = changes.find(|c| c.step.chi2 > AS_WELL * found.step.chi2);
-        found.other = as_well.map(|c| c.channel);
+        found.other = as_well.map(|c| (c.channel, c.step));
         let of_rig = self.by_rows(&ranks).map_or(0.0, |(chi2, _)| chi2);
         (found.step.chi2 > of_rig).then_some(found)
     }
