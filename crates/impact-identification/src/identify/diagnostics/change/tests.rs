@@ -99,7 +99,8 @@ fn valid_a_campaign_of_two_rigs_is_named_where_the_rig_changes_and_one_of_one_is
         (found.verdict.kind, changed)
     };
     let (kind, changed) = of(one((0.8, 12.0), 12));
-    assert_eq!((kind, changed), (VerdictKind::Identified, None));
+    // of one rig, though measured with other gains from the 37th record on, which leaves x_st open
+    assert_eq!((kind, changed), (VerdictKind::Weak, None));
     let (kind, changed) = of(one((0.77, 12.1), 12));
     assert_eq!(kind, VerdictKind::DoesNotFit);
     let (number, before, after) = changed.expect("a change");
