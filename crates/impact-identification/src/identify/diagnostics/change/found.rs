@@ -154,7 +154,7 @@ fn stated(parameter: Coordinate, (value, spread): (f64, Spread)) -> Estimate {
 }
 
 /// The weighted mean of two values; its error is at least that of the better one, as both share errors of
-/// instruments.
+/// instruments, and as much as they differ by more than their errors.
 fn mean([(a, of_a), (b, of_b)]: &[(f64, Spread); 2]) -> (f64, Spread) {
     let weights = [of_a, of_b].map(|s| s.half95().powi(-2));
     let value = (weights[0] * a + weights[1] * b) / (weights[0] + weights[1]);
@@ -163,7 +163,9 @@ fn mean([(a, of_a), (b, of_b)]: &[(f64, Spread); 2]) -> (f64, Spread) {
     } else {
         of_b
     };
-    (value, *better)
+    let beyond = (b - a).powi(2) - of_a.error.powi(2) - of_b.error.powi(2);
+    let error = better.error.hypot(0.5 * beyond.max(0.0).sqrt());
+    (value, Spread { error, ..*better })
 }
 
 /// An estimate that holds both of two values, and is neither.
