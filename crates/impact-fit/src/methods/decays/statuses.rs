@@ -176,6 +176,33 @@ fn rubbed(
     out
 }
 
+/// In how many decays f0 and β are held, and that something begins to rub is named.
+#[derive(Debug, Default)]
+struct Told {
+    natural_frequency: usize,
+    damping_ratio: usize,
+    named: usize,
+}
+
+impl Told {
+    /// Of a decay with these f0 and β.
+    fn add(&mut self, found: &crate::methods::answer::MethodResult, [f0, beta]: [f64; 2]) {
+        let holds = |estimate: Option<&Estimate>, value: f64| {
+            let [low, high] = estimate.and_then(|e| e.interval95).unwrap();
+            usize::from((low..=high).contains(&value))
+        };
+        self.natural_frequency += holds(found.parameters.natural_frequency_hz.as_ref(), f0);
+        self.damping_ratio += holds(found.parameters.damping_ratio.as_ref(), beta);
+        let later = |r: &Remark| matches!(r, Remark::DecaysRubbedLater { .. });
+        self.named += usize::from(found.remarks.iter().any(later));
+    }
+
+    /// In how many either is.
+    fn held(&self) -> usize {
+        self.natural_frequency.min(self.damping_ratio)
+    }
+}
+
 #[test]
 fn prop_what_is_pressed_on_midway_is_no_friction_of_the_rig_whatever_the_sensor() {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(20_261_129);
@@ -185,7 +212,7 @@ fn prop_what_is_pressed_on_midway_is_no_friction_of_the_rig_whatever_the_sensor(
         MotionSignal::Velocity,
         MotionSignal::Acceleration,
     ] {
-        let (mut held_f0, mut held_beta, mut named) = (0, 0, 0);
+        let mut told = Told::default();
         let drawn = 8;
         for _ in 0..drawn {
             let beta: f64 = rng.random_range(0.005..0.02);
@@ -206,18 +233,11 @@ fn prop_what_is_pressed_on_midway_is_no_friction_of_the_rig_whatever_the_sensor(
             };
             let decays = decay::fit_channels(&[channel], f0 * per_period as f64);
             let found = pooled(&[observation(decays)], Effects::all()).unwrap();
-            let holds = |estimate: Option<Estimate>, value: f64| {
-                let [low, high] = estimate.and_then(|e| e.interval95).unwrap();
-                usize::from((low..=high).contains(&value))
-            };
-            held_f0 += holds(found.parameters.natural_frequency_hz, f0);
-            held_beta += holds(found.parameters.damping_ratio, beta);
-            let later = |r: &Remark| matches!(r, Remark::DecaysRubbedLater { .. });
-            named += usize::from(found.remarks.iter().any(later));
+            told.add(&found, [f0, beta]);
         }
         assert!(
-            held_f0.min(held_beta) >= 6 && named >= 6,
-            "{quantity:?}: {held_f0} {held_beta} {named} of {drawn}"
+            told.held() >= 6 && told.named >= 6,
+            "{quantity:?}: {told:?} of {drawn}"
         );
     }
 }
@@ -226,7 +246,7 @@ fn prop_what_is_pressed_on_midway_is_no_friction_of_the_rig_whatever_the_sensor(
 fn prop_a_hand_that_stops_the_mass_over_some_periods_is_no_friction_of_the_rig() {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(20_261_130);
     let (f0, drawn) = (6.0, 24);
-    let (mut held_f0, mut held_beta, mut named) = (0, 0, 0);
+    let mut told = Told::default();
     for _ in 0..drawn {
         let beta: f64 = rng.random_range(0.003..0.012);
         let stop: f64 = rng.random_range(12.0..40.0) / f0;
@@ -244,19 +264,9 @@ fn prop_a_hand_that_stops_the_mass_over_some_periods_is_no_friction_of_the_rig()
             .collect();
         let decay = decay::fit(&samples, 300.0).unwrap();
         let found = pooled(&[observation(vec![decay])], Effects::all()).unwrap();
-        let holds = |estimate: Option<Estimate>, value: f64| {
-            let [low, high] = estimate.and_then(|e| e.interval95).unwrap();
-            usize::from((low..=high).contains(&value))
-        };
-        held_f0 += holds(found.parameters.natural_frequency_hz, f0);
-        held_beta += holds(found.parameters.damping_ratio, beta);
-        let later = |r: &Remark| matches!(r, Remark::DecaysRubbedLater { .. });
-        named += usize::from(found.remarks.iter().any(later));
+        told.add(&found, [f0, beta]);
     }
     // 95 % less three standard deviations
-    assert!(
-        held_f0.min(held_beta) >= 20,
-        "{held_f0} {held_beta} of {drawn}"
-    );
-    assert!(2 * named > drawn, "{named} of {drawn}");
+    assert!(told.held() >= 20, "{told:?} of {drawn}");
+    assert!(2 * told.named > drawn, "{told:?} of {drawn}");
 }
