@@ -230,9 +230,10 @@ def low_passed(channel, motion, times, value):
     out = linear_response(smooth, times[1] - times[0], poles, residues)
     for at, height in breaks:
         since = np.maximum(0.0, times - at)
-        response = sum(r / p * (np.exp(p * since) - 1.0) for p, r in zip(poles, residues))
+        steps = [(np.exp(p * since) - 1.0) / p for p in poles]
         if integrals:
-            response = sum(r / p * ((np.exp(p * since) - 1.0) / p - since) for p, r in zip(poles, residues))
+            steps = [(step - since) / p for p, step in zip(poles, steps)]
+        response = sum(r * step for r, step in zip(residues, steps))
         out += height * response.real * (times >= at)
     return out
 

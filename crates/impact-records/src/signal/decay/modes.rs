@@ -13,7 +13,7 @@ pub(super) const STEADY: f64 = 0.5;
 /// Share of what the decay leaves that another oscillation explains.
 const STANDS_OUT: f64 = 0.5;
 /// Periods that another oscillation lasts.
-pub(super) const LEAST_TURNS: f64 = 3.0;
+const LEAST_TURNS: f64 = 3.0;
 /// Rounds in which all oscillations are fitted again beside each other.
 const ROUNDS: usize = 3;
 
@@ -134,11 +134,16 @@ fn strongest(rest: &[f64], own: Own) -> Option<Fitted> {
     }
     let found = fitted(rest, rates)?;
     let sigma = found.mode.rates[1];
-    let lasts = count.min(1.0 / sigma.abs().max(f64::MIN_POSITIVE));
     let explained = columns::dot(&found.values, &found.values);
     let stands_out = explained > STANDS_OUT * columns::dot(rest, rest);
-    let turns = lasts * found.mode.rates[0] / std::f64::consts::TAU;
-    (stands_out && sigma * count > -STEADY && turns > LEAST_TURNS).then_some(found)
+    let lasts = lasts(found.mode.rates, count);
+    (stands_out && sigma * count > -STEADY && lasts).then_some(found)
+}
+
+/// Whether an oscillation of given rates lasts over periods enough in a number of samples.
+pub(super) fn lasts([omega, sigma]: [f64; 2], count: f64) -> bool {
+    let samples = count.min(1.0 / sigma.abs().max(f64::MIN_POSITIVE));
+    samples * omega / std::f64::consts::TAU > LEAST_TURNS
 }
 
 /// The oscillation of about given rates in samples.

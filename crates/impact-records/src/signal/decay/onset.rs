@@ -188,12 +188,10 @@ impl Trials {
     /// beside it: what these explain as well does not begin on the way.
     fn smooth(&self) -> impl Iterator<Item = f64> {
         let rates = self.steady.1.rates;
-        let bent = self
-            .series
-            .descend(Shape::Bent, [rates[0], rates[1], 0.0, 0.0]);
-        let laws = bent.iter().flat_map(|bent| laws(&self.series, bent));
-        let points: Vec<Point> = laws.chain(bent.clone()).collect();
-        points.into_iter().filter_map(|point| {
+        let start = [rates[0], rates[1], 0.0, 0.0];
+        let bent = self.series.descend(Shape::Bent, start).into_iter();
+        let points = bent.flat_map(|bent| [laws(&self.series, &bent), vec![bent]].concat());
+        points.filter_map(|point| {
             let mut own = self.series.clone();
             let point = fitted(&mut own, point.shape, &point)?;
             Some(own.criterion(&point))

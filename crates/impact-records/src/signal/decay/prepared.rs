@@ -261,9 +261,8 @@ fn lower_mode(samples: &[f64], rates: [f64; 2]) -> Option<[f64; 2]> {
     columns::subtract(&mut rest, 1.0, &known.values);
     let lower = rough(&rest, peak(&rest)?)?;
     let [omega, sigma] = lower.rates;
-    let lasts = (samples.len() as f64).min(1.0 / sigma.abs().max(f64::MIN_POSITIVE));
-    let is_motion = lasts * omega > modes::LEAST_TURNS * std::f64::consts::TAU;
-    let stands_out = is_motion && sigma > 0.0 && lower.explains > EXPLAINS;
+    let is_motion = sigma > 0.0 && modes::lasts(lower.rates, samples.len() as f64);
+    let stands_out = is_motion && lower.explains > EXPLAINS;
     let below = ANOTHER_MODE * omega < known.mode.rates[0];
     (stands_out && below && lower.amplitude > known.mode.amplitude).then_some(lower.rates)
 }
