@@ -1,5 +1,7 @@
 //! Placing labels where nothing else is drawn.
 
+use std::ops::Range;
+
 use super::canvas::Point;
 use super::path::Rect;
 use impact_records::signal::whole;
@@ -8,7 +10,7 @@ use impact_records::signal::whole;
 pub struct Occupancy {
     columns: usize,
     rows: usize,
-    taken: Vec<u8>,
+    taken: Vec<bool>,
 }
 
 impl Occupancy {
@@ -21,14 +23,16 @@ impl Occupancy {
         Self {
             columns,
             rows,
-            taken: vec![0; columns * rows],
+            taken: vec![false; columns * rows],
         }
     }
 
     /// Takes a rectangle.
     pub(crate) fn take_rect(&mut self, rect: &Rect) {
-        for index in self.cells(rect) {
-            self.taken[index] = self.taken[index].saturating_add(1);
+        for row in self.rows_of(rect) {
+            for cell in &mut self.taken[row] {
+                *cell = true;
+            }
         }
     }
 
@@ -58,15 +62,17 @@ impl Occupancy {
 
     /// How many square points of a rectangle are taken.
     pub(crate) fn taken(&self, rect: &Rect) -> usize {
-        self.cells(rect).filter(|&i| self.taken[i] > 0).count()
+        let taken = |row: Range<usize>| self.taken[row].iter().filter(|taken| **taken).count();
+        self.rows_of(rect).map(taken).sum()
     }
 
-    fn cells(&self, rect: &Rect) -> impl Iterator<Item = usize> + use<> {
+    /// The points of a rectangle, row by row.
+    fn rows_of(&self, rect: &Rect) -> impl Iterator<Item = Range<usize>> + use<> {
         let clamp = |v: f64, most: usize| whole::index(v.max(0.0)).min(most);
         let columns = self.columns;
         let x = clamp(rect.left, columns)..clamp(rect.right + 1.0, columns);
         let y = clamp(rect.top, self.rows)..clamp(rect.bottom + 1.0, self.rows);
-        y.flat_map(move |row| x.clone().map(move |column| row * columns + column))
+        y.map(move |row| row * columns + x.start..row * columns + x.end)
     }
 
     /// The best place for a box of a size near a point: its cost (covered area and distance) and
@@ -82,6 +88,10 @@ impl Occupancy {
         });
         let mut best: Option<(f64, Point)> = None;
         for (distance, turn) in candidates {
+            // no place costs less than its distance
+            if best.is_some_and(|(least, _)| distance >= least) {
+                break;
+            }
             let angle = std::f64::consts::TAU * (turn + 0.125);
             let x = point.0 + (distance + 0.5 * width) * angle.cos();
             let y = point.1 - (distance + 0.5 * height) * angle.sin();
