@@ -198,6 +198,13 @@ pub enum Finding {
         /// Records in which both are known.
         of: usize,
     },
+    /// The drive's frequencies of records in a row are those of the neighbouring rows of the run table.
+    RowsShifted {
+        /// The first of the records.
+        record: String,
+        /// How many they are.
+        records: usize,
+    },
     /// A drive's frequency is stated, and no record shows its drive.
     DriveNotMeasured {
         /// Records that state a frequency.
@@ -469,6 +476,9 @@ message_table! { "finding": Finding, key = template_key;
     Self::FrequenciesOff { records, of } =>
         records = Value::Count(*records),
         of = Value::Count(*of);
+    Self::RowsShifted { record, records } =>
+        record = Value::Name(record),
+        records = Value::Count(*records);
     Self::DriveNotMeasured { records } => records = Value::Count(*records);
     Self::PhaseNotMeasured { records } => records = Value::Count(*records);
     Self::RigChanged { record, number, of, before, after } =>

@@ -26,8 +26,10 @@ const FEWEST: usize = 3;
 /// Stated frequencies that are off by one ratio, with what that leaves open in f0 and `x_st`; `clock`: the relative
 /// standard uncertainty of the clock.
 pub fn suspicion(observations: &[Observation], clock: f64) -> Option<Suspicion> {
-    let contradicted = stated_frequencies::contradicted(observations);
-    let finding = contradicted.or_else(|| off_together(observations, clock))?;
+    let shifted = stated_frequencies::shifted(observations, clock);
+    let contradicted = || stated_frequencies::contradicted(observations);
+    let together = || off_together(observations, clock);
+    let finding = shifted.or_else(contradicted).or_else(together)?;
     let ratio = match &finding {
         Finding::FrequenciesOffAlike { ratio, .. } | Finding::ClockOrGenerator { ratio, .. } => {
             Some(*ratio)

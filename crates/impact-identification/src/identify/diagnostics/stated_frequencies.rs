@@ -11,6 +11,16 @@ const FEWEST: usize = 3;
 /// Relative spread of the ratios of frequencies that have one cause.
 const ONE_CAUSE: f64 = 5e-3;
 
+/// Rows of the run table between a record's own and that whose frequency it has.
+const SHIFTS: [isize; 4] = [-2, -1, 1, 2];
+/// Records from which a shift is none of rows that were exchanged.
+const FEWEST_SHIFTED: usize = 4;
+/// How much closer the frequency of the other row is than that of the own one: rows that no shift explains are
+/// seldom that close to another row, and never several one after the other.
+const CLOSER: f64 = 5.0;
+/// Standard errors that a measured frequency may be off.
+const SURE: f64 = 3.0;
+
 /// That no record that states a frequency shows its drive.
 pub fn no_drive(observations: &[Observation]) -> Option<Finding> {
     let stating = observations
@@ -43,6 +53,60 @@ pub fn contradicted(observations: &[Observation]) -> Option<Finding> {
     } else {
         Finding::FrequenciesOff { records, of }
     })
+}
+
+/// A record's frequencies in its row of the run table, hertz.
+#[derive(Clone, Copy)]
+struct Row {
+    stated_hz: f64,
+    measured_hz: f64,
+    /// What the measured one may be off by.
+    error_hz: f64,
+}
+
+impl Row {
+    fn of(o: &Observation, clock: f64) -> Option<Self> {
+        let drive = o.drive?;
+        let measured_hz = drive.frequency_hz;
+        Some(Self {
+            stated_hz: o.setting.stated_frequency_hz?,
+            measured_hz,
+            error_hz: SURE * drive.frequency_error_hz.hypot(clock * measured_hz),
+        })
+    }
+
+    /// Whether the drive has the frequency that another row states and not the own one; `None` where both are alike.
+    fn belongs_to(&self, other_hz: f64) -> Option<bool> {
+        let own = (self.measured_hz - self.stated_hz).abs();
+        let other = (self.measured_hz - other_hz).abs();
+        let differ = (own - other).abs() > self.error_hz;
+        differ.then_some(own > (CLOSER * other).max(self.error_hz))
+    }
+}
+
+/// That the frequencies of records in a row are those of the rows before or after their own; `clock`: the relative
+/// standard uncertainty of the clock.
+pub fn shifted(observations: &[Observation], clock: f64) -> Option<Finding> {
+    let rows: Vec<Option<Row>> = observations.iter().map(|o| Row::of(o, clock)).collect();
+    let by = |shift: isize| longest_shifted(&rows, shift);
+    let longest = SHIFTS.into_iter().filter_map(by).max_by_key(|r| r.len())?;
+    (longest.len() >= FEWEST_SHIFTED).then(|| Finding::RowsShifted {
+        record: observations[longest[0]].record.clone(),
+        records: longest.len(),
+    })
+}
+
+/// The longest series of records that belong to the row a shift away, without one between that belongs to its own.
+fn longest_shifted(rows: &[Option<Row>], shift: isize) -> Option<Vec<usize>> {
+    let belongs = |i: usize| {
+        let other = rows.get(i.checked_add_signed(shift)?)?.as_ref()?;
+        rows[i]?.belongs_to(other.stated_hz)
+    };
+    let told = (0..rows.len()).filter_map(|i| Some((i, belongs(i)?)));
+    let told: Vec<(usize, bool)> = told.collect();
+    let series = told.chunk_by(|a, b| a.1 == b.1).filter(|s| s[0].1);
+    let longest = series.max_by_key(|s| s.len())?;
+    Some(longest.iter().map(|(i, _)| *i).collect())
 }
 
 #[cfg(test)]
@@ -96,6 +160,57 @@ mod tests {
         let shuffled = [[8.0, 12.0], [10.0, 8.0], [12.0, 10.0]];
         let differ = Finding::FrequenciesOff { records: 3, of: 3 };
         assert_eq!(of(&shuffled), Some(differ));
+    }
+
+    /// Records at frequencies of a sweep, each named in its own row, or from one on in the row before it.
+    fn swept(steps: &[f64], lost: Option<usize>) -> Vec<Observation> {
+        let row = |i: usize| {
+            if lost.is_some_and(|l| i >= l) {
+                i + 1
+            } else {
+                i
+            }
+        };
+        let one = |i: usize| {
+            let mut o = observed(8.0 + steps[row(i)], 8.0 + steps[i]);
+            o.record = format!("r{i}");
+            o
+        };
+        (0..steps.len() - usize::from(lost.is_some()))
+            .map(one)
+            .collect()
+    }
+
+    #[test]
+    fn a_row_that_is_missing_in_the_run_table_is_found() {
+        let coarse = |i: usize| 0.4 * i as f64;
+        let fine = |i: usize| 0.03 * i as f64;
+        let up_and_down = |i: usize| 0.4 * (8.0 - (i as f64 - 8.0).abs());
+        let held = |i: usize| 0.2 * (i / 2) as f64;
+        let of = |f: fn(usize) -> f64, lost| {
+            let steps: Vec<f64> = (0..24).map(f).collect();
+            shifted(&swept(&steps, lost), 50e-6)
+        };
+        for f in [coarse, fine, up_and_down, held] {
+            assert_eq!(of(f, None), None);
+            match of(f, Some(6)) {
+                Some(Finding::RowsShifted { record, records }) => {
+                    assert!(["r6", "r7"].contains(&record.as_str()), "{record}");
+                    assert!(records >= 8, "{records}");
+                }
+                other => panic!("{other:?} of a sweep that ends at {}", f(23)),
+            }
+        }
+        // all off alike
+        let mut off = swept(&[0.0, 0.4, 0.8, 1.2, 1.6, 2.0], None);
+        for o in &mut off {
+            o.setting.stated_frequency_hz = o.drive.map(|d| 1.002 * d.frequency_hz + 0.01);
+        }
+        assert_eq!(shifted(&off, 50e-6), None);
+        for o in &mut off {
+            o.setting.stated_frequency_hz = o.drive.map(|d| 0.8 * d.frequency_hz);
+        }
+        assert_eq!(shifted(&off, 50e-6), None);
     }
 
     #[test]
