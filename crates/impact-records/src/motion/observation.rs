@@ -484,6 +484,7 @@ fn watched(record: &Record, of_y: bool) -> Vec<Watched<'_>> {
         Some(Watched {
             values: record.values(role)?,
             quantity: role.motion_signal(),
+            rails: rails(record, role),
         })
     };
     Role::ALL
@@ -493,6 +494,20 @@ fn watched(record: &Record, of_y: bool) -> Vec<Watched<'_>> {
         .filter_map(channel)
         .filter(|channel| channel.values.iter().all(|v| v.is_finite()))
         .collect()
+}
+
+/// The values at which samples of a channel are clipped, where they are.
+fn rails(record: &Record, role: Role) -> Option<[f64; 2]> {
+    let name = &record.channel(role)?.name;
+    record.flags.iter().find_map(|flag| match flag.problem {
+        Problem::ClippedSwings {
+            ref channel,
+            low,
+            high,
+            ..
+        } if channel == name => Some([low, high]),
+        _ => None,
+    })
 }
 
 fn contact_flag(record: &Record, impacts: &[Impact], unsupported: usize) -> Option<Flag> {

@@ -445,14 +445,27 @@ fn clipped(
     if count == 0 {
         return clipped_spikes(channel, &spikes, end.is_some());
     }
+    let name = channel.name.clone();
+    let dimension = channel.dimension;
+    if crests.decay && channel.role.is_motion() {
+        // what follows the clipped swings is a decay too
+        let problem = Problem::ClippedSwings {
+            channel: name,
+            count,
+            low,
+            high,
+            dimension,
+        };
+        return Some(Flag::new(Some(&channel.name), problem).excluding(false));
+    }
     let share = count as f64 / channel.values.len() as f64;
     let problem = Problem::ClippedSamples {
-        channel: channel.name.clone(),
+        channel: name,
         count,
         share,
         low,
         high,
-        dimension: channel.dimension,
+        dimension,
     };
     let excludes = share > CLIPPED_PART && channel.role != Role::Drive;
     Some(Flag::new(Some(&channel.name), problem).excluding(excludes))
@@ -523,6 +536,8 @@ fn at_rails(channel: &Channel, span: &Span, crests: Crests) -> usize {
 /// stop it does not.
 #[derive(Debug, Clone, Copy)]
 struct Crests {
+    /// Of swings that decay.
+    decay: bool,
     fewest: usize,
     /// Relative difference of the speeds before and after one.
     alike: f64,
@@ -531,11 +546,16 @@ struct Crests {
 impl Crests {
     /// Of a motion: in a free decay, where no stop is, one crest is enough, before which the mass was not held.
     fn of(excitation: Excitation) -> Self {
+        let decay = excitation == Excitation::FreeDecay;
         let (fewest, alike) = match excitation {
             Excitation::FreeDecay => (1, 0.5),
             Excitation::Harmonic => (3, 0.05),
         };
-        Self { fewest, alike }
+        Self {
+            decay,
+            fewest,
+            alike,
+        }
     }
 
     /// Whether crests are cut off at a value.
@@ -809,8 +829,11 @@ mod tests {
         };
         let decay = |i: usize| (0.1 * i as f64).cos() * (-0.015 * i as f64).exp();
         let cut = flags((0..1000).map(|i| decay(i).max(-0.5)).collect());
-        assert_eq!(cut[0].code, FlagCode::Clipped);
-        assert!(cut[0].excludes);
+        let Problem::ClippedSwings { low, count, .. } = cut[0].problem else {
+            panic!("{cut:?}");
+        };
+        assert_eq!(low, -0.5);
+        assert!(count > 10 && !cut[0].excludes, "{cut:?}");
         let held = |i: usize| decay(i.saturating_sub(200));
         assert_eq!(flags((0..1000).map(held).collect()), []);
     }

@@ -273,6 +273,7 @@ fn watched(record: &Record) -> Vec<Watched<'_>> {
         .map(|c| Watched {
             values: &c.values,
             quantity: c.role.motion_signal(),
+            rails: None,
         })
         .collect()
 }

@@ -230,6 +230,7 @@ fn prop_what_is_pressed_on_midway_is_no_friction_of_the_rig_whatever_the_sensor(
             let channel = Watched {
                 values: &values,
                 quantity,
+                rails: None,
             };
             let decays = decay::fit_channels(&[channel], f0 * per_period as f64);
             let found = pooled(&[observation(decays)], Effects::all()).unwrap();

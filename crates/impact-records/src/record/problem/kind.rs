@@ -234,6 +234,19 @@ problems! {
         /// What it measures.
         dimension: Dimension,
     };
+    /// It does so in a free decay.
+    Clipped: ClippedSwings {
+        /// The channel.
+        channel: String,
+        /// Samples there.
+        count: usize,
+        /// Lower limit, SI.
+        low: f64,
+        /// Upper limit, SI.
+        high: f64,
+        /// What it measures.
+        dimension: Dimension,
+    };
     /// An acceleration reaches them at impacts.
     Clipped: ClippedSpikes {
         /// The channel.

@@ -131,6 +131,12 @@ message_table! { "problem": Problem;
         low = at_level(*low),
         high = at_level(*high),
         unit = symbol(*dimension);
+    Self::ClippedSwings { channel, count, low, high, dimension } =>
+        channel = Value::Name(channel),
+        count = Value::Count(*count),
+        low = at_level(*low),
+        high = at_level(*high),
+        unit = symbol(*dimension);
     Self::ClippedSpikes { channel, count, level, dimension } =>
         channel = Value::Name(channel),
         count = Value::Count(*count),

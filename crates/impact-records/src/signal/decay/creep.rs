@@ -72,6 +72,7 @@ mod tests {
         comes_to_rest(&Watched {
             values: &values,
             quantity: MotionSignal::Displacement,
+            rails: None,
         })
     }
 

@@ -2,7 +2,7 @@
 //! colour, with a test whether one frequency and one damping ratio hold from its beginning to its end.
 //!
 //! All lengths are in periods. The fit begins with the greatest excursion, or later where the samples
-//! after it are not those of the decay, and ends where the decay is lost. Means over a few samples are fitted,
+//! after it are not those of the decay or are clipped, and ends where the decay is lost. Means over a few samples are fitted,
 //! of which a period has some forty at least: they decay alike.
 
 mod beat;
@@ -261,7 +261,8 @@ fn left(decays: &[Decay], rate_hz: f64) -> f64 {
 
 /// The decays of a channel, one after each blow.
 fn of_blows(whole: &Cleared<'_>, rate_hz: f64) -> Vec<Decay> {
-    let of_part = |(first, last): (usize, usize)| {
+    let of_part = |(begin, last): (usize, usize)| {
+        let first = whole.channel.clear_from((begin, last));
         let mut decays = of_motions(&whole.between(first, last), rate_hz);
         decays.iter_mut().for_each(|d| d.shift(first, rate_hz));
         decays

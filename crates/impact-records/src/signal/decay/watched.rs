@@ -19,6 +19,8 @@ pub struct Watched<'a> {
     pub values: &'a [f64],
     /// What they are.
     pub quantity: MotionSignal,
+    /// The values beyond which the samples are clipped, the lower one first, where they are.
+    pub rails: Option<[f64; 2]>,
 }
 
 impl<'a> Watched<'a> {
@@ -27,6 +29,17 @@ impl<'a> Watched<'a> {
         Self {
             values,
             quantity: MotionSignal::Displacement,
+            rails: None,
         }
+    }
+
+    /// The first sample after the last clipped one of a part; its own first sample where none is.
+    pub(super) fn clear_from(&self, (first, last): (usize, usize)) -> usize {
+        let Some([low, high]) = self.rails else {
+            return first;
+        };
+        let clipped = |v: &f64| *v <= low || *v >= high;
+        let at = self.values[first..last].iter().rposition(clipped);
+        at.map_or(first, |at| first + at + 1)
     }
 }

@@ -45,6 +45,7 @@ fn valid_velocities_and_accelerations_tell_the_friction_too() {
         let channel = Watched {
             values: &values,
             quantity,
+            rails: None,
         };
         let found = fit_channels(&[channel], 180.0)[0].beside_friction.unwrap();
         assert!(

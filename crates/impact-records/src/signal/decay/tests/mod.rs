@@ -741,3 +741,28 @@ fn valid_heavy_decays_are_found_however_long_the_mass_is_held_before_and_after()
         }
     }
 }
+
+#[test]
+fn valid_what_follows_clipped_swings_is_a_decay() {
+    let decay = |i: usize| {
+        let t = i as f64 / 1000.0;
+        let natural = std::f64::consts::TAU * 5.0;
+        4.0 * (-0.01 * natural * t).exp() * (natural * (1.0 - 1e-4_f64).sqrt() * t + 0.3).cos()
+    };
+    // two blows
+    let samples: Vec<f64> = (0..12_000).map(|i| decay(i % 6000)).collect();
+    // at the lowest rail the second blow does not rise above what is left of the first
+    for (rail, count) in [(1.0, 1), (2.5, 2), (3.9, 2)] {
+        let clipped: Vec<f64> = samples.iter().map(|v| v.clamp(-rail, rail)).collect();
+        let channel = Watched {
+            rails: Some([-rail, rail]),
+            ..Watched::displacement(&clipped)
+        };
+        let found = fit_channels(&[channel], 1000.0);
+        assert_eq!(found.len(), count, "{rail}");
+        for decay in &found {
+            assert!((decay.natural_frequency_hz - 5.0).abs() < 1e-5, "{decay:?}");
+            assert!((decay.damping_ratio - 0.01).abs() < 1e-5, "{decay:?}");
+        }
+    }
+}
