@@ -625,6 +625,15 @@ mod tests {
         assert_eq!(roles_of(&named), [None, Some(Role::AccelerationX), None]);
         let point = [("x", "m", 0.1), ("y", "m", 2.0)];
         assert_eq!(roles_of(&point), [None, Some(Role::DisplacementX)]);
+        // a video with the velocities of its coordinates
+        let video = [
+            ("Video: X", "m", 0.1),
+            ("Video: Y", "m", 2.0),
+            ("Video: X Velocity", "m/s", 0.3),
+            ("Video: Y Velocity", "m/s", 9.0),
+        ];
+        let of_y = [Role::DisplacementX, Role::VelocityX].map(Some);
+        assert_eq!(roles_of(&video), [None, of_y[0], None, of_y[1]]);
         // two masses beside their drive, or two markers with three coordinates each
         let rig = [
             ("generator", "V", 1.0),

@@ -7,7 +7,7 @@ use labfiles::units::{self, Dimension};
 /// Give each role to the channel that fits best.
 pub(super) fn assign(channels: &mut [InferredChannel]) {
     let axes = Axes::of(channels);
-    let groups = Groups::of(channels);
+    let groups = Groups::of(channels, &axes);
     let second = axes.has_second(channels) || groups.second.is_some();
     // what is measured of one mass alone is that of mass x, whatever it is called
     let alone = !second || !axes.has_first(channels, &groups);
@@ -189,10 +189,18 @@ const UNLIKE: f64 = 4.0;
 /// Words by which phones name their sensors.
 const PHONES: [&str; 4] = ["linear", "gyroscope", "accelerometer", "magnetometer"];
 
-/// A name as the words that say what was measured, and the letter of an axis at its end.
+/// A name as the words that say what was measured, and the letter of an axis at its end or before the quantity:
+/// `Velocity X`, `X Velocity`.
 fn axis(channel: &InferredChannel) -> Option<(Vec<String>, char)> {
     let own = Role::ALL.iter().any(|role| role.name() == channel.name);
     let mut words = words(without_unit(shown(channel)));
+    if let [.., letter, quantity] = words.as_slice()
+        && QUANTITIES.contains(&quantity.as_str())
+        && ["x", "y", "z"].contains(&letter.as_str())
+    {
+        let before = words.len() - 2;
+        words.swap(before, before + 1);
+    }
     let last = words.pop().filter(|_| !own)?;
     let letter = last.chars().last().filter(|c| "xyz".contains(*c))?;
     let quantity = &last[..last.len() - 1];
@@ -425,7 +433,7 @@ struct Groups {
 }
 
 impl Groups {
-    fn of(channels: &[InferredChannel]) -> Self {
+    fn of(channels: &[InferredChannel], axes: &Axes) -> Self {
         let mut names: Vec<String> = Vec::new();
         let alive = |c: &InferredChannel| c.range.is_some_and(|[low, high]| high > low);
         let moves = |c: &&InferredChannel| matches!(kind(c), Kind::Velocity | Kind::Displacement);
@@ -438,7 +446,8 @@ impl Groups {
             ..Self::default()
         };
         groups.all = moving().filter_map(|c| groups.of_channel(c)).collect();
-        for channel in moving().filter(|c| alive(c)) {
+        let used = axes.moving(channels).map(|(_, c)| c);
+        for channel in used.filter(moves).filter(|c| alive(c)) {
             let Some(group) = groups.of_channel(channel) else {
                 continue;
             };
@@ -479,22 +488,24 @@ impl Groups {
     }
 }
 
+/// Words for what is measured of a motion.
+const QUANTITIES: [&str; 12] = [
+    "position",
+    "velocity",
+    "speed",
+    "acceleration",
+    "force",
+    "displacement",
+    "posizione",
+    "velocità",
+    "accelerazione",
+    "forza",
+    "weg",
+    "geschwindigkeit",
+];
+
 /// What comes before the quantity in a name, or the colour behind it: "blue" of "Blue:Acceleration - x".
 fn group(name: &str) -> Option<String> {
-    const QUANTITIES: [&str; 12] = [
-        "position",
-        "velocity",
-        "speed",
-        "acceleration",
-        "force",
-        "displacement",
-        "posizione",
-        "velocità",
-        "accelerazione",
-        "forza",
-        "weg",
-        "geschwindigkeit",
-    ];
     let words = words(name);
     let at = words
         .iter()
