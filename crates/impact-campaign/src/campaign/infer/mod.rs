@@ -10,6 +10,7 @@ mod lists;
 mod look;
 mod place;
 mod roles;
+mod unlike;
 
 use std::collections::HashSet;
 use std::fs::File;
@@ -68,7 +69,8 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
         }
     }
     let all = opened.iter().flat_map(|(_, s)| records_in(s.as_ref()));
-    let places = without_notes(all.collect());
+    let mut places = without_notes(all.collect());
+    found.notes.extend(unlike::usual_first(&mut places));
     let of = |source: &dyn Source| {
         let held = places
             .iter()
@@ -97,7 +99,11 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
     let rest: Vec<PathBuf> = paths.iter().map(relative).collect();
     found.globs = globs::of(&named, &rest);
     found.records = places.len();
-    if let (Some((path, _)), Some(first)) = (records.first(), places.first()) {
+    let first_file = places.first().and_then(|first| {
+        let mut files = opened.iter();
+        files.find(|(_, source)| std::ptr::addr_eq(source.as_ref(), first.source))
+    });
+    if let (Some((path, _)), Some(first)) = (first_file, places.first()) {
         found.example = slashed(path);
         describe(*first, &mut found);
         without_runs(&places, &mut found.channels);
@@ -933,6 +939,20 @@ mod tests {
             format!("{t:.4},{:.5},{motion:.5},{contact:.2}\n", 1.5 * phase.cos())
         };
         (0..3000).map(row).collect()
+    }
+
+    #[test]
+    fn records_that_have_other_channels_than_most_are_named() {
+        let rows = driven_rows(8.0);
+        let whole = format!("t (s),current (V),vibrometer (V),contact (V)\n{rows}");
+        let bare = |row: &str| row.rsplit_once(',').map(|(kept, _)| format!("{kept}\n"));
+        let fewer: String = whole.lines().filter_map(bare).collect();
+        let [one, two] = ["b.csv", "c.csv"].map(|name| (name, whole.clone()));
+        let (found, _) = toml_of(&[("a.csv", fewer), one, two]);
+        assert_eq!(found.example, "b.csv");
+        let note = found.notes.first().expect("a note");
+        let start = "1 of 3 records have other channels than the others (without contact)";
+        assert!(note.starts_with(start), "{note}");
     }
 
     #[test]
