@@ -129,7 +129,7 @@ fn of_rows(fits: &[(&Row, Fitted)], known: Known, observations: &[Observation]) 
         others: value,
     }));
     if ratios.len() > 1 {
-        judge(&mut result, &rows, &groups, &ratios, known);
+        judge(&mut result, &rows, &groups, &ratios, known, &unlisted);
     }
     result
 }
@@ -141,9 +141,11 @@ fn judge(
     groups: &[ImpactGroup],
     ratios: &[GroupedRatio],
     known: Known,
+    unlisted: &Unlisted,
 ) {
     let trend = scatter::trend(rows, known.least).filter(is_change);
     let grouping = match trend {
+        Some(_) if rises_by_contacts(rows, known, unlisted) => between_records(groups),
         Some(trend) if known.heights => {
             let each: Vec<&Row> = rows.iter().map(|(row, _)| *row).collect();
             return heights::judge(result, &each, &trend);
@@ -154,6 +156,22 @@ fn judge(
     if let Some(grouping) = grouping {
         result.judge_structure(grouping);
     }
+}
+
+/// Whether a change of R along the bounces is none of the flights alone: contacts of one length, as their pulses show
+/// them, make R seem to rise.
+fn rises_by_contacts(rows: &[(&Row, Fitted)], known: Known, unlisted: &Unlisted) -> bool {
+    let Some(contact_s) = unlisted.contact_s else {
+        return false;
+    };
+    let without = |(row, _): &(&Row, Fitted)| {
+        let row = row.without_contacts(contact_s);
+        fitted(&row).map(|fit| (row, fit))
+    };
+    let flights: Vec<(Row, Fitted)> = rows.iter().filter_map(without).collect();
+    let flights: Vec<(&Row, Fitted)> = flights.iter().map(|(row, fit)| (row, *fit)).collect();
+    let trend = scatter::trend(&flights, known.least);
+    !trend.as_ref().is_some_and(is_change)
 }
 
 /// R with the error that the rows leave of it and what times do not contain.
@@ -560,6 +578,42 @@ mod tests {
             });
             let share = held.count() as f64 / 200.0;
             assert!(share > 0.9, "{contact_s} {impacts} {throws}: {share}");
+        }
+    }
+
+    #[test]
+    fn valid_contacts_whose_length_the_pulses_show_are_no_change_of_r() {
+        use rand::SeedableRng;
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(20_261_130);
+        let mut told = |slope: f64, pulse_s: f64| {
+            let mut flight = 0.6;
+            let times = (0..9).scan(1.0, |t, k| {
+                let hit = *t + 1e-4 * normal(&mut rng);
+                *t += flight + 0.008;
+                flight *= 0.78 + slope * f64::from(k);
+                Some(hit)
+            });
+            let mut observed = timed("plate", &times.collect::<Vec<_>>());
+            for impact in &mut observed.impacts {
+                impact.contact_duration_s = Some(pulse_s);
+            }
+            let found = pooled(&[observed]).expect("a result");
+            (
+                found.fits,
+                found.parameters.restitution.and_then(|r| r.interval95),
+            )
+        };
+        for _ in 0..20 {
+            // a force shows the contact itself, an amplifier may lengthen the pulse
+            for pulse_s in [0.008, 0.012] {
+                let (fits, interval) = told(0.0, pulse_s);
+                let [low, high] = interval.expect("an interval");
+                assert!(
+                    fits == Some(true) && low < 0.78 && 0.78 < high,
+                    "{low} {high}"
+                );
+            }
+            assert_eq!(told(0.01, 0.008).0, Some(false));
         }
     }
 

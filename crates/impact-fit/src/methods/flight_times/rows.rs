@@ -50,6 +50,21 @@ impl Row {
         }
     }
 
+    /// The row with its flights alone: without the contacts of a length, s, at which they begin.
+    pub(super) fn without_contacts(&self, contact_s: f64) -> Self {
+        let listed = match &self.listed {
+            Listed::Times(times_s) => {
+                let times = times_s.iter().enumerate();
+                Listed::Times(times.map(|(k, t)| t - k as f64 * contact_s).collect())
+            }
+            heights @ Listed::Heights(_) => heights.clone(),
+        };
+        Self {
+            listed,
+            ..self.clone()
+        }
+    }
+
     /// Number of impacts.
     pub(super) fn impacts(&self) -> usize {
         match &self.listed {

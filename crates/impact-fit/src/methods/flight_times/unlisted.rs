@@ -35,6 +35,8 @@ pub(super) struct Unlisted {
     pub(super) change: f64,
     /// Standard error of R by them.
     pub(super) error: f64,
+    /// The most likely length of the contacts, s, where both edges of their pulses are known.
+    pub(super) contact_s: Option<f64>,
 }
 
 impl Unlisted {
@@ -46,7 +48,8 @@ impl Unlisted {
         observations: &[Observation],
         stated_s: Option<f64>,
     ) -> Self {
-        let unknowns = tried_of_all(rows, observations);
+        let pulse_s = pulse_s(rows, observations);
+        let unknowns = tried_of_all(rows, pulse_s);
         let drags: Vec<f64> = by_ratio(DRAGS_PER_S2, TRIED).collect();
         let changes: Vec<Vec<RowChange>> = unknowns
             .iter()
@@ -59,6 +62,11 @@ impl Unlisted {
         let logarithms = likelihoods(rows, (&changes, &drags), stated_s);
         let best = logarithms.iter().flatten().copied();
         let best = best.fold(f64::NEG_INFINITY, f64::max);
+        let likely =
+            |logarithms: &[f64]| logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let lengths = unknowns.iter().zip(&logarithms);
+        let likeliest = lengths.max_by(|a, b| likely(a.1).total_cmp(&likely(b.1)));
+        let contact_s = pulse_s.and(likeliest).map(|(length_s, _)| *length_s);
         let weight = |own: &RowEstimate| own.error.max(1e-9).powi(-2);
         let all: f64 = estimates.iter().map(|own| weight(own)).sum();
         let mean = |of_rows: &[RowChange], drag: f64| {
@@ -71,7 +79,10 @@ impl Unlisted {
             let each = drags.iter().zip(logarithms);
             each.map(|(drag, logarithm)| (mean(of_rows, *drag), (logarithm - best).exp()))
         });
-        Self::over(tried.collect())
+        Self {
+            contact_s,
+            ..Self::over(tried.collect())
+        }
     }
 
     /// Over changes with their likelihoods: their mean, and the error of which 1.96 hold [`CENTRAL`].
@@ -95,6 +106,7 @@ impl Unlisted {
         Self {
             change,
             error: (change - low).max(high - change).max(0.0) / NORMAL_975,
+            contact_s: None,
         }
     }
 }
@@ -113,22 +125,28 @@ fn offsets_m(falls: &[&Fall]) -> Vec<f64> {
     some.chain(std::iter::repeat_n(0.0, TRIED / 2)).collect()
 }
 
+/// Median length of the pulses of the contacts, s, where times of impacts are listed with both edges.
+fn pulse_s(rows: &[(&Row, Fitted)], observations: &[Observation]) -> Option<f64> {
+    let times = rows.iter().filter(|(row, _)| row.falls().is_none());
+    let pulses = times.flat_map(|(row, _)| {
+        let impacts = observations[row.record].impacts.iter();
+        impacts.filter_map(|i| i.contact_duration_s)
+    });
+    robust::median(&pulses.collect::<Vec<_>>())
+}
+
 /// What is tried of the unknown of all impacts: heights by which all may be too great, m, or lengths of contacts, s. These
-/// are up to those that the list contains with both edges, as an instrument may make a pulse longer than the touch; else
+/// are up to those of pulses with both edges, as an instrument may make a pulse longer than the touch; else
 /// all usual ones that leave flights.
-fn tried_of_all(rows: &[(&Row, Fitted)], observations: &[Observation]) -> Vec<f64> {
+fn tried_of_all(rows: &[(&Row, Fitted)], pulse_s: Option<f64>) -> Vec<f64> {
     let falls = rows.iter().filter_map(|(row, _)| row.falls());
     let falls: Vec<&Fall> = falls.flatten().collect();
     if !falls.is_empty() {
         return offsets_m(&falls);
     }
-    let listed = rows.iter().flat_map(|(row, _)| {
-        let impacts = observations[row.record].impacts.iter();
-        impacts.filter_map(|i| i.contact_duration_s)
-    });
     let flights = rows.iter().flat_map(|(row, _)| row.flights_s());
     let longest_s = 0.5 * flights.flatten().fold(f64::INFINITY, f64::min);
-    match robust::median(&listed.collect::<Vec<_>>()) {
+    match pulse_s {
         Some(pulse_s) => {
             let share = |k: usize| k as f64 / (TRIED - 1) as f64;
             (0..TRIED)
