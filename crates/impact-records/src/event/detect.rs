@@ -269,11 +269,7 @@ fn freely_every(record: &Record, rig: RigKind, closed: &[Closed], stride: usize)
     let found = match kinematics.relative.velocity {
         Some(_) => free_flight::detect(&kinematics, rig, &closed),
         None => free_flight::FreeFlights {
-            impacts: without_speeds(
-                &from_contact_alone(&closed, usize::MAX).candidates,
-                None,
-                kinematics.rate_hz,
-            ),
+            impacts: pulses(&closed, kinematics.rate_hz),
             jump_samples: 1,
             flags: Vec::new(),
         },
@@ -301,6 +297,18 @@ fn freely_every(record: &Record, rig: RigKind, closed: &[Closed], stride: usize)
         flags: found.flags,
         ringing: None,
     }
+}
+
+/// Impacts between free flights that a contact alone shows, each as long as its pulse: a sample more than are closed, at
+/// most.
+fn pulses(closed: &[Closed], rate_hz: f64) -> Vec<Impact> {
+    let candidates = from_contact_alone(closed, usize::MAX).candidates;
+    let impacts = without_speeds(&candidates, None, rate_hz).into_iter();
+    let lasting = |(impact, pulse): (Impact, &Closed)| Impact {
+        contact_duration_s: Some((pulse.samples() + 1) as f64 / rate_hz),
+        ..impact
+    };
+    impacts.zip(closed).map(lasting).collect()
 }
 
 /// Impacts that the record states as a list of times.

@@ -262,7 +262,7 @@ fn left(decays: &[Decay], rate_hz: f64) -> f64 {
 /// The decays of a channel, one after each blow.
 fn of_blows(whole: &Cleared<'_>, rate_hz: f64) -> Vec<Decay> {
     let of_part = |(begin, last): (usize, usize)| {
-        let first = whole.channel.clear_from((begin, last));
+        let first = whole.channel.clear_from(begin..last);
         let mut decays = of_motions(&whole.between(first, last), rate_hz);
         decays.iter_mut().for_each(|d| d.shift(first, rate_hz));
         decays

@@ -1,5 +1,7 @@
 //! A channel and what of the motion it shows.
 
+use std::ops::Range;
+
 /// What of a motion a channel shows.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum MotionSignal {
@@ -34,12 +36,13 @@ impl<'a> Watched<'a> {
     }
 
     /// The first sample after the last clipped one of a part; its own first sample where none is.
-    pub(super) fn clear_from(&self, (first, last): (usize, usize)) -> usize {
+    pub(super) fn clear_from(&self, part: Range<usize>) -> usize {
+        let first = part.start;
         let Some([low, high]) = self.rails else {
             return first;
         };
         let clipped = |v: &f64| *v <= low || *v >= high;
-        let at = self.values[first..last].iter().rposition(clipped);
+        let at = self.values[part].iter().rposition(clipped);
         at.map_or(first, |at| first + at + 1)
     }
 }
