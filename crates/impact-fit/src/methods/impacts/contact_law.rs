@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::methods::impacts::block::{ImpactBlock, SpeedPair};
 use crate::solver::normal::inverse;
+use impact_records::signal::robust;
 use impact_records::signal::whole;
 
 /// How R depends on the closing speed.
@@ -69,14 +70,6 @@ impl ContactLaw {
         self.criterion[0] > VERY_STRONG
     }
 
-    /// The point at which the speed after an impact exceeds that before it most surely, beyond three standard
-    /// errors: these speeds are not those of an impact.
-    pub fn gained(&self) -> Option<CurvePoint> {
-        let gain = |p: &CurvePoint| (p.restitution - 1.0) / p.standard_error;
-        let most = self.curve.iter().max_by(|a, b| gain(a).total_cmp(&gain(b)));
-        most.copied().filter(|p| gain(p) > 3.0)
-    }
-
     /// The law as one of R, which is one at most.
     #[must_use]
     pub fn within_one(mut self) -> Self {
@@ -94,6 +87,47 @@ impl ContactLaw {
         let rising = low.speed_m_s <= high.speed_m_s;
         Some(if rising { [low, high] } else { [high, low] })
     }
+}
+
+impl CurvePoint {
+    /// By how many standard errors the speed after exceeds that before.
+    fn gain(&self) -> f64 {
+        (self.restitution - 1.0) / self.standard_error
+    }
+}
+
+/// The speed at which that after an impact exceeds that before it most surely, by the law or, of few impacts without one,
+/// of all together: beyond three standard errors these speeds are not those of an impact.
+pub fn gained(block: &ImpactBlock, law: Option<&ContactLaw>) -> Option<CurvePoint> {
+    let most = match law {
+        Some(law) => law
+            .curve
+            .iter()
+            .max_by(|a, b| a.gain().total_cmp(&b.gain()))
+            .copied(),
+        None => together(block),
+    };
+    most.filter(|point| point.gain() > 3.0)
+}
+
+/// What the gains of two sensors, each of usually 0.5 %, leave open of the ratio of speeds.
+const SENSORS: f64 = 7e-3;
+
+/// The ratio of the speeds after and before all impacts, at their median speed.
+fn together(block: &ImpactBlock) -> Option<CurvePoint> {
+    let speeds: Vec<f64> = block.pairs.iter().map(|p| p.before_m_s).collect();
+    let weight = |p: &SpeedPair| p.before_m_s / block.error(p, 1.0).powi(2);
+    let squares: f64 = block.pairs.iter().map(|p| weight(p) * p.before_m_s).sum();
+    let products: f64 = block.pairs.iter().map(|p| weight(p) * p.after_m_s).sum();
+    Some(CurvePoint {
+        speed_m_s: robust::median(&speeds)?,
+        restitution: products / squares,
+        standard_error: squares
+            .sqrt()
+            .recip()
+            .hypot(block.common_error())
+            .hypot(SENSORS),
+    })
 }
 
 /// Fewest impacts from which a law is chosen.
@@ -308,6 +342,22 @@ mod tests {
         assert_eq!(chosen(|_| 0.8), Some(Law::Constant));
         assert_eq!(chosen(|v| 0.9 - 0.05 * v), Some(Law::Linear));
         assert_eq!(chosen(|v| 0.9 - 0.1 * v.powf(0.2)), Some(Law::Table));
+    }
+
+    #[test]
+    fn speeds_that_few_impacts_gain_are_found_beyond_what_sensors_leave_open() {
+        let of = |ratio: f64, count: usize| {
+            let pair = |i| {
+                SpeedPair::of_speeds(0.5 + 0.1 * i as f64, ratio * (0.5 + 0.1 * i as f64), 1e-3)
+            };
+            let block = ImpactBlock::of_pairs((0..count).map(pair).collect(), 0.0);
+            assert_eq!(contact_law(&block), None);
+            gained(&block, None).map(|p| p.restitution)
+        };
+        assert!((of(1.15, 1).expect("a gain") - 1.15).abs() < 1e-9);
+        assert!((of(1.05, 3).expect("a gain") - 1.05).abs() < 1e-9);
+        assert_eq!(of(1.01, 3), None);
+        assert_eq!(of(0.95, 3), None);
     }
 
     /// What a standard error of the time changes of the approach speeds before and after, m/s.
