@@ -17,8 +17,8 @@ use crate::motion::kind::Motion;
 use crate::motion::late_channel::LateChannel;
 use crate::motion::response::{Response, responses};
 use crate::motion::undetermined::Undetermined;
-use crate::record::{Excitation, Flag, FlagCode, Problem, Record, Role, Setting};
-use crate::signal::decay::{self, Decay, Watched};
+use crate::record::{Channel, Excitation, Flag, FlagCode, Problem, Record, Role, Setting};
+use crate::signal::decay::{self, Decay, Rails, Watched};
 use crate::signal::{columns, robust};
 
 /// Greatest and least value of a motion channel, SI, about its mean.
@@ -482,9 +482,8 @@ fn free_decays(record: &Record) -> Vec<Decay> {
 fn watched(record: &Record, of_y: bool) -> Vec<Watched<'_>> {
     let channel = |role: Role| {
         Some(Watched {
-            values: record.values(role)?,
-            quantity: role.motion_signal(),
             rails: rails(record, role),
+            ..Watched::new(record.values(role)?, role.motion_signal())
         })
     };
     Role::ALL
@@ -496,16 +495,17 @@ fn watched(record: &Record, of_y: bool) -> Vec<Watched<'_>> {
         .collect()
 }
 
-/// The values at which samples of a channel are clipped, where they are.
-fn rails(record: &Record, role: Role) -> Option<[f64; 2]> {
-    let name = &record.channel(role)?.name;
-    record.flags.iter().find_map(|flag| match flag.problem {
+/// Where samples of a channel are clipped, if they are.
+fn rails(record: &Record, role: Role) -> Option<Rails<'_>> {
+    let Channel { name, values, .. } = record.channel(role)?;
+    record.flags.iter().find_map(|flag| match &flag.problem {
         Problem::ClippedSwings {
-            ref channel,
-            low,
-            high,
-            ..
-        } if channel == name => Some([low, high]),
+            channel, low, high, ..
+        } if channel == name => Some(Rails {
+            recorded: values,
+            low: *low,
+            high: *high,
+        }),
         _ => None,
     })
 }

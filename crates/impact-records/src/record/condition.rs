@@ -158,7 +158,9 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
         flags.extend(channels.filter_map(|channel| gaps::fill(channel, excitation)));
     }
     let rate_hz = record.sample_rate_hz;
-    let crests = Crests::of(record.setting.excitation);
+    let crests = Crests {
+        excitation: record.setting.excitation,
+    };
     let in_parts = !driven && !gaps::parts(record).is_empty();
     for (channel, range) in record.channels.iter().zip(ranges) {
         // between impacts and after blows what lies outside of a gap stands for itself
@@ -447,7 +449,7 @@ fn clipped(
     }
     let name = channel.name.clone();
     let dimension = channel.dimension;
-    if crests.decay && channel.role.is_motion() {
+    if crests.excitation == Excitation::FreeDecay && channel.role.is_motion() {
         // what follows the clipped swings is a decay too
         let problem = Problem::ClippedSwings {
             channel: name,
@@ -536,25 +538,16 @@ fn at_rails(channel: &Channel, span: &Span, crests: Crests) -> usize {
 /// stop it does not.
 #[derive(Debug, Clone, Copy)]
 struct Crests {
-    /// Of swings that decay.
-    decay: bool,
-    fewest: usize,
-    /// Relative difference of the speeds before and after one.
-    alike: f64,
+    excitation: Excitation,
 }
 
 impl Crests {
-    /// Of a motion: in a free decay, where no stop is, one crest is enough, before which the mass was not held.
-    fn of(excitation: Excitation) -> Self {
-        let decay = excitation == Excitation::FreeDecay;
-        let (fewest, alike) = match excitation {
+    /// The fewest crests that show it, and the greatest relative difference of the speeds before and after one: in a free
+    /// decay, where no stop is, one crest is enough, before which the mass was not held.
+    fn needed(self) -> (usize, f64) {
+        match self.excitation {
             Excitation::FreeDecay => (1, 0.5),
             Excitation::Harmonic => (3, 0.05),
-        };
-        Self {
-            decay,
-            fewest,
-            alike,
         }
     }
 
@@ -568,8 +561,9 @@ impl Crests {
             after / before
         };
         let ratios: Vec<f64> = inner.map(ratio).collect();
-        let same = |ratio: f64| (ratio - 1.0).abs() < self.alike;
-        ratios.len() >= self.fewest && robust::median(&ratios).is_some_and(same)
+        let (fewest, alike) = self.needed();
+        let same = |ratio: f64| (ratio - 1.0).abs() < alike;
+        ratios.len() >= fewest && robust::median(&ratios).is_some_and(same)
     }
 }
 

@@ -270,11 +270,7 @@ fn watched(record: &Record) -> Vec<Watched<'_>> {
         .channels
         .iter()
         .filter(|c| !c.role.is_of_y() && c.values.iter().all(|v| v.is_finite()))
-        .map(|c| Watched {
-            values: &c.values,
-            quantity: c.role.motion_signal(),
-            rails: None,
-        })
+        .map(|c| Watched::new(&c.values, c.role.motion_signal()))
         .collect()
 }
 

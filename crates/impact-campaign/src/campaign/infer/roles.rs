@@ -198,8 +198,8 @@ fn axis(channel: &InferredChannel) -> Option<(Vec<String>, char)> {
         && QUANTITIES.contains(&quantity.as_str())
         && ["x", "y", "z"].contains(&letter.as_str())
     {
-        let before = words.len() - 2;
-        words.swap(before, before + 1);
+        let last = words.len() - 1;
+        words.swap(last - 1, last);
     }
     let last = words.pop().filter(|_| !own)?;
     let letter = last.chars().last().filter(|c| "xyz".contains(*c))?;

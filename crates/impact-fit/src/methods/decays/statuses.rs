@@ -227,11 +227,7 @@ fn prop_what_is_pressed_on_midway_is_no_friction_of_the_rig_whatever_the_sensor(
                 .iter()
                 .map(|m| m[quantity as usize] + 1e-3 * normal())
                 .collect();
-            let channel = Watched {
-                values: &values,
-                quantity,
-                rails: None,
-            };
+            let channel = Watched::new(&values, quantity);
             let decays = decay::fit_channels(&[channel], f0 * per_period as f64);
             let found = pooled(&[observation(decays)], Effects::all()).unwrap();
             told.add(&found, [f0, beta]);

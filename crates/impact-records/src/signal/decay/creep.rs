@@ -69,11 +69,7 @@ mod tests {
                 value(i / 500.0 - 0.2) + 1e-3 * (2.399_963 * i * i).sin()
             })
             .collect();
-        comes_to_rest(&Watched {
-            values: &values,
-            quantity: MotionSignal::Displacement,
-            rails: None,
-        })
+        comes_to_rest(&Watched::new(&values, MotionSignal::Displacement))
     }
 
     #[test]

@@ -71,10 +71,9 @@ impl<'a> Cleared<'a> {
 
     /// The samples between two.
     pub(super) fn between(&self, first: usize, last: usize) -> Self {
-        let channel = Watched {
-            values: &self.channel.values[first..last],
-            ..self.channel
-        };
+        // what is clipped has been left out where the record was parted
+        let values = &self.channel.values[first..last];
+        let channel = Watched::new(values, self.channel.quantity);
         Self {
             channel,
             cleared: self.cleared[first..last].to_vec(),

@@ -36,7 +36,7 @@ pub use creep::comes_to_rest;
 pub use friction::BesideFriction;
 pub use onset::OpenOnset;
 pub use prepared::Beside;
-pub use watched::{MotionSignal, Watched};
+pub use watched::{MotionSignal, Rails, Watched};
 
 /// A fitted free decay.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]

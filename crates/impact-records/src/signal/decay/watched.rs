@@ -14,6 +14,17 @@ pub enum MotionSignal {
     Acceleration,
 }
 
+/// Values beyond which samples are clipped, as they were recorded: a drift may be taken from the samples since.
+#[derive(Debug, Clone, Copy)]
+pub struct Rails<'a> {
+    /// The samples as recorded.
+    pub recorded: &'a [f64],
+    /// The lower value.
+    pub low: f64,
+    /// The upper value.
+    pub high: f64,
+}
+
 /// The samples of a channel and what of the motion they are.
 #[derive(Debug, Clone, Copy)]
 pub struct Watched<'a> {
@@ -21,28 +32,33 @@ pub struct Watched<'a> {
     pub values: &'a [f64],
     /// What they are.
     pub quantity: MotionSignal,
-    /// The values beyond which the samples are clipped, the lower one first, where they are.
-    pub rails: Option<[f64; 2]>,
+    /// Where they are clipped, if they are.
+    pub rails: Option<Rails<'a>>,
 }
 
 impl<'a> Watched<'a> {
-    /// Samples of a displacement, or of what is proportional to it.
-    pub fn displacement(values: &'a [f64]) -> Self {
+    /// Samples that are not clipped.
+    pub fn new(values: &'a [f64], quantity: MotionSignal) -> Self {
         Self {
             values,
-            quantity: MotionSignal::Displacement,
+            quantity,
             rails: None,
         }
+    }
+
+    /// Samples of a displacement, or of what is proportional to it.
+    pub fn displacement(values: &'a [f64]) -> Self {
+        Self::new(values, MotionSignal::Displacement)
     }
 
     /// The first sample after the last clipped one of a part; its own first sample where none is.
     pub(super) fn clear_from(&self, part: Range<usize>) -> usize {
         let first = part.start;
-        let Some([low, high]) = self.rails else {
+        let Some(rails) = self.rails else {
             return first;
         };
-        let clipped = |v: &f64| *v <= low || *v >= high;
-        let at = self.values[part].iter().rposition(clipped);
+        let clipped = |v: &f64| *v <= rails.low || *v >= rails.high;
+        let at = rails.recorded[part].iter().rposition(clipped);
         at.map_or(first, |at| first + at + 1)
     }
 }

@@ -42,11 +42,7 @@ fn valid_velocities_and_accelerations_tell_the_friction_too() {
         (MotionSignal::Acceleration, acceleration),
     ] {
         let values: Vec<f64> = values.into_iter().step_by(100).collect();
-        let channel = Watched {
-            values: &values,
-            quantity,
-            rails: None,
-        };
+        let channel = Watched::new(&values, quantity);
         let found = fit_channels(&[channel], 180.0)[0].beside_friction.unwrap();
         assert!(
             (found.damping_ratio / 0.02 - 1.0).abs() < 0.01,

@@ -755,7 +755,11 @@ fn valid_what_follows_clipped_swings_is_a_decay() {
     for (rail, count) in [(1.0, 1), (2.5, 2), (3.9, 2)] {
         let clipped: Vec<f64> = samples.iter().map(|v| v.clamp(-rail, rail)).collect();
         let channel = Watched {
-            rails: Some([-rail, rail]),
+            rails: Some(Rails {
+                recorded: &clipped,
+                low: -rail,
+                high: rail,
+            }),
             ..Watched::displacement(&clipped)
         };
         let found = fit_channels(&[channel], 1000.0);
@@ -765,4 +769,20 @@ fn valid_what_follows_clipped_swings_is_a_decay() {
             assert!((decay.damping_ratio - 0.01).abs() < 1e-5, "{decay:?}");
         }
     }
+}
+
+#[test]
+fn clipped_samples_are_known_where_a_drift_was_taken_from_them() {
+    let recorded = [0.0, 1.0, 1.0, 0.5, 0.2];
+    let level = recorded.map(|v| v - 0.4);
+    let channel = Watched {
+        rails: Some(Rails {
+            recorded: &recorded,
+            low: -1.0,
+            high: 1.0,
+        }),
+        ..Watched::displacement(&level)
+    };
+    assert_eq!(channel.clear_from(0..5), 3);
+    assert_eq!(channel.clear_from(3..5), 3);
 }
