@@ -422,15 +422,19 @@ fn threshold(
     unit: Option<units::Unit>,
 ) -> std::fmt::Result {
     let symbol = unit.and_then(units::symbol_of).unwrap_or("V");
-    match channel.levels {
-        Some([low, high]) => {
+    match (channel.closes_at, channel.levels) {
+        (Some(level), _) => writeln!(
+            text,
+            "threshold = \"{level:.3} {symbol}\"       # CHECK: where the mass lifts off, above the noise"
+        ),
+        (None, Some([low, high])) => {
             let level = 0.5 * (low + high);
             writeln!(
                 text,
                 "threshold = \"{level:.4} {symbol}\"      # midway between its two levels"
             )
         }
-        None => writeln!(
+        (None, None) => writeln!(
             text,
             "# threshold = \"2.5 {symbol}\"   # level between open and closed"
         ),

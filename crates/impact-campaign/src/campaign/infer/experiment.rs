@@ -5,7 +5,7 @@ use super::found::{Experiment, FolderContents, InferredChannel};
 use super::heights::{self, Heights};
 use super::look::{Detected, correlation, notes, read, strikes, strikes_once};
 use super::place::{Place, spread};
-use super::{drive, lists};
+use super::{contact, drive, lists};
 use impact_records::event::{Detection, RigKind};
 use impact_records::record::{ContactContent, FlagCode, Record, Role};
 use impact_records::signal::decay::{self, Decay, Watched};
@@ -68,7 +68,15 @@ fn of_heights(listed: &Heights, found: &mut FolderContents) {
 
 /// What records without a known channel of motion show.
 fn without_motion(some: &[Place<'_>], found: &mut FolderContents) {
-    let (index, experiment, role) = if let Some(index) = microphone(some, &found.channels) {
+    let plate = contact::bounced_on(some, &found.channels);
+    let (index, experiment, role) = if let Some((index, level)) = plate {
+        found.channels[index].closes_at = Some(level);
+        (
+            index,
+            Experiment::FreeFlight(RigKind::Single),
+            Role::Contact,
+        )
+    } else if let Some(index) = microphone(some, &found.channels) {
         let sound = Experiment::Events(ContactContent::Sound);
         (index, sound, Role::Contact)
     } else if let Some(index) = unnamed_decay(some, &found.channels) {
@@ -77,6 +85,9 @@ fn without_motion(some: &[Place<'_>], found: &mut FolderContents) {
         return;
     };
     found.experiment = experiment;
+    for channel in found.channels.iter_mut().filter(|_| role == Role::Contact) {
+        channel.role = None;
+    }
     found.channels[index].role = Some(role);
 }
 

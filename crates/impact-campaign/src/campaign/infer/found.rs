@@ -83,6 +83,8 @@ pub struct InferredChannel {
     pub levels: Option<[f64; 2]>,
     /// How often it goes from one of them to the other, in the record in which it does so most.
     pub changes: usize,
+    /// Of a contact on which a mass bounces: the level beyond which it is closed.
+    pub closes_at: Option<f64>,
     /// The sign that its impacts show: 1 toward the other mass or the stop, -1 away from it.
     pub sign: i8,
     /// Of times whose unit the file does not state: the unit that their name or their numbers show.

@@ -1,6 +1,7 @@
 //! The records in a folder of files, and the role that each channel probably has.
 
 mod bodies;
+mod contact;
 mod drive;
 mod experiment;
 mod found;
@@ -284,6 +285,7 @@ fn channels(first: Place<'_>) -> Vec<InferredChannel> {
                 || counts_rows(&values),
             role: None,
             levels,
+            closes_at: None,
             changes: levels.map_or(0, |levels| changes(&values, levels)),
             sign: 1,
             counted_in: None,
@@ -407,6 +409,7 @@ fn changes(values: &[f64], [low, high]: [f64; 2]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impact_records::event::RigKind;
     use impact_records::record::Role;
 
     fn seen(name: &str, unit: Option<&str>) -> InferredChannel {
@@ -419,6 +422,7 @@ mod tests {
             is_time: false,
             role: None,
             levels: None,
+            closes_at: None,
             changes: 0,
             sign: 1,
             counted_in: None,
@@ -1062,6 +1066,38 @@ mod tests {
     }
 
     #[test]
+    fn a_force_or_a_switch_alone_on_which_a_mass_bounces_is_a_contact() {
+        let pulses = |height: f64| {
+            let starts = [300, 800, 1200, 1520, 1776, 1981, 2145];
+            let force = |i: i32| {
+                let size = |(k, start): (usize, &i32)| {
+                    let inside = (*start..start + 5).contains(&i);
+                    if inside {
+                        height * 0.8f64.powi(k as i32)
+                    } else {
+                        0.0
+                    }
+                };
+                starts.iter().enumerate().map(size).sum::<f64>() + 0.01 * f64::from(i % 7)
+            };
+            let row = |i: i32| format!("{},{}\n", f64::from(i) * 1e-3, force(i));
+            (0..2400).map(row).collect::<String>()
+        };
+        for (heading, height, threshold) in [
+            ("Force (N)", 90.0, "threshold = \"1.8"),
+            ("Fz (N)", -90.0, "threshold = \"-1."),
+            ("Kontakt (V)", 5.0, "threshold = \"0.1"),
+        ] {
+            let file = format!("Time (s),{heading}\n{}", pulses(height));
+            let (found, text) = toml_of(&[("drop.csv", file)]);
+            assert_eq!(found.experiment, Experiment::FreeFlight(RigKind::Single));
+            assert!(text.contains("flight = \"constant_force\""), "{text}");
+            let table = text.split("[channels.contact]").nth(1).expect(heading);
+            assert!(table.contains(threshold), "{table}");
+        }
+    }
+
+    #[test]
     fn throws_side_by_side_in_a_list_are_records() {
         let rows = "1,0.1,0.2\n2,500.0,510.0\n3,900.0,930.0\n4,1220.0,\n";
         let text = format!("bounce no.,Throw 1 (ms),Throw 2 (ms)\n{rows}");
@@ -1146,7 +1182,7 @@ mod tests {
 
     #[test]
     fn valid_two_bodies_that_strike_each_other_are_two_masses_whatever_they_are_called() {
-        let double = Experiment::FreeFlight(impact_records::event::RigKind::Double);
+        let double = Experiment::FreeFlight(RigKind::Double);
         for heads in [
             "Position 3 (m),Position 4 (m)",
             "front (m),rear (m)",
@@ -1225,7 +1261,7 @@ mod tests {
         }
         let heads = "t (s),pos left (m),pos right (m),vel left (m/s),vel right (m/s)";
         let (found, text) = toml_of(&[("cradle.csv", format!("{heads}\n{rows}"))]);
-        let flights = Experiment::FreeFlight(impact_records::event::RigKind::Double);
+        let flights = Experiment::FreeFlight(RigKind::Double);
         assert_eq!(found.experiment, flights, "{text}");
     }
 

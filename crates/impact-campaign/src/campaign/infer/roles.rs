@@ -351,6 +351,13 @@ impl Kind {
 /// Most changes of a trigger in a record: to its other level, and back.
 const OF_TRIGGER: usize = 2;
 
+/// Whether a channel is a contact, or a force that may be one's.
+pub(super) fn is_touched(channel: &InferredChannel) -> bool {
+    let unit = units::unit_of(channel.unit.as_deref(), &channel.name);
+    let force = unit.is_some_and(|u| u.dimension == Dimension::Force);
+    kind(channel) == Kind::Contact || (force && kind(channel) == Kind::Drive)
+}
+
 /// Whether neither name, unit nor shape shows what a channel measures.
 pub(super) fn is_unknown(channel: &InferredChannel) -> bool {
     kind(channel) == Kind::Unknown

@@ -7,6 +7,8 @@
 //! the true speed whose error is independent of that of a − R b; of equal errors (b + R a)/(1 + R²)
 //! (Deming's regression). The laws are fitted over v̂.
 
+use std::f64::consts::SQRT_2;
+
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
@@ -90,28 +92,32 @@ impl ContactLaw {
 }
 
 impl CurvePoint {
-    /// By how many standard errors the speed after exceeds that before.
-    fn gain(&self) -> f64 {
-        (self.restitution - 1.0) / self.standard_error
+    /// By how many standard errors the speed after exceeds that before, where the sensors' gains leave open a part of
+    /// their ratio.
+    fn gain(&self, sensors: f64) -> f64 {
+        (self.restitution - 1.0) / self.standard_error.hypot(sensors)
     }
 }
 
 /// The speed at which that after an impact exceeds that before it most surely, by the law or, of few impacts without one,
-/// of all together: beyond three standard errors these speeds are not those of an impact.
-pub fn gained(block: &ImpactBlock, law: Option<&ContactLaw>) -> Option<CurvePoint> {
+/// of all together: beyond three standard errors these speeds are not those of an impact. The speeds before and after are
+/// sums over two sensors, each with a gain of the given relative standard uncertainty.
+pub fn gained(
+    block: &ImpactBlock,
+    law: Option<&ContactLaw>,
+    gain_uncertainty: f64,
+) -> Option<CurvePoint> {
+    let sensors = SQRT_2 * gain_uncertainty;
     let most = match law {
         Some(law) => law
             .curve
             .iter()
-            .max_by(|a, b| a.gain().total_cmp(&b.gain()))
+            .max_by(|a, b| a.gain(sensors).total_cmp(&b.gain(sensors)))
             .copied(),
         None => together(block),
     };
-    most.filter(|point| point.gain() > 3.0)
+    most.filter(|point| point.gain(sensors) > 3.0)
 }
-
-/// What the gains of two sensors, each of usually 0.5 %, leave open of the ratio of speeds.
-const SENSORS: f64 = 7e-3;
 
 /// The ratio of the speeds after and before all impacts, at their median speed.
 fn together(block: &ImpactBlock) -> Option<CurvePoint> {
@@ -122,11 +128,7 @@ fn together(block: &ImpactBlock) -> Option<CurvePoint> {
     Some(CurvePoint {
         speed_m_s: robust::median(&speeds)?,
         restitution: products / squares,
-        standard_error: squares
-            .sqrt()
-            .recip()
-            .hypot(block.common_error())
-            .hypot(SENSORS),
+        standard_error: squares.sqrt().recip().hypot(block.common_error()),
     })
 }
 
@@ -352,7 +354,7 @@ mod tests {
             };
             let block = ImpactBlock::of_pairs((0..count).map(pair).collect(), 0.0);
             assert_eq!(contact_law(&block), None);
-            gained(&block, None).map(|p| p.restitution)
+            gained(&block, None, 5e-3).map(|p| p.restitution)
         };
         assert!((of(1.15, 1).expect("a gain") - 1.15).abs() < 1e-9);
         assert!((of(1.05, 3).expect("a gain") - 1.05).abs() < 1e-9);

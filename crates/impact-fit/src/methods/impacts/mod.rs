@@ -52,7 +52,8 @@ impl Identifier for Impacts {
     fn weight(&self, selection: &Selection<'_>, found: &Fits) -> Option<f64> {
         let block = &selection.blocks.impact;
         let law = contact_law::contact_law(block);
-        let gained = contact_law::gained(block, law.as_ref()).is_some();
+        let gains = selection.evidence.nominal.gain_uncertainty;
+        let gained = contact_law::gained(block, law.as_ref(), gains).is_some();
         let own = found.of(self.method()).filter(|_| !gained)?;
         let told = found.waveforms().or(found.curve()).unwrap_or(own);
         let bias = bias::impact_bias(block, &told.fit, selection.evidence.nominal.effects);

@@ -67,7 +67,7 @@ pub(super) fn result(
         .remarks
         .extend(momentum::momentum(block, evidence).map(|m| m.0));
     let law = contact_law::contact_law(block);
-    let gained = contact_law::gained(block, law.as_ref());
+    let gained = contact_law::gained(block, law.as_ref(), evidence.nominal.gain_uncertainty);
     result.contact_law = law.filter(|_| gained.is_none()).map(ContactLaw::within_one);
     let ratios = structure::ratios(block, evidence.observations);
     if !ratios.is_empty() {
