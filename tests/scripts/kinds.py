@@ -28,6 +28,9 @@ class Kind:
     # the rig
     machine: str = "double"
     restitution: tuple = (0.6, 0.9)
+    frequency_hz: tuple = (11.0, 16.0)
+    damping: tuple = (0.03, 0.09)
+    deflection_m: tuple = (0.5e-3, 1.5e-3)  # by the amplitude of the force, static
     mass_ratio: float = 1.0  # of y over x
     masses_stated: bool = False
     stiffness_ratio: float = 0.0  # of y over x; 0: drawn
@@ -177,4 +180,13 @@ KINDS = {
     "steps_3": Kind("boundaries in steps of 3 %", boundary_step=0.03),
     "steps_1": Kind("boundaries in steps of 1 %", boundary_step=0.01),
     "steps_0.3": Kind("boundaries in steps of 0.3 %", boundary_step=0.003),
+    # rigs of other sizes
+    "slow_rig": Kind("f0 2 to 4 Hz, 5 s at 500 Hz", frequency_hz=(2.0, 4.0), duration_s=5.0, rate_hz=500.0, settle_s=30.0),
+    "slow_short": Kind("f0 3 to 5 Hz, records of 1 s", frequency_hz=(3.0, 5.0), settle_s=25.0),
+    "fast_rig": Kind("f0 60 to 120 Hz at 10 kHz, x_st 20 to 60 µm", frequency_hz=(60.0, 120.0), rate_hz=1e4, settle_s=2.0, deflection_m=(2e-5, 6e-5)),
+    "fast_2k": Kind("f0 60 to 120 Hz at 2 kHz", frequency_hz=(60.0, 120.0), settle_s=2.0, deflection_m=(2e-5, 6e-5)),
+    "light": Kind("β 0.004 to 0.01", damping=(0.004, 0.01), settle_s=40.0),
+    "heavy": Kind("β 0.12 to 0.2", damping=(0.12, 0.2)),
+    "plastic": Kind("R 0.15 to 0.4", restitution=(0.15, 0.4)),
+    "elastic": Kind("R 0.93 to 0.98", restitution=(0.93, 0.98)),
 }

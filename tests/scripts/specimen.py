@@ -15,9 +15,9 @@ def draw(seed, kind):
     low, high = kind.restitution
     d = {
         "R": low + (high - low) * rng.random(),
-        "beta": rng.uniform(0.03, 0.09),
-        "f0": rng.uniform(11.0, 16.0),
-        "xst_m": rng.uniform(0.5e-3, 1.5e-3),
+        "beta": rng.uniform(*kind.damping),
+        "f0": rng.uniform(*kind.frequency_hz),
+        "xst_m": rng.uniform(*kind.deflection_m),
         "m_kg": rng.uniform(1.0, 3.0),
         "fy": 1.0 + rng.uniform(-0.03, 0.03),
         "ky": 1.0 + rng.uniform(-0.02, 0.02),

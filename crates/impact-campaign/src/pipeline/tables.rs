@@ -187,7 +187,7 @@ const IMPACTS: &[(&str, Get<ImpactRow>)] = &[
         "closing_speed_after_m_s",
         Get::Number(|r| r.1.approach_speed_after_m_s),
     ),
-    ("speed_error_m_s", Get::Number(|r| r.1.speed_error_m_s)),
+    ("speed_error_m_s", Get::Number(|r| r.1.speed_error_m_s())),
     ("velocity_x_before_m_s", Get::Number(|r| before(r.1.x))),
     ("velocity_x_after_m_s", Get::Number(|r| after(r.1.x))),
     ("velocity_y_before_m_s", Get::Number(|r| before(r.1.y))),

@@ -221,7 +221,7 @@ fn scatter(
         record: input.observations[p.observation].record.clone(),
         before_m_s: p.before_m_s,
         after_m_s: p.after_m_s,
-        error_m_s: p.error_m_s,
+        error_m_s: p.error_m_s(),
     };
     (!pairs.is_empty()).then(|| ImpactScatter {
         specimen: specimen.cloned(),

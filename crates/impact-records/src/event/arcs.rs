@@ -138,8 +138,8 @@ pub(super) fn jump_centre(
 /// Speeds of one signal before and after a candidate, as they were read at a time.
 pub(super) struct Reading {
     pub speeds: MassSpeeds,
-    /// Standard error of either by noise, m/s.
-    pub error_m_s: f64,
+    /// Standard errors of both by noise, m/s.
+    pub errors_m_s: [f64; 2],
     /// What either changes by per sample that the time is later, m/s.
     pub slopes_m_s: [f64; 2],
 }
@@ -158,7 +158,7 @@ pub(super) fn read(
             before_m_s: before.value(time),
             after_m_s: after.value(time),
         },
-        error_m_s: velocity.noise * before.error_factor(time).max(after.error_factor(time)),
+        errors_m_s: [&before, &after].map(|flight| velocity.noise * flight.error_factor(time)),
         slopes_m_s: [before.slope(time), after.slope(time)],
     })
 }

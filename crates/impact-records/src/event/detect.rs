@@ -959,7 +959,7 @@ mod tests {
                 let [Some(before), Some(after)] = speeds else {
                     panic!("{impact:?}");
                 };
-                let error = impact.speed_error_m_s.unwrap() * 1.3 / before;
+                let error = impact.speed_error_m_s().unwrap() * 1.3 / before;
                 assert!(
                     (-after / before - 0.8).abs() < 4.0 * error.max(0.01),
                     "{seed} {impact:?}"

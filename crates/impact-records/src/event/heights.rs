@@ -22,7 +22,9 @@ pub(super) fn by_heights(heights_m: &[f64], known: ListedTimes) -> Vec<Impact> {
             impacts.push(Impact {
                 approach_speed_before_m_s: Some(before),
                 approach_speed_after_m_s: Some(-after),
-                speed_error_m_s: stated.filter(|_| known.height_m > 0.0),
+                speed_errors_m_s: stated
+                    .filter(|_| known.height_m > 0.0)
+                    .map(|error| [error; 2]),
                 source: DetectionSource::Heights,
                 ..Impact::timed(drop_s + fall_s, by_digit_s)
             });

@@ -56,8 +56,8 @@ pub struct Impact {
     /// bodies separate.
     #[serde(rename = "closing_speed_after_m_s")]
     pub approach_speed_after_m_s: Option<f64>,
-    /// Standard error of either approach speed, m/s, by noise.
-    pub speed_error_m_s: Option<f64>,
+    /// Standard errors of the approach speeds before and after, m/s, by noise.
+    pub speed_errors_m_s: Option<[f64; 2]>,
     /// What either approach speed changes by where the impact is later by the standard error of its
     /// time, m/s; `None` where that is part of their errors.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -166,6 +166,12 @@ impl Impact {
         }
     }
 
+    /// Standard error of either approach speed, the greater of both, m/s.
+    pub fn speed_error_m_s(&self) -> Option<f64> {
+        self.speed_errors_m_s
+            .map(|[before, after]| before.max(after))
+    }
+
     /// An impact of which nothing is known but its time and the standard error of that.
     pub(super) fn timed(time_s: f64, time_error_s: f64) -> Self {
         Self {
@@ -174,7 +180,7 @@ impl Impact {
             drive_phase_rad: None,
             approach_speed_before_m_s: None,
             approach_speed_after_m_s: None,
-            speed_error_m_s: None,
+            speed_errors_m_s: None,
             speeds_by_time_m_s: None,
             x: None,
             y: None,

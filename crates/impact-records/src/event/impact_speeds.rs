@@ -27,7 +27,7 @@ pub(super) fn impacts(
         let velocity = kinematics.relative.velocity.as_ref()?;
         let mut reading = read(velocity, arcs, i, instants[i])?;
         let constants = integrated::error_of_constants(velocity, i, instants)?;
-        reading.error_m_s = reading.error_m_s.hypot(constants);
+        reading.errors_m_s = reading.errors_m_s.map(|error| error.hypot(constants));
         Some(reading)
     };
     let delays = contact.map_or([0.0; 2], |c| c.delays);
@@ -60,7 +60,7 @@ pub(super) fn impacts(
                 drive_phase_rad: drive.map(|d| d.phase_at(time_s)),
                 approach_speed_before_m_s: approach.as_ref().map(|r| r.speeds.before_m_s),
                 approach_speed_after_m_s: approach.as_ref().map(|r| r.speeds.after_m_s),
-                speed_error_m_s: approach.as_ref().map(|r| r.error_m_s),
+                speed_errors_m_s: approach.as_ref().map(|r| r.errors_m_s),
                 speeds_by_time_m_s: approach.as_ref().map(by_time),
                 x: single(of(&kinematics.x, i, delays[0])),
                 y: single(of(&kinematics.y, i, delays[1])),
@@ -108,13 +108,13 @@ fn contact_speeds(
     };
     let acceleration = 0.5 * (before.slope(start) + after.slope(end));
     let push = -contact.profile.drift() * contact.duration * acceleration;
-    let error = before.error_factor(start).max(after.error_factor(end));
+    let errors = [before.error_factor(start), after.error_factor(end)];
     let reading = Reading {
         speeds: MassSpeeds {
             before_m_s: before.value(start) + own(0, start),
             after_m_s: after.value(end) + own(1, end),
         },
-        error_m_s: relative.noise * error,
+        errors_m_s: errors.map(|factor| relative.noise * factor),
         slopes_m_s: [before.slope(start), after.slope(end)],
     };
     Some(ContactSpeeds {

@@ -110,7 +110,7 @@ fn without(mut falls: Vec<Fall>, left_out: &dyn Fn(&Fall) -> bool) -> Vec<Fall> 
 pub(super) fn known(records: &[(usize, &Observation)]) -> Known {
     let impacts = || records.iter().flat_map(|(_, o)| &o.impacts);
     let speed = |i: &Impact| i.approach_speed_before_m_s.unwrap_or(0.0);
-    let stated = impacts().filter_map(|i| Some(i.speed_error_m_s? * speed(i) / GRAVITY_M_S2));
+    let stated = impacts().filter_map(|i| Some(i.speed_error_m_s()? * speed(i) / GRAVITY_M_S2));
     let stated = robust::median(&stated.collect::<Vec<_>>());
     let digit = impacts().map(|i| i.time_error_s * speed(i));
     let digit = robust::median(&digit.collect::<Vec<_>>());

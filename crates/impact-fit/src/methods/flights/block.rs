@@ -304,7 +304,7 @@ fn node(together: bool, impact: &Impact, (missed, integrated): (f64, bool)) -> O
         )
     };
     let closing = impact.approach_speed_before_m_s?;
-    let noise = impact.speed_error_m_s? / masses.sqrt();
+    let noise = impact.speed_error_m_s()? / masses.sqrt();
     let by_time = impact.speeds_by_time_m_s.filter(|_| integrated);
     let late = by_time.map_or(0.0, |[before, after]| before.abs().max(after.abs()));
     (closing > 6.0 * noise).then_some(Node {

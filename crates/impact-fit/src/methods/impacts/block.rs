@@ -22,8 +22,8 @@ pub struct SpeedPair {
     pub before_m_s: f64,
     /// Parting speed after, m/s (positive).
     pub after_m_s: f64,
-    /// Standard error of either by noise, m/s.
-    pub error_m_s: f64,
+    /// Standard errors of the speeds before and after by noise, m/s.
+    pub errors_m_s: [f64; 2],
     /// What a standard error of the impact's time changes of the approach speed before and after, m/s.
     pub by_time_m_s: [f64; 2],
     /// What the channels' corners would change of the speeds, toward each other.
@@ -48,7 +48,7 @@ impl SpeedPair {
             time_s: 0.0,
             before_m_s,
             after_m_s,
-            error_m_s,
+            errors_m_s: [error_m_s; 2],
             by_time_m_s: [0.0; 2],
             corner_shifts: [None, None],
             lags: [None, None],
@@ -56,6 +56,11 @@ impl SpeedPair {
             sample_place: None,
             in_record: 1.0,
         }
+    }
+
+    /// Standard error of either speed by noise, the greater of both, m/s.
+    pub fn error_m_s(&self) -> f64 {
+        self.errors_m_s[0].max(self.errors_m_s[1])
     }
 
     /// Read the speeds with the delays of the channels that waveforms tell.
@@ -207,11 +212,11 @@ const COMMON: f64 = 0.4;
 const ENOUGH_FOR_OUTLIERS: usize = 8;
 
 impl ImpactBlock {
-    /// Collect impacts without dead zone, faster than six standard errors (twelve where a contact
+    /// Collect impacts without dead zone, [`fast`] by six standard errors (twelve where a contact
     /// lasts several samples, as slow ones are then swayed by where its middle is put).
     pub fn new(rig: RigKind, observations: &[Observation], relative_error: f64) -> Self {
         let pickups = Pickups::of(observations);
-        let mut pairs: Vec<SpeedPair> = observations
+        let measured: Vec<(SpeedPair, f64)> = observations
             .iter()
             .enumerate()
             .filter(|(_, o)| !o.excluded() && !o.low_pass && tells_speeds(o))
@@ -219,36 +224,32 @@ impl ImpactBlock {
             .filter(|(_, impact)| impact.dead_zone_s == 0.0)
             // heights are a method of their own
             .filter(|(_, impact)| impact.source != DetectionSource::Heights)
-            .filter(|(i, impact)| {
+            .filter_map(|(i, impact)| {
                 let unresolved = impact.contact_duration_s.is_none();
-                let least = if unresolved && observations[*i].jump_samples > 2 {
+                let least = if unresolved && observations[i].jump_samples > 2 {
                     12.0
                 } else {
                     6.0
                 };
-                let speed = impact.approach_speed_before_m_s.unwrap_or(0.0);
-                speed > least * impact.speed_error_m_s.unwrap_or(f64::INFINITY)
-            })
-            .filter_map(|(i, impact)| {
-                Some(SpeedPair {
+                let pair = SpeedPair {
                     observation: i,
                     time_s: impact.time_s,
                     before_m_s: impact.approach_speed_before_m_s?,
                     after_m_s: -impact.approach_speed_after_m_s?
                         - impact.external_push_m_s.unwrap_or(0.0),
-                    error_m_s: impact.speed_error_m_s?,
+                    errors_m_s: impact.speed_errors_m_s?,
                     by_time_m_s: impact.speeds_by_time_m_s.unwrap_or_default(),
                     corner_shifts: impact.corner_shifts,
                     lags: impact.lags,
                     picked_up_m_s: picked_up_m_s(&pickups, &observations[i], impact.time_s),
                     sample_place: sample_place(&observations[i], impact.time_s),
                     in_record: 1.0,
-                })
+                };
+                Some((pair, least))
             })
-            .filter(|p| p.after_m_s > -4.0 * p.error_m_s)
+            .filter(|(p, _)| p.after_m_s > -4.0 * p.errors_m_s[1])
             .collect();
-        // of very many, collecting leaves room for as many more
-        pairs.shrink_to_fit();
+        let pairs = fast(measured, relative_error);
         let free = pairs
             .iter()
             .all(|p: &SpeedPair| observations[p.observation].drive.is_none());
@@ -389,26 +390,53 @@ impl ImpactBlock {
 
     /// The same of an impact alone, whatever it shares with others of its record.
     fn own_error(&self, pair: &SpeedPair, restitution: f64) -> f64 {
-        let noise = pair.error_m_s * 1f64.hypot(restitution);
-        noise
+        let [before, after] = pair.errors_m_s;
+        after
+            .hypot(restitution * before)
             .hypot(pair.late(restitution))
             .hypot(self.relative_error * pair.before_m_s)
     }
 
-    /// The true approach speed by both speeds (`contact_law`), times its logarithm over the typical one, m/s.
-    fn speed_log(&self, pair: &SpeedPair, restitution: f64) -> f64 {
+    /// The true closing speed by both speeds, m/s: its error and their deviation from R are independent.
+    pub fn closing_speed(&self, pair: &SpeedPair, restitution: f64) -> f64 {
         let deviation = pair.after_m_s - restitution * pair.before_m_s;
-        let speed = pair.before_m_s + self.shared(pair, restitution) * deviation;
+        pair.before_m_s + self.shared(pair, restitution) * deviation
+    }
+
+    /// The closing speed times its logarithm over the typical one, m/s.
+    fn speed_log(&self, pair: &SpeedPair, restitution: f64) -> f64 {
+        let speed = self.closing_speed(pair, restitution);
         speed * log_speed(speed, self.typical_approach_m_s)
     }
 
     /// Mean error of the speed before per error of after − R·before, with the sign of −1: half the slope
     /// of the variance of that over R, over the variance.
-    pub fn shared(&self, pair: &SpeedPair, restitution: f64) -> f64 {
-        let noise = restitution * pair.error_m_s.powi(2);
+    fn shared(&self, pair: &SpeedPair, restitution: f64) -> f64 {
+        let noise = restitution * pair.errors_m_s[0].powi(2);
         let time = pair.by_time_m_s[0] * pair.late(restitution);
         (noise + time) / self.own_error(pair, restitution).powi(2)
     }
+}
+
+/// The pairs whose closing speed is so many standard errors of theirs. It is that by both speeds, which does not depend
+/// on their deviation from one ratio: by the speed before alone those whose error makes it fast would be kept, and
+/// the ratio of slow impacts would be too low.
+fn fast(measured: Vec<(SpeedPair, f64)>, relative_error: f64) -> Vec<SpeedPair> {
+    let by_one = measured
+        .iter()
+        .filter(|(pair, least)| pair.before_m_s > least * pair.error_m_s());
+    let by_one = ImpactBlock::of_pairs(by_one.map(|(pair, _)| *pair).collect(), relative_error);
+    let Some(ratio) = by_one.typical_ratio() else {
+        return Vec::new();
+    };
+    let is_fast = |(pair, least): &(SpeedPair, f64)| {
+        by_one.closing_speed(pair, ratio) > least * pair.error_m_s()
+    };
+    let fast = measured.into_iter().filter(is_fast);
+    let mut pairs: Vec<SpeedPair> = fast.map(|(pair, _)| pair).collect();
+    // of very many, collecting leaves room for as many more
+    pairs.shrink_to_fit();
+    pairs
 }
 
 /// Median of |push| over the approach speed, of the contacts that last.
@@ -485,8 +513,12 @@ impl Block for ImpactBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::methods::impacts::contact_law::contact_law;
     use crate::solver::block::difference;
     use impact_records::record::Role;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
 
     fn lag(velocity: Role, displacement: Role, accelerations_m_s2: [f64; 2]) -> Option<Lag> {
         Some(Lag {
@@ -496,6 +528,39 @@ mod tests {
             assumed_s: 1e-4,
             accelerations_m_s2,
         })
+    }
+
+    /// Pairs of R = 0.7 at speeds up to twelve errors, of which either speed may be the one that is known less well.
+    fn slow(seed: u64) -> Vec<SpeedPair> {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+        let pair = |i: u32| {
+            let speed = 0.12 * f64::from(i % 397) / 397.0;
+            let errors_m_s = [[0.01, 0.01], [0.003, 0.01], [0.01, 0.003]][i as usize % 3];
+            let before_m_s = speed + errors_m_s[0] * normal();
+            let after_m_s = 0.7 * speed + errors_m_s[1] * normal();
+            SpeedPair {
+                observation: i as usize,
+                errors_m_s,
+                ..SpeedPair::of_speeds(before_m_s, after_m_s, 0.0)
+            }
+        };
+        (0..3000).map(pair).collect()
+    }
+
+    #[test]
+    fn valid_slow_impacts_that_noise_makes_fast_do_not_lower_the_ratio() {
+        for seed in 0..20 {
+            let measured = slow(seed).into_iter().map(|pair| (pair, 6.0)).collect();
+            let block = ImpactBlock::of_pairs(fast(measured, 1e-3), 1e-3);
+            assert!(block.pairs.len() > 1000, "{}", block.pairs.len());
+            let law = contact_law(&block).expect("a law");
+            assert!(!law.is_not_constant(), "{:?}", law.curve);
+            for point in &law.curve {
+                let apart = point.restitution - 0.7;
+                assert!(apart.abs() < 4.0 * point.standard_error, "{point:?}");
+            }
+        }
     }
 
     #[test]

@@ -149,9 +149,7 @@ struct Point {
 
 /// The impacts of a block about one R, with the speed by both speeds where R over it is a law.
 fn points(block: &ImpactBlock, restitution: f64, law: &dyn Fn(f64) -> f64) -> Vec<Point> {
-    let speed = |p: &SpeedPair, own: f64| {
-        p.before_m_s + block.shared(p, own) * (p.after_m_s - own * p.before_m_s)
-    };
+    let speed = |p: &SpeedPair, own: f64| block.closing_speed(p, own);
     let point = |p: &SpeedPair| Point {
         speed: speed(p, law(speed(p, restitution))),
         deviation: p.after_m_s - restitution * p.before_m_s,

@@ -19,7 +19,7 @@ fn ratio(impacts: &[&Impact]) -> Option<(f64, f64)> {
             let (x, y) = (impact.x?, impact.y?);
             let change = [x, y].map(|m| m.before_m_s - m.after_m_s);
             // The error of the approach speed is that of both masses; each change has two speeds.
-            let error = impact.speed_error_m_s?;
+            let error = impact.speed_error_m_s()?;
             let relative = (error / change[0]).hypot(error / change[1]);
             let resolved = change[0] > 0.0 && change[1] > 0.0 && relative < 0.5;
             resolved.then(|| ((change[0] / change[1]).ln(), relative.max(1e-4)))
@@ -95,7 +95,7 @@ mod tests {
                 before_m_s: 0.0,
                 after_m_s: -0.3,
             }),
-            speed_error_m_s: Some(0.003),
+            speed_errors_m_s: Some([0.003; 2]),
             ..Impact::at(1.0, 0.6)
         };
         let (found, error) = ratio(&[&impact]).expect("a ratio");

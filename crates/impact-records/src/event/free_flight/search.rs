@@ -321,7 +321,7 @@ impl<'a> Search<'a> {
         let impact = Impact {
             approach_speed_before_m_s: Some(approach),
             approach_speed_after_m_s: Some(-separation),
-            speed_error_m_s: Some(error),
+            speed_errors_m_s: Some([error; 2]),
             x: Some(of_body(0)),
             y: (self.bodies.len() > 1).then(|| of_body(1)),
             source: if touched {

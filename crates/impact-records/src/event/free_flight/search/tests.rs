@@ -130,7 +130,7 @@ fn valid_a_ball_followed_by_a_camera_gives_its_restitution() {
     for impact in &found.impacts {
         let before = impact.approach_speed_before_m_s.unwrap();
         let after = impact.approach_speed_after_m_s.unwrap();
-        let error = impact.speed_error_m_s.unwrap() / before;
+        let error = impact.speed_error_m_s().unwrap() / before;
         assert!((-after / before - restitution).abs() < 2.0 * error.max(1e-3));
         assert!(error < 0.01, "{error}");
     }
@@ -198,7 +198,7 @@ fn valid_a_ball_that_the_air_slows_gives_the_restitution_of_its_impacts() {
                     impact.approach_speed_after_m_s,
                 ];
                 let (before, after) = (before.unwrap(), after.unwrap());
-                let error = impact.speed_error_m_s.unwrap() / before;
+                let error = impact.speed_error_m_s().unwrap() / before;
                 (-after / before, 1.28 * error)
             });
             let weights = |(ratio, error): (f64, f64)| [ratio / error.powi(2), error.powi(-2)];
@@ -322,7 +322,7 @@ fn bumped((seed, by_camera): (u64, bool), all: usize, ringing: Ringing) -> Bumpe
         {
             let separation = -impact.approach_speed_after_m_s.unwrap();
             let before = impact.approach_speed_before_m_s.unwrap();
-            let error = impact.speed_error_m_s.unwrap();
+            let error = impact.speed_error_m_s().unwrap();
             // the fastest mean over 6 ms after the impact, and what friction changes on the way
             let from = crate::signal::whole::index(impact.time_s * rate_hz);
             let means = kinematics.relative.velocity.as_ref().unwrap().values[from..]
@@ -453,7 +453,7 @@ fn prop_a_push_that_ends_within_a_flight_and_a_body_at_rest_leave_r_in_its_inter
             for impact in detect(&kinematics, RigKind::Double, &[]).impacts {
                 let before = impact.approach_speed_before_m_s.unwrap();
                 let ratio = -impact.approach_speed_after_m_s.unwrap() / before;
-                let error = impact.speed_error_m_s.unwrap();
+                let error = impact.speed_error_m_s().unwrap();
                 let half = 1.96 * error * (1.0 + ratio * ratio).sqrt() / before;
                 found += 1;
                 held += usize::from((ratio - restitution).abs() < half);
