@@ -226,6 +226,9 @@ fn slack(closures: &[WaveformClosure]) -> f64 {
     1.12 * ratios.fold(f64::INFINITY, f64::min) + 1e-4
 }
 
+/// Closings of the contact in a drive period from which they may be the impacts of a motion that noise hides: z = 1/5 has as many.
+const OF_IMPACTS: f64 = 0.2;
+
 /// One record under decision.
 struct Case<'a> {
     detection: &'a Detection,
@@ -358,13 +361,20 @@ impl Case<'_> {
         let confidence = quality
             * count.agreement.powi(2)
             * cycles_factor(evidence.cycles_observed)
-            * touches_factor(&evidence)
+            * self.hidden_factor(&evidence)
             * shorter_factor(&evidence);
         Classification {
             motion,
             confidence,
             evidence,
         }
+    }
+
+    /// Each touch, and each closing of the contact, without a jump may be an impact that noise hides.
+    fn hidden_factor(&self, evidence: &MotionEvidence) -> f64 {
+        let impacts = evidence.impacts as f64;
+        let hidden = evidence.touches.max(self.detection.unsupported_pulses) as f64;
+        impacts / (impacts + hidden).max(1.0)
     }
 
     fn impactless(
@@ -380,7 +390,12 @@ impl Case<'_> {
         if self.has_harmonics_of_impacts() {
             return undetermined(Undetermined::HarmonicsWithoutImpact, evidence);
         }
-        let confidence = quality * count.agreement.powi(2);
+        let pulses = self.detection.unsupported_pulses;
+        let share = pulses as f64 / evidence.periods_observed;
+        if share > OF_IMPACTS {
+            return undetermined(Undetermined::PulsesWithoutJump { pulses }, evidence);
+        }
+        let confidence = quality * count.agreement.powi(2) * (1.0 - share);
         Classification {
             motion: Motion::Impactless,
             confidence,
@@ -429,12 +444,6 @@ fn has_dead_zone(impacts: &[Impact]) -> bool {
 /// One period and a half of the motion must be seen; two are enough.
 fn cycles_factor(cycles: f64) -> f64 {
     ((cycles - 1.0) / 0.8).clamp(0.0, 1.0)
-}
-
-/// Each touch may be an impact that is too slow to see.
-fn touches_factor(evidence: &MotionEvidence) -> f64 {
-    let (impacts, touches) = (evidence.impacts as f64, evidence.touches as f64);
-    impacts / (impacts + touches).max(1.0)
 }
 
 /// A longer period must close clearly better than every shorter one.

@@ -52,6 +52,11 @@ pub enum Undetermined {
     },
     /// No impact, but the waveform of one: several harmonics of the drive.
     HarmonicsWithoutImpact,
+    /// No impact, but a contact that closes again and again.
+    PulsesWithoutJump {
+        /// How often it closes.
+        pulses: usize,
+    },
     /// No impact, and no period.
     SettlingWithoutImpact,
     /// What the motion misses closing by dies away: the record begins before it has settled.
@@ -74,6 +79,7 @@ message_table! { "undetermined": Undetermined;
         most = count(*most);
     Self::ImpactsDoNotRepeat { periods_n } => periods = count(*periods_n);
     Self::RepeatsWithoutImpact { periods_n } => periods = count(*periods_n);
+    Self::PulsesWithoutJump { pulses } => pulses = Value::Count(*pulses);
 }
 
 fn count(n: u32) -> Value<'static> {
