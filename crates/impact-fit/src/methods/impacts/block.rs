@@ -181,6 +181,9 @@ pub fn corners_in<'a>(shifts: impl Iterator<Item = &'a Option<CornerShift>>) -> 
     corners
 }
 
+/// Standard errors from which a closing speed tells R.
+pub(crate) const FAST: f64 = 6.0;
+
 /// All impacts with measured speeds.
 #[derive(Debug, Clone)]
 pub struct ImpactBlock {
@@ -212,7 +215,7 @@ const COMMON: f64 = 0.4;
 const ENOUGH_FOR_OUTLIERS: usize = 8;
 
 impl ImpactBlock {
-    /// Collect impacts without dead zone, [`fast`] by six standard errors (twelve where a contact
+    /// Collect impacts without dead zone, [`fast`] by [`FAST`] standard errors (twice as many where a contact
     /// lasts several samples, as slow ones are then swayed by where its middle is put).
     pub fn new(rig: RigKind, observations: &[Observation], relative_error: f64) -> Self {
         let pickups = Pickups::of(observations);
@@ -227,9 +230,9 @@ impl ImpactBlock {
             .filter_map(|(i, impact)| {
                 let unresolved = impact.contact_duration_s.is_none();
                 let least = if unresolved && observations[i].jump_samples > 2 {
-                    12.0
+                    2.0 * FAST
                 } else {
-                    6.0
+                    FAST
                 };
                 let pair = SpeedPair {
                     observation: i,
@@ -551,7 +554,7 @@ mod tests {
     #[test]
     fn valid_slow_impacts_that_noise_makes_fast_do_not_lower_the_ratio() {
         for seed in 0..20 {
-            let measured = slow(seed).into_iter().map(|pair| (pair, 6.0)).collect();
+            let measured = slow(seed).into_iter().map(|pair| (pair, FAST)).collect();
             let block = ImpactBlock::of_pairs(fast(measured, 1e-3), 1e-3);
             assert!(block.pairs.len() > 1000, "{}", block.pairs.len());
             let law = contact_law(&block).expect("a law");

@@ -9,13 +9,14 @@ use crate::methods::answer::MethodResult;
 use crate::methods::blocks::Blocks;
 use crate::methods::fit::{self, FitResult};
 use crate::methods::impacts::bias::impact_bias;
-use crate::methods::impacts::block::{ImpactBlock, SpeedPair};
+use crate::methods::impacts::block::{FAST, ImpactBlock, SpeedPair};
 use crate::methods::impacts::contact_law::{self, ContactLaw, CurvePoint};
 use crate::methods::impacts::momentum;
 use crate::methods::impacts::structure::{self, Grouping};
 use crate::parameters::Coordinate;
 use crate::solver::Fit;
 use crate::statistics::quantile::NORMAL_975;
+use impact_records::event::Impact;
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
 
@@ -171,20 +172,29 @@ fn contact_samples(block: &ImpactBlock, evidence: &Evidence<'_>) -> f64 {
     robust::median(&samples).unwrap_or(1.0)
 }
 
-/// Judge whether the impacts that R rests on stand for all.
+/// Judge whether the impacts that R rests on stand for all that are not too slow for the noise.
 fn judge_contacts(result: &mut MethodResult, observations: &[Observation]) {
     let usable = observations.iter().filter(|o| !o.excluded());
-    let impacts = usable.flat_map(|o| &o.impacts);
-    let with_speeds = impacts.filter(|i| {
-        i.approach_speed_before_m_s
-            .and(i.approach_speed_after_m_s)
-            .is_some()
-    });
-    let (used, of) = (result.observations, with_speeds.count());
+    let (used, of) = (result.observations, usable.map(fast_impacts).sum());
     if of >= FEWEST_IMPACTS && (used as f64) < USABLE * of as f64 {
         result.fits = Some(false);
         result.remarks.push(Remark::FewUsable { used, of });
     }
+}
+
+/// Impacts of a record with speeds, of a driven one without those that noise alone makes too slow: its longest flights
+/// show what noise leaves of a speed.
+fn fast_impacts(o: &Observation) -> usize {
+    let errors = o.impacts.iter().filter_map(Impact::speed_error_m_s);
+    let noise = errors.fold(f64::INFINITY, f64::min);
+    let slowest = if o.drive.is_some() { FAST * noise } else { 0.0 };
+    let measured = o.impacts.iter().filter(|i| {
+        let before = i
+            .approach_speed_before_m_s
+            .filter(|_| i.approach_speed_after_m_s.is_some());
+        before.is_some_and(|speed| speed > slowest)
+    });
+    measured.count()
 }
 
 /// Speeds that impacts seem to gain are not those of impacts: they tell no R.
@@ -220,5 +230,44 @@ fn widen(restitution: &mut Estimate, systematic: f64) {
             .hypot(NORMAL_975 * systematic);
         restitution.standard_error = Some(error.hypot(systematic));
         restitution.interval95 = Some([(value - half).max(0.0), (value + half).min(1.0)]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impact_records::event::DriveTone;
+    use impact_records::motion::Motion;
+
+    /// A record of 20 impacts at 0.3 m/s with an error and five at 1 m/s that are known to 0.1 m/s.
+    fn record(error_m_s: f64) -> Observation {
+        let impact = |(i, speed, error): (u32, f64, f64)| Impact {
+            approach_speed_after_m_s: Some(-0.8 * speed),
+            speed_errors_m_s: Some([error; 2]),
+            ..Impact::at(f64::from(i), speed)
+        };
+        let slow = (0..20).map(|i| (i, 0.3, error_m_s));
+        let impacts = slow.chain((20..25).map(|i| (i, 1.0, 0.1)));
+        Observation {
+            drive: Some(DriveTone::at(10.0, 1.0)),
+            impacts: impacts.map(impact).collect(),
+            ..Observation::of("r", 10.0, Motion::Impactless)
+        }
+    }
+
+    #[test]
+    fn impacts_that_noise_makes_too_slow_are_not_those_of_masses_that_stay_together() {
+        let noisy = record(0.1);
+        assert_eq!(fast_impacts(&noisy), 5);
+        // between free flights the errors are not those of noise alone
+        let free = Observation {
+            drive: None,
+            ..noisy
+        };
+        assert_eq!(fast_impacts(&free), 25);
+        // behind short flights the speeds are less sure than noise makes them elsewhere in the record
+        let mut short = record(0.3);
+        short.impacts[24].speed_errors_m_s = Some([0.01; 2]);
+        assert_eq!(fast_impacts(&short), 25);
     }
 }
