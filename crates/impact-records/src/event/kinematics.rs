@@ -80,6 +80,18 @@ impl Series {
         measured + 2 * self.spread
     }
 
+    /// Deviation of white noise that is as large as the noise of this velocity at a frequency, in periods per sample:
+    /// differences of displacements over two samples have most of theirs at a quarter period per sample.
+    pub(crate) fn noise_at(&self, frequency: f64) -> f64 {
+        let factor = match self.role {
+            Role::DisplacementX | Role::DisplacementY => {
+                2f64.sqrt() * (std::f64::consts::TAU * frequency).sin().abs()
+            }
+            _ => 1.0,
+        };
+        self.noise * factor
+    }
+
     /// Whether it is a velocity by integrating an acceleration: what it is off changes by its noise from sample to
     /// sample, and each flight between impacts has a constant of its own.
     pub(super) fn is_integrated(&self) -> bool {
@@ -379,7 +391,7 @@ fn combined(
 #[cfg(test)]
 impl Series {
     /// A velocity of mass x with a noise of 1e-3 that never passed a high-pass.
-    pub(super) fn clean(values: Vec<f64>) -> Self {
+    pub(crate) fn clean(values: Vec<f64>) -> Self {
         Self {
             role: Role::VelocityX,
             values,

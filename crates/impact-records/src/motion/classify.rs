@@ -408,7 +408,7 @@ impl Case<'_> {
         let kinematics = &self.detection.kinematics;
         let velocity = kinematics.relative.velocity.as_ref();
         let period = self.period_s * kinematics.rate_hz;
-        velocity.is_some_and(|v| harmonics::are_of_impacts(&v.values, v.noise, period))
+        velocity.is_some_and(|v| harmonics::are_of_impacts(v, period))
     }
 
     fn aperiodic(&self, mut evidence: MotionEvidence) -> Classification {
