@@ -45,7 +45,7 @@ fn thinned(evidence: &Evidence<'_>) -> Option<Remark> {
 
 /// Judge whether the waveforms are those of the closed-form orbits.
 fn judge(result: &mut MethodResult, block: &TrajectoryBlock, fitted: &Parameters) {
-    let mut ratios = Vec::new();
+    let (mut ratios, mut beside_noise) = (Vec::new(), Vec::new());
     for item in 0..block.items() {
         let Some(residuals) = block.residuals(item, fitted) else {
             continue;
@@ -61,12 +61,34 @@ fn judge(result: &mut MethodResult, block: &TrajectoryBlock, fitted: &Parameters
                 k += 1;
             }
         }
-        ratios.push((apart / whole.max(f64::MIN_POSITIVE)).sqrt());
+        let [all, beside] = left(apart, whole, k);
+        ratios.push(all);
+        beside_noise.push(beside);
     }
-    let Some(deviation) = robust::median(&ratios) else {
+    let (Some(share), Some(deviation)) = (robust::median(&ratios), robust::median(&beside_noise))
+    else {
         return;
     };
     result.fits = Some(deviation < WAVEFORM_DEVIATION);
-    let share = deviation;
     result.remarks.push(Remark::WaveformsUnexplained { share });
+}
+
+/// What is left of a waveform over the whole, by squares in units of the points' noise, and the same beside what noise
+/// alone leaves of so many points.
+fn left(apart: f64, whole: f64, points: usize) -> [f64; 2] {
+    let beside = (apart - points as f64).max(0.0);
+    [apart, beside].map(|squares| (squares / whole.max(f64::MIN_POSITIVE)).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_alone_is_no_misfit_of_a_waveform() {
+        // points of a waveform five times their noise, and another one off by a fifth of it
+        assert_eq!(left(100.0, 2500.0, 100), [0.2, 0.0]);
+        let [all, beside] = left(200.0, 2500.0, 100);
+        assert!((all * all - 0.08).abs() < 1e-12 && (beside - 0.2).abs() < 1e-12);
+    }
 }
