@@ -28,11 +28,7 @@ impl Message for StatedValue {
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        let (scale, unit) = match self.parameter {
-            Coordinate::Frequency => (1.0, " Hz"),
-            Coordinate::Deflection => (1e3, " mm"),
-            _ => (1.0, ""),
-        };
+        let (scale, unit) = printed_in(self.parameter);
         let (value, half) = (scale * self.value, scale * self.half_width);
         let decimals = decimals_for(half);
         vec![
@@ -41,6 +37,15 @@ impl Message for StatedValue {
             ("half", Value::Number(half, decimals)),
             ("unit", Value::Name(unit)),
         ]
+    }
+}
+
+/// By what a parameter in SI is multiplied where it is printed, and the unit behind it.
+pub(super) fn printed_in(parameter: Coordinate) -> (f64, &'static str) {
+    match parameter {
+        Coordinate::Frequency => (1.0, " Hz"),
+        Coordinate::Deflection => (1e3, " mm"),
+        _ => (1.0, ""),
     }
 }
 
