@@ -58,6 +58,10 @@ pub struct MotionEvidence {
     /// motion that has settled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub settling: Option<f64>,
+    /// The same of what grows, as by chance it does as often as it dies away where a motion wanders: R scatters from
+    /// impact to impact, or the drive is unsteady.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub growing: Option<f64>,
     /// Number of impacts in the record.
     pub impacts: usize,
     /// Times at which the masses come as close as at the impacts and no jump of velocity shows.
@@ -262,6 +266,15 @@ impl Case<'_> {
         let calm = early && !impacts.is_empty();
         evidence.settling =
             settling::disturbance(closures, chosen, closed, evidence.periods_observed, calm);
+        let reversed: Vec<WaveformClosure> =
+            closures.iter().map(WaveformClosure::reversed).collect();
+        evidence.growing = settling::disturbance(
+            &reversed,
+            &chosen.reversed(),
+            closed,
+            evidence.periods_observed,
+            false,
+        );
         if evidence.settling.is_some() && (chosen.periods_n > 1 || chosen.ratio > closed) {
             return undetermined(Undetermined::NotSettled, evidence);
         }

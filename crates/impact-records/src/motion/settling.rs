@@ -19,6 +19,14 @@ const LEAST_OF_ONE: f64 = 2e-2;
 const DYING_WHILE_OPEN: f64 = 2.5;
 
 impl WaveformClosure {
+    /// That of the waveform from its end to its begin.
+    pub(super) fn reversed(&self) -> Self {
+        Self {
+            halves: self.halves.map(|[first, second]| [second, first]),
+            ..self.clone()
+        }
+    }
+
     /// What dies away from the first half of the record to the second, over the waveform's root mean
     /// square.
     fn dying(&self, ratio: f64) -> Option<f64> {
