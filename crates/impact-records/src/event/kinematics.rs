@@ -80,16 +80,15 @@ impl Series {
         measured + 2 * self.spread
     }
 
-    /// Deviation of white noise that is as large as the noise of this velocity at a frequency, in periods per sample:
-    /// differences of displacements over two samples have most of theirs at a quarter period per sample.
-    pub(crate) fn noise_at(&self, frequency: f64) -> f64 {
-        let factor = match self.role {
-            Role::DisplacementX | Role::DisplacementY => {
-                2f64.sqrt() * (std::f64::consts::TAU * frequency).sin().abs()
-            }
-            _ => 1.0,
-        };
-        self.noise * factor
+    /// Part of a velocity that this one shows at a frequency, in periods per sample, and the deviation of white noise that
+    /// is as large as its noise there: differences of displacements over two samples show less of what is faster.
+    pub(crate) fn shown_at(&self, frequency: f64) -> (f64, f64) {
+        if !matches!(self.role, Role::DisplacementX | Role::DisplacementY) {
+            return (1.0, self.noise);
+        }
+        let turned = std::f64::consts::TAU * frequency;
+        let part = turned.sin().abs();
+        (part / turned, 2f64.sqrt() * part * self.noise)
     }
 
     /// Whether it is a velocity by integrating an acceleration: what it is off changes by its noise from sample to
