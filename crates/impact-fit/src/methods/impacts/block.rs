@@ -125,12 +125,12 @@ fn picked_up_m_s(pickups: &Pickups, o: &Observation, time_s: f64) -> [f64; 2] {
 /// Greatest error of extrapolated speeds beside the noise with which they tell R, relative.
 const EXTRAPOLATED: f64 = 1e-3;
 
-/// Whether a drive period has samples enough for polynomials to follow the flights beside an impact, and the speeds do
-/// not rest on clipped spikes.
-fn tells_speeds(o: &Observation) -> bool {
+/// Whether a record tells speeds at impacts: a drive period has samples enough for polynomials to follow the flights
+/// beside an impact, and the speeds do not rest on clipped spikes or what a low-pass has left of a jump.
+pub(super) fn tells_speeds(o: &Observation) -> bool {
     let per_period = o.drive.map(|drive| o.sample_rate_hz / drive.frequency_hz);
     let follows = |per_period| extrapolation_error(per_period) < EXTRAPOLATED;
-    per_period.is_none_or(follows) && !o.speeds_lack_spikes()
+    !o.excluded() && !o.low_pass && per_period.is_none_or(follows) && !o.speeds_lack_spikes()
 }
 
 /// Why speeds at impacts give a fit its first R and no more.
@@ -182,7 +182,14 @@ pub fn corners_in<'a>(shifts: impl Iterator<Item = &'a Option<CornerShift>>) -> 
 }
 
 /// Standard errors from which a closing speed tells R.
-pub(crate) const FAST: f64 = 6.0;
+const FAST: f64 = 6.0;
+
+/// Standard errors from which the closing speed of an impact tells R: twice as many where a contact lasts several
+/// samples and none within it was resolved, as the speeds of slow ones are swayed by where its middle is put.
+pub(super) fn fast_from(o: &Observation, impact: &Impact) -> f64 {
+    let unresolved = impact.contact_duration_s.is_none() && o.jump_samples > 2;
+    if unresolved { 2.0 * FAST } else { FAST }
+}
 
 /// All impacts with measured speeds.
 #[derive(Debug, Clone)]
@@ -215,25 +222,18 @@ const COMMON: f64 = 0.4;
 const ENOUGH_FOR_OUTLIERS: usize = 8;
 
 impl ImpactBlock {
-    /// Collect impacts without dead zone, [`fast`] by [`FAST`] standard errors (twice as many where a contact
-    /// lasts several samples, as slow ones are then swayed by where its middle is put).
+    /// Collect impacts without dead zone, [`fast`] by the standard errors of [`fast_from`].
     pub fn new(rig: RigKind, observations: &[Observation], relative_error: f64) -> Self {
         let pickups = Pickups::of(observations);
         let measured: Vec<(SpeedPair, f64)> = observations
             .iter()
             .enumerate()
-            .filter(|(_, o)| !o.excluded() && !o.low_pass && tells_speeds(o))
+            .filter(|(_, o)| tells_speeds(o))
             .flat_map(|(i, o)| o.impacts.iter().map(move |impact| (i, impact)))
             .filter(|(_, impact)| impact.dead_zone_s == 0.0)
             // heights are a method of their own
             .filter(|(_, impact)| impact.source != DetectionSource::Heights)
             .filter_map(|(i, impact)| {
-                let unresolved = impact.contact_duration_s.is_none();
-                let least = if unresolved && observations[i].jump_samples > 2 {
-                    2.0 * FAST
-                } else {
-                    FAST
-                };
                 let pair = SpeedPair {
                     observation: i,
                     time_s: impact.time_s,
@@ -248,7 +248,7 @@ impl ImpactBlock {
                     sample_place: sample_place(&observations[i], impact.time_s),
                     in_record: 1.0,
                 };
-                Some((pair, least))
+                Some((pair, fast_from(&observations[i], impact)))
             })
             .filter(|(p, _)| p.after_m_s > -4.0 * p.errors_m_s[1])
             .collect();

@@ -9,7 +9,7 @@ use crate::methods::answer::MethodResult;
 use crate::methods::blocks::Blocks;
 use crate::methods::fit::{self, FitResult};
 use crate::methods::impacts::bias::impact_bias;
-use crate::methods::impacts::block::{FAST, ImpactBlock, SpeedPair};
+use crate::methods::impacts::block::{ImpactBlock, SpeedPair, fast_from, tells_speeds};
 use crate::methods::impacts::contact_law::{self, ContactLaw, CurvePoint};
 use crate::methods::impacts::momentum;
 use crate::methods::impacts::structure::{self, Grouping};
@@ -174,7 +174,7 @@ fn contact_samples(block: &ImpactBlock, evidence: &Evidence<'_>) -> f64 {
 
 /// Judge whether the impacts that R rests on stand for all that are not too slow for the noise.
 fn judge_contacts(result: &mut MethodResult, observations: &[Observation]) {
-    let usable = observations.iter().filter(|o| !o.excluded());
+    let usable = observations.iter().filter(|o| tells_speeds(o));
     let (used, of) = (result.observations, usable.map(fast_impacts).sum());
     if of >= FEWEST_IMPACTS && (used as f64) < USABLE * of as f64 {
         result.fits = Some(false);
@@ -182,17 +182,18 @@ fn judge_contacts(result: &mut MethodResult, observations: &[Observation]) {
     }
 }
 
-/// Impacts of a record with speeds, of a driven one without those that noise alone makes too slow: its longest flights
-/// show what noise leaves of a speed.
+/// Impacts of a record with speeds, of a driven one without those that noise alone makes too slow: the best known quarter
+/// shows what noise leaves of a speed behind a long flight.
 fn fast_impacts(o: &Observation) -> usize {
     let errors = o.impacts.iter().filter_map(Impact::speed_error_m_s);
-    let noise = errors.fold(f64::INFINITY, f64::min);
-    let slowest = if o.drive.is_some() { FAST * noise } else { 0.0 };
+    let mut errors: Vec<f64> = errors.collect();
+    errors.sort_by(f64::total_cmp);
+    let noise = errors.get(errors.len() / 4).filter(|_| o.drive.is_some());
     let measured = o.impacts.iter().filter(|i| {
         let before = i
             .approach_speed_before_m_s
             .filter(|_| i.approach_speed_after_m_s.is_some());
-        before.is_some_and(|speed| speed > slowest)
+        before.is_some_and(|speed| speed > fast_from(o, i) * noise.unwrap_or(&0.0))
     });
     measured.count()
 }
@@ -267,7 +268,9 @@ mod tests {
         assert_eq!(fast_impacts(&free), 25);
         // behind short flights the speeds are less sure than noise makes them elsewhere in the record
         let mut short = record(0.3);
-        short.impacts[24].speed_errors_m_s = Some([0.01; 2]);
+        for impact in &mut short.impacts[18..] {
+            impact.speed_errors_m_s = Some([0.01; 2]);
+        }
         assert_eq!(fast_impacts(&short), 25);
     }
 }
