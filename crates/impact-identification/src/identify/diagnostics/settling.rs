@@ -2,6 +2,7 @@
 
 use impact_fit::estimate::ParameterSet;
 use impact_fit::messages::Finding;
+use impact_fit::statistics::quantile::NORMAL_975;
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
 
@@ -9,10 +10,6 @@ use impact_records::signal::robust;
 /// boundary.
 const FEWEST: usize = 3;
 const LEAST_SHARE: f64 = 0.05;
-/// Records whose disturbance dies away, over those in which one grows, up to which motions wander: by chance there are
-/// as many of each, and of motions that have not settled hardly any grows. Kinds `unsettled` and `scatter` of
-/// `tests/scripts`, seeds 66001 to 66010: 690 to 4 and 18 to 27.
-const GROWING: usize = 2;
 /// Part of a disturbance that may be left when a record begins.
 const LEFT: f64 = 1e-3;
 
@@ -31,7 +28,7 @@ pub fn not_settled(observations: &[Observation], parameters: &ParameterSet) -> O
     let growing = seen
         .iter()
         .filter(|o| o.classification.evidence.growing.is_some());
-    let wander = records <= GROWING * growing.count();
+    let wander = wander(records, growing.count());
     if records < FEWEST || (records as f64) < LEAST_SHARE * seen.len() as f64 || wander {
         return None;
     }
@@ -47,6 +44,14 @@ pub fn not_settled(observations: &[Observation], parameters: &ParameterSet) -> O
         of: seen.len(),
         wait_s,
     })
+}
+
+/// Whether disturbances die away no more often than they grow, by the sign test with continuity: of motions that wander, as
+/// where R scatters, by chance as many do either, and of motions that have not settled hardly any grows. Kinds `unsettled`
+/// and `scatter` of `tests/scripts`, seeds 66001 to 66010: 690 to 4 and 18 to 27.
+fn wander(dying: usize, growing: usize) -> bool {
+    let [dying, growing] = [dying as f64, growing as f64];
+    growing > 0.0 && dying - growing - 1.0 < NORMAL_975 * (dying + growing).sqrt()
 }
 
 #[cfg(test)]
