@@ -406,7 +406,7 @@ impl Case<'_> {
         let pulses = self.detection.unsupported_pulses;
         let share = pulses as f64 / evidence.periods_observed;
         if share > OF_IMPACTS {
-            return undetermined(Undetermined::PulsesWithoutJump { pulses }, evidence);
+            return undetermined(Undetermined::ContactAlone { pulses }, evidence);
         }
         let confidence = quality * count.agreement.powi(2) * (1.0 - share);
         Classification {

@@ -53,7 +53,7 @@ pub enum Undetermined {
     /// No impact, but the waveform of one: several harmonics of the drive.
     HarmonicsWithoutImpact,
     /// No impact, but a contact that closes again and again.
-    PulsesWithoutJump {
+    ContactAlone {
         /// How often it closes.
         pulses: usize,
     },
@@ -79,7 +79,7 @@ message_table! { "undetermined": Undetermined;
         most = count(*most);
     Self::ImpactsDoNotRepeat { periods_n } => periods = count(*periods_n);
     Self::RepeatsWithoutImpact { periods_n } => periods = count(*periods_n);
-    Self::PulsesWithoutJump { pulses } => pulses = Value::Count(*pulses);
+    Self::ContactAlone { pulses } => pulses = Value::Count(*pulses);
 }
 
 fn count(n: u32) -> Value<'static> {

@@ -8,7 +8,7 @@
 //! it may be off moves the gap at it by the closing speed, and the flight after it by the jump of
 //! the velocities.
 
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix4, Matrix4x5, Matrix5, Vector4, Vector5};
 
 use crate::methods::impacts::block::corners_in;
 use crate::parameters::own::Circumstances;
@@ -170,17 +170,14 @@ impl FlightBlock {
         let mut out = Vec::with_capacity(record.nodes.len() * (1 + 2 * measured.len()));
         for (k, node) in record.nodes.iter().enumerate() {
             let [before, after] = node.speeds_m_s(parameters, record.sum_alone());
-            let closing = (before[0] + before[1]) / speed;
             let time_error = node.time_error_s * rate;
-            let apart = Vector4::new(1.0, 0.0, 1.0, 0.0);
-            out.push(belief.learn(apart, gap, (closing * time_error).powi(2)));
             let measure = |belief: &mut Belief, speeds: [f64; 2], out: &mut Vec<Innovation>| {
                 for (row, speed_m_s) in measured.iter().zip(speeds) {
                     out.push(belief.learn(*row, speed_m_s, node.error_m_s.powi(2)));
                 }
             };
             measure(&mut belief, before, &mut out);
-            belief.bounce(&machine, time_error, scatter);
+            out.push(belief.touch_and_bounce(&machine, gap, time_error, scatter));
             measure(&mut belief, after, &mut out);
             if let Some(next) = record.nodes.get(k + 1) {
                 let drive = Drive {
@@ -358,9 +355,31 @@ impl Belief {
         }
     }
 
-    /// Newton's law at an impact whose time is off by a deviation, with an R that scatters by another.
-    fn bounce(&mut self, machine: &Machine, time_error: f64, scatter: f64) {
-        let before = self.mean;
+    /// Newton's law at an impact that fills the gap, with an R that scatters by a deviation. Its time is measured late by
+    /// an error e of a deviation: continued until then, the flight before it is beyond the gap by the closing speed times e, and the
+    /// one after it is where the change of the speeds has moved it in e.
+    fn touch_and_bounce(
+        &mut self,
+        machine: &Machine,
+        gap: f64,
+        time_error: f64,
+        scatter: f64,
+    ) -> Innovation {
+        let closing = self.mean[1] + self.mean[3];
+        let h = Vector5::new(1.0, 0.0, 1.0, 0.0, -closing);
+        let mut covariance = Matrix5::zeros();
+        covariance
+            .fixed_view_mut::<4, 4>(0, 0)
+            .copy_from(&self.covariance);
+        covariance[(4, 4)] = time_error * time_error;
+        let along = covariance * h;
+        let spread = h.dot(&along);
+        let apart = gap - self.mean[0] - self.mean[2];
+        let gain = along / spread;
+        let once = Matrix5::identity() - gain * h.transpose();
+        covariance = once * covariance * once.transpose();
+        let learnt = gain * apart;
+        let before = self.mean + learnt.fixed_rows::<4>(0);
         let r = machine.restitution().at((before[1] + before[3]).max(0.0));
         let (mx, my) = machine.mobility();
         let mut jump = Matrix4::identity();
@@ -368,13 +387,18 @@ impl Belief {
             jump[(row, 1)] -= mobility * (1.0 + r);
             jump[(row, 3)] -= mobility * (1.0 + r);
         }
-        self.mean = jump * before;
-        let change = self.mean - before;
-        let moved = Vector4::new(change[1], 0.0, change[3], 0.0) * time_error;
+        let change = jump * before - before;
+        let moved = Vector4::new(change[1], 0.0, change[3], 0.0);
         let thrown = Vector4::new(0.0, change[1], 0.0, change[3]) * (scatter / (1.0 + r));
-        self.covariance = jump * self.covariance * jump.transpose()
-            + moved * moved.transpose()
-            + thrown * thrown.transpose();
+        self.mean = jump * before + moved * learnt[4];
+        let mut through = Matrix4x5::zeros();
+        through.fixed_view_mut::<4, 4>(0, 0).copy_from(&jump);
+        through.set_column(4, &moved);
+        self.covariance = through * covariance * through.transpose() + thrown * thrown.transpose();
+        Innovation {
+            relative: apart / spread.sqrt(),
+            spread,
+        }
     }
 
     /// Fly on for a time.
@@ -458,6 +482,7 @@ mod tests {
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
     use rand_distr::{Distribution, Normal};
+    use std::f64::consts::TAU;
 
     fn truth() -> Parameters {
         Parameters {
@@ -468,14 +493,20 @@ mod tests {
 
     /// Impacts of irregular motions, exact but for the stated errors.
     fn block(rig: RigKind) -> FlightBlock {
+        block_of(rig, 14)
+    }
+
+    /// The same of so many impacts a record.
+    fn block_of(rig: RigKind, impacts: usize) -> FlightBlock {
         let p = truth();
         let speed = p.static_deflection_m * p.natural_rate();
         let records = [(24.0, 0.2e-3), (20.0, 0.1e-3), (29.0, 0.15e-3)]
             .map(|(frequency_hz, clearance_m)| {
                 let setting = p.setting(frequency_hz, clearance_m, 1.0);
                 let machine = p.machine(rig);
-                let motion = simulate(&machine, setting, Initial::rest(), 90.0).expect("a motion");
-                let nodes = motion.impacts.iter().skip(3).take(14);
+                let motion = simulate(&machine, setting, Initial::rest(), 7.0 * impacts as f64)
+                    .expect("a motion");
+                let nodes = motion.impacts.iter().skip(3).take(impacts);
                 let nodes = nodes.map(|i| Node {
                     time_s: i.tau / p.natural_rate(),
                     time_error_s: 1e-7,
@@ -660,6 +691,46 @@ mod tests {
         }
         let mean = squares.iter().sum::<f64>() / squares.len() as f64;
         assert!((0.2..2.5).contains(&mean), "{mean} {squares:?}");
+    }
+
+    #[test]
+    fn valid_innovations_have_the_errors_that_times_and_speeds_make() {
+        // noise of a tenth of the closing speeds, and times off by a fiftieth of a radian
+        let p = truth();
+        let [error_m_s, late_s] = [
+            0.5 * p.static_deflection_m * p.natural_rate(),
+            0.02 / p.natural_rate(),
+        ];
+        let normal = Normal::new(0.0, 1.0).expect("a distribution");
+        for rig in [RigKind::Double, RigKind::Single] {
+            let mut squares = Vec::new();
+            for seed in 0..24 {
+                let mut rng = ChaCha8Rng::seed_from_u64(seed);
+                let mut block = block(rig);
+                // closing speeds of the last one are not ten times the noise
+                block.records.truncate(2);
+                for record in &mut block.records {
+                    for node in &mut record.nodes {
+                        let late = late_s * normal.sample(&mut rng);
+                        node.time_s += late;
+                        node.drive_phase_rad += TAU * record.frequency_hz * late;
+                        (node.time_error_s, node.error_m_s) = (late_s, error_m_s);
+                        for speeds in [&mut node.before_m_s, &mut node.after_m_s] {
+                            *speeds = speeds.map(|v| v + error_m_s * normal.sample(&mut rng));
+                        }
+                    }
+                }
+                let records = block.records.iter();
+                let innovations = records.flat_map(|r| block.innovations(r, &p, 0.0));
+                squares.extend(innovations.map(|i| i.relative.powi(2)));
+            }
+            let count = squares.len() as f64;
+            let mean = squares.iter().sum::<f64>() / count;
+            // as many innovations as there are states tell nothing else
+            let states = if rig == RigKind::Double { 4.0 } else { 2.0 };
+            let expected = 1.0 - states * 2.0 * 24.0 / count;
+            assert!((mean - expected).abs() < 0.05, "{rig:?}: {mean}");
+        }
     }
 
     #[test]
