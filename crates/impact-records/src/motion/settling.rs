@@ -23,7 +23,7 @@ impl WaveformClosure {
     pub(super) fn reversed(&self) -> Self {
         Self {
             halves: self.halves.map(|[first, second]| [second, first]),
-            ..self.clone()
+            ..*self
         }
     }
 
