@@ -1073,7 +1073,7 @@ mod tests {
                 let size = |(k, start): (usize, &i32)| {
                     let inside = (*start..start + 5).contains(&i);
                     if inside {
-                        height * 0.8f64.powi(k as i32)
+                        height * 0.8f64.powf(k as f64)
                     } else {
                         0.0
                     }
