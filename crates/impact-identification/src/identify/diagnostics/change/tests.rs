@@ -156,12 +156,12 @@ fn valid_sweeps_down_on_another_rig_are_named() {
         (found.verdict.kind, named)
     };
     assert_eq!(of(&records), (VerdictKind::Identified, None));
-    let (kind, named) = of(&recorded(0.76, 12.1, 72, 11));
+    let (kind, named) = of(&recorded(0.72, 12.2, 72, 11));
     // beside the noise of these records the waveforms may still fit
     assert_ne!(kind, VerdictKind::Identified);
     let truth = [
-        (Coordinate::Restitution, 0.76),
-        (Coordinate::Frequency, 12.1),
+        (Coordinate::Restitution, 0.72),
+        (Coordinate::Frequency, 12.2),
     ];
     for (value, (parameter, truth)) in named.expect("a finding").iter().zip(truth) {
         assert_eq!(value.parameter, parameter);
