@@ -6,7 +6,7 @@ use super::speeds::apart_at_one_speed;
 use impact_fit::estimate::{Estimate, Status, estimate_within};
 use impact_fit::messages::{Finding, Note, StatedValue};
 use impact_fit::methods::answer::MethodResult;
-use impact_fit::methods::impacts::block::SpeedPair;
+use impact_fit::methods::impacts::block::ImpactBlock;
 use impact_fit::parameters::Coordinate;
 use impact_fit::parameters::effect::Effect;
 use impact_fit::statistics::distribution::student_tail;
@@ -90,10 +90,10 @@ impl Change {
 
     /// Whether R of impacts of one speed is nearer to one value in both parts than to the values of the parts:
     /// then R differs with the speed, and the speed with the part.
-    pub(super) fn is_of_speed(&self, pairs: &[SpeedPair], second: &[bool]) -> bool {
+    pub(super) fn is_of_speed(&self, impacts: &ImpactBlock, second: &[bool]) -> bool {
         let restitution = self.parts.get(&Coordinate::Restitution);
         let apart = restitution.map(|[(a, _), (b, _)]| b - a);
-        let at_one_speed = apart_at_one_speed(pairs, second);
+        let at_one_speed = apart_at_one_speed(impacts, second);
         apart
             .zip(at_one_speed)
             .is_some_and(|(apart, own)| own / apart < 0.5)

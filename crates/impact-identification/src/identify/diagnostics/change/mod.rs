@@ -49,11 +49,11 @@ impl Search<'_> {
     /// other rig.
     pub fn between_groups(&self) -> Option<Change> {
         let observations = self.evidence.observations;
-        let pairs = &self.fitted.selection.blocks.impact.pairs;
+        let impacts = &self.fitted.selection.blocks.impact;
         let tried = groups(observations).into_iter().filter_map(|of| {
             let inside = observations.iter().map(|o| usize::from(of.holds(o, 0)));
             let inside: Vec<usize> = inside.collect();
-            if !explains_more_than_speed(&inside, pairs) {
+            if !explains_more_than_speed(&inside, impacts) {
                 return None;
             }
             self.by_rows(&inside).map(|(chi2, _)| (chi2, of))
@@ -83,11 +83,11 @@ impl Search<'_> {
             of,
             parts: common.collect(),
         };
-        let pairs = &self.fitted.selection.blocks.impact.pairs;
+        let impacts = &self.fitted.selection.blocks.impact;
         let differing: Vec<Coordinate> = change.differing().map(|(c, _)| *c).collect();
         let one_rig = match differing.as_slice() {
             [] => true,
-            [Coordinate::Restitution] => change.is_of_speed(pairs, &second),
+            [Coordinate::Restitution] => change.is_of_speed(impacts, &second),
             _ => false,
         };
         (!one_rig).then_some(change)

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::found::{FEWEST, LEAST_OF_R};
-use super::speeds::slope;
+use super::speeds::{Line, impacts};
 use impact_fit::methods::blocks::Blocks;
 use impact_fit::methods::selection::Selection;
 use impact_records::motion::Observation;
@@ -30,22 +30,18 @@ pub(super) fn by_impacts(
     blocks: &Blocks,
 ) -> Option<usize> {
     let mut of_records: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-    let pairs = &blocks.impact.pairs;
+    let impacts = impacts(&blocks.impact);
     let driven = |i: usize| observations[i].drive.is_some();
-    let speeds: Vec<[f64; 2]> = pairs
-        .iter()
-        .filter(|p| !driven(p.observation))
-        .map(|p| [p.before_m_s, p.after_m_s / p.before_m_s])
-        .collect();
-    let slope = slope(&speeds);
-    for pair in pairs {
-        let own = of_records.entry(ranks[pair.observation]).or_default();
-        let by_speed = if driven(pair.observation) {
+    let free = impacts.iter().filter(|i| !driven(i.observation));
+    let slope = Line::through(free, |i| i.speed_m_s, |i| i.ratio).slope;
+    for impact in &impacts {
+        let own = of_records.entry(ranks[impact.observation]).or_default();
+        let by_speed = if driven(impact.observation) {
             0.0
         } else {
-            slope * pair.before_m_s
+            slope * impact.speed_m_s
         };
-        own.push(pair.after_m_s / pair.before_m_s - by_speed);
+        own.push(impact.ratio - by_speed);
     }
     let medians = of_records.into_iter();
     let mut records: Vec<(usize, f64)> = medians
