@@ -43,25 +43,21 @@ fn bounces(values: &[f64]) -> Option<f64> {
         .collect();
     let mostly_open =
         closed.iter().filter(|c| **c).count() as f64 <= MOSTLY_OPEN * values.len() as f64;
-    let pulses = closed.chunk_by(|a, b| a == b).filter(|run| run[0]).count();
-    // the first and the last run are what precedes the first impact and follows the last
-    let mut flights: Vec<usize> = closed
-        .chunk_by(|a, b| a == b)
-        .filter(|run| !run[0])
-        .map(<[bool]>::len)
-        .collect();
-    if !*closed.first()? {
-        flights.remove(0);
-    }
-    if !*closed.last()? {
-        flights.pop();
-    }
-    let shorter = flights.windows(2).filter(|w| w[1] < w[0]).count();
-    let shorten = 3 * shorter >= 2 * flights.len().saturating_sub(1);
+    let runs: Vec<&[bool]> = closed.chunk_by(|a, b| a == b).collect();
+    let pulses = runs.iter().filter(|run| run[0]).count();
+    // what precedes the first impact and what follows the last is no flight
+    let between = runs.get(1..runs.len() - 1)?.iter();
+    let flights: Vec<usize> = between.filter(|run| !run[0]).map(|run| run.len()).collect();
     let level = rest + greatest.signum() * beyond;
     // a stated level tells by its sign which side of it is closed
     let told = (level >= 0.0) == (greatest >= 0.0);
-    (mostly_open && pulses >= FEWEST_PULSES && shorten && told).then_some(level)
+    (mostly_open && pulses >= FEWEST_PULSES && shorten(&flights) && told).then_some(level)
+}
+
+/// Whether most flights are shorter than the ones before.
+pub(super) fn shorten<T: PartialOrd>(flights: &[T]) -> bool {
+    let shorter = flights.windows(2).filter(|w| w[1] < w[0]).count();
+    3 * shorter >= 2 * flights.len().saturating_sub(1)
 }
 
 #[cfg(test)]

@@ -52,9 +52,7 @@ pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
 
 /// Give the first column of heights its role, and note those that follow.
 fn of_heights(listed: &Heights, found: &mut FolderContents) {
-    for channel in &mut found.channels {
-        channel.role = None;
-    }
+    without_roles(&mut found.channels);
     let names = listed.columns.iter().filter_map(|i| found.channels.get(*i));
     found.then = names.skip(1).map(|c| c.name.clone()).collect();
     if let Some(first) = listed
@@ -85,9 +83,7 @@ fn without_motion(some: &[Place<'_>], found: &mut FolderContents) {
         return;
     };
     found.experiment = experiment;
-    for channel in found.channels.iter_mut().filter(|_| role == Role::Contact) {
-        channel.role = None;
-    }
+    without_roles(&mut found.channels);
     found.channels[index].role = Some(role);
 }
 
@@ -225,9 +221,7 @@ fn events(place: Place<'_>, listed: &[usize], channels: &mut [InferredChannel]) 
         Some(at) => (Some(*at), ContactContent::Times),
         None => (listed.first().copied(), ContactContent::Intervals),
     };
-    for channel in channels.iter_mut() {
-        channel.role = None;
-    }
+    without_roles(channels);
     if let Some((at, channel)) = at.and_then(|at| Some((at, channels.get_mut(at)?))) {
         channel.role = Some(Role::Contact);
         let unit = channel.unit.as_deref();
@@ -263,8 +257,7 @@ fn sounds(place: Place<'_>, channel: usize) -> bool {
     let values = place.numbers(channel);
     let found = onsets::find(&values, rate_hz);
     let flights: Vec<f64> = found.windows(2).map(|w| w[1] - w[0]).collect();
-    let shorter = flights.windows(2).filter(|w| w[1] < w[0]).count();
-    found.len() >= FEWEST_SOUNDS && 3 * shorter >= 2 * flights.len().saturating_sub(1)
+    found.len() >= FEWEST_SOUNDS && contact::shorten(&flights)
 }
 
 /// Whether a record is a free decay: it swings, or comes to rest without.
@@ -317,6 +310,13 @@ fn is_one_body(record: &Record) -> bool {
     let alike = |(x, y): (&[f64], &[f64])| correlation(x, y).abs() > ONE_BODY;
     let mut both = both.peekable();
     both.peek().is_some() && both.all(alike)
+}
+
+/// Take all roles away.
+fn without_roles(channels: &mut [InferredChannel]) {
+    for channel in channels {
+        channel.role = None;
+    }
 }
 
 /// Take the roles of the second mass away.

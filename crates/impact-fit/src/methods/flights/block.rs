@@ -8,7 +8,7 @@
 //! it may be off moves the gap at it by the closing speed, and the flight after it by the jump of
 //! the velocities.
 
-use nalgebra::{Matrix4, Matrix4x5, Matrix5, Vector4, Vector5};
+use nalgebra::{Matrix4, SMatrix, SVector, Vector4, Vector5};
 
 use crate::methods::impacts::block::corners_in;
 use crate::parameters::own::Circumstances;
@@ -324,6 +324,28 @@ struct Innovation {
     spread: f64,
 }
 
+/// Take a measurement of h·state with a variance into a mean and a covariance; gives its innovation.
+fn learn<const N: usize>(
+    mean: &mut SVector<f64, N>,
+    covariance: &mut SMatrix<f64, N, N>,
+    h: SVector<f64, N>,
+    value: f64,
+    variance: f64,
+) -> Innovation {
+    let along = *covariance * h;
+    let spread = h.dot(&along) + variance;
+    let apart = value - h.dot(mean);
+    let gain = along / spread;
+    *mean += gain * apart;
+    // Joseph's form, (1 − g hᵀ) P (1 − g hᵀ)ᵀ + v g gᵀ, which rounding cannot make indefinite.
+    let once = *covariance - gain * along.transpose();
+    *covariance = once + (gain * variance - once * h) * gain.transpose();
+    Innovation {
+        relative: apart / spread.sqrt(),
+        spread,
+    }
+}
+
 /// Mean and covariance of (X, X', Y, Y'), dimensionless.
 #[derive(Debug, Clone, Copy)]
 struct Belief {
@@ -341,18 +363,7 @@ impl Belief {
 
     /// Take a measurement of h·state with a variance in; gives its innovation.
     fn learn(&mut self, h: Vector4<f64>, value: f64, variance: f64) -> Innovation {
-        let along = self.covariance * h;
-        let spread = h.dot(&along) + variance;
-        let apart = value - h.dot(&self.mean);
-        let gain = along / spread;
-        self.mean += gain * apart;
-        // Joseph's form, (1 − g hᵀ) P (1 − g hᵀ)ᵀ + v g gᵀ, which rounding cannot make indefinite.
-        let once = self.covariance - gain * along.transpose();
-        self.covariance = once + (gain * variance - once * h) * gain.transpose();
-        Innovation {
-            relative: apart / spread.sqrt(),
-            spread,
-        }
+        learn(&mut self.mean, &mut self.covariance, h, value, variance)
     }
 
     /// Newton's law at an impact that fills the gap, with an R that scatters by a deviation. Its time is measured late by
@@ -365,21 +376,14 @@ impl Belief {
         time_error: f64,
         scatter: f64,
     ) -> Innovation {
+        // with e as a fifth state
         let closing = self.mean[1] + self.mean[3];
-        let h = Vector5::new(1.0, 0.0, 1.0, 0.0, -closing);
-        let mut covariance = Matrix5::zeros();
-        covariance
-            .fixed_view_mut::<4, 4>(0, 0)
-            .copy_from(&self.covariance);
+        let mut mean = self.mean.push(0.0);
+        let mut covariance = self.covariance.fixed_resize::<5, 5>(0.0);
         covariance[(4, 4)] = time_error * time_error;
-        let along = covariance * h;
-        let spread = h.dot(&along);
-        let apart = gap - self.mean[0] - self.mean[2];
-        let gain = along / spread;
-        let once = Matrix5::identity() - gain * h.transpose();
-        covariance = once * covariance * once.transpose();
-        let learnt = gain * apart;
-        let before = self.mean + learnt.fixed_rows::<4>(0);
+        let h = Vector5::new(1.0, 0.0, 1.0, 0.0, -closing);
+        let touched = learn(&mut mean, &mut covariance, h, gap, 0.0);
+        let before = mean.fixed_rows::<4>(0).into_owned();
         let r = machine.restitution().at((before[1] + before[3]).max(0.0));
         let (mx, my) = machine.mobility();
         let mut jump = Matrix4::identity();
@@ -390,15 +394,11 @@ impl Belief {
         let change = jump * before - before;
         let moved = Vector4::new(change[1], 0.0, change[3], 0.0);
         let thrown = Vector4::new(0.0, change[1], 0.0, change[3]) * (scatter / (1.0 + r));
-        self.mean = jump * before + moved * learnt[4];
-        let mut through = Matrix4x5::zeros();
-        through.fixed_view_mut::<4, 4>(0, 0).copy_from(&jump);
+        self.mean = jump * before + moved * mean[4];
+        let mut through = jump.fixed_resize::<4, 5>(0.0);
         through.set_column(4, &moved);
         self.covariance = through * covariance * through.transpose() + thrown * thrown.transpose();
-        Innovation {
-            relative: apart / spread.sqrt(),
-            spread,
-        }
+        touched
     }
 
     /// Fly on for a time.
@@ -493,20 +493,14 @@ mod tests {
 
     /// Impacts of irregular motions, exact but for the stated errors.
     fn block(rig: RigKind) -> FlightBlock {
-        block_of(rig, 14)
-    }
-
-    /// The same of so many impacts a record.
-    fn block_of(rig: RigKind, impacts: usize) -> FlightBlock {
         let p = truth();
         let speed = p.static_deflection_m * p.natural_rate();
         let records = [(24.0, 0.2e-3), (20.0, 0.1e-3), (29.0, 0.15e-3)]
             .map(|(frequency_hz, clearance_m)| {
                 let setting = p.setting(frequency_hz, clearance_m, 1.0);
                 let machine = p.machine(rig);
-                let motion = simulate(&machine, setting, Initial::rest(), 7.0 * impacts as f64)
-                    .expect("a motion");
-                let nodes = motion.impacts.iter().skip(3).take(impacts);
+                let motion = simulate(&machine, setting, Initial::rest(), 90.0).expect("a motion");
+                let nodes = motion.impacts.iter().skip(3).take(14);
                 let nodes = nodes.map(|i| Node {
                     time_s: i.tau / p.natural_rate(),
                     time_error_s: 1e-7,

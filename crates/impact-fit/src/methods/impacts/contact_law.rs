@@ -14,7 +14,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::methods::impacts::block::{ImpactBlock, SpeedPair};
 use crate::solver::normal::inverse;
-use impact_records::signal::robust;
 use impact_records::signal::whole;
 
 /// How R depends on the closing speed.
@@ -119,16 +118,12 @@ pub fn gained(
     most.filter(|point| point.gain(sensors) > 3.0)
 }
 
-/// The ratio of the speeds after and before all impacts, at their median speed.
+/// One R for all impacts, at their median speed.
 fn together(block: &ImpactBlock) -> Option<CurvePoint> {
-    let speeds: Vec<f64> = block.pairs.iter().map(|p| p.before_m_s).collect();
-    let weight = |p: &SpeedPair| p.before_m_s / block.error(p, 1.0).powi(2);
-    let squares: f64 = block.pairs.iter().map(|p| weight(p) * p.before_m_s).sum();
-    let products: f64 = block.pairs.iter().map(|p| weight(p) * p.after_m_s).sum();
+    let one = one_restitution(block)?;
     Some(CurvePoint {
-        speed_m_s: robust::median(&speeds)?,
-        restitution: products / squares,
-        standard_error: squares.sqrt().recip().hypot(block.common_error()),
+        standard_error: one.standard_error.hypot(block.common_error()),
+        ..one
     })
 }
 
@@ -158,14 +153,18 @@ fn points(block: &ImpactBlock, restitution: f64, law: &dyn Fn(f64) -> f64) -> Ve
     block.pairs.iter().map(point).collect()
 }
 
-/// One R for all impacts, each by its error.
-fn one_restitution(block: &ImpactBlock) -> Option<f64> {
+/// One R for all impacts, each by its error, at their median speed.
+fn one_restitution(block: &ImpactBlock) -> Option<CurvePoint> {
     let typical = block.typical_ratio()?;
     // a − R b = (R' − R) v̂ at another R': the mean deviation over the speed corrects the typical one.
     let points = points(block, typical, &|_| typical);
     let sum = |of: fn(&Point) -> f64| points.iter().map(|p| of(p) / p.error.powi(2)).sum::<f64>();
     let squares = sum(|p| p.speed * p.speed);
-    (squares > 0.0).then(|| typical + sum(|p| p.speed * p.deviation) / squares)
+    (squares > 0.0).then(|| CurvePoint {
+        speed_m_s: block.typical_approach_m_s,
+        restitution: typical + sum(|p| p.speed * p.deviation) / squares,
+        standard_error: squares.sqrt().recip(),
+    })
 }
 
 struct Fitted {
@@ -191,7 +190,7 @@ pub fn contact_law(block: &ImpactBlock) -> Option<ContactLaw> {
     if block.pairs.len() < FEWEST {
         return None;
     }
-    let restitution = one_restitution(block)?;
+    let restitution = one_restitution(block)?.restitution;
     let about_one = points(block, restitution, &|_| restitution);
     let mut speeds: Vec<f64> = about_one.iter().map(|p| p.speed).collect();
     speeds.sort_by(f64::total_cmp);
@@ -405,7 +404,7 @@ mod tests {
         let mut slopes = Vec::new();
         for seed in 0..40 {
             let block = noisy(0.08, seed);
-            let r = one_restitution(&block).unwrap();
+            let r = one_restitution(&block).unwrap().restitution;
             assert!((r - 0.835).abs() < 3e-3, "{r}");
             let fitted = fit(&points(&block, r, &|_| r), r, Law::Linear, &[]).unwrap();
             let error = fitted.covariance[(1, 1)].sqrt();
