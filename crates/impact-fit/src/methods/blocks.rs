@@ -338,9 +338,11 @@ impl Blocks {
     }
 }
 
-/// Place of each record in the campaign, −½ (first) … ½ (last), by the order of acquisition.
+/// Place of each record that is used in the campaign, −½ (the first) … ½ (the last), by the order of acquisition; zero
+/// of the others, which are no part of what was measured.
 fn places(observations: &[Observation]) -> Vec<f64> {
-    let mut order: Vec<usize> = (0..observations.len()).collect();
+    let used = |i: &usize| !observations[*i].excluded();
+    let mut order: Vec<usize> = (0..observations.len()).filter(used).collect();
     order.sort_by_key(|i| observations[*i].setting.sequence);
     let last = order.len().saturating_sub(1).max(1) as f64;
     let mut places = vec![0.0; observations.len()];

@@ -15,6 +15,9 @@ const BRIDGED: f64 = 2.5;
 /// Root mean square by which a cubic of twice the steps may miss the samples, over the motion's: of what is neither
 /// noise nor the jump of a blow the cubic between neighbours misses a sixteenth.
 const MISSED: f64 = 0.2;
+/// What samples at even times are missed by, over those at the recorded times, from which on the recorded times scatter
+/// and the samples do not: noise of both is the same, so that less is missed only where the times add some of their own.
+const EVENLY: f64 = 0.9;
 
 /// Put a record on even times, if all its channels are of motion and that motion is slow beside the steps between
 /// samples. Places between which several samples are missing have no value.
@@ -22,15 +25,24 @@ pub(super) fn resample(record: &mut Record, times: &mut Vec<f64>) -> Option<Flag
     let mut wrong = Vec::new();
     time_axis::inspect(times, &mut wrong)?;
     let codes = [FlagCode::DroppedSamples, FlagCode::TimeNotUniform];
-    let uneven = !wrong.is_empty() && wrong.iter().all(|flag| codes.contains(&flag.code));
+    let usable = wrong.iter().all(|flag| codes.contains(&flag.code));
     let motion = record.channels.iter().all(|c| c.role.is_motion());
     let rises = times.windows(2).all(|w| w[1] > w[0]);
-    if !(uneven && motion && rises) {
+    if !(usable && motion && rises) {
         return None;
     }
-    let uneven = Uneven::of(times)?;
+    let strays = || wrong.is_empty() && time_axis::strays_unrounded(times);
+    let uneven = Uneven::of(times).filter(|_| !wrong.is_empty() || strays())?;
     let slow = record.channels.iter().all(|c| uneven.foretells(&c.values));
-    if !slow {
+    // times that are taken late scatter, though the samples do not
+    let scattered = || {
+        wrong.is_empty()
+            && record
+                .channels
+                .iter()
+                .any(|c| uneven.evenly_foretold(&c.values))
+    };
+    if !slow || scattered() {
         return None;
     }
     let even: Vec<f64> = (0..uneven.count)
@@ -104,16 +116,29 @@ impl<'a> Uneven<'a> {
 
     /// Whether the two samples on either side of each foretell it: the cubic between neighbours then is far nearer.
     fn foretells(&self, values: &[f64]) -> bool {
+        let known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+        let missed = self.missed(values, self.times);
+        missed.is_some_and(|missed| missed < MISSED * robust::rms_about_mean(&known))
+    }
+
+    /// Whether samples are foretold better as if they were at even times.
+    fn evenly_foretold(&self, values: &[f64]) -> bool {
+        let even: Vec<f64> = (0..values.len()).map(|k| k as f64 * self.step_s).collect();
+        let missed = [self.times, &even].map(|times| self.missed(values, times));
+        matches!(missed, [Some(stamped), Some(even)] if even < EVENLY * stamped)
+    }
+
+    /// Root mean square of what the cubic through the two samples on either side of each misses, with the samples at
+    /// some times; `None` where no sample has two on either side.
+    fn missed(&self, values: &[f64], times: &[f64]) -> Option<f64> {
         let missed = (2..values.len().saturating_sub(2)).filter_map(|i| {
             let span = self.times[i + 2] - self.times[i - 2];
             let around = [i - 2, i - 1, i + 1, i + 2];
             let close = span <= 4.0 * MISSING * self.step_s;
-            let foretold = || interpolation::at(self.times, values, &around, self.times[i]);
-            close.then(|| values[i] - foretold())
+            close.then(|| values[i] - interpolation::at(times, values, &around, times[i]))
         });
         let missed: Vec<f64> = missed.filter(|m| m.is_finite()).collect();
-        let known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-        !missed.is_empty() && robust::rms(&missed) < MISSED * robust::rms_about_mean(&known)
+        (!missed.is_empty()).then(|| robust::rms(&missed))
     }
 }
 
@@ -165,6 +190,32 @@ mod tests {
         assert!(most < 1e-5, "{most}");
         let without = values.len() - off.len();
         assert!((2..=4).contains(&without), "{without}");
+    }
+
+    /// Times with steps that grow by a thousandth along the record, or that are taken late by up to a tenth of a step.
+    #[test]
+    fn valid_a_rate_that_drifts_is_undone_and_late_stamps_of_even_samples_are_not() {
+        let drifting: Vec<f64> = (0..1000_i32)
+            .map(|i| f64::from(i) * 0.01 * (1.0 + 1e-6 * f64::from(i)))
+            .collect();
+        let (record, even, flag) = resampled(&drifting, Role::AccelerationX);
+        assert!(flag.is_some_and(|f| !f.excludes));
+        let values = &record.channels[0].values;
+        let off = values.iter().zip(swing(&even)).map(|(v, w)| (v - w).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-5);
+        let even: Vec<f64> = (0..1000_i32).map(|i| f64::from(i) * 0.01).collect();
+        let late: Vec<f64> = even
+            .iter()
+            .enumerate()
+            .map(|(i, t)| t + 1e-3 * (i as f64 * 2.399_963).sin().abs())
+            .collect();
+        let mut record = Record::of(100.0, &[(Role::AccelerationX, &swing(&even))]);
+        assert_eq!(resample(&mut record, &mut late.clone()), None);
+        let printed: Vec<f64> = drifting
+            .iter()
+            .map(|t| (t * 100.0).round() / 100.0)
+            .collect();
+        assert_eq!(resampled(&printed[..500], Role::AccelerationX).2, None);
     }
 
     #[test]

@@ -211,6 +211,31 @@ fn strays(times: &[f64], step: f64) -> f64 {
     times.iter().enumerate().map(stray).fold(0.0, f64::max)
 }
 
+/// Part of a step by which times may stray from equal steps before they count as uneven.
+const EVEN: f64 = 0.02;
+
+/// Most decimals of a second that printed times are looked at with.
+const DECIMALS: i32 = 9;
+
+/// Whether rising times without gaps stray from equal steps by more than what rounding them explains: to the decimals
+/// with which they are printed.
+pub(super) fn strays_unrounded(times: &[f64]) -> bool {
+    let step = nearest_step(times);
+    let rounding_s = 1.05 * printed_unit_s(times, step);
+    least_range(times, step) > rounding_s.max(EVEN * step)
+}
+
+/// The greatest power of ten up to a step, s, of which all times are whole multiples; zero if none is.
+fn printed_unit_s(times: &[f64], step: f64) -> f64 {
+    let coarsest = whole::integer((-step.log10()).floor()).clamp(0, DECIMALS);
+    let mut units = (coarsest..=DECIMALS).map(|decimals| 10_f64.powi(-decimals));
+    let whole = |unit: f64| {
+        let off = |t: f64| (t / unit - (t / unit).round()).abs();
+        times.iter().all(|t| off(*t) < 1e-3)
+    };
+    units.find(|unit| whole(*unit)).unwrap_or(0.0)
+}
+
 /// An axis of equal steps but for gaps and repetitions.
 fn regular(times: &[f64], steps: &[f64], step: f64, flags: &mut Vec<Flag>) -> Option<f64> {
     let odd = steps.iter().any(|s| *s > 1.5 * step || *s < 0.5 * step);
