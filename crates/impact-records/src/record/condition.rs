@@ -15,6 +15,19 @@ const CLIPPED_PART: f64 = 0.005;
 /// Relative difference of lengths above which the record is left out.
 const LENGTH_DIFFERENCE: f64 = 0.01;
 
+/// Cut all channels to the shortest, as those of a record are of one length also where they have no shared times.
+pub(super) fn cut_to_shortest(record: &mut Record) {
+    if let Some(shortest) = record.channels.iter().map(|c| c.values.len()).min() {
+        cut(record, shortest);
+    }
+}
+
+fn cut(record: &mut Record, samples: usize) {
+    for channel in &mut record.channels {
+        channel.values.truncate(samples);
+    }
+}
+
 /// Cut all channels and the time axis to the shortest.
 pub(super) fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
     let of_time = times.as_ref().map(|t| t.len());
@@ -33,9 +46,7 @@ pub(super) fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
     }
     let short = record.channels.iter().find(|c| c.values.len() == shortest);
     let short = short.map(|c| c.name.clone());
-    for channel in &mut record.channels {
-        channel.values.truncate(shortest);
-    }
+    cut(record, shortest);
     if let Some(times) = times {
         times.truncate(shortest);
     }

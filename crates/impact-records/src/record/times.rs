@@ -97,6 +97,7 @@ impl Clocks {
             .collect();
         if self.apart {
             self.align(record, setup, dataset, kept, &times);
+            condition::cut_to_shortest(record);
             condition::skip(record, None, setup.skip_s);
             return;
         }

@@ -19,7 +19,9 @@ use crate::statistics::quantile::{NORMAL_975, student_975};
 use crate::statistics::scatter::Spread;
 use crate::statistics::weighted::{self, Measured};
 use impact_records::motion::Observation;
-use impact_records::signal::decay::{DampingLaw, Decay, LEAST_TESTED, RESOLVED};
+use impact_records::signal::decay::{
+    DampingLaw, Decay, Drift, LEAST_TESTED, PartOfDecay, RESOLVED,
+};
 use impact_records::signal::robust;
 
 /// Free decays.
@@ -485,12 +487,36 @@ fn drifts(decay: &Decay) -> bool {
     drift.is_some_and(|d| d.z_score().abs() > CHANGES)
 }
 
-/// What a significant drift leaves open of the frequency, Hz: it is anywhere between its ends.
+/// What a significant drift leaves open of the frequency, Hz: it is anywhere between that at the beginning and that at
+/// rest, and the standard error is that of an interval that reaches the farther one.
 fn drift_error_hz(decay: &Decay) -> f64 {
-    match decay.course.drift.filter(|_| drifts(decay)) {
-        Some(drift) => (drift.last_hz - drift.first_hz).abs() / 12f64.sqrt(),
-        None => 0.0,
-    }
+    let course = &decay.course;
+    let Some(drift) = course.drift.filter(|_| drifts(decay)) else {
+        return 0.0;
+    };
+    let ends = [
+        drift.first_hz,
+        drift.last_hz,
+        at_rest_hz(&drift, &course.parts),
+    ];
+    let distances = ends.map(|end| (end - decay.natural_frequency_hz).abs());
+    distances.into_iter().fold(0.0, f64::max) / NORMAL_975
+}
+
+/// The frequency toward which a drift leads as the motion dies away, Hz, if it goes with the square of the amplitude, as
+/// that of a pendulum and of springs that harden does; that of the last quarter where amplitudes are not known.
+fn at_rest_hz(drift: &Drift, parts: &[PartOfDecay]) -> f64 {
+    let [Some(first), Some(last)] = [parts.first(), parts.last()].map(|p| p.map(|p| p.amplitude))
+    else {
+        return drift.last_hz;
+    };
+    // the middles of the first and the last part on the line through those of the quarters
+    let middle = 0.5 / parts.len() as f64;
+    let per_length_hz = (drift.last_hz - drift.first_hz) / 0.75;
+    let last_hz = drift.last_hz + per_length_hz * (0.125 - middle);
+    let between_hz = per_length_hz * (1.0 - 2.0 * middle);
+    let left = (last / first).powi(2);
+    last_hz + between_hz * left / (1.0 - left).max(f64::EPSILON)
 }
 
 /// Records whose natural frequency is not that of their specimen but that of another.

@@ -64,6 +64,42 @@ fn valid_a_long_decay_that_drifts_does_not_draw_f0_from_short_ones_that_do_not()
     assert!((low..=high).contains(&undamped), "{f0:?}");
 }
 
+/// A pendulum, integrated by the classical Runge–Kutta method: its frequency rises toward that of small swings as it dies
+/// away. Where the record shows that, the interval holds the latter.
+#[test]
+fn valid_the_interval_of_a_pendulum_holds_the_frequency_of_small_swings() {
+    let (f0, beta, step_s) = (2.0, 0.004, 1e-3);
+    let omega = TAU * f0;
+    let slope = |[angle, rate]: [f64; 2]| {
+        [
+            rate,
+            -omega * omega * angle.sin() - 2.0 * beta * omega * rate,
+        ]
+    };
+    let plus = |[a, b]: [f64; 2], [c, d]: [f64; 2], h: f64| [h.mul_add(c, a), h.mul_add(d, b)];
+    for release in [0.15, 0.3, 0.5] {
+        let mut state = [release, 0.0];
+        let angles: Vec<f64> = (0..12_000)
+            .map(|_| {
+                let now = state;
+                let first = slope(now);
+                let second = slope(plus(now, first, 0.5 * step_s));
+                let third = slope(plus(now, second, 0.5 * step_s));
+                let fourth = slope(plus(now, third, step_s));
+                for (k, all) in [(first, 1.0), (second, 2.0), (third, 2.0), (fourth, 1.0)] {
+                    state = plus(state, k, step_s * all / 6.0);
+                }
+                now[0]
+            })
+            .collect();
+        let at = |t: f64| angles[impact_records::signal::whole::index((1000.0 * t).round())];
+        let found = pooled(&[observation(vec![fitted(11.9, at)])], Effects::none()).unwrap();
+        let estimate = found.parameters.natural_frequency_hz.unwrap();
+        let [low, high] = estimate.interval95.unwrap();
+        assert!((low..=high).contains(&f0), "{release}: {estimate:?}");
+    }
+}
+
 #[test]
 fn an_interval_that_what_changes_made_wide_is_weak_with_that_reason() {
     // lighter from the middle on, beside a steady decay that tells more
