@@ -11,6 +11,10 @@
 //! noise makes it walk, and the lost mean of the signal gives it a slope. So
 //! `L_{k+1}` = `L_k` − `c_{k+1}δ_{k+1}` + slope + walk. The least squares of both are those of a Kalman
 //! filter over `(δ_k, δ_{k+1}, L_k, slope)` and its smoother (Rauch, Tung and Striebel 1965).
+//!
+//! The filter takes the shifts for independent before the arcs tell of them. Where the period of a motion is close to a
+//! whole number of samples, its impacts all have the same shift, which no arc tells from the level: its error is then
+//! that of any place within the sample interval, as far as the places of the impacts are not spread over it.
 
 use nalgebra::{Matrix4, Vector4};
 
@@ -18,6 +22,7 @@ use crate::event::arcs::{Arcs, Instant, speeds};
 use crate::event::drift::integral;
 use crate::event::impact::MassSpeeds;
 use crate::event::kinematics::{Body, Kinematics, RelativeSource, Series};
+use crate::signal::robust;
 
 /// Relative error of an arc's area by trapezoids: it scales with the speeds.
 const TRAPEZOIDS: f64 = 1e-3;
@@ -137,16 +142,65 @@ pub(super) fn arc_times(
             (last.mean[1], last.covariance[(1, 1)])
         }
     };
+    let alike = alike(plain);
     (0..count)
         .map(|i| {
             let half = 0.5 * arcs.candidates[i].jump.gap as f64;
             let (mean, variance) = shift(i);
+            let shared = alike * plain[i].error.powi(2);
             Instant {
                 time: plain[i].time + mean.clamp(-half, half),
-                error: variance.max(0.0).sqrt().min(plain[i].error),
+                error: (variance.max(0.0) + shared).sqrt().min(plain[i].error),
             }
         })
         .collect()
+}
+
+/// Impacts of a period at most of which the places in their sample intervals are compared.
+const MOST_ALIKE: usize = 8;
+
+/// The correlation between the shifts of two impacts of a record of the same kind, in the mean over all pairs: 1 where the
+/// period is a whole number of samples, 0 where the impacts are spread over the sample interval or have no period. Of
+/// places that are Δ apart it is 1 − 6Δ(1 − Δ).
+fn alike(plain: &[Instant]) -> f64 {
+    let lags = 1..=MOST_ALIKE.min(plain.len() / FEWEST);
+    let Some((lag, period)) = lags
+        .into_iter()
+        .find_map(|lag| Some((lag, period(plain, lag)?)))
+    else {
+        return 0.0;
+    };
+    let count = plain.len() / lag;
+    let pairs = (1..count).map(|apart| {
+        let place = (apart as f64 * period).rem_euclid(1.0);
+        (count - apart) as f64 * (1.0 - 6.0 * place * (1.0 - place))
+    });
+    let possible = 0.5 * (count * (count - 1)) as f64;
+    (pairs.sum::<f64>() / possible).max(0.0)
+}
+
+/// The time between each impact and the one so many later, in samples, by least squares, if all are that but for the
+/// sampling.
+fn period(plain: &[Instant], lag: usize) -> Option<f64> {
+    let later = plain.iter().skip(lag);
+    let between: Vec<f64> = plain
+        .iter()
+        .zip(later)
+        .map(|(a, b)| b.time - a.time)
+        .collect();
+    let mean = robust::mean(&between);
+    if between.iter().any(|b| (b - mean).abs() >= 1.0) {
+        return None;
+    }
+    let count = plain.len() / lag;
+    let middle = 0.5 * (count - 1) as f64;
+    let (mut both, mut own) = (0.0, 0.0);
+    for (i, instant) in plain[..count * lag].iter().enumerate() {
+        let from_middle = (i / lag) as f64 - middle;
+        both += from_middle * instant.time;
+        own += from_middle * from_middle;
+    }
+    Some(both / own)
 }
 
 /// The states of all arcs.
@@ -274,6 +328,28 @@ mod tests {
             waveform: None,
             spikes_clipped: false,
         }
+    }
+
+    /// Two impacts of a period, at shares of it.
+    fn twice_a_period(samples: f64) -> Vec<Instant> {
+        let at = |k: usize| samples * (((k / 2) as f64) + if k % 2 == 0 { 0.21 } else { 0.63 });
+        let middle = |k: usize| Instant {
+            time: at(k).floor() + 0.5,
+            error: 12_f64.sqrt().recip(),
+        };
+        (0..60).map(middle).collect()
+    }
+
+    #[test]
+    fn valid_shifts_are_shared_where_a_period_is_a_whole_number_of_samples() {
+        assert!(alike(&twice_a_period(73.0)) > 0.999);
+        assert!(alike(&twice_a_period(73.003)) > 0.3);
+        for spread in [73.381_966, 72.118_034, 73.05] {
+            let shared = alike(&twice_a_period(spread));
+            assert!(shared < 0.1, "{spread}: {shared}");
+        }
+        let half = alike(&twice_a_period(73.5));
+        assert!((half - 0.25).abs() < 0.1, "{half}");
     }
 
     #[test]

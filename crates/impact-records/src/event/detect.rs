@@ -502,7 +502,7 @@ fn fuse(
         search.keep_known(&mut jumps, known);
     }
     let (upward, downward) = search.directions();
-    let mut unsupported = 0;
+    let mut unsupported = Vec::new();
     for pulse in closed {
         let (first, last) = reach(pulse, search.gap);
         if jumps.iter().any(|j| (first..=last).contains(&j.left)) {
@@ -510,7 +510,7 @@ fn fuse(
         }
         let end = last.min(first + 4 + search.gap);
         if !search.admit((first, end), &mut jumps) {
-            unsupported += 1;
+            unsupported.push(pulse);
         }
     }
     let mut unsupported_touches = 0;
@@ -520,10 +520,17 @@ fn fuse(
             unsupported_touches += 1;
         }
     }
+    let mut candidates = candidates(&jumps, closed, search.gap, dead_from, velocity);
+    // the flights beside a jump that is seen across an impact of which the record shows too little
+    let crosses = |c: &Candidate| {
+        let reaches = |pulse: &&Closed| pulse.first.abs_diff(c.jump.left) <= width;
+        c.source == DetectionSource::Velocity && unsupported.iter().any(|p| reaches(&p))
+    };
+    candidates.retain(|c| !crosses(c));
     Fused {
-        candidates: candidates(&jumps, closed, search.gap, dead_from, velocity),
+        candidates,
         jump_samples: search.gap,
-        unsupported,
+        unsupported: unsupported.len(),
         unsupported_touches,
         missed: 0,
         upward,
