@@ -215,7 +215,7 @@ pub(crate) fn detect_at(
     } else {
         Vec::new()
     };
-    let directions = if found.may_be_inverted() {
+    let directions = if found.may_be_inverted(&kinematics) {
         jump_directions(&kinematics, width)
     } else {
         Vec::new()
@@ -566,11 +566,30 @@ impl Fused {
 }
 
 impl Fused {
-    /// Whether a channel may be of the other sign: jumps go up, contradict the contact, or are not found, as where those
-    /// of two masses cancel each other.
-    fn may_be_inverted(&self) -> bool {
+    /// Whether a channel may be of the other sign: jumps go up, of both masses together or of one that the other
+    /// outweighs, contradict the contact, or are not found, as where those of two masses cancel each other.
+    fn may_be_inverted(&self, kinematics: &Kinematics) -> bool {
         let contradicted = self.unsupported + self.missed;
-        self.upward > 0 || 2 * contradicted > self.candidates.len() || self.candidates.is_empty()
+        let upward = |body: &Body| {
+            let velocity = body.velocity.as_ref();
+            velocity.is_some_and(|v| 2 * self.going_up(v) > self.candidates.len())
+        };
+        self.upward > 0
+            || 2 * contradicted > self.candidates.len()
+            || self.candidates.is_empty()
+            || kinematics.bodies().any(upward)
+    }
+
+    /// At how many candidates a mass's velocity rises.
+    fn going_up(&self, velocity: &Series) -> usize {
+        let rises = |c: &&Candidate| {
+            let [before, after] =
+                [c.jump.left, c.jump.left + c.jump.gap].map(|i| velocity.values.get(i));
+            before
+                .zip(after)
+                .is_some_and(|(before, after)| after > before)
+        };
+        self.candidates.iter().filter(rises).count()
     }
 }
 
