@@ -244,6 +244,13 @@ pub enum Finding {
         /// The same of all others.
         others: Vec<StatedValue>,
     },
+    /// The motions of most records are not known.
+    MotionsUndetermined {
+        /// How many.
+        records: usize,
+        /// Of how many driven ones.
+        of: usize,
+    },
     /// Many records begin before their motion has settled.
     RecordsNotSettled {
         /// How many.
@@ -366,7 +373,9 @@ impl Finding {
     /// The kind of cause that it names; `None` where it has no part in the fits.
     pub fn cause(&self) -> Option<Cause> {
         match self {
-            Self::UndeclaredHighPass { .. } => Some(Cause::Channel),
+            Self::UndeclaredHighPass { .. } | Self::MotionsUndetermined { .. } => {
+                Some(Cause::Channel)
+            }
             Self::RigChanged { .. }
             | Self::ClearanceOnOtherRig { .. }
             | Self::SweepsDownOnOtherRig { .. } => Some(Cause::Change),
@@ -494,6 +503,9 @@ message_table! { "finding": Finding, key = template_key;
     Self::SweepsDownOnOtherRig { own, others } =>
         own = Value::list(own),
         others = Value::list(others);
+    Self::MotionsUndetermined { records, of } =>
+        records = Value::Count(*records),
+        of = Value::Count(*of);
     Self::RecordsNotSettled { records, of, wait_s } =>
         records = Value::Count(*records),
         of = Value::Count(*of),

@@ -22,6 +22,7 @@ use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
 use crate::identify::diagnostics::undeclared_high_pass;
 use crate::identify::diagnostics::undeclared_low_pass;
+use crate::identify::diagnostics::undetermined::undetermined_motions;
 use crate::identify::diagnostics::verdict::{self, Basis};
 use crate::identify::diagnostics::wrong_gains;
 use crate::identify::first_values::first_values;
@@ -531,6 +532,7 @@ impl<'a> IdentificationRun<'a> {
         let observations = self.evidence.observations;
         let Widened { methods, joint, .. } = results;
         suspicions.extend(settling::not_settled(observations, &joint.parameters));
+        suspicions.extend(undetermined_motions(observations));
         let changes = self.changes(cause::leading(suspicions, methods));
         let Changes {
             of_gain,

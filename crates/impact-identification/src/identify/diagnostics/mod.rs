@@ -21,5 +21,6 @@ pub mod suspicion;
 pub mod swapped_channels;
 pub mod undeclared_high_pass;
 pub mod undeclared_low_pass;
+pub mod undetermined;
 pub mod verdict;
 pub mod wrong_gains;
