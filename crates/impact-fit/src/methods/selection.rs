@@ -76,8 +76,12 @@ impl<'a> Selection<'a> {
             return false;
         }
         let gone = records.extract_if(.., |r| r.clearance_m == clearance_m);
-        for record in gone.collect::<Vec<_>>() {
-            self.note(record.observation, Reason::GapNotAsStated);
+        let mut gone: Vec<usize> = gone.map(|r| r.observation).collect();
+        let flown = &mut self.blocks.flight.records;
+        let flown = flown.extract_if(.., |r| r.clearance_m == clearance_m);
+        gone.extend(flown.map(|r| r.observation));
+        for observation in gone {
+            self.note(observation, Reason::GapNotAsStated);
         }
         self.lost.retain(|r| r.clearance_m != clearance_m);
         let brackets = &mut self.blocks.boundary.brackets;
