@@ -179,7 +179,10 @@ fn named(datasets: &[DatasetInfo]) -> String {
     let names: Vec<&str> = datasets
         .iter()
         .take(NAMED)
-        .map(|d| d.name.as_str())
+        .map(|d| match d.name.as_str() {
+            "" => "the one without a name",
+            name => name,
+        })
         .collect();
     let more = match datasets.len().saturating_sub(NAMED) {
         0 => String::new(),

@@ -440,6 +440,22 @@ impl AxisUnit {
     }
 }
 
+impl AxisUnit {
+    /// A note on times that are stated in s and go by whole steps of 2 s and more, for longer than five minutes: they may be ms.
+    pub(crate) fn slow_note(&self, name: &str, times: &[f64]) -> Option<String> {
+        let Self::Stated(unit) = self else {
+            return None;
+        };
+        let step = crate::rate::median_step(times)?;
+        let whole = times.iter().all(|t| t.fract() == 0.0);
+        let length = times.last()? - times.first()?;
+        let slow = unit.to_si == 1.0 && step >= SLOW_STATED_S && length > SLOW_RECORD_S;
+        (whole && slow).then(|| {
+            format!("time axis '{name}' is stated in s and goes by steps of {step}: check that it is not in ms")
+        })
+    }
+}
+
 /// Whether a channel is a time axis by its name, with a unit of time or none.
 pub fn is_time_axis(channel: &ChannelInfo) -> bool {
     let stated = stated_unit(channel.unit.as_deref(), &channel.name);
@@ -585,6 +601,9 @@ const LONGEST_S: f64 = 1e9;
 /// A step and a length in s of records that are too slow and too long to be of vibrations: more likely ms.
 const SLOW_STEP_S: f64 = 0.05;
 const SLOW_RECORD_S: f64 = 300.0;
+
+/// A step of whole seconds from which on stated times are noted, s.
+const SLOW_STATED_S: f64 = 2.0;
 
 /// Whether times without a unit may be of any unit: whole numbers, as counts of ms and of samples are, beyond 10⁹, or
 /// with steps and a length that are those of ms.

@@ -612,3 +612,26 @@ fn valid_clocks_of_minutes_turn_at_the_hour_and_durations_have_their_unit_behind
     assert!((info.sample_rate_hz().unwrap() - 1200.0).abs() < 1e-3);
     assert_eq!(info.channels[1].start_time, None);
 }
+
+#[test]
+fn whole_steps_of_many_seconds_are_noted() {
+    let table = |heading: &str, step: u32| {
+        let rows: String = (0..200)
+            .map(|k| format!("{},{}.5\n", step * k, k % 5))
+            .collect();
+        source(format!("{heading},x (mm)\n{rows}").as_bytes())
+    };
+    assert_eq!(
+        table("Time (s)", 10).notes(),
+        ["time axis 'Time' is stated in s and goes by steps of 10: check that it is not in ms"]
+    );
+    for (heading, step) in [("Time (s)", 1), ("Time (ms)", 10)] {
+        assert!(table(heading, step).notes().is_empty(), "{heading}");
+    }
+}
+
+#[test]
+fn a_file_that_is_not_there_asks_for_its_path() {
+    let error = crate::open(std::path::Path::new("nope.csv")).err().unwrap();
+    assert_eq!(error.remedy, "check the path and its spelling");
+}

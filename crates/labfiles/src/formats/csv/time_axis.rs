@@ -64,6 +64,10 @@ pub(crate) fn find(
         .seconds()
         .and_then(|s| rate::from_axis(&head, end, count, s));
     axis.note = axis.note.or_else(|| unit.note(name));
+    let slow = layout.kinds[axis.column] == Kind::Number;
+    axis.note = axis
+        .note
+        .or_else(|| slow.then(|| unit.slow_note(name, &head))?);
     Some(axis)
 }
 
