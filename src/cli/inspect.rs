@@ -379,6 +379,18 @@ mod tests {
     }
 
     #[test]
+    fn datasets_without_a_name_are_listed_as_such() {
+        let set = |name: &str| DatasetInfo {
+            name: name.to_owned(),
+            ..DatasetInfo::default()
+        };
+        assert_eq!(
+            named(&[set(""), set("S(1)")]),
+            "one of the file's datasets: the one without a name, S(1)"
+        );
+    }
+
+    #[test]
     fn rates_are_rounded() {
         let rounded: Vec<String> = [2000.0, 9.448_598_374_562_737, 0.012_345_678, 0.5]
             .into_iter()

@@ -216,10 +216,20 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         std::fs::write(path("r1.csv"), "t [s],x [mm]\n0,1\n0.5,2\n1,3\n").unwrap();
+        std::fs::write(path("report.pdf"), b"%PDF-1.7\n%\xE2\xE3\n").unwrap();
+        std::fs::write(path("result.json"), "{\n  \"verdict\": {}\n}\n").unwrap();
         for (name, says) in [
             ("none.toml", "campaign.toml cannot be read"),
             ("", "it is a folder"),
             ("r1.csv", "it is a record (csv)"),
+            (
+                "report.pdf",
+                "it is a PDF document, not the description of a campaign",
+            ),
+            (
+                "result.json",
+                "it is JSON, not the description of a campaign",
+            ),
         ] {
             let found = not_a_description(&path(name)).0;
             assert_eq!(found.len(), 1, "{found:?}");

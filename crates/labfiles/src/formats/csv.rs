@@ -110,15 +110,8 @@ pub(crate) fn open_text(text: TextFile, name: &str) -> Result<OpenedTable, ReadE
             let axis = time_axis::find(&header, &layout, &rows, last_row.as_deref(), count);
             notes.extend(axis.iter().flat_map(|a| a.note.clone()));
             let mut dataset = dataset(header, &layout, count, axis.as_ref());
-            let shared = dataset.time_axis;
-            if let Makeup::OwnTimes(own) = &makeup {
-                for (channel, axis) in dataset.channels.iter_mut().zip(own) {
-                    let axis = axis.filter(|axis| Some(*axis) != shared);
-                    channel.clock = axis.map_or(Clock::Shared, Clock::Axis);
-                }
-            }
-            if makeup == Makeup::One && !own {
-                own_axes_by_name(&mut dataset, &times);
+            if !own && !matches!(makeup, Makeup::BesideRemarks(_)) {
+                give_axes(&mut dataset, &makeup, &times);
                 notes.extend(time_axis::unused(&dataset, &layout, &rows, &times));
             }
             keep_columns(&mut dataset, &columns);
@@ -266,9 +259,18 @@ fn give_own_times(dataset: &mut DatasetInfo, columns: &[usize], blocks: &[Block]
     }
 }
 
-/// Give the channels of a table with several time axes before them the one that is named for each: `t_x,t_y,x,y`.
-fn own_axes_by_name(dataset: &mut DatasetInfo, times: &[usize]) {
-    timing::own_axes(&mut dataset.channels);
+/// Give the channels of a table with several time axes theirs: by their place, or where all axes are before the channels by
+/// name, `t_x,t_y,x,y`.
+fn give_axes(dataset: &mut DatasetInfo, makeup: &Makeup, times: &[usize]) {
+    match makeup {
+        Makeup::OwnTimes(own) => {
+            for (channel, axis) in dataset.channels.iter_mut().zip(own) {
+                channel.clock = axis.map_or(Clock::Shared, Clock::Axis);
+            }
+        }
+        Makeup::One => timing::own_axes(&mut dataset.channels),
+        Makeup::Runs(_) | Makeup::BesideRemarks(_) => {}
+    }
     let shared = dataset.time_axis;
     for channel in &mut dataset.channels {
         let is_own = |axis| Some(axis) != shared && times.contains(&axis);
