@@ -467,6 +467,13 @@ pub fn name_and_unit(heading: &str) -> (String, Option<String>) {
     (heading.to_owned(), None)
 }
 
+/// A name without a number at its end, and that: `y 2`, `y2`.
+pub(crate) fn without_number(name: &str) -> (String, String) {
+    let bare = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let trimmed = bare.trim_end_matches([' ', '_', '#', '.', '-']);
+    (trimmed.to_owned(), name[bare.len()..].to_owned())
+}
+
 /// Fill names and units up to the number of columns; repeated names gain a number.
 fn name_columns(header: &mut Header, units: &[Option<String>], columns: usize) {
     let headings = std::mem::take(&mut header.names);

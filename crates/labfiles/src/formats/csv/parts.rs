@@ -1,7 +1,7 @@
 //! Tables side by side: several runs in one sheet, each with its own time, or channels with times of their own.
 
 use crate::formats::csv::columns::HeadRows;
-use crate::formats::csv::header::Header;
+use crate::formats::csv::header::{Header, without_number};
 use crate::formats::csv::time_axis::{heads_pair, is_further};
 use crate::text::table::{Kind, Layout};
 use crate::timing::{is_time_name, is_unit_of_time, numbers_rows};
@@ -178,13 +178,6 @@ fn numbered(text: &str, word: &str) -> Option<(usize, usize)> {
                 .len();
         (digits > 0).then(|| (at, text.len() - number.len() + digits))
     })
-}
-
-/// A name without a number at its end, and that: `y 2`, `y2`.
-pub(crate) fn without_number(name: &str) -> (String, String) {
-    let bare = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    let trimmed = bare.trim_end_matches([' ', '_', '#', '.', '-']);
-    (trimmed.to_owned(), name[bare.len()..].to_owned())
 }
 
 /// Blocks that hold the same quantities, as runs: their headings differ by the name of the run, or by a number.

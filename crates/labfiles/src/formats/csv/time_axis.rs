@@ -1,8 +1,7 @@
 //! Which column of a table is its time axis, and at which rate its rows follow.
 
 use crate::formats::csv::columns::HeadRows;
-use crate::formats::csv::header::Header;
-use crate::formats::csv::parts::without_number;
+use crate::formats::csv::header::{Header, without_number};
 use crate::rate;
 use crate::source::{Clock, DatasetInfo};
 use crate::text::table::{Fraction, Kind, Layout, Times};
