@@ -770,6 +770,28 @@ mod tests {
         for name in ["Time", "t", "timestamp", "Time US Eastern", "Time Run 1"] {
             assert_eq!(stated_unit(None, name), StatedUnit::Nothing, "{name}");
         }
+        assert_eq!(unit(None, "Time (s)"), Some(1.0));
+        assert_eq!(unit(None, "time_min"), Some(60.0));
+        assert_eq!(unit(None, "t (hrs)"), Some(3600.0));
+        assert_eq!(
+            stated_unit(None, "t (jif)"),
+            StatedUnit::Other("jif".into())
+        );
+        for name in ["Time (UTC)", "Time (Run 1)", "Time [3]"] {
+            assert_eq!(stated_unit(None, name), StatedUnit::Nothing, "{name}");
+        }
+        assert_eq!(
+            stated_unit(Some("ticks"), "Time"),
+            StatedUnit::Other("ticks".into())
+        );
+    }
+
+    #[test]
+    fn valid_seconds_minutes_and_hours_are_spelled_out_in_several_languages() {
+        let unit = |unit: Option<&str>, name: &str| match stated_unit(unit, name) {
+            StatedUnit::Known(unit) => Some(unit.to_si),
+            _ => None,
+        };
         for symbol in [
             "Sekunde",
             "Sekunden",
@@ -791,20 +813,6 @@ mod tests {
         for (symbol, seconds) in [("minuta", 60.0), ("Minuto", 60.0), ("heure", 3600.0)] {
             assert_eq!(unit(Some(symbol), "t"), Some(seconds), "{symbol}");
         }
-        assert_eq!(unit(None, "Time (s)"), Some(1.0));
-        assert_eq!(unit(None, "time_min"), Some(60.0));
-        assert_eq!(unit(None, "t (hrs)"), Some(3600.0));
-        assert_eq!(
-            stated_unit(None, "t (jif)"),
-            StatedUnit::Other("jif".into())
-        );
-        for name in ["Time (UTC)", "Time (Run 1)", "Time [3]"] {
-            assert_eq!(stated_unit(None, name), StatedUnit::Nothing, "{name}");
-        }
-        assert_eq!(
-            stated_unit(Some("ticks"), "Time"),
-            StatedUnit::Other("ticks".into())
-        );
     }
 
     #[test]

@@ -44,7 +44,7 @@ const TEXTS: [(&[u8], &str); 5] = [
     (b"%!PS", "a PostScript document"),
 ];
 
-/// First bytes of a file of NumPy.
+/// First bytes of a file of `NumPy`.
 const NPY: &[u8] = b"\x93NUMPY";
 /// First bytes of a ZIP archive, and where the name of its first file and the length of that are.
 const ZIP: &[u8] = b"PK\x03\x04";

@@ -494,7 +494,7 @@ fn valid_times_before_all_channels_are_theirs_by_name_or_are_noted() {
 fn valid_a_date_and_a_time_of_day_go_on_past_midnight() {
     let row = |k: u32| {
         let (day, time) = match k {
-            0..=99 => (12, format!("23:59:59,{:02}", k)),
+            0..=99 => (12, format!("23:59:59,{k:02}")),
             k => (13, format!("00:00:00,{:02}", k - 100)),
         };
         format!("{day}.05.2024;{time};{},5\n", k % 9)
