@@ -179,7 +179,10 @@ fn named(datasets: &[DatasetInfo]) -> String {
     let names: Vec<&str> = datasets
         .iter()
         .take(NAMED)
-        .map(|d| d.name.as_str())
+        .map(|d| match d.name.as_str() {
+            "" => "the one without a name",
+            name => name,
+        })
         .collect();
     let more = match datasets.len().saturating_sub(NAMED) {
         0 => String::new(),
@@ -373,6 +376,18 @@ mod tests {
         assert!(line.starts_with("0 s ") && line.ends_with(" 2 s"), "{line}");
         assert_eq!(line.chars().count(), PICTURE.0);
         assert!(time_axis(2001, None).ends_with(" 2000"));
+    }
+
+    #[test]
+    fn datasets_without_a_name_are_listed_as_such() {
+        let set = |name: &str| DatasetInfo {
+            name: name.to_owned(),
+            ..DatasetInfo::default()
+        };
+        assert_eq!(
+            named(&[set(""), set("S(1)")]),
+            "one of the file's datasets: the one without a name, S(1)"
+        );
     }
 
     #[test]

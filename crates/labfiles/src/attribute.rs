@@ -144,7 +144,7 @@ const OFFSET_KEYS: [&str; 12] = [
 pub fn start_s(attributes: &BTreeMap<String, String>) -> Option<f64> {
     let origin = crate::text::clock::Stamp {
         days: Some(0),
-        seconds: 0.0,
+        ..Default::default()
     };
     let texts = [
         "wf_start_time",

@@ -62,6 +62,7 @@ pub mod units;
 
 pub use formats::csv::header::name_and_unit;
 pub use formats::csv::parts::without_run;
+pub use formats::documents::document;
 pub use formats::excel::workbook_tables;
 pub use formats::parquet::guard::is_caught as panic_is_caught;
 pub use formats::{format_titles, open};

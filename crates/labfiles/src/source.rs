@@ -163,9 +163,7 @@ impl ReadError {
     /// A file that the operating system would not open or read.
     pub fn io(path: &Path, error: &std::io::Error) -> Self {
         let remedy = match error.kind() {
-            std::io::ErrorKind::NotFound => {
-                "check the path, or the row of the run table that names the file"
-            }
+            std::io::ErrorKind::NotFound => "check the path and its spelling",
             std::io::ErrorKind::PermissionDenied => "allow reading the file",
             _ => "check the disk and copy the file again",
         };

@@ -55,7 +55,7 @@ const SHORT: [(&str, f64); 8] = [
 ];
 
 /// Units of a second and longer, spelled out; the first of them name a time axis by themselves.
-const LONG: [(&str, f64); 29] = [
+const LONG: [(&str, f64); 53] = [
     ("seconds", 1.0),
     ("second", 1.0),
     ("secs", 1.0),
@@ -67,11 +67,32 @@ const LONG: [(&str, f64); 29] = [
     ("sekundy", 1.0),
     ("sekunder", 1.0),
     ("секунды", 1.0),
+    ("sekunde", 1.0),
+    ("sekunda", 1.0),
+    ("sekund", 1.0),
+    ("seconde", 1.0),
+    ("seconden", 1.0),
+    ("secondo", 1.0),
+    ("segundo", 1.0),
+    ("secunde", 1.0),
+    ("sekuntia", 1.0),
+    ("sekuntti", 1.0),
+    ("saniye", 1.0),
+    ("másodperc", 1.0),
+    ("секунда", 1.0),
+    ("секунд", 1.0),
+    ("сек", 1.0),
+    ("с", 1.0),
     ("minutes", 60.0),
     ("minuten", 60.0),
     ("minutos", 60.0),
     ("minuti", 60.0),
     ("minuty", 60.0),
+    ("minuta", 60.0),
+    ("minuto", 60.0),
+    ("minuter", 60.0),
+    ("минуты", 60.0),
+    ("мин", 60.0),
     ("min", 60.0),
     ("minute", 60.0),
     ("mins", 60.0),
@@ -82,13 +103,16 @@ const LONG: [(&str, f64); 29] = [
     ("stunde", 3600.0),
     ("stunden", 3600.0),
     ("heures", 3600.0),
+    ("heure", 3600.0),
+    ("hora", 3600.0),
+    ("hodina", 3600.0),
     ("horas", 3600.0),
     ("hodiny", 3600.0),
     ("h", 3600.0),
 ];
 
 /// Those that name a time axis by themselves.
-const SECONDS: usize = 11;
+const SECONDS: usize = 25;
 
 /// Symbols of units below and at a second.
 const SYMBOLS: [(&str, f64); 6] = [
@@ -175,7 +199,13 @@ pub fn is_time_name(name: &str) -> bool {
         || words.iter().any(known)
         || alone
         || since
-        || name.trim().eq_ignore_ascii_case("x_value")
+        || is_x_value(name)
+}
+
+/// Whether a name is that of the abscissa in texts of NI, or of a further one that the reader numbers: `X_Value 2`.
+fn is_x_value(name: &str) -> bool {
+    let bare = without_digits(name.trim()).trim_end();
+    bare.eq_ignore_ascii_case("x_value")
 }
 
 /// Whether a name is that of a field, or of a channel in a group, that is called as a time alone: `laser.t`.
@@ -410,6 +440,22 @@ impl AxisUnit {
     }
 }
 
+impl AxisUnit {
+    /// A note on times that are stated in s and go by whole steps of 2 s and more, for longer than five minutes: they may be ms.
+    pub(crate) fn slow_note(&self, name: &str, times: &[f64]) -> Option<String> {
+        let Self::Stated(unit) = self else {
+            return None;
+        };
+        let step = crate::rate::median_step(times)?;
+        let whole = times.iter().all(|t| t.fract() == 0.0);
+        let length = times.last()? - times.first()?;
+        let slow = unit.to_si == 1.0 && step >= SLOW_STATED_S && length > SLOW_RECORD_S;
+        (whole && slow).then(|| {
+            format!("time axis '{name}' is stated in s and goes by steps of {step}: check that it is not in ms")
+        })
+    }
+}
+
 /// Whether a channel is a time axis by its name, with a unit of time or none.
 pub fn is_time_axis(channel: &ChannelInfo) -> bool {
     let stated = stated_unit(channel.unit.as_deref(), &channel.name);
@@ -521,14 +567,20 @@ fn epoch_unit(name: &str, values: &[f64]) -> Option<Unit> {
 /// Whether values without a name climb evenly, as a time axis does, and are no mere count of rows.
 pub(crate) fn climbs_evenly(values: &[f64]) -> bool {
     let head = &values[..values.len().min(crate::rate::HEAD_SAMPLES)];
+    let counts = head.iter().all(|v| v.fract() == 0.0);
+    steps_evenly(values) && !counts
+}
+
+/// Whether values climb by even steps at their front, and never fall.
+pub(crate) fn steps_evenly(values: &[f64]) -> bool {
+    let head = &values[..values.len().min(crate::rate::HEAD_SAMPLES)];
     let Some(step) = crate::rate::median_step(head) else {
         return false;
     };
     let mut steps = head.windows(2).map(|w| w[1] - w[0]);
     let even = steps.all(|own| (own - step).abs() < 0.5 * step);
-    let counts = head.iter().all(|v| v.fract() == 0.0);
     let on = values.windows(2).all(|w| w[1] >= w[0]);
-    head.len() > 2 && even && on && !counts
+    head.len() > 2 && even && on
 }
 
 /// Days of the years 1950 to 2100 since the year 0, as MATLAB counts, and since 1900, as spreadsheets do.
@@ -549,6 +601,9 @@ const LONGEST_S: f64 = 1e9;
 /// A step and a length in s of records that are too slow and too long to be of vibrations: more likely ms.
 const SLOW_STEP_S: f64 = 0.05;
 const SLOW_RECORD_S: f64 = 300.0;
+
+/// A step of whole seconds from which on stated times are noted, s.
+const SLOW_STATED_S: f64 = 2.0;
 
 /// Whether times without a unit may be of any unit: whole numbers, as counts of ms and of samples are, beyond 10⁹, or
 /// with steps and a length that are those of ms.
@@ -575,6 +630,7 @@ mod tests {
             "Time",
             "t",
             "X_Value",
+            "X_Value 2",
             "Time (Run 1)",
             "Zeit",
             "millis",
@@ -604,6 +660,8 @@ mod tests {
             "ts_ns",
             ".header.stamp",
             "datetime",
+            "Sekunde",
+            "segundos",
         ] {
             assert!(is_time_name(name), "{name}");
         }
@@ -726,6 +784,35 @@ mod tests {
             stated_unit(Some("ticks"), "Time"),
             StatedUnit::Other("ticks".into())
         );
+    }
+
+    #[test]
+    fn valid_seconds_minutes_and_hours_are_spelled_out_in_several_languages() {
+        let unit = |unit: Option<&str>, name: &str| match stated_unit(unit, name) {
+            StatedUnit::Known(unit) => Some(unit.to_si),
+            _ => None,
+        };
+        for symbol in [
+            "Sekunde",
+            "Sekunden",
+            "seconde",
+            "Secondes",
+            "segundo",
+            "segundos",
+            "secondo",
+            "secondi",
+            "sekunda",
+            "sekundy",
+            "seconden",
+            "секунда",
+            "с",
+        ] {
+            assert_eq!(unit(Some(symbol), "t"), Some(1.0), "{symbol}");
+            assert_eq!(unit(None, &format!("t ({symbol})")), Some(1.0), "{symbol}");
+        }
+        for (symbol, seconds) in [("minuta", 60.0), ("Minuto", 60.0), ("heure", 3600.0)] {
+            assert_eq!(unit(Some(symbol), "t"), Some(seconds), "{symbol}");
+        }
     }
 
     #[test]

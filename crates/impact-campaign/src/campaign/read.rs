@@ -29,8 +29,8 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
             "it is a folder".to_owned(),
             "name the campaign.toml in it; `impactid init DIR` writes one",
         ),
-        (_, std::io::ErrorKind::InvalidData) => match record(path) {
-            Some(format) => (a_record(format), NAME_CAMPAIGN),
+        (_, std::io::ErrorKind::InvalidData) => match other_file(path) {
+            Some(what) => (what, NAME_CAMPAIGN),
             None => (unreadable(), "save it as UTF-8 in your editor"),
         },
         (_, std::io::ErrorKind::PermissionDenied) => (unreadable(), "allow reading it"),
@@ -48,8 +48,8 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
 pub fn not_a_description(path: &Path) -> Diagnostics {
     let mut faults = FaultCollector::new(path);
     let may_be = match labfiles::read_text(path) {
-        Ok(text) => DeTable::parse(&text).is_ok() || record(path).is_none(),
-        Err(_) => path.is_file() && record(path).is_none(),
+        Ok(text) => DeTable::parse(&text).is_ok() || other_file(path).is_none(),
+        Err(_) => path.is_file() && other_file(path).is_none(),
     };
     if !may_be && let Some(text) = text(path, &mut faults) {
         let _ = read(&text, &mut faults);
@@ -61,14 +61,17 @@ pub fn not_a_description(path: &Path) -> Diagnostics {
 const NAME_CAMPAIGN: &str =
     "name the campaign.toml that describes it; `impactid init DIR` writes one";
 
-/// The format of a file that is a record.
-fn record(path: &Path) -> Option<&'static str> {
+/// What a file is, in words, that is a record, a document or JSON, as the program writes its results.
+fn other_file(path: &Path) -> Option<String> {
+    if let Some(document) = labfiles::document(path) {
+        return Some(format!(
+            "it is {document}, not the description of a campaign"
+        ));
+    }
     let source = labfiles::open(path).ok()?;
-    Some(source.format()).filter(|_| !source.datasets().is_empty())
-}
-
-fn a_record(format: &str) -> String {
-    format!("it is a record ({format}), not the description of a campaign")
+    let format = source.format();
+    let some = !source.datasets().is_empty();
+    some.then(|| format!("it is a record ({format}), not the description of a campaign"))
 }
 
 /// Read the text; an entry that cannot be read is noted in `faults` and left at its default. `None`,
@@ -78,9 +81,8 @@ pub(super) fn read(text: &str, faults: &mut FaultCollector) -> Option<WrittenCam
     let places = Text::new(text);
     let (mut document, syntax) = DeTable::parse_recoverable(text);
     if !syntax.is_empty() {
-        match record(faults.file()) {
-            Some(format) => {
-                let what = a_record(format);
+        match other_file(faults.file()) {
+            Some(what) => {
                 faults.fault(Code::UnreadableFile, None, "", what, NAME_CAMPAIGN);
             }
             None => syntax
@@ -214,10 +216,20 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         std::fs::write(path("r1.csv"), "t [s],x [mm]\n0,1\n0.5,2\n1,3\n").unwrap();
+        std::fs::write(path("report.pdf"), b"%PDF-1.7\n%\xE2\xE3\n").unwrap();
+        std::fs::write(path("result.json"), "{\n  \"verdict\": {}\n}\n").unwrap();
         for (name, says) in [
             ("none.toml", "campaign.toml cannot be read"),
             ("", "it is a folder"),
             ("r1.csv", "it is a record (csv)"),
+            (
+                "report.pdf",
+                "it is a PDF document, not the description of a campaign",
+            ),
+            (
+                "result.json",
+                "it is JSON, not the description of a campaign",
+            ),
         ] {
             let found = not_a_description(&path(name)).0;
             assert_eq!(found.len(), 1, "{found:?}");

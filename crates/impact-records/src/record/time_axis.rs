@@ -114,7 +114,34 @@ pub fn inspect(times: &[f64], flags: &mut Vec<Flag>) -> Option<f64> {
     regular(times, &in_order, quantile(0.5), flags)
 }
 
+/// Counters of microcontrollers that run over: their bits, what they count, and that in s.
+const COUNTERS: [(usize, &str, f64); 4] = [
+    (32, "µs", 1e-6),
+    (32, "ms", 1e-3),
+    (16, "ms", 1e-3),
+    (16, "µs", 1e-6),
+];
+
+/// The counter that ran over where times fall: they fall from its end to zero, within two steps each.
+fn turned(times: &[f64], at: usize) -> Option<Problem> {
+    let within = 2.0 * usual_step(times)?;
+    let [before, after] = [times[at], times[at + 1]];
+    let ends = |(bits, _, to_s): &&(usize, &str, f64)| {
+        let end = 2.0_f64.powi(i32::try_from(*bits).unwrap_or(0)) * to_s;
+        (end - within..=end).contains(&before) && (0.0..=within).contains(&after)
+    };
+    let (bits, unit, _) = COUNTERS.iter().find(ends)?;
+    Some(Problem::TimeTurns {
+        sample: at,
+        bits: *bits,
+        unit: (*unit).to_owned(),
+    })
+}
+
 fn backward_at(times: &[f64], at: usize) -> Flag {
+    if let Some(problem) = turned(times, at) {
+        return Flag::new(None, problem);
+    }
     let problem = Problem::TimeFalls {
         sample: at,
         before_s: times[at],
@@ -351,6 +378,34 @@ mod tests {
         let mut t = uniform(1000, 1e-3);
         t.reverse();
         assert_eq!(codes(&inspected(&t)), ["time_backward"]);
+    }
+
+    #[test]
+    fn a_counter_that_runs_over_is_named() {
+        for (end, to_s, said) in [
+            (
+                2.0_f64.powi(32),
+                1e-6,
+                "a counter of 32 bits that counts µs has run over",
+            ),
+            (
+                2.0_f64.powi(16),
+                1e-3,
+                "a counter of 16 bits that counts ms has run over",
+            ),
+        ] {
+            let times = uniform(900, 0.01);
+            let turned = times
+                .iter()
+                .map(|t| (end * to_s - 5.003 + t) % (end * to_s));
+            let axis = inspected(&turned.collect::<Vec<f64>>());
+            assert_eq!(codes(&axis), ["time_backward"]);
+            let message = axis.1[0].message();
+            assert!(message.ends_with(said), "{message}");
+        }
+        // runs of another length
+        let times: Vec<f64> = uniform(900, 0.01).iter().map(|t| t % 5.0).collect();
+        assert!(inspected(&times).1[0].message().contains("runs backward"));
     }
 
     #[test]

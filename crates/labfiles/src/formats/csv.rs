@@ -26,7 +26,7 @@ use crate::source::{
 use crate::text::TextFile;
 use crate::text::cells::{Cells, Lines};
 use crate::text::table::{self, Kind, Layout};
-use crate::timing::AxisUnit;
+use crate::timing::{self, AxisUnit};
 
 /// Bytes at the front of a file from which its dialect is found.
 const HEAD_BYTES: usize = 1 << 16;
@@ -80,13 +80,16 @@ pub(crate) fn open_text(text: TextFile, name: &str) -> Result<OpenedTable, ReadE
     let last_row = last_row(&text, &layout, last, &mut notes)?;
     layout.names.clone_from(&front.header.names);
     let own = front.is_own();
+    if !own {
+        layout.fraction = time_axis::fraction(&front.header, &layout, &rows, last_row.as_deref());
+    }
     let mut header = front.header;
     let times = time_axis::candidates(&header, &layout, &rows);
     let (mut datasets, mut parts) = (Vec::new(), Vec::new());
     let makeup = if own {
         Makeup::One
     } else {
-        parts::find(&header, &layout.kinds, &rows, &times)
+        parts::find(&header, &layout, &rows, &times)
     };
     match makeup {
         Makeup::Runs(runs) => {
@@ -98,7 +101,8 @@ pub(crate) fn open_text(text: TextFile, name: &str) -> Result<OpenedTable, ReadE
             }
         }
         makeup => {
-            let mut columns: Vec<usize> = (0..layout.kinds.len()).collect();
+            let from = usize::from(header.empty_first);
+            let mut columns: Vec<usize> = (from..layout.kinds.len()).collect();
             if let Makeup::BesideRemarks(blocks) = &makeup {
                 blocks.iter().for_each(|b| name_beside(&mut header, b));
                 columns = blocks.iter().flat_map(Block::kept).copied().collect();
@@ -106,12 +110,9 @@ pub(crate) fn open_text(text: TextFile, name: &str) -> Result<OpenedTable, ReadE
             let axis = time_axis::find(&header, &layout, &rows, last_row.as_deref(), count);
             notes.extend(axis.iter().flat_map(|a| a.note.clone()));
             let mut dataset = dataset(header, &layout, count, axis.as_ref());
-            if let Makeup::OwnTimes(own) = &makeup {
-                let shared = dataset.time_axis;
-                for (channel, axis) in dataset.channels.iter_mut().zip(own) {
-                    let axis = axis.filter(|axis| Some(*axis) != shared);
-                    channel.clock = axis.map_or(Clock::Shared, Clock::Axis);
-                }
+            if !own && !matches!(makeup, Makeup::BesideRemarks(_)) {
+                give_axes(&mut dataset, &makeup, &times);
+                notes.extend(time_axis::unused(&dataset, &layout, &rows, &times));
             }
             keep_columns(&mut dataset, &columns);
             if let Makeup::BesideRemarks(blocks) = &makeup {
@@ -210,6 +211,7 @@ fn run_of(
             .map(|&c| header.units[c].clone())
             .collect(),
         attributes: header.attributes.clone(),
+        empty_first: false,
     };
     let kinds = run.columns.iter().map(|&c| layout.kinds[c]).collect();
     let part = Layout {
@@ -253,6 +255,27 @@ fn give_own_times(dataset: &mut DatasetInfo, columns: &[usize], blocks: &[Block]
         for channel in others.iter().filter_map(|c| place(*c)) {
             let clock = place(time).map_or(Clock::Shared, Clock::Axis);
             dataset.channels[channel].clock = clock;
+        }
+    }
+}
+
+/// Give the channels of a table with several time axes theirs: by their place, or where all axes are before the channels by
+/// name, `t_x,t_y,x,y`.
+fn give_axes(dataset: &mut DatasetInfo, makeup: &Makeup, times: &[usize]) {
+    match makeup {
+        Makeup::OwnTimes(own) => {
+            for (channel, axis) in dataset.channels.iter_mut().zip(own) {
+                channel.clock = axis.map_or(Clock::Shared, Clock::Axis);
+            }
+        }
+        Makeup::One => timing::own_axes(&mut dataset.channels),
+        Makeup::Runs(_) | Makeup::BesideRemarks(_) => {}
+    }
+    let shared = dataset.time_axis;
+    for channel in &mut dataset.channels {
+        let is_own = |axis| Some(axis) != shared && times.contains(&axis);
+        if matches!(channel.clock, Clock::Axis(axis) if !is_own(axis)) {
+            channel.clock = Clock::Shared;
         }
     }
 }

@@ -14,6 +14,7 @@ use std::path::Path;
 use calamine::{Data, DataRef, Reader as _, Xls, Xlsx};
 
 use crate::formats::csv::{self, CsvReader};
+use crate::formats::documents::Document;
 use crate::formats::excel::cells::{SheetCells, damaged};
 use crate::formats::excel::compound::Compound;
 use crate::formats::parquet::guard::caught;
@@ -102,6 +103,9 @@ pub fn workbook_tables(path: &Path) -> Result<Option<Vec<(String, Vec<u8>)>>, Re
 
 fn sheets(path: &Path) -> Result<Sheets, ReadError> {
     let bytes = whole(path)?;
+    if let Some(document) = Document::of(&bytes) {
+        return Err(document.refused(path));
+    }
     let sheets = if bytes.starts_with(ZIP) {
         refuse_bomb(path, &bytes)?;
         caught(|| xlsx(path, bytes))

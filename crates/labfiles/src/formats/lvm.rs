@@ -220,6 +220,7 @@ fn layout(
         end: segment.end,
         quotes: false,
         month_first: false,
+        fraction: None,
         comments: b"",
     }
 }

@@ -1,6 +1,7 @@
 //! The formats, a module each, and which of them opens a file: its first bytes decide, then its name, then its text.
 
 pub(crate) mod csv;
+pub(crate) mod documents;
 pub(crate) mod excel;
 pub(crate) mod hdf5;
 pub(crate) mod lvm;
@@ -14,6 +15,7 @@ use std::fs::File;
 use std::path::Path;
 
 use crate::bytes::{read_exact_at, to_usize};
+use crate::formats::documents::Document;
 use crate::source::{ReadError, Source};
 
 /// Bytes at the front of a file by which formats are recognised.
@@ -43,15 +45,6 @@ static FORMATS: &[Format] = &[
     Format { title: "CSV", is: csv::recognises, open: csv::open },
 ];
 
-/// Documents that hold text in lines: their first bytes, and what they are.
-const DOCUMENTS: [(&[u8], &str); 5] = [
-    (b"%PDF-", "a PDF document"),
-    (b"{\\rtf", "a document in rich text"),
-    (b"<!DOCTYPE", "an HTML page"),
-    (b"<html", "an HTML page"),
-    (b"%!PS", "a PostScript document"),
-];
-
 /// Extensions of text tables, whatever their first bytes.
 const TABLES: [&str; 6] = ["csv", "tsv", "txt", "dat", "asc", "prn"];
 
@@ -79,10 +72,8 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
             "copy the file again, or leave it out",
         ));
     }
-    if let Some((_, kind)) = DOCUMENTS.iter().find(|(first, _)| front.starts_with(first)) {
-        let remedy =
-            "name the file with the numbers that the document shows, or export them as CSV";
-        return Err(ReadError::new(path, "a record file", *kind, remedy));
+    if let Some(document) = Document::of(&front) {
+        return Err(document.refused(path));
     }
     let by_bytes = FORMATS.iter().find(|format| (format.is)(&front));
     match by_bytes.or_else(|| by_name(path)) {

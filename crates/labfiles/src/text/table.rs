@@ -17,6 +17,17 @@ pub(crate) enum Kind {
     Text,
 }
 
+/// A column of parts of a second beside a clock that shows whole ones.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Fraction {
+    /// The column of the clock.
+    pub clock: usize,
+    /// The column of the parts.
+    pub column: usize,
+    /// Seconds in one of them.
+    pub to_s: f64,
+}
+
 /// Place and form of the rows of a table.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
@@ -36,6 +47,8 @@ pub(crate) struct Layout {
     pub quotes: bool,
     /// Whether `05/01/2024` is the first of May.
     pub month_first: bool,
+    /// The column of parts of a second that belongs to one of points in time.
+    pub fraction: Option<Fraction>,
     /// Line prefixes that make a line a comment.
     pub comments: &'static [u8],
 }
@@ -50,11 +63,13 @@ enum Column {
 }
 
 /// A column of points in time.
-#[derive(Clone)]
-struct Times {
-    values: Vec<f64>,
+#[derive(Clone, Default)]
+pub(crate) struct Times {
+    /// Seconds since the first.
+    pub(crate) values: Vec<f64>,
     origin: Option<Stamp>,
-    days: f64,
+    /// What clocks that began again are behind, s.
+    turned_s: f64,
 }
 
 impl Column {
@@ -68,8 +83,41 @@ impl Column {
     }
 }
 
-/// Read the columns `wanted` (indices, any order) of a table of `rows` rows.
+/// Read the columns `wanted` (indices, any order) of a table of `rows` rows; a clock that shows whole seconds with the parts
+/// of a second that stand beside it.
 pub(crate) fn read_columns(
+    text: &TextFile,
+    layout: &Layout,
+    wanted: &[usize],
+    rows: usize,
+) -> Result<Vec<Samples>, ReadError> {
+    let Some(fraction) = layout.fraction.filter(|f| wanted.contains(&f.clock)) else {
+        return read_cells(text, layout, wanted, rows);
+    };
+    let with_parts = [wanted, &[fraction.column]].concat();
+    let mut read = read_cells(text, layout, &with_parts, rows)?;
+    let parts = read.pop().and_then(Samples::into_real).unwrap_or_default();
+    for (column, samples) in wanted.iter().zip(&mut read) {
+        if let Samples::Real(seconds) = samples
+            && *column == fraction.clock
+        {
+            fraction.add(seconds, &parts);
+        }
+    }
+    Ok(read)
+}
+
+impl Fraction {
+    /// Add parts to whole seconds, so that the first is zero.
+    pub(crate) fn add(self, seconds: &mut [f64], parts: &[f64]) {
+        let first = parts.iter().copied().find(|p| p.is_finite()).unwrap_or(0.0);
+        for (second, part) in seconds.iter_mut().zip(parts) {
+            *second += (part - first) * self.to_s;
+        }
+    }
+}
+
+fn read_cells(
     text: &TextFile,
     layout: &Layout,
     wanted: &[usize],
@@ -125,8 +173,7 @@ fn empty_column(kind: Kind, rows: usize) -> Column {
         Kind::Number => Column::Number(Vec::with_capacity(rows)),
         Kind::Time => Column::Time(Box::new(Times {
             values: Vec::with_capacity(rows),
-            origin: None,
-            days: 0.0,
+            ..Times::default()
         })),
         Kind::Text => Column::Text(Vec::with_capacity(rows)),
     }
@@ -164,6 +211,7 @@ impl Fault {
 }
 
 /// What was read at the front of a row.
+#[derive(Default)]
 struct Plain {
     /// How many cells.
     done: usize,
@@ -176,11 +224,11 @@ struct Plain {
 #[inline]
 fn plain_cells(block: &[u8], mut at: usize, layout: &Layout, columns: &mut [Column]) -> Plain {
     let Separator::Byte(separator) = layout.separator else {
-        return Plain {
-            done: 0,
-            next: None,
-        };
+        return Plain::default();
     };
+    if separator == layout.notation.decimal {
+        return Plain::default();
+    }
     let count = columns.len();
     for (done, column) in columns.iter_mut().enumerate() {
         let other = Plain { done, next: None };
@@ -317,19 +365,22 @@ fn push(column: &mut Column, cell: &[u8], layout: &Layout) -> Option<()> {
 }
 
 impl Times {
-    /// Append the seconds of a cell since the column's first; a clock that passes midnight goes on.
-    fn push(&mut self, cell: &[u8], month_first: bool) -> Option<()> {
+    /// Append the seconds of a cell since the column's first; a clock that passes midnight, or the full hour where it shows
+    /// none, goes on.
+    pub(crate) fn push(&mut self, cell: &[u8], month_first: bool) -> Option<()> {
         if cell.is_empty() {
             self.values.push(f64::NAN);
             return Some(());
         }
-        let stamp = clock::parse(&decode(cell), month_first)?;
+        let stamp = clock::parse_cell(&decode(cell), month_first)?;
         let origin = *self.origin.get_or_insert(stamp);
-        let mut value = stamp.since(origin) + self.days * 86_400.0;
-        let before = self.values.last();
-        if stamp.days.is_none() && before.is_some_and(|b| value < b - 43_200.0) {
-            self.days += 1.0;
-            value += 86_400.0;
+        let mut value = stamp.since(origin) + self.turned_s;
+        let before = self.values.last().copied();
+        if let Some((turn_s, before)) = stamp.turn_s().zip(before)
+            && value < before - 0.5 * turn_s
+        {
+            self.turned_s += turn_s;
+            value += turn_s;
         }
         self.values.push(value);
         Some(())

@@ -376,6 +376,15 @@ problems! {
         /// The next time, s.
         after_s: f64,
     };
+    /// The counter of the time begins again.
+    TimeBackward: TimeTurns {
+        /// The last sample before.
+        sample: usize,
+        /// Binary digits of the counter.
+        bits: usize,
+        /// What it counts.
+        unit: String,
+    };
     /// All times fall: the record is read from its end.
     TimeBackward: TimeTurnedAround {
         /// The time axis.

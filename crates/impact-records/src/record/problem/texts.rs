@@ -188,6 +188,10 @@ message_table! { "problem": Problem;
         sample = Value::Count(*sample),
         before = Value::Shortest(*before_s),
         after = Value::Shortest(*after_s);
+    Self::TimeTurns { sample, bits, unit } =>
+        sample = Value::Count(*sample),
+        bits = Value::Count(*bits),
+        unit = Value::Name(unit);
     Self::ImpactsNotInOrder { impact } => impact = Value::Count(*impact);
     Self::UnevenStamps { unit_s } => unit = power(*unit_s);
     Self::ScatteredSteps { spread_s, mean_s } =>

@@ -1,5 +1,7 @@
 //! What the columns of a text table hold, found from its first rows.
 
+use std::ops::Range;
+
 use crate::formats::csv::dialect::{self, Dialect};
 use crate::text::cells::{Cells, Separator};
 use crate::text::decode;
@@ -66,13 +68,15 @@ impl Judged {
     }
 }
 
-/// The most cells filled in any row of the head.
-pub(crate) fn filled(rows: &HeadRows<'_>) -> usize {
+/// The columns between the first and the last cell that is filled in any row of the head.
+pub(crate) fn filled(rows: &HeadRows<'_>) -> Range<usize> {
     let filled = |row: Cells<'_>| {
-        let cells = row.enumerate().filter(|(_, cell)| !cell.is_empty());
-        cells.last().map_or(0, |(i, _)| i + 1)
+        let mut cells = row.enumerate().filter(|(_, cell)| !cell.is_empty());
+        let (first, _) = cells.next()?;
+        Some(first..cells.last().map_or(first, |(i, _)| i) + 1)
     };
-    rows.rows().map(filled).max().unwrap_or(0)
+    let both = |a: Range<usize>, b: Range<usize>| a.start.min(b.start)..a.end.max(b.end);
+    rows.rows().filter_map(filled).reduce(both).unwrap_or(0..0)
 }
 
 /// A cell that may be a number with three decimals or one with its thousands separated: all marked cells of its

@@ -36,7 +36,7 @@ impl Dialect {
 }
 
 /// Dialects in the order in which they are preferred when they explain a text equally well.
-const CANDIDATES: [(Separator, u8); 9] = [
+const CANDIDATES: [(Separator, u8); 10] = [
     (Separator::Byte(b'\t'), b'.'),
     (Separator::Byte(b';'), b'.'),
     (Separator::Byte(b','), b'.'),
@@ -46,7 +46,11 @@ const CANDIDATES: [(Separator, u8); 9] = [
     (Separator::Byte(b';'), b','),
     (Separator::Byte(b'|'), b','),
     (Separator::Blanks, b','),
+    QUOTED,
 ];
+
+/// Numbers with decimal commas between commas, which quotes keep apart.
+const QUOTED: (Separator, u8) = (Separator::Byte(b','), b',');
 
 /// The dialect that explains the lines best; `None` where none makes a table of them.
 ///
@@ -63,9 +67,12 @@ pub(crate) fn detect(lines: &[&[u8]]) -> Option<Dialect> {
     }
     let mut best: Option<(f64, Dialect)> = None;
     let parted = is_parted(judged);
-    let candidates = CANDIDATES
-        .iter()
-        .filter(|(s, _)| !(parted && *s == Separator::Blanks));
+    let quoted = shows_quoted_commas(judged);
+    let fits = |candidate: &(Separator, u8)| match *candidate {
+        QUOTED => quoted,
+        (separator, _) => !(parted && separator == Separator::Blanks),
+    };
+    let candidates = CANDIDATES.iter().filter(|c| fits(c));
     for &(separator, decimal) in candidates {
         let notation = notation(judged, separator, decimal);
         let Some((score, columns)) = score(judged, separator, notation) else {
@@ -120,6 +127,18 @@ fn is_column_of_decimals(lines: &[&[u8]], judged: &[&[u8]]) -> bool {
     let alike = parts.windows(2).all(|w| w[0].len() == w[1].len());
     let zeros = parts.iter().any(|p| p.len() > 1 && p[0] == b'0');
     !parts.is_empty() && (heading.is_some_and(is_one) || (alike && zeros))
+}
+
+/// Whether cells between commas, in quotes, hold numbers whose comma is that of decimals: it does not part groups of three
+/// digits.
+fn shows_quoted_commas(lines: &[&[u8]]) -> bool {
+    let (separator, decimal) = QUOTED;
+    let mut cells = lines.iter().flat_map(|l| Cells::new(l, separator));
+    cells.any(|cell| {
+        cell.contains(&decimal)
+            && number::parse_cell(cell, decimal).is_some()
+            && number::parse_grouped(cell, b'.').is_none()
+    })
 }
 
 /// Whether nearly all lines have as many tabs, semicolons or bars, and some: blanks are part of their cells then.
@@ -196,19 +215,31 @@ pub(crate) fn is_value(cell: &[u8], notation: Notation) -> bool {
 
 /// Whether a cell holds a point in time.
 pub(crate) fn is_time(cell: &[u8]) -> bool {
-    cell.len() <= LONGEST_TIME && clock::parse(&decode(cell), false).is_some()
+    cell.len() <= LONGEST_TIME && clock::parse_cell(&decode(cell), false).is_some()
 }
 
 /// The number of the first line that is a row of the table: a row of values, or one that has
 /// values wherever the last lines have values alone, as rows of few numbers among texts do.
 pub(crate) fn first_row(lines: &[&[u8]], dialect: &Dialect) -> Option<usize> {
     let values = columns_of_values(judged(lines), dialect);
+    let begins_empty = begins_empty(judged(lines), &values, dialect);
     lines.iter().position(|line| {
         let cells: Vec<&[u8]> = Cells::new(line, dialect.separator).collect();
         let near = cells.len().abs_diff(dialect.columns) <= dialect.columns / 2;
         let row = is_value_row(&cells, dialect) || agrees(&cells, &values, dialect);
-        near && row && !heads(&cells, &values, dialect)
+        let keyed = begins_empty && !cells[0].is_empty();
+        near && row && !keyed && !heads(&cells, &values, dialect)
     })
+}
+
+/// Whether lines begin with an empty cell before columns of values alone, as Yokogawa writes them below `"Model","DL850"`.
+fn begins_empty(lines: &[&[u8]], values: &[bool], dialect: &Dialect) -> bool {
+    let mut firsts = lines
+        .iter()
+        .map(|line| Cells::new(line, dialect.separator).next());
+    let empty = firsts.all(|cell| cell.is_some_and(<[u8]>::is_empty));
+    let others = values.get(1..).unwrap_or_default();
+    empty && !others.is_empty() && others.iter().all(|of_values| *of_values)
 }
 
 /// Whether some of the cells are filled, and most of those hold values.

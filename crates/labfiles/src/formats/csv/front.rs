@@ -57,7 +57,7 @@ impl Front {
         let offset = offsets[first];
         let rows = head_rows(&head[offset..], quotes, dialect.separator);
         let filled = match texts {
-            Some(_) => dialect.columns,
+            Some(_) => 0..dialect.columns,
             None => columns::filled(&rows),
         };
         let (mut header, columns) = header::read(&lines[..first], &dialect, filled);
@@ -94,6 +94,7 @@ impl Front {
             end: text.length(),
             quotes,
             month_first: kinds.contains(&Kind::Time) && columns::month_first(rows),
+            fraction: None,
             kinds,
             comments: dialect::COMMENTS,
         }

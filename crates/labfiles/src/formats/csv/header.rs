@@ -1,6 +1,7 @@
 //! Names, units and remarks before a table's first row.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use crate::attribute;
 use crate::formats::csv::commas;
@@ -19,6 +20,8 @@ pub(crate) struct Header {
     pub units: Vec<Option<String>>,
     /// Remarks of the form `key: value`, `key = value` or a row of two cells.
     pub attributes: BTreeMap<String, String>,
+    /// Whether rows begin with an empty cell below the keys of a preamble.
+    pub empty_first: bool,
 }
 
 /// Units that occur in headers though no channel of the rig is measured in them.
@@ -29,21 +32,21 @@ const FURTHER_UNITS: [&str; 25] = [
 
 /// Read the lines before the first row. `lines` are all of them, comments too, blank ones not; `filled` are
 /// the columns that rows fill. Gives the number of columns as well: those that are filled or named.
-pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header, usize) {
+pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: Range<usize>) -> (Header, usize) {
     let mut header = Header::default();
     let (comments, plain): (Vec<&[u8]>, Vec<&[u8]>) = lines.iter().partition(|l| is_comment(l));
-    let pairs = if dialect.columns == 1 {
-        pairs_above(&plain)
-    } else {
-        Vec::new()
-    };
-    let mut rows: Vec<Vec<String>> = if pairs.is_empty() {
+    let keyed = keyed_above(&plain, filled.len());
+    let mut rows: Vec<Vec<String>> = if keyed.is_empty() {
         plain.iter().map(|l| heading(l, dialect)).collect()
     } else {
         Vec::new()
     };
-    let trace = trace_of(&pairs);
-    header.attributes.extend(pairs);
+    header.empty_first = !keyed.is_empty() && filled.start == 1;
+    let traces = traces_of(&keyed);
+    let traces = vec![String::new(); filled.start].into_iter().chain(traces);
+    let traces: Vec<String> = traces.take(filled.end).collect();
+    header.attributes.extend(attributes_of(keyed));
+    let filled = filled.end;
     take_values(&mut rows, filled, dialect, &mut header.attributes);
     let named = rows
         .iter()
@@ -78,7 +81,7 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header
     } else if let Some(names) = commented_names(&comments, dialect) {
         header.names = names;
     } else {
-        header.names.extend(trace);
+        header.names = traces;
     }
     if header.names.iter().take(2).eq(["Frame", "Sub Frame"]) {
         header.attributes.extend(rate_above(&rows));
@@ -112,17 +115,20 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: usize) -> (Header
 /// Fewest lines of a key and its value that are a preamble.
 const FEWEST_PAIRS: usize = 3;
 
-/// The keys and values of the lines `"key",value` above a column of numbers, of which no line is the heading; none
-/// where they are few.
-fn pairs_above(plain: &[&[u8]]) -> Vec<(String, String)> {
-    let pair = |line: &&[u8]| {
-        let cells: Vec<String> = Cells::new(line, Separator::Byte(b','))
-            .map(decode_cell)
-            .collect();
-        let [key, value] = <[String; 2]>::try_from(cells).ok()?;
-        let word = key.starts_with(char::is_alphabetic) && !value.is_empty();
+/// A key of a preamble and its values: one, or one for each column.
+type Keyed = (String, Vec<String>);
+
+/// The keys and values of the lines `"key",value` above columns of numbers, of which no line is the heading: above one column,
+/// or above several where a line names the trace of each; none where they are few.
+fn keyed_above(plain: &[&[u8]], signals: usize) -> Vec<Keyed> {
+    let keyed = |line: &&[u8]| {
+        let cells = Cells::new(line, Separator::Byte(b',')).map(decode_cell);
+        let cells: Vec<String> = cells.collect();
+        let (key, values) = cells.split_first()?;
+        let word = key.starts_with(char::is_alphabetic) && !values.is_empty();
+        let given = values.len() <= signals && values.iter().all(|v| !v.is_empty());
         let key = key.trim_end_matches(':').to_owned();
-        word.then_some((key, value))
+        (word && given).then(|| (key, values.to_vec()))
     };
     // a line that says that the data follow
     let says_data = |line: &&&[u8]| {
@@ -130,24 +136,39 @@ fn pairs_above(plain: &[&[u8]]) -> Vec<(String, String)> {
         line.starts_with(b"data:") && line.len() <= b"data:,".len()
     };
     let above = plain.iter().rev().skip_while(says_data);
-    let all: Vec<(String, String)> = above.map_while(pair).collect();
-    if all.len() < FEWEST_PAIRS {
+    let all: Vec<Keyed> = above.map_while(keyed).collect();
+    let named = all
+        .iter()
+        .any(|(key, names)| key == TRACES && names.len() == signals);
+    if all.len() < FEWEST_PAIRS || !(signals == 1 || named) {
         Vec::new()
     } else {
         all
     }
 }
 
-/// The heading that a preamble gives a column, as Yokogawa writes it: name and unit.
-fn trace_of(pairs: &[(String, String)]) -> Option<String> {
+/// The key by which Yokogawa names the traces.
+const TRACES: &str = "TraceName";
+
+/// The headings that a preamble gives the columns, as Yokogawa writes it: names and units.
+fn traces_of(keyed: &[Keyed]) -> Vec<String> {
     let stated = |key: &str| {
-        let found = pairs.iter().find(|(known, _)| known == key);
-        found.map(|(_, value)| value.trim())
+        let found = keyed.iter().find(|(known, _)| known == key);
+        found.map_or(&[][..], |(_, values)| values)
     };
-    let name = stated("TraceName")?;
-    Some(match stated("VUnit") {
-        Some(unit) => format!("{name} [{unit}]"),
-        None => name.to_owned(),
+    let units = stated("VUnit");
+    let name = |(i, name): (usize, &String)| match units.get(i) {
+        Some(unit) => format!("{} [{}]", name.trim(), unit.trim()),
+        None => name.trim().to_owned(),
+    };
+    stated(TRACES).iter().enumerate().map(name).collect()
+}
+
+/// Keys and values as attributes: what is alike for all columns once.
+fn attributes_of(keyed: Vec<Keyed>) -> impl Iterator<Item = (String, String)> {
+    keyed.into_iter().map(|(key, mut values)| {
+        values.dedup();
+        (key, values.join(", "))
     })
 }
 
@@ -446,6 +467,13 @@ pub fn name_and_unit(heading: &str) -> (String, Option<String>) {
     (heading.to_owned(), None)
 }
 
+/// A name without a number at its end, and that: `y 2`, `y2`.
+pub(crate) fn without_number(name: &str) -> (String, String) {
+    let bare = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let trimmed = bare.trim_end_matches([' ', '_', '#', '.', '-']);
+    (trimmed.to_owned(), name[bare.len()..].to_owned())
+}
+
 /// Fill names and units up to the number of columns; repeated names gain a number.
 fn name_columns(header: &mut Header, units: &[Option<String>], columns: usize) {
     let headings = std::mem::take(&mut header.names);
@@ -488,7 +516,7 @@ mod tests {
         read(
             &lines.iter().map(|l| l.as_bytes()).collect::<Vec<_>>(),
             &SEMICOLON,
-            3,
+            0..3,
         )
         .0
     }
@@ -573,7 +601,7 @@ mod tests {
             ..SEMICOLON
         };
         let lines: [&[u8]; 2] = [b"Throw 1;;;Throw 2;", b"t [s];y [m];;t [s];y [m]"];
-        let (found, _) = read(&lines, &dialect, 5);
+        let (found, _) = read(&lines, &dialect, 0..5);
         assert_eq!(
             found.names,
             [

@@ -1,9 +1,9 @@
 //! Tables side by side: several runs in one sheet, each with its own time, or channels with times of their own.
 
 use crate::formats::csv::columns::HeadRows;
-use crate::formats::csv::header::Header;
-use crate::formats::csv::time_axis::heads_pair;
-use crate::text::table::Kind;
+use crate::formats::csv::header::{Header, without_number};
+use crate::formats::csv::time_axis::{heads_pair, is_further};
+use crate::text::table::{Kind, Layout};
 use crate::timing::{is_time_name, is_unit_of_time, numbers_rows};
 use crate::units::{Dimension, parse_unit};
 
@@ -52,10 +52,11 @@ impl Block {
 /// Find out how a table is made up; `times` are the columns that may be time axes.
 pub(crate) fn find(
     header: &Header,
-    kinds: &[Kind],
+    layout: &Layout,
     rows: &HeadRows<'_>,
     times: &[usize],
 ) -> Makeup {
+    let kinds = &layout.kinds[..];
     if let Some(blocks) = beside_remarks(header, kinds, rows) {
         return Makeup::BesideRemarks(blocks);
     }
@@ -66,7 +67,11 @@ pub(crate) fn find(
     if let Some(parts) = lists_of_runs(header, kinds, &used) {
         return Makeup::Runs(parts);
     }
-    let blocks = blocks(&used, times, header);
+    let blocks = blocks(&used, times, |axis, column| {
+        is_time_name(&header.names[column])
+            || heads_pair(header, column)
+            || is_further(header, layout, rows, [axis, column])
+    });
     if blocks.len() < 2 {
         return shared_time(header, kinds, &used, times).map_or(Makeup::One, Makeup::Runs);
     }
@@ -77,16 +82,20 @@ pub(crate) fn find(
 }
 
 /// A time column and the columns after it, up to the next: those before the first belong to its block, and a
-/// time column without any is a further column of the block before.
-fn blocks(used: &[usize], times: &[usize], header: &Header) -> Vec<Vec<usize>> {
+/// time column without any is a further column of the block before. `is_axis` tells whether a time column beside the first
+/// block's is the time of what follows it.
+fn blocks(
+    used: &[usize],
+    times: &[usize],
+    is_axis: impl Fn(usize, usize) -> bool,
+) -> Vec<Vec<usize>> {
     let mut blocks: Vec<Vec<usize>> = Vec::new();
     let mut before = Vec::new();
     for (place, &column) in used.iter().enumerate() {
         let next = used.get(place + 1);
-        let named =
-            blocks.is_empty() || is_time_name(&header.names[column]) || heads_pair(header, column);
-        let heads =
-            times.contains(&column) && named && next.is_some_and(|next| !times.contains(next));
+        let precedes = times.contains(&column) && next.is_some_and(|n| !times.contains(n));
+        let first = blocks.first().map(|block| block[0]);
+        let heads = precedes && first.is_none_or(|axis| is_axis(axis, column));
         match (heads, blocks.last_mut()) {
             (true, _) => {
                 let mut block = vec![column];
@@ -169,13 +178,6 @@ fn numbered(text: &str, word: &str) -> Option<(usize, usize)> {
                 .len();
         (digits > 0).then(|| (at, text.len() - number.len() + digits))
     })
-}
-
-/// A name without a number at its end, and that: `y 2`, `y2`.
-fn without_number(name: &str) -> (String, String) {
-    let bare = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    let trimmed = bare.trim_end_matches([' ', '_', '#', '.', '-']);
-    (trimmed.to_owned(), name[bare.len()..].to_owned())
 }
 
 /// Blocks that hold the same quantities, as runs: their headings differ by the name of the run, or by a number.

@@ -411,3 +411,227 @@ fn headings_of_loggers_oscilloscopes_and_cameras_are_read() {
     assert_eq!(names, ["Frame", "Sub Frame", "X", "Y", "Z"]);
     assert!((set.sample_rate_hz().unwrap() - 100.0).abs() < 1e-6);
 }
+
+/// Rows of two channels with times of their own, the first of 200 Hz and 60 samples, the second of 100 Hz and 40.
+fn unlike_rates(separator: &str, between: &str) -> String {
+    let row = |k: u32| {
+        let k = f64::from(k);
+        let second = if k < 40.0 {
+            format!("{:.3}{separator}{:.4}", k * 0.01, (k * 0.4).cos())
+        } else {
+            separator.to_owned()
+        };
+        let x = (k * 0.2).cos();
+        format!("{:.3}{separator}{x:.4}{between}{second}\n", k * 0.005)
+    };
+    (0..60).map(row).collect()
+}
+
+#[test]
+fn valid_each_channel_has_the_time_before_it_however_both_are_called() {
+    for (heading, second) in [
+        ("t1 (s),vel (m/s),t2 (s),pos (m)", "t2"),
+        ("X_Value,CH1 (V),X_Value,CH2 (V)", "X_Value 2"),
+        ("x [s],vel [m/s],x [s],pos [m]", "x 2"),
+        ("fast [s],vel [m/s],slow [s],pos [m]", "slow"),
+        ("X (ms),vel,X (ms),pos", "X 2"),
+    ] {
+        let s = source(format!("{heading}\n{}", unlike_rates(",", ",")).as_bytes());
+        let info = &s.datasets()[0];
+        assert_eq!(s.datasets().len(), 1, "{heading}");
+        assert_eq!(info.time_axis, Some(0), "{heading}");
+        assert_eq!(info.channels[2].name, second);
+        let clocks: Vec<Clock> = info.channels.iter().map(|c| c.clock).collect();
+        assert_eq!(clocks[1], Clock::Shared, "{heading}");
+        assert_eq!(clocks[3], Clock::Axis(2), "{heading}");
+    }
+    let text = format!(
+        "X [s];vel [m/s];;X [s];pos [m]\n{}",
+        unlike_rates(";", ";;")
+    );
+    let s = source(text.as_bytes());
+    assert_eq!(s.datasets()[0].channels[4].clock, Clock::Axis(3));
+    // a signal in s that does not climb evenly, and one before the channels
+    let rows = |k: u32| format!("{:.2},{},{},{}\n", 0.01 * f64::from(k), k % 7, k * k, k % 5);
+    let rows: String = (0..60).map(rows).collect();
+    let s = source(format!("t (s),x (m),period (s),y (m)\n{rows}").as_bytes());
+    assert!(
+        s.datasets()[0]
+            .channels
+            .iter()
+            .all(|c| c.clock == Clock::Shared)
+    );
+}
+
+#[test]
+fn valid_times_before_all_channels_are_theirs_by_name_or_are_noted() {
+    let row = |k: u32| {
+        let k = f64::from(k);
+        format!(
+            "{:.3},{:.2},{:.3},{:.3}\n",
+            k * 0.005,
+            k * 0.01,
+            k.cos(),
+            k.sin()
+        )
+    };
+    let rows: String = (0..60).map(row).collect();
+    let s = source(format!("t_vel (s),t_pos (s),vel (m/s),pos (m)\n{rows}").as_bytes());
+    let clocks: Vec<Clock> = s.datasets()[0].channels.iter().map(|c| c.clock).collect();
+    assert_eq!(clocks[2..], [Clock::Shared, Clock::Axis(1)]);
+    assert!(s.notes().is_empty(), "{:?}", s.notes());
+    let s = source(format!("t1 (s),t2 (s),vel (m/s),pos (m)\n{rows}").as_bytes());
+    assert_eq!(
+        s.notes(),
+        [
+            "'t1' is taken as the time of all columns, and 't2' goes by other steps: where it is the time of some, put it \
+          before them, or name it after them, as 't_x' for 'x'"
+        ]
+    );
+}
+
+#[test]
+fn valid_a_date_and_a_time_of_day_go_on_past_midnight() {
+    let row = |k: u32| {
+        let (day, time) = match k {
+            0..=99 => (12, format!("23:59:59,{k:02}")),
+            k => (13, format!("00:00:00,{:02}", k - 100)),
+        };
+        format!("{day}.05.2024;{time};{},5\n", k % 9)
+    };
+    let rows: String = (0..200).map(row).collect();
+    let s = source(format!("Datum;Zeit;x [mm]\n{rows}").as_bytes());
+    let info = &s.datasets()[0];
+    assert_eq!(info.time_axis, Some(1));
+    assert!((info.sample_rate_hz().unwrap() - 100.0).abs() < 1e-3);
+    let start = info.channels[2].start_time.as_deref();
+    assert_eq!(start, Some("2024-05-12T23:59:59"));
+    let times = real(&*s, 1);
+    assert!((times[199] - 1.99).abs() < 1e-9, "{}", times[199]);
+}
+
+#[test]
+fn valid_parts_of_a_second_beside_a_clock_are_added_to_it() {
+    for (heading, count, step, to_s) in [("ms", 300u32, 10u32, 1e-3), ("us", 12_000, 400, 1e-6)] {
+        let per_second = if step == 10 { 100 } else { 2500 };
+        let row = |k: u32| {
+            let k = k + 7;
+            let (second, part) = (11 + k / per_second, k % per_second * step);
+            format!(
+                "\"{k}\",\"2024/05/12 14:03:{second}\",\"{part}\",\"+{}.5\"\n",
+                k % 5
+            )
+        };
+        let rows: String = (0..count).map(row).collect();
+        let text = format!(
+            "\"Vendor\",\"a maker\"\n\"Sampling interval\",\"1s\"\n\"Number\",\"Date&Time\",\"{heading}\",\"CH1\"\n\
+             \"NO.\",\"Time\",\"{heading}\",\"V\"\n{rows}"
+        );
+        let s = source(text.as_bytes());
+        let info = &s.datasets()[0];
+        assert_eq!(info.time_axis, Some(1));
+        let rate = f64::from(step) * to_s;
+        assert!((info.sample_rate_hz().unwrap() * rate - 1.0).abs() < 1e-6);
+        let times = s.read(0, &[3, 1, 2]).unwrap()[1]
+            .clone()
+            .into_real()
+            .unwrap();
+        let even = |(k, t): (usize, &f64)| (t - k as f64 * rate).abs() < 1e-9;
+        assert!(times.iter().enumerate().all(even));
+        assert_eq!(real(&*s, 2)[0], f64::from(7 * step));
+    }
+    // milliseconds since the start of a short record are no parts of a second
+    let row = |k: u32| format!("12:00:0{},{},{}\n", (k + 50) / 100, 10 * k, k % 3);
+    let rows: String = (0..90).map(row).collect();
+    let s = source(format!("clock,ms,x\n{rows}").as_bytes());
+    assert_eq!(real(&*s, 0)[89], 1.0);
+}
+
+#[test]
+fn valid_decimal_commas_in_quotes_are_read_between_commas() {
+    let row = |k: u32| format!("\"0,{k:02}\",\"-1,5\",{k},7\n");
+    let rows: String = (0..40).map(row).collect();
+    let s = source(format!("\"Zeit in s\",\"Weg in mm\",n,k\n{rows}").as_bytes());
+    let info = &s.datasets()[0];
+    assert_eq!(info.channels.len(), 4);
+    assert!((info.sample_rate_hz().unwrap() - 100.0).abs() < 1e-6);
+    let read = s.read(0, &[1, 2, 3]).unwrap();
+    assert_eq!(read[0], crate::Samples::Real(vec![-1.5; 40]));
+    assert_eq!(read[2], crate::Samples::Real(vec![7.0; 40]));
+    // groups of three digits may be thousands: no decimals are seen in them
+    let rows: String = (0..40)
+        .map(|k| format!("{k},\"1,{:03}\"\n", 200 + k))
+        .collect();
+    let s = source(format!("n,x\n{rows}").as_bytes());
+    assert_eq!(s.datasets()[0].channels[1].stored, crate::StoredType::Text);
+}
+
+#[test]
+fn valid_traces_of_yokogawa_have_their_names_with_and_without_a_comma_before_the_rows() {
+    for (comma, traces) in [(",", 1), (",", 2), ("", 1), ("", 2), ("", 3)] {
+        let each = |of: &dyn Fn(usize) -> String| (0..traces).map(of).collect::<Vec<_>>().join(",");
+        let row = |k: usize| format!("{comma}{}\n", each(&|i| format!("{}.5E-01", k % 7 + i)));
+        let rows: String = (0..60).map(row).collect();
+        let text = format!(
+            "\"Header Size\",16\n\"Model Name\",\"DL850\"\n\"BlockNumber\",1\n\"TraceName\",{}\n\"BlockSize\",{}\n\
+             \"VUnit\",{}\n\"SampleRate\",{}\n\"HUnit\",{}\n\"Date\",\"2024/05/12\"\n\"Time\",\"14:03:11\"\n{rows}",
+            each(&|i| format!("\"CH{}\"", i + 1)),
+            each(&|_| "60".to_owned()),
+            each(&|_| "\"V\"".to_owned()),
+            each(&|_| "2.5E+03".to_owned()),
+            each(&|_| "\"s\"".to_owned()),
+        );
+        let s = source(text.as_bytes());
+        let info = &s.datasets()[0];
+        let names: Vec<&str> = info.channels.iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(names, ["CH1", "CH2", "CH3"][..traces], "{comma}{traces}");
+        assert!(info.channels.iter().all(|c| c.unit.as_deref() == Some("V")));
+        assert!(info.channels.iter().all(|c| c.samples == 60));
+        assert!((info.sample_rate_hz().unwrap() - 2500.0).abs() < 1e-6);
+        assert_eq!(info.attributes["Model Name"], "DL850");
+        assert_eq!(real(&*s, traces - 1)[1], [0.15, 0.25, 0.35][traces - 1]);
+    }
+}
+
+#[test]
+fn valid_clocks_of_minutes_turn_at_the_hour_and_durations_have_their_unit_behind() {
+    let row = |k: u32| {
+        let ms = 3_599_500 + 10 * k;
+        let (minutes, seconds) = (ms / 60_000 % 60, f64::from(ms % 60_000) * 1e-3);
+        format!("{minutes:02}:{seconds:06.3},{}\n", k % 5)
+    };
+    let rows: String = (0..150).map(row).collect();
+    let s = source(format!("Time,a [m/s^2]\n{rows}").as_bytes());
+    assert_eq!(s.datasets()[0].time_axis, Some(0));
+    assert!((real(&*s, 0)[149] - 1.49).abs() < 1e-9);
+    let row = |k: u32| format!("{} sec,-{}.5\n", f64::from(k) / 1200.0, k % 5);
+    let rows: String = (0..90).map(row).collect();
+    let s = source(format!("Time,drive_N\n{rows}").as_bytes());
+    let info = &s.datasets()[0];
+    assert_eq!(info.time_axis, Some(0));
+    assert!((info.sample_rate_hz().unwrap() - 1200.0).abs() < 1e-3);
+    assert_eq!(info.channels[1].start_time, None);
+}
+
+#[test]
+fn whole_steps_of_many_seconds_are_noted() {
+    let table = |heading: &str, step: u32| {
+        let rows: String = (0..200)
+            .map(|k| format!("{},{}.5\n", step * k, k % 5))
+            .collect();
+        source(format!("{heading},x (mm)\n{rows}").as_bytes())
+    };
+    assert_eq!(
+        table("Time (s)", 10).notes(),
+        ["time axis 'Time' is stated in s and goes by steps of 10: check that it is not in ms"]
+    );
+    for (heading, step) in [("Time (s)", 1), ("Time (ms)", 10)] {
+        assert!(table(heading, step).notes().is_empty(), "{heading}");
+    }
+}
+
+#[test]
+fn a_file_that_is_not_there_asks_for_its_path() {
+    let error = crate::open(std::path::Path::new("nope.csv")).err().unwrap();
+    assert_eq!(error.remedy, "check the path and its spelling");
+}

@@ -1,12 +1,14 @@
 //! Which column of a table is its time axis, and at which rate its rows follow.
 
 use crate::formats::csv::columns::HeadRows;
-use crate::formats::csv::header::Header;
+use crate::formats::csv::header::{Header, without_number};
 use crate::rate;
-use crate::text::table::{Kind, Layout};
+use crate::source::{Clock, DatasetInfo};
+use crate::text::table::{Fraction, Kind, Layout, Times};
 use crate::text::{clock, decode};
 use crate::timing::{
     AxisUnit, StatedUnit, climbs_evenly, is_general, is_time_name, stated_unit, states_unit,
+    steps_evenly,
 };
 use crate::units::symbol_of;
 
@@ -35,8 +37,11 @@ pub(crate) fn find(
     last: Option<&[Vec<u8>]>,
     count: u64,
 ) -> Option<TimeAxis> {
-    let candidates = (0..layout.kinds.len()).filter_map(|i| candidate(header, layout, i));
-    let found = candidates.filter(|c| climbs(&head_of(layout, rows, c.column)));
+    let (dates, parts) = (dates(layout, rows), layout.fraction);
+    let of_clock = |i: &usize| parts.is_none_or(|f| f.clock == *i);
+    let columns = (0..layout.kinds.len()).filter(|i| Some(*i) != dates && of_clock(i));
+    let candidates = columns.filter_map(|i| candidate(header, layout, i));
+    let found = candidates.filter(|c| parts.is_some() || climbs(&head_of(layout, rows, c.column)));
     let found: Vec<TimeAxis> = found.collect();
     let mut numbers = found
         .iter()
@@ -45,10 +50,9 @@ pub(crate) fn find(
     let best = best.or(found.first()).cloned();
     let mut axis = best.or_else(|| unnamed(header, layout, rows))?;
     let head = head_of(layout, rows, axis.column);
-    let end = last.and_then(|cells| cell_value(layout, cells.get(axis.column)?, axis.column, rows));
+    let end = last.and_then(|cells| end_of(layout, cells, axis.column, rows));
     if layout.kinds[axis.column] == Kind::Time {
-        let first = rows.first(axis.column);
-        axis.start = first.and_then(|c| stamp(layout, c)).map(clock::Stamp::iso);
+        axis.start = start(layout, rows, axis.column, dates).map(clock::Stamp::iso);
         axis.unit = Some("s".to_owned());
     }
     let name = &header.names[axis.column];
@@ -59,16 +63,141 @@ pub(crate) fn find(
         .seconds()
         .and_then(|s| rate::from_axis(&head, end, count, s));
     axis.note = axis.note.or_else(|| unit.note(name));
+    let slow = layout.kinds[axis.column] == Kind::Number;
+    axis.note = axis
+        .note
+        .or_else(|| slow.then(|| unit.slow_note(name, &head))?);
     Some(axis)
+}
+
+/// The point in time of the first row; `dates` is the column of the dates of a clock without.
+fn start(
+    layout: &Layout,
+    rows: &HeadRows<'_>,
+    column: usize,
+    dates: Option<usize>,
+) -> Option<clock::Stamp> {
+    let first = |column: usize| clock::parse(&decode(rows.first(column)?), layout.month_first);
+    let mut start = first(column)?;
+    start.days = start.days.or_else(|| first(dates?)?.days);
+    if let Some(parts) = layout.fraction.filter(|f| f.clock == column) {
+        start.seconds += parts.to_s * layout.notation.parse(rows.first(parts.column)?)?;
+    }
+    Some(start)
+}
+
+/// The stamps of a column of points in time in the rows seen; `None` of any other column.
+fn stamps(layout: &Layout, rows: &HeadRows<'_>, column: usize) -> Option<Vec<clock::Stamp>> {
+    let is_time = layout.kinds.get(column) == Some(&Kind::Time);
+    let cells = rows.column(column).filter_map(|cell| stamp(layout, cell));
+    is_time.then(|| cells.collect())
+}
+
+/// The column of dates that stands beside one of times of day.
+fn dates(layout: &Layout, rows: &HeadRows<'_>) -> Option<usize> {
+    let all = |column: usize, is: &dyn Fn(&clock::Stamp) -> bool| {
+        let stamps = stamps(layout, rows, column);
+        stamps.is_some_and(|s| !s.is_empty() && s.iter().all(is))
+    };
+    let columns = 0..layout.kinds.len();
+    let of_day = |column: usize| all(column, &|s| s.days.is_none());
+    let mut dates = columns
+        .clone()
+        .filter(|&column| all(column, &|s| s.days.is_some() && s.seconds == 0.0));
+    let dates = dates.next()?;
+    columns.into_iter().any(of_day).then_some(dates)
+}
+
+/// The column of parts of a second, `ms` or `us`, beside a clock that shows whole ones; `last` is the last row.
+pub(crate) fn fraction(
+    header: &Header,
+    layout: &Layout,
+    rows: &HeadRows<'_>,
+    last: Option<&[Vec<u8>]>,
+) -> Option<Fraction> {
+    let whole = |&column: &usize| {
+        let stamps = stamps(layout, rows, column).unwrap_or_default();
+        let of_day = stamps.iter().any(|s| s.seconds != 0.0);
+        of_day && stamps.iter().all(|s| s.seconds.fract() == 0.0)
+    };
+    let mut columns = 0..layout.kinds.len();
+    let clock = columns.clone().find(whole)?;
+    columns.find_map(|column| {
+        let name = &header.names[column];
+        let StatedUnit::Known(unit) = stated_unit(header.units[column].as_deref(), name) else {
+            return None;
+        };
+        let fits = layout.kinds[column] == Kind::Number && is_time_name(name) && unit.to_si < 1.0;
+        let to_s = unit.to_si;
+        let found = Fraction {
+            clock,
+            column,
+            to_s,
+        };
+        (fits && begins_again(layout, rows, found, last?)).then_some(found)
+    })
+}
+
+/// Whether a column of parts of a second begins again with each second of the clock beside it: both together climb, and the
+/// parts alone fall, in the rows seen or by the last one.
+fn begins_again(layout: &Layout, rows: &HeadRows<'_>, found: Fraction, last: &[Vec<u8>]) -> bool {
+    let mut parts = head_of(layout, rows, found.column);
+    let whole = head_of(layout, rows, found.clock);
+    let of_last = |column: usize| cell_value(layout, last.get(column)?, column, rows);
+    let (Some(part), Some(end)) = (of_last(found.column), of_last(found.clock)) else {
+        return false;
+    };
+    parts.push(part);
+    let within = parts.iter().all(|p| (0.0..1.0).contains(&(p * found.to_s)));
+    let falls = parts.windows(2).any(|w| w[1] < w[0]) || end > 1.0;
+    let mut times = whole;
+    found.add(&mut times, &parts);
+    within && falls && times.windows(2).all(|w| w[1] >= w[0]) && end > 0.0
 }
 
 /// All columns of numbers that may be time axes.
 pub(crate) fn candidates(header: &Header, layout: &Layout, rows: &HeadRows<'_>) -> Vec<usize> {
-    let columns = (0..layout.kinds.len()).filter(|&i| layout.kinds[i] == Kind::Number);
+    let of_clock = |i: usize| layout.fraction.is_some_and(|f| f.column == i);
+    let columns = 0..layout.kinds.len();
+    let columns = columns.filter(|&i| layout.kinds[i] == Kind::Number && !of_clock(i));
     let of_time = columns.filter(|&i| candidate(header, layout, i).is_some());
     of_time
         .filter(|&i| climbs(&head_of(layout, rows, i)))
         .collect()
+}
+
+/// Greatest difference of the rates of two time axes of the same samples, relative.
+const SAME_RATE: f64 = 1e-2;
+
+/// A note on a further time axis that goes by other steps than the table's own, and is that of no column.
+pub(crate) fn unused(
+    dataset: &DatasetInfo,
+    layout: &Layout,
+    rows: &HeadRows<'_>,
+    times: &[usize],
+) -> Option<String> {
+    let channels = &dataset.channels;
+    let rate = |column: usize| {
+        let (name, unit) = (&channels[column].name, channels[column].unit.as_deref());
+        let head = head_of(layout, rows, column);
+        let stated = states_unit(unit, name) && steps_evenly(&head);
+        let to_s = AxisUnit::of(unit, name, &head)
+            .seconds()
+            .filter(|_| stated)?;
+        rate::from_axis(&head, None, head.len() as u64, to_s)
+    };
+    let axis = dataset.time_axis?;
+    let own = rate(axis)?;
+    let free = |column: &usize| {
+        *column != axis && !channels.iter().any(|c| c.clock == Clock::Axis(*column))
+    };
+    let unlike = |column: &usize| rate(*column).is_some_and(|r| (r / own - 1.0).abs() > SAME_RATE);
+    let found = times.iter().copied().filter(free).find(unlike)?;
+    Some(format!(
+        "'{}' is taken as the time of all columns, and '{}' goes by other steps: where it is the time of some, put it before \
+         them, or name it after them, as 't_x' for 'x'",
+        channels[axis].name, channels[found].name
+    ))
 }
 
 /// Whether a column is called the time of all columns and states its unit.
@@ -89,6 +218,19 @@ pub(crate) fn heads_pair(header: &Header, column: usize) -> bool {
     };
     let pairs = (0..header.names.len()).filter(|at| pair(*at).is_some());
     pairs.count() > 1 && pair(column).is_some()
+}
+
+/// Whether a column with a unit of time, beside an axis, is the time of the columns after it: it is called as the axis is but
+/// for a number (`t1 (s)`, `t2 (s)`), or climbs evenly.
+pub(crate) fn is_further(
+    header: &Header,
+    layout: &Layout,
+    rows: &HeadRows<'_>,
+    [axis, column]: [usize; 2],
+) -> bool {
+    let [first, own] = [axis, column].map(|c| without_number(&header.names[c]).0);
+    let stated = states_unit(header.units[column].as_deref(), &header.names[column]);
+    stated && (first == own || steps_evenly(&head_of(layout, rows, column)))
 }
 
 /// A column whose kind, name or unit is of time.
@@ -133,12 +275,49 @@ fn unnamed(header: &Header, layout: &Layout, rows: &HeadRows<'_>) -> Option<Time
     })
 }
 
-/// The values of a column in the rows seen.
+/// The values of a column in the rows seen; of a clock with the parts of a second beside it.
 fn head_of(layout: &Layout, rows: &HeadRows<'_>, i: usize) -> Vec<f64> {
-    rows.column(i)
-        .filter_map(|cell| cell_value(layout, cell, i, rows))
-        .filter(|v| v.is_finite())
-        .collect()
+    let mut values: Vec<f64> = match layout.kinds[i] {
+        Kind::Number => numbers(layout, rows, i).collect(),
+        Kind::Time => times(layout, rows, i),
+        Kind::Text => Vec::new(),
+    };
+    if let Some(parts) = layout.fraction.filter(|f| f.clock == i) {
+        let column: Vec<f64> = numbers(layout, rows, parts.column).collect();
+        parts.add(&mut values, &column);
+    }
+    values.retain(|v| v.is_finite());
+    values
+}
+
+fn numbers<'a>(
+    layout: &'a Layout,
+    rows: &'a HeadRows<'a>,
+    column: usize,
+) -> impl Iterator<Item = f64> + 'a {
+    let value = |cell| layout.notation.parse(cell).unwrap_or(f64::NAN);
+    rows.column(column).map(value)
+}
+
+/// Points in time as they are read, s since the first.
+fn times(layout: &Layout, rows: &HeadRows<'_>, column: usize) -> Vec<f64> {
+    let mut times = Times::default();
+    for cell in rows.column(column) {
+        // what is no point in time is refused when the column is read
+        let _ = times.push(cell, layout.month_first);
+    }
+    times.values
+}
+
+/// The value of a column in the last row, with its parts of a second.
+fn end_of(layout: &Layout, last: &[Vec<u8>], i: usize, rows: &HeadRows<'_>) -> Option<f64> {
+    let value = cell_value(layout, last.get(i)?, i, rows)?;
+    let Some(parts) = layout.fraction.filter(|f| f.clock == i) else {
+        return Some(value);
+    };
+    let of = |cell: &[u8]| layout.notation.parse(cell);
+    let more = of(last.get(parts.column)?)? - of(rows.first(parts.column)?)?;
+    Some(value + more * parts.to_s)
 }
 
 fn cell_value(layout: &Layout, cell: &[u8], i: usize, rows: &HeadRows<'_>) -> Option<f64> {
@@ -150,7 +329,7 @@ fn cell_value(layout: &Layout, cell: &[u8], i: usize, rows: &HeadRows<'_>) -> Op
 }
 
 fn stamp(layout: &Layout, cell: &[u8]) -> Option<clock::Stamp> {
-    clock::parse(&decode(cell), layout.month_first)
+    clock::parse_cell(&decode(cell), layout.month_first)
 }
 
 fn climbs(values: &[f64]) -> bool {

@@ -122,6 +122,7 @@ impl Columns {
             Stamp {
                 days: Some(days as i64),
                 seconds: seconds - days * 86_400.0,
+                ..Stamp::default()
             }
             .iso(),
         )
