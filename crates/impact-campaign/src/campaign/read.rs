@@ -11,6 +11,7 @@ use super::diagnostic::{Code, Diagnostics, FaultCollector};
 use super::lines::Text;
 use super::nearest::nearest;
 use super::resolved::RESOLVED;
+use super::run_table;
 use super::written::WrittenCampaign;
 
 /// The text of campaign.toml; `None`, and a fault, where it cannot be read.
@@ -29,8 +30,8 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
             "it is a folder".to_owned(),
             "name the campaign.toml in it; `impactid init DIR` writes one",
         ),
-        (_, std::io::ErrorKind::InvalidData) => match record(path) {
-            Some(format) => (a_record(format), NAME_CAMPAIGN),
+        (_, std::io::ErrorKind::InvalidData) => match other(path) {
+            Some(what) => (what, NAME_CAMPAIGN),
             None => (unreadable(), "save it as UTF-8 in your editor"),
         },
         (_, std::io::ErrorKind::PermissionDenied) => (unreadable(), "allow reading it"),
@@ -48,8 +49,8 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
 pub fn not_a_description(path: &Path) -> Diagnostics {
     let mut faults = FaultCollector::new(path);
     let may_be = match labfiles::read_text(path) {
-        Ok(text) => DeTable::parse(&text).is_ok() || record(path).is_none(),
-        Err(_) => path.is_file() && record(path).is_none(),
+        Ok(text) => DeTable::parse(&text).is_ok() || other(path).is_none(),
+        Err(_) => path.is_file() && other(path).is_none(),
     };
     if !may_be && let Some(text) = text(path, &mut faults) {
         let _ = read(&text, &mut faults);
@@ -61,14 +62,24 @@ pub fn not_a_description(path: &Path) -> Diagnostics {
 const NAME_CAMPAIGN: &str =
     "name the campaign.toml that describes it; `impactid init DIR` writes one";
 
-/// The format of a file that is a record.
-fn record(path: &Path) -> Option<&'static str> {
-    let source = labfiles::open(path).ok()?;
-    Some(source.format()).filter(|_| !source.datasets().is_empty())
+/// What a file is that is a run table or a record.
+fn other(path: &Path) -> Option<String> {
+    let kind = if is_run_table(path) {
+        "a run table".to_owned()
+    } else {
+        let source = labfiles::open(path).ok()?;
+        let format = Some(source.format()).filter(|_| !source.datasets().is_empty())?;
+        format!("a record ({format})")
+    };
+    Some(format!("it is {kind}, not the description of a campaign"))
 }
 
-fn a_record(format: &str) -> String {
-    format!("it is a record ({format}), not the description of a campaign")
+fn is_run_table(path: &Path) -> bool {
+    let (Some(folder), Some(name)) = (path.parent(), path.file_name()) else {
+        return false;
+    };
+    let text = std::fs::read(path).unwrap_or_default();
+    run_table::is_run_table(&text, &run_table::is_file(folder, name))
 }
 
 /// Read the text; an entry that cannot be read is noted in `faults` and left at its default. `None`,
@@ -78,9 +89,8 @@ pub(super) fn read(text: &str, faults: &mut FaultCollector) -> Option<WrittenCam
     let places = Text::new(text);
     let (mut document, syntax) = DeTable::parse_recoverable(text);
     if !syntax.is_empty() {
-        match record(faults.file()) {
-            Some(format) => {
-                let what = a_record(format);
+        match other(faults.file()) {
+            Some(what) => {
                 faults.fault(Code::UnreadableFile, None, "", what, NAME_CAMPAIGN);
             }
             None => syntax
@@ -214,10 +224,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         std::fs::write(path("r1.csv"), "t [s],x [mm]\n0,1\n0.5,2\n1,3\n").unwrap();
+        std::fs::write(path("log.csv"), "file,gap [mm]\nr1.csv,2\n").unwrap();
         for (name, says) in [
             ("none.toml", "campaign.toml cannot be read"),
             ("", "it is a folder"),
             ("r1.csv", "it is a record (csv)"),
+            ("log.csv", "it is a run table, not"),
         ] {
             let found = not_a_description(&path(name)).0;
             assert_eq!(found.len(), 1, "{found:?}");
