@@ -44,12 +44,15 @@ static FORMATS: &[Format] = &[
 ];
 
 /// Documents that hold text in lines: their first bytes, and what they are.
-const DOCUMENTS: [(&[u8], &str); 5] = [
+const DOCUMENTS: [(&[u8], &str); 8] = [
     (b"%PDF-", "a PDF document"),
     (b"{\\rtf", "a document in rich text"),
     (b"<!DOCTYPE", "an HTML page"),
     (b"<html", "an HTML page"),
     (b"%!PS", "a PostScript document"),
+    (b"{\n", "a JSON document"),
+    (b"{\r\n", "a JSON document"),
+    (b"[\n", "a JSON document"),
 ];
 
 /// Extensions of text tables, whatever their first bytes.
