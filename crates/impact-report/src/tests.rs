@@ -59,7 +59,7 @@ fn text_of(document: &document::model::Document) -> String {
     let mut lines = vec![
         document.title.clone(),
         document.subtitle.plain(),
-        front.headline.clone(),
+        front.headline.plain(),
     ];
     lines.push(front.summary.plain());
     for a in &front.answers {
