@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::{Failure, interrupt};
-use impact_campaign::campaign::resolved::{RESOLVED, ResolvedCampaign};
+use impact_campaign::campaign::resolved::ResolvedCampaign;
 use impact_campaign::pipeline::resolved_file::read_resolved;
 use impact_campaign::pipeline::{campaigns, identify, plan};
 use labfiles_write::output::Lock;
@@ -55,14 +55,8 @@ pub(super) fn take(folder: &Path, work: Work) -> Result<Lock, Failure> {
 /// [`Failure`] where the folder holds results of other work or of another campaign, or is written into.
 pub(super) fn take_for(folder: &Path, campaign: &ResolvedCampaign) -> Result<Lock, Failure> {
     let lock = take(folder, Work::Identification)?;
-    let held = folder
-        .join(RESOLVED)
-        .exists()
-        .then(|| read_resolved(folder));
-    match held {
-        Some(Ok(held)) if is_other(&held.file, &campaign.file) => {
-            Err(of_other_work(folder, &held.file))
-        }
+    match read_resolved(folder) {
+        Ok(held) if is_other(&held.file, &campaign.file) => Err(of_other_work(folder, &held.file)),
         _ => Ok(lock),
     }
 }

@@ -16,7 +16,8 @@ use super::run_one::{command_line, print_verdict};
 use super::speech::Speech;
 use super::stdout::{print, print_json_file};
 use super::{Exit, Failure, Verbosity, interrupt, out_folder};
-use impact_campaign::campaign::resolved::{RESOLVED, ResolvedCampaign};
+use impact_campaign::campaign::resolved::ResolvedCampaign;
+use impact_campaign::pipeline::resolved_file::read_resolved;
 use impact_campaign::pipeline::{self, store};
 use impact_report::catalog::Catalog;
 use labfiles_write::output::Lock;
@@ -62,7 +63,7 @@ impl Folder {
                  `impactid ingest campaign.toml --out DIR`",
             ));
         }
-        if folder.join("campaign.toml").exists() && !folder.join(RESOLVED).exists() {
+        if folder.join("campaign.toml").exists() && read_resolved(folder).is_err() {
             return Err(Failure::new(
                 format!(
                     "{} is the folder of a campaign, not one with results",

@@ -80,7 +80,7 @@ impl OutArgs {
 fn refuse_other_study(folder: &Path, study: &str) -> Result<(), Failure> {
     let copy = folder.join(COPY);
     match std::fs::read_to_string(&copy) {
-        Ok(held) if held.parse::<toml::Table>() != study.parse() => {
+        Ok(held) if held.parse::<toml::Table>().ok() != study.parse().ok() => {
             Err(out_folder::of_other_work(folder, &copy))
         }
         _ => Ok(()),

@@ -25,8 +25,8 @@ use headings::{
     CLEARANCE, COLUMNS, DATASET, FILE, FREQUENCY, IsNamed, NUMBERS, begun_with, column_of,
     states_setting,
 };
-use table::{Line, Table};
-use text::decode;
+use table::Table;
+use text::{Line, decode};
 
 pub(super) use files::is_file;
 pub(super) use headings::{column_name, in_english, states_whole_gaps};
@@ -275,14 +275,15 @@ fn read_header(table: &Table, in_workbook: bool, faults: &mut FaultCollector) ->
     }
     let complete = (header.at[FILE].is_some() || in_workbook) && states_setting(&table.columns);
     let missing = |column: usize| header.at[column].is_none();
-    note_unknown((line, &unknown), &missing, complete, faults);
+    note_unknown(line, &unknown, &missing, complete, faults);
     header
 }
 
 /// Columns that are none of a run table, and no remarks: notes where the columns that are needed are there and nothing like
 /// them is meant.
 fn note_unknown(
-    (line, unknown): (Option<usize>, &[(&str, &str)]),
+    line: Option<usize>,
+    unknown: &[(&str, &str)],
     missing: &dyn Fn(usize) -> bool,
     complete: bool,
     faults: &mut FaultCollector,

@@ -65,8 +65,8 @@ pub fn plan(
         obstacle,
     };
     progress("map", 0, 1);
-    let shown = ("", plan.proposals.clone());
-    let mut content = report::content_with(campaign, &observed, &found, shown)?;
+    let proposals = plan.proposals.clone();
+    let mut content = report::content_with(campaign, &observed, &found, "", proposals)?;
     content.compared.comparisons.clear();
     let mut files = impact_report::plan_map(&content, campaign.report.decimal_comma)?;
     files.push(("plan.csv".to_owned(), csv(&plan.proposals).into_bytes()));

@@ -123,7 +123,7 @@ pub fn content(
     found: &IdentificationFile,
     command_line: &str,
 ) -> Result<ReportContent, PipelineError> {
-    content_with(campaign, observed, found, (command_line, Vec::new()))
+    content_with(campaign, observed, found, command_line, Vec::new())
 }
 
 /// What the report shows, with settings that are proposed on its map.
@@ -131,7 +131,8 @@ pub(super) fn content_with(
     campaign: &ResolvedCampaign,
     observed: &Observed,
     found: &IdentificationFile,
-    (command_line, proposals): (&str, Vec<Proposal>),
+    command_line: &str,
+    proposals: Vec<Proposal>,
 ) -> Result<ReportContent, PipelineError> {
     let aligned = campaign.with_late(observed.late());
     let read = |index: usize| {

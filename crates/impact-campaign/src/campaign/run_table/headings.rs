@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use impact_records::language::{Language, RunTableWords};
 use labfiles::units;
 
-use super::table::Line;
+use super::text::Line;
 
 /// The columns that a run table may have.
 pub(super) const COLUMNS: [&str; 9] = [

@@ -1,18 +1,10 @@
 //! A run table as rows of cells below headings, which may be below titles and take several rows.
 
 use super::headings::{IsNamed, column_of, columns_of, continued, states_setting};
-use super::text::reader;
+use super::text::{Line, reader};
 
 /// Rows among which the headings are looked for: titles may be above them.
 pub(super) const FIRST_ROWS: usize = 10;
-
-/// A row of cells.
-#[derive(Debug)]
-pub(super) struct Line {
-    /// Its line in the table, from 1.
-    pub(super) number: usize,
-    pub(super) cells: csv::StringRecord,
-}
 
 /// A table of which the headings are found.
 #[derive(Debug)]

@@ -1,5 +1,14 @@
 //! The text of a run table: how it is decoded and read.
 
+/// A row of cells.
+#[derive(Debug)]
+pub(super) struct Line {
+    /// Its line in the table, from 1.
+    pub(super) number: usize,
+    /// What is in it.
+    pub(super) cells: csv::StringRecord,
+}
+
 /// A reader of a text's rows.
 pub(super) fn reader(text: &str, separator: u8) -> csv::Reader<&[u8]> {
     csv::ReaderBuilder::new()
