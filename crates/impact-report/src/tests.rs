@@ -156,8 +156,8 @@ fn a_long_title_takes_one_line_above_a_page() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut content = kind("whole").clone();
     content.title = "Restitution of rubber bumpers of two makes, ".repeat(5);
-    content.campaign.laboratory =
-        Some("Laboratory for Structural Dynamics, Building 7, Room 12, Annex, ".repeat(3));
+    let laboratory = "Laboratory for Structural Dynamics, Building 7, Room 12, Annex, ".repeat(3);
+    content.campaign.stated = vec![(Phrase::Laboratory, laboratory)];
     let pdf = pdf_of(&content, &ReportOptions::default()).expect("a PDF");
     let path = written(folder.path(), "report.pdf", &pdf);
     let Some(boxes) = output("pdftotext", &["-bbox", &path, "-"]) else {

@@ -52,7 +52,8 @@ pub(crate) fn draw(brackets: &[BracketRow], locale: Locale<'_>) -> Option<Figure
     let panel = Panel::new(rect, x, y);
     let mut canvas = Canvas::new(look::HALF_WIDTH, top + HEIGHT + look::BELOW_PANEL);
     panel.upright(&mut canvas, 0.0, look::ZERO_STROKE);
-    for ((row, low, high), lift) in rows.iter().zip(lifts(&rows)) {
+    let drawn: Vec<&BracketRow> = rows.iter().map(|r| r.0).collect();
+    for ((row, low, high), lift) in rows.iter().zip(lifts(&drawn)) {
         let (from, y) = panel.at(*low, 1e3 * row.clearance_m);
         let (to, _) = panel.at(*high, 0.0);
         let kind = colour(row.kind);
@@ -75,15 +76,15 @@ pub(crate) fn draw(brackets: &[BracketRow], locale: Locale<'_>) -> Option<Figure
 
 /// How far above its clearance each bracket is drawn, points: those of upward sweeps above it, those of downward ones below,
 /// others about it.
-fn lifts(rows: &[(&BracketRow, f64, f64)]) -> Vec<f64> {
+fn lifts(rows: &[&BracketRow]) -> Vec<f64> {
     let rank = |i: usize| {
-        let kind = rows[i].0.kind;
+        let kind = rows[i].kind;
         (boundaries::ALL.iter().position(|k| *k == kind), i)
     };
     let alike = |i: usize| {
-        let own = rows[i].0;
+        let own = rows[i];
         let others = (0..rows.len()).filter(move |k| {
-            let other = rows[*k].0;
+            let other = rows[*k];
             same(other.clearance_m, own.clearance_m) && other.sweep == own.sweep
         });
         others.collect::<Vec<_>>()
@@ -91,7 +92,7 @@ fn lifts(rows: &[(&BracketRow, f64, f64)]) -> Vec<f64> {
     let lift = |i: usize| {
         let beside = alike(i);
         let place = beside.iter().filter(|k| rank(**k) < rank(i)).count() as f64;
-        let steps = match rows[i].0.sweep {
+        let steps = match rows[i].sweep {
             Sweep::Up => place + 0.5,
             Sweep::Down => -place - 0.5,
             Sweep::Unknown => place - 0.5 * (beside.len() as f64 - 1.0),
@@ -179,8 +180,7 @@ mod tests {
             row(BoundaryKind::Grazing, Sweep::Up),
             row(BoundaryKind::Grazing, Sweep::Unknown),
         ];
-        let rows: Vec<(&BracketRow, f64, f64)> = rows.iter().map(|r| (r, -0.5, 0.5)).collect();
-        let found = lifts(&rows);
+        let found = lifts(&rows.iter().collect::<Vec<_>>());
         assert!(
             found[0] > 0.0 && found[2] > 0.0 && found[0] != found[2],
             "{found:?}"
