@@ -88,18 +88,19 @@ impl Compare {
         let given: Vec<Given> = given
             .map(|(number, path)| Given::at(path, number, verbosity))
             .collect::<Result<_, _>>()?;
-        let _lock = out_folder::take(&self.out, Work::Comparison)?;
-        let mut all = Vec::new();
-        for (number, given) in given.into_iter().enumerate() {
-            all.extend(given.identified(number, verbosity)?);
-        }
-        let places: Vec<String> = self
-            .campaigns
-            .iter()
-            .map(|p| p.display().to_string())
-            .collect();
-        campaigns::tell_apart(&mut all, &places);
-        let comparison = compare::compare(&all).map_err(pipeline::PipelineError::from)?;
+        let new = !self.out.exists();
+        let lock = out_folder::take(&self.out, Work::Comparison)?;
+        let comparison = match self.compared(given, verbosity) {
+            Ok(comparison) => comparison,
+            Err(failure) => {
+                drop(lock);
+                if new {
+                    // one that holds something stays
+                    let _ = std::fs::remove_dir(&self.out);
+                }
+                return Err(failure);
+            }
+        };
         let content = CampaignsContent {
             title: self.title(),
             comparison,
@@ -118,6 +119,18 @@ impl Compare {
             verbosity.info(&said(&Output::Written(path), self.options().locale()));
         }
         Ok(Exit::Done)
+    }
+
+    /// What the campaigns differ in.
+    fn compared(&self, given: Vec<Given>, verbosity: Verbosity) -> Result<Comparison, Failure> {
+        let mut all = Vec::new();
+        for (number, given) in given.into_iter().enumerate() {
+            all.extend(given.identified(number, verbosity)?);
+        }
+        let places = self.campaigns.iter().map(|p| p.display().to_string());
+        campaigns::tell_apart(&mut all, &places.collect::<Vec<_>>());
+        let comparison = compare::compare(&all).map_err(pipeline::PipelineError::from)?;
+        Ok(comparison)
     }
 
     /// Refuse a path that was given before.

@@ -215,12 +215,55 @@ fn theme() -> GraphicalTheme {
     }
 }
 
+/// Columns of the terminal, as it states them.
+fn columns() -> Option<usize> {
+    let size = terminal_size::terminal_size_of(std::io::stderr());
+    size.map(|(width, _)| usize::from(width.0).max(20))
+}
+
+/// A sentence for people: broken between words on a terminal, further lines indented as the first is.
+pub(super) fn wrapped(text: &str) -> String {
+    broken(text, width())
+}
+
+fn broken(text: &str, width: usize) -> String {
+    let words = text.trim_start();
+    let indent = " ".repeat(text.len() - words.len());
+    let mut lines = vec![indent.clone()];
+    for word in words.split(' ') {
+        let line = lines.last().map_or(0, |line| line.chars().count());
+        if line > indent.len() && line + 1 + word.chars().count() > width {
+            lines.push(indent.clone());
+        }
+        if let Some(line) = lines.last_mut() {
+            if line.len() > indent.len() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+    }
+    lines.join("\n")
+}
+
 /// Width of lines: broken on a terminal, whole elsewhere, so that programs find their words.
 fn width() -> usize {
     use std::io::IsTerminal;
     if std::io::stderr().is_terminal() {
-        96
+        columns().unwrap_or(96)
     } else {
         4096
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sentences_are_broken_between_words_at_the_width() {
+        assert_eq!(broken("a bc def", 5), "a bc\ndef");
+        assert_eq!(broken("  - a bc def", 8), "  - a bc\n  def");
+        assert_eq!(broken("abcdefgh ij", 4), "abcdefgh\nij");
+        assert_eq!(broken("a bc def", 4096), "a bc def");
     }
 }

@@ -4,6 +4,8 @@
 use std::path::Path;
 
 use super::{Failure, interrupt};
+use impact_campaign::campaign::resolved::ResolvedCampaign;
+use impact_campaign::pipeline::resolved_file::read_resolved;
 use impact_campaign::pipeline::{campaigns, identify, plan};
 use labfiles_write::output::Lock;
 
@@ -45,6 +47,24 @@ pub(super) fn take(folder: &Path, work: Work) -> Result<Lock, Failure> {
         Some(held) => Err(of_other_work(folder, &held)),
         None => Ok(lock),
     }
+}
+
+/// The right to write results of a campaign into a folder.
+///
+/// # Errors
+/// [`Failure`] where the folder holds results of other work or of another campaign, or is written into.
+pub(super) fn take_for(folder: &Path, campaign: &ResolvedCampaign) -> Result<Lock, Failure> {
+    let lock = take(folder, Work::Identification)?;
+    match read_resolved(folder) {
+        Ok(held) if is_other(&held.file, &campaign.file) => Err(of_other_work(folder, &held.file)),
+        _ => Ok(lock),
+    }
+}
+
+/// Whether the description of a campaign whose results are held is there, and is not that of another one.
+fn is_other(held: &Path, own: &Path) -> bool {
+    let real = |path: &Path| path.canonicalize().ok();
+    real(held).is_some_and(|held| Some(held) != real(own))
 }
 
 /// That a folder holds results of other work, by the file that marks them.

@@ -10,7 +10,8 @@ use impact_campaign::campaign::resolved::ResolvedCampaign;
 use impact_records::motion::Observation;
 use impact_records::record::FlagCode;
 
-/// Print that a unit of time was assumed, and that nothing is stated by which the records could be identified.
+/// Print that a unit of time was assumed, that no clearance is stated, and that nothing is by which the records could be
+/// identified.
 pub(super) fn print_premises(
     campaign: &ResolvedCampaign,
     observations: &[Observation],
@@ -34,5 +35,6 @@ fn premises(campaign: &ResolvedCampaign, observations: &[Observation]) -> Diagno
         assumed.map(|f| Diagnostic::of_flag(&entry.file, &o.record, f))
     });
     let nothing = check::nothing_stated(campaign, observations);
-    Diagnostics(assumed.chain(nothing).collect())
+    let clearance = check::clearance_unstated(campaign, observations);
+    Diagnostics(assumed.chain(nothing).chain(clearance).collect())
 }

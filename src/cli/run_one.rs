@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::details::{print_fits, print_records};
+use super::failure::wrapped;
 use super::left_out::print_left_out;
 use super::load::load_campaign;
-use super::out_folder::Work;
 use super::premises::print_premises;
 use super::progress::{LATER, Progress};
 use super::report_args::{ReportArgs, print_report_paths, quoted};
@@ -45,7 +45,7 @@ impl RunOptions<'_> {
     ) -> Result<Completed, Failure> {
         let mut resolved = load_campaign(campaign, verbosity)?;
         self.report.apply(&mut resolved.report, verbosity)?;
-        let _lock = out_folder::take(out, Work::Identification)?;
+        let _lock = out_folder::take_for(out, &resolved)?;
         let records = resolved.records.len() as u64;
         let bar = Progress::new(verbosity, "observe", records).with_later(LATER);
         let destination = Destination {
@@ -95,11 +95,12 @@ pub(super) fn print_verdict(
     verbosity: Verbosity,
 ) {
     let verdict = &identification.verdict;
-    verbosity.info(&speech.say_all(&verdict.sentences));
+    let say = |text: &str| verbosity.info(&wrapped(text));
+    say(&speech.say_all(&verdict.sentences));
     for finding in &verdict.findings {
-        verbosity.info(&format!("  - {}", speech.say(finding)));
+        say(&format!("  - {}", speech.say(finding)));
         if let Some(first) = first_of_specimen(finding, identification) {
-            verbosity.info(&format!("      {}", speech.say(first)));
+            say(&format!("      {}", speech.say(first)));
         }
     }
 }

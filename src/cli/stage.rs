@@ -9,7 +9,6 @@ use clap::Args;
 use super::details::{print_fits, print_records};
 use super::left_out::print_left_out;
 use super::load::load_campaign;
-use super::out_folder::Work;
 use super::premises::print_premises;
 use super::progress::Progress;
 use super::report_args::{ReportArgs, print_report_paths, quoted};
@@ -18,6 +17,7 @@ use super::speech::Speech;
 use super::stdout::{print, print_json_file};
 use super::{Exit, Failure, Verbosity, interrupt, out_folder};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
+use impact_campaign::pipeline::resolved_file::read_resolved;
 use impact_campaign::pipeline::{self, store};
 use impact_report::catalog::Catalog;
 use labfiles_write::output::Lock;
@@ -61,6 +61,15 @@ impl Folder {
                 format!("{} is not a folder with results", folder.display()),
                 "name the folder of the previous stage; the first stage is \
                  `impactid ingest campaign.toml --out DIR`",
+            ));
+        }
+        if folder.join("campaign.toml").exists() && read_resolved(folder).is_err() {
+            return Err(Failure::new(
+                format!(
+                    "{} is the folder of a campaign, not one with results",
+                    folder.display()
+                ),
+                "name the folder that `impactid run` or `impactid ingest` wrote with --out",
             ));
         }
         let lock = interrupt::lock(folder)?;
@@ -138,7 +147,7 @@ fn commands(campaign: &Path, folder: &Path, options: &ReportArgs) -> String {
 impl Ingest {
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let campaign = load_campaign(&self.campaign, verbosity)?;
-        let _lock = out_folder::take(&self.out, Work::Identification)?;
+        let _lock = out_folder::take_for(&self.out, &campaign)?;
         let bar = Progress::new(verbosity, "ingest", campaign.records.len() as u64);
         let usable = store::ingest(&campaign, &self.out, &|_, done, total| bar.set(done, total))?;
         drop(bar);

@@ -1,6 +1,5 @@
 //! What the verbs of the theory share: a study, a folder, progress, an end that can be resumed.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -73,22 +72,17 @@ impl OutArgs {
     }
 }
 
-/// What a study computes: the names of its tables.
-fn works(study: &str) -> BTreeSet<String> {
-    let table: toml::Table = study.parse().unwrap_or_default();
-    let tables = table.into_iter().filter(|(_, value)| value.is_table());
-    tables.map(|(name, _)| name).collect()
-}
-
-/// Refuse a folder that holds results of another study: files of both would lie there, and one study that replays
-/// half of them.
+/// Refuse a folder that holds results of another study, or of other parameters: what is written would take the place of
+/// results that cannot be told from it.
 ///
 /// # Errors
 /// [`Failure`] that names the folder.
 fn refuse_other_study(folder: &Path, study: &str) -> Result<(), Failure> {
     let copy = folder.join(COPY);
     match std::fs::read_to_string(&copy) {
-        Ok(held) if works(&held) != works(study) => Err(out_folder::of_other_work(folder, &copy)),
+        Ok(held) if held.parse::<toml::Table>().ok() != study.parse().ok() => {
+            Err(out_folder::of_other_work(folder, &copy))
+        }
         _ => Ok(()),
     }
 }

@@ -47,6 +47,35 @@ fn run_prints_which_unit_of_time_was_assumed() {
 }
 
 #[test]
+fn a_folder_holds_the_results_of_one_campaign() {
+    let lab = Lab::new();
+    let first = run(&lab, &[]);
+    lab.write("other.toml", &lab.read("campaign.toml"));
+    let other = lab.run(&["run", "other.toml", "--out", "out", "--format", "csv"]);
+    assert_eq!(other.code, 2, "{}", other.said);
+    let says = "out holds results of other work (campaign.toml)";
+    assert!(other.said.contains(says), "{}", other.said);
+    assert_eq!(run(&lab, &[]).code, first.code);
+    let folder = lab.run(&["report", "."]);
+    assert!(
+        folder.said.contains(". is the folder of a campaign"),
+        "{}",
+        folder.said
+    );
+}
+
+#[test]
+fn a_clearance_that_nothing_states_is_noted() {
+    let lab = Lab::new();
+    lab.replace("runs.csv", "clearance_mm", "note");
+    let says = "no clearance is stated: R rests on the speeds at impacts alone";
+    let checked = lab.run(&["check", "campaign.toml"]);
+    assert!(checked.said.contains(says), "{}", checked.said);
+    let ran = run(&lab, &[]);
+    assert!(ran.said.contains(says), "{}", ran.said);
+}
+
+#[test]
 fn run_says_that_nothing_is_stated_to_identify_from() {
     let lab = Lab::new();
     // a decay that is not stated to be one, of a mass that moves alone

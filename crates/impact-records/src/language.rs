@@ -53,6 +53,8 @@ pub struct RunTableWords {
     pub columns: BTreeMap<String, Vec<String>>,
     /// From a word of a cell to its other forms.
     pub words: BTreeMap<String, Vec<String>>,
+    /// Headings of clearances that are whole gaps between two masses.
+    pub whole_gaps: Vec<String>,
     /// How the headings of remarks begin.
     pub remarks: Vec<String>,
 }

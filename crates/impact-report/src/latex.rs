@@ -116,7 +116,14 @@ fn column(align: Align) -> char {
 
 fn cells(row: &[Rich]) -> String {
     let each: Vec<String> = row.iter().map(rich).collect();
-    each.join(" & ")
+    let row = each.join(" & ");
+    // after the end of a row LaTeX takes these for an option
+    let guard = if row.starts_with(['[', '*']) {
+        "{}"
+    } else {
+        ""
+    };
+    format!("{guard}{row}")
 }
 
 /// A text with markup.
@@ -152,6 +159,8 @@ fn escaped(text: &str) -> String {
             '\n' => all.push(' '),
             '\u{2009}' | '\u{202f}' => all.push_str("\\,"),
             '\u{a0}' => all.push('~'),
+            '\u{2002}' => all.push_str("\\enspace{}"),
+            '\u{2003}' => all.push_str("\\quad{}"),
             '\u{2212}' => all.push_str("\\ensuremath{-}"),
             // dashes and quotes that a file in UTF-8 may hold
             '–' => all.push_str("--"),
@@ -285,6 +294,16 @@ mod tests {
     fn signs_that_pdflatex_does_not_know_are_named() {
         assert_eq!(escaped("Überlauf 5 – 6 …"), "Überlauf 5 -- 6 \\ldots{}");
         assert_eq!(escaped("x⊗y"), "x[U+2297]y");
+    }
+
+    #[test]
+    fn no_row_begins_with_what_is_an_option_of_the_row_before() {
+        let first = |cell: &str| cells(&[Rich::from(cell), Rich::from("b")]);
+        assert_eq!(first("\u{2003}test_1.csv"), "\\quad{}test\\_1.csv & b");
+        assert_eq!(first("⊗"), "{}[U+2297] & b");
+        assert_eq!(first("[a]"), "{}[a] & b");
+        assert_eq!(first("*"), "{}* & b");
+        assert_eq!(first("a"), "a & b");
     }
 
     #[test]

@@ -133,6 +133,8 @@ pub enum Phrase {
     Joint,
     // First page
     AgreementUnknown,
+    ClearancesInDoubt,
+    NoClearanceStated,
     IdentifiedInPart,
     Identified,
     IdentifiedEachSpecimen,
@@ -189,6 +191,7 @@ pub enum Phrase {
     WhatWasLeftOut,
     // Captions of figures
     CaptionBoundaryFit,
+    CaptionClearancesInDoubt,
     CaptionStrips,
     CaptionCorrelation,
     CaptionCorrelationOthers,

@@ -59,7 +59,7 @@ fn text_of(document: &document::model::Document) -> String {
     let mut lines = vec![
         document.title.clone(),
         document.subtitle.plain(),
-        front.headline.clone(),
+        front.headline.plain(),
     ];
     lines.push(front.summary.plain());
     for a in &front.answers {
@@ -149,6 +149,33 @@ fn no_word_leaves_the_page_s_margins() {
         };
         words_within_margins(name, &boxes);
     }
+}
+
+#[test]
+fn a_long_title_takes_one_line_above_a_page() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut content = kind("whole").clone();
+    content.title = "Restitution of rubber bumpers of two makes, ".repeat(5);
+    let laboratory = "Laboratory for Structural Dynamics, Building 7, Room 12, Annex, ".repeat(3);
+    content.campaign.stated = vec![(Phrase::Laboratory, laboratory)];
+    let pdf = pdf_of(&content, &ReportOptions::default()).expect("a PDF");
+    let path = written(folder.path(), "report.pdf", &pdf);
+    let Some(boxes) = output("pdftotext", &["-bbox", &path, "-"]) else {
+        return;
+    };
+    words_within_margins("long title", &boxes);
+    let second = boxes.split("<page ").nth(2).expect("a second page");
+    let top = |line: &str| -> Option<f64> {
+        let rest = line.split("yMin=\"").nth(1)?;
+        rest.split('"').next()?.parse().ok()
+    };
+    let mut tops: Vec<f64> = second
+        .lines()
+        .filter_map(top)
+        .filter(|y| *y < 50.0)
+        .collect();
+    tops.dedup_by(|a, b| (*a - *b).abs() < 2.0);
+    assert_eq!(tops.len(), 1, "{tops:?}");
 }
 
 fn words_within_margins(name: &str, boxes: &str) {

@@ -9,6 +9,8 @@ use crate::channel::{ChannelInfo, Clock};
 pub const TEXTS_KEY: &str = "impactid_texts";
 /// The key under which the footer of a Parquet file keeps each record's attributes, as JSON.
 pub const RECORDS_KEY: &str = "impactid_records";
+/// The key under which the footer of a Parquet file with several records keeps the columns that each has, as JSON.
+pub const COLUMNS_KEY: &str = "impactid_columns";
 /// When channels begin, s, as `contact=0.3|x=0`.
 pub const STARTS_KEY: &str = "channel_starts_s";
 /// The time axes and rates of channels that have their own, as `slow=axis:X_Value 2|gauge=rate:500`.

@@ -46,24 +46,20 @@ impl std::fmt::Display for Number {
     }
 }
 
-/// A number in at most about ten characters.
+/// A number with six decimals, one less for each digit before them beyond two; with a power of ten where that hides it or
+/// is long.
 fn short(value: f64) -> String {
     let size = value.abs();
-    let text = if value == 0.0 || value.is_nan() || value.is_infinite() {
-        format!("{value}")
-    } else if (1e-3..1e6).contains(&size) {
-        format!("{value:.6}")
-            .trim_end_matches('0')
-            .trim_end_matches('.')
-            .to_owned()
-    } else {
-        format!("{value:.4e}")
-    };
-    if text.len() > 10 {
-        format!("{value:.4e}")
-    } else {
-        text
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
     }
+    if !(1e-4..1e6).contains(&size) {
+        return format!("{value:.4e}");
+    }
+    let decimals = [1e2, 1e3, 1e4, 1e5].iter().filter(|power| size >= **power);
+    let decimals = 6 - decimals.count();
+    let text = format!("{value:.decimals$}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// A channel's description and statistics. Sum and range leave NaN out; `missing` counts them.
@@ -239,6 +235,23 @@ mod tests {
             clock: crate::source::Clock::Shared,
             start_s: None,
             properties: Default::default(),
+        }
+    }
+
+    #[test]
+    fn numbers_of_alike_sizes_are_written_alike() {
+        for (value, text) in [
+            (1_002.897_79, "1002.8978"),
+            (-1_002.0, "-1002"),
+            (-9e-4, "-0.0009"),
+            (-0.0012, "-0.0012"),
+            (0.1, "0.1"),
+            (123_456.78, "123456.78"),
+            (5e-5, "5.0000e-5"),
+            (2e6, "2.0000e6"),
+            (0.0, "0"),
+        ] {
+            assert_eq!(short(value), text);
         }
     }
 

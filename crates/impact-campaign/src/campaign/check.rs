@@ -83,7 +83,34 @@ pub fn read_all(
     if all.impacts == 1 {
         all.diagnostics.push(one_impact(campaign));
     }
+    all.diagnostics.extend(no_clearance(campaign, all.impacts));
     all
+}
+
+/// That no record of a driven campaign with impacts states a clearance.
+pub fn clearance_unstated(
+    campaign: &ResolvedCampaign,
+    observations: &[Observation],
+) -> Option<Diagnostic> {
+    let usable = observations.iter().filter(|o| !o.excluded());
+    no_clearance(campaign, usable.map(|o| o.impacts.len()).sum())
+}
+
+fn no_clearance(campaign: &ResolvedCampaign, impacts: usize) -> Option<Diagnostic> {
+    let mut driven = campaign
+        .records
+        .iter()
+        .filter(|r| campaign.driven(r))
+        .peekable();
+    let unstated = driven.peek().is_some() && driven.all(|r| r.setting.clearance_m.is_none());
+    (unstated && impacts > 0).then(|| {
+        Diagnostic::new(
+            (Code::Missing, Severity::Note),
+            of_records(campaign),
+            "no clearance is stated: R rests on the speeds at impacts alone, and neither waveforms nor boundaries tell of it",
+            "write the clearances into a run table, column clearance_mm, or clearance in [records] if all records have one",
+        )
+    })
 }
 
 /// That a campaign states neither a drive nor free decays nor free flights, and its records show none of them.

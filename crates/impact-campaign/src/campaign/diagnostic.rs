@@ -387,6 +387,8 @@ fn with_numbers(message: &str, replace: impl Fn(usize, &str) -> String) -> Strin
 #[derive(Debug)]
 pub(super) struct FaultCollector {
     file: PathBuf,
+    /// The sheet of a workbook.
+    sheet: Option<String>,
     found: Vec<Diagnostic>,
 }
 
@@ -395,6 +397,7 @@ impl FaultCollector {
     pub(super) fn new(file: &Path) -> Self {
         Self {
             file: file.to_path_buf(),
+            sheet: None,
             found: Vec::new(),
         }
     }
@@ -402,6 +405,23 @@ impl FaultCollector {
     /// The file.
     pub(super) fn file(&self) -> &Path {
         &self.file
+    }
+
+    /// What is noted from now on is in a sheet of the file.
+    pub(super) fn in_sheet(&mut self, name: &str) {
+        self.sheet = Some(format!("sheet {name}"));
+    }
+
+    /// A place in the file.
+    pub(super) fn place(&self, line: Option<usize>, item: &str) -> Place {
+        let parts = [self.sheet.as_deref().unwrap_or(""), item];
+        let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        Place {
+            file: self.file.clone(),
+            line,
+            record: None,
+            item: parts.join(": "),
+        }
     }
 
     /// Note a problem that stops the campaign.
@@ -413,13 +433,8 @@ impl FaultCollector {
         message: impl Into<String>,
         remedy: &str,
     ) {
-        let place = Place {
-            file: self.file.clone(),
-            line,
-            record: None,
-            item: item.to_owned(),
-        };
         let what = (code, Severity::Campaign);
+        let place = self.place(line, item);
         self.found
             .push(Diagnostic::new(what, place, message, remedy));
     }

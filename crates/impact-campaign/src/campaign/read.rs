@@ -11,6 +11,7 @@ use super::diagnostic::{Code, Diagnostics, FaultCollector};
 use super::lines::Text;
 use super::nearest::nearest;
 use super::resolved::RESOLVED;
+use super::run_table;
 use super::written::WrittenCampaign;
 
 /// The text of campaign.toml; `None`, and a fault, where it cannot be read.
@@ -29,7 +30,7 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
             "it is a folder".to_owned(),
             "name the campaign.toml in it; `impactid init DIR` writes one",
         ),
-        (_, std::io::ErrorKind::InvalidData) => match other_file(path) {
+        (_, std::io::ErrorKind::InvalidData) => match other(path) {
             Some(what) => (what, NAME_CAMPAIGN),
             None => (unreadable(), "save it as UTF-8 in your editor"),
         },
@@ -48,8 +49,8 @@ pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
 pub fn not_a_description(path: &Path) -> Diagnostics {
     let mut faults = FaultCollector::new(path);
     let may_be = match labfiles::read_text(path) {
-        Ok(text) => DeTable::parse(&text).is_ok() || other_file(path).is_none(),
-        Err(_) => path.is_file() && other_file(path).is_none(),
+        Ok(text) => DeTable::parse(&text).is_ok() || other(path).is_none(),
+        Err(_) => path.is_file() && other(path).is_none(),
     };
     if !may_be && let Some(text) = text(path, &mut faults) {
         let _ = read(&text, &mut faults);
@@ -61,17 +62,27 @@ pub fn not_a_description(path: &Path) -> Diagnostics {
 const NAME_CAMPAIGN: &str =
     "name the campaign.toml that describes it; `impactid init DIR` writes one";
 
-/// What a file is, in words, that is a record, a document or JSON, as the program writes its results.
-fn other_file(path: &Path) -> Option<String> {
-    if let Some(document) = labfiles::document(path) {
-        return Some(format!(
-            "it is {document}, not the description of a campaign"
-        ));
-    }
-    let source = labfiles::open(path).ok()?;
-    let format = source.format();
-    let some = !source.datasets().is_empty();
-    some.then(|| format!("it is a record ({format}), not the description of a campaign"))
+/// What a file is, in words, that is a document, JSON as the program writes its results, a run table or a record.
+fn other(path: &Path) -> Option<String> {
+    let kind = if let Some(document) = labfiles::document(path) {
+        document.to_owned()
+    } else if is_run_table(path) {
+        "a run table".to_owned()
+    } else {
+        let source = labfiles::open(path).ok()?;
+        let format = Some(source.format()).filter(|_| !source.datasets().is_empty())?;
+        format!("a record ({format})")
+    };
+    Some(format!("it is {kind}, not the description of a campaign"))
+}
+
+fn is_run_table(path: &Path) -> bool {
+    let (Some(folder), Some(name)) = (path.parent(), path.file_name()) else {
+        return false;
+    };
+    let text = std::fs::read(path).unwrap_or_default();
+    run_table::is_run_table(&text, &run_table::is_file(folder, name))
+}
 }
 
 /// Read the text; an entry that cannot be read is noted in `faults` and left at its default. `None`,
@@ -81,7 +92,7 @@ pub(super) fn read(text: &str, faults: &mut FaultCollector) -> Option<WrittenCam
     let places = Text::new(text);
     let (mut document, syntax) = DeTable::parse_recoverable(text);
     if !syntax.is_empty() {
-        match other_file(faults.file()) {
+        match other(faults.file()) {
             Some(what) => {
                 faults.fault(Code::UnreadableFile, None, "", what, NAME_CAMPAIGN);
             }
@@ -218,6 +229,7 @@ mod tests {
         std::fs::write(path("r1.csv"), "t [s],x [mm]\n0,1\n0.5,2\n1,3\n").unwrap();
         std::fs::write(path("report.pdf"), b"%PDF-1.7\n%\xE2\xE3\n").unwrap();
         std::fs::write(path("result.json"), "{\n  \"verdict\": {}\n}\n").unwrap();
+        std::fs::write(path("log.csv"), "file,gap [mm]\nr1.csv,2\n").unwrap();
         for (name, says) in [
             ("none.toml", "campaign.toml cannot be read"),
             ("", "it is a folder"),
@@ -230,6 +242,7 @@ mod tests {
                 "result.json",
                 "it is JSON, not the description of a campaign",
             ),
+            ("log.csv", "it is a run table, not"),
         ] {
             let found = not_a_description(&path(name)).0;
             assert_eq!(found.len(), 1, "{found:?}");

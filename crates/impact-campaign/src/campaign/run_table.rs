@@ -3,6 +3,7 @@
 mod files;
 mod headings;
 mod sheets;
+mod table;
 mod text;
 
 use std::collections::HashSet;
@@ -12,7 +13,7 @@ use std::str::FromStr;
 use strum::VariantNames;
 
 use super::context::Wrong;
-use super::diagnostic::{Code, Diagnostic, FaultCollector, Place, Severity, first_of};
+use super::diagnostic::{Code, Diagnostic, FaultCollector, Severity, first_of};
 use super::nearest::nearest;
 use super::slashes;
 use super::values::Excitation;
@@ -21,17 +22,15 @@ use impact_records::record::Sweep;
 use labfiles::units::{self, Dimension};
 
 use headings::{
-    COLUMNS, DATASET, FILE, FREQUENCY, begun_with, column_of, columns_of, states_setting,
+    CLEARANCE, COLUMNS, DATASET, FILE, FREQUENCY, IsNamed, NUMBERS, begun_with, column_of,
+    states_setting,
 };
+use table::Table;
+use text::{Line, decode};
 
-use text::{decode, reader};
-
-pub(super) use headings::{column_name, in_english};
+pub(super) use files::is_file;
+pub(super) use headings::{column_name, in_english, states_whole_gaps};
 pub(super) use sheets::sheet_of;
-pub(super) use text::is_file;
-
-/// The columns that hold numbers.
-const NUMBERS: [usize; 3] = [3, 4, 6];
 
 /// One row; `None` where the cell is empty or the column missing.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,6 +47,8 @@ pub(super) struct Row {
     pub(super) drive_frequency_hz: Option<f64>,
     /// Clearance r, m.
     pub(super) clearance_m: Option<f64>,
+    /// Whether the heading says that it is a whole gap between two masses.
+    pub(super) whole_gap: bool,
     /// Direction of the sweep.
     pub(super) sweep: Option<Sweep>,
     /// Drive amplitude, relative.
@@ -63,18 +64,18 @@ pub(super) struct Row {
 struct Header {
     at: [Option<usize>; COLUMNS.len()],
     factor: [f64; COLUMNS.len()],
+    whole_gap: bool,
 }
 
 /// A run table as it is written.
 struct Written {
-    text: String,
-    separator: u8,
-    /// The names of the sheets of the workbook in which it is one.
-    sheets: Option<Vec<String>>,
+    table: Table,
+    /// Its sheet, and the names of all sheets, of the workbook that it is in.
+    book: Option<(String, Vec<String>)>,
 }
 
-/// The text of a run table.
-fn text_of(folder: &Path, name: &str, faults: &mut FaultCollector) -> Option<Written> {
+/// The table that a file is, or that a sheet of a workbook is.
+fn written(folder: &Path, name: &str, faults: &mut FaultCollector) -> Option<Written> {
     let path = &folder.join(name);
     let mut refuse = |what: String, remedy: &str| {
         faults.fault(Code::UnreadableFile, None, "", what, remedy);
@@ -100,11 +101,10 @@ fn text_of(folder: &Path, name: &str, faults: &mut FaultCollector) -> Option<Wri
     let Some(tables) = tables else {
         return match std::fs::read(path) {
             Ok(bytes) => {
-                let text = decode(&bytes);
+                let is_file = is_file(folder, name);
                 Some(Written {
-                    separator: separator(&text),
-                    text,
-                    sheets: None,
+                    table: table_in(&decode(&bytes), [&is_file, &|_| false]),
+                    book: None,
                 })
             }
             Err(error) => {
@@ -119,50 +119,52 @@ fn text_of(folder: &Path, name: &str, faults: &mut FaultCollector) -> Option<Wri
         refuse(sheets::none_found(), lies);
     }
     sheet.map(|sheet| Written {
-        text: sheet.text,
-        separator: sheets::SEPARATOR,
-        sheets: Some(sheet.sheets),
+        table: sheet.table,
+        book: Some((sheet.name, sheet.sheets)),
     })
+}
+
+/// The table in a text, whether it is a run table or not.
+fn table_in(text: &str, is_named: IsNamed<'_>) -> Table {
+    let found = Table::find(text, None, is_named, |table| table.position(FILE).is_some());
+    found.unwrap_or_else(|| Table::at_front(text, is_named))
 }
 
 /// Read the run table `name` of a folder; rows with a fault are left out, and each fault is noted. The rows of a
 /// workbook's sheet are records of that workbook where no column names files.
 pub(super) fn read(folder: &Path, name: &str, faults: &mut FaultCollector) -> Vec<Row> {
-    let Some(written) = text_of(folder, name, faults) else {
+    let Some(Written { table, book }) = written(folder, name, faults) else {
         return Vec::new();
     };
-    let (text, separator) = (&written.text, written.separator);
-    let workbook = written.sheets.is_some().then_some(name);
-    let mut reader = reader(text, separator);
-    let names = reader.headers().cloned().unwrap_or_default();
-    if names.iter().all(str::is_empty) {
+    if let Some((sheet, _)) = &book {
+        faults.in_sheet(sheet);
+    }
+    let workbook = book.is_some().then_some(name);
+    if table.headings.iter().all(String::is_empty) {
         let remedy = "write a header line and one line per record";
         faults.fault(Code::Missing, Some(1), "", "the run table is empty", remedy);
         return Vec::new();
     }
-    let columns = written.columns(&names, &is_file(folder, name));
-    let header = read_header(&names, &columns, workbook.is_some(), faults);
+    let header = read_header(&table, workbook.is_some(), faults);
     if faults.blocks() {
         return Vec::new();
     }
-    let records: Vec<csv::StringRecord> = reader
-        .records()
-        .filter_map(|record| whole_row(record, names.len(), faults))
-        .collect();
-    if let Some(own) = written.sheets.as_deref()
-        && names_none(own, &header, &records, faults)
+    if let Some((_, own)) = &book
+        && names_none(own, &table, faults)
     {
         return Vec::new();
     }
-    let Some(mark) = decimal_mark(separator, &records, &header, faults) else {
+    let whole = |row: &&Line| is_whole(row, table.headings.len(), faults);
+    let rows: Vec<&Line> = table.rows.iter().filter(whole).collect();
+    let Some(mark) = decimal_mark(table.separator, &rows, &header, faults) else {
         return Vec::new();
     };
     let mut bad = BadCells::default();
-    let mut rows: Vec<Row> = records
+    let mut rows: Vec<Row> = rows
         .iter()
-        .filter_map(|record| {
+        .filter_map(|row| {
             let cells = Cells {
-                record,
+                row,
                 header: &header,
                 mark,
                 workbook,
@@ -187,33 +189,12 @@ pub(super) fn read(folder: &Path, name: &str, faults: &mut FaultCollector) -> Ve
     rows
 }
 
-impl Written {
-    /// The column of each heading, if it is known.
-    fn columns(
-        &self,
-        names: &csv::StringRecord,
-        is_file: &dyn Fn(&str) -> bool,
-    ) -> Vec<Option<usize>> {
-        let mut reader = reader(&self.text, self.separator);
-        let rows: Vec<csv::StringRecord> = reader.records().filter_map(Result::ok).collect();
-        let sheets = self.sheets.as_deref().unwrap_or_default();
-        let is_sheet = |cell: &str| sheets.iter().any(|sheet| sheet == cell);
-        columns_of(names, &rows, [is_file, &is_sheet])
-    }
-}
-
 /// Whether the rows of a workbook's sheet name datasets of which none is in it, and no file; noted as a fault.
-fn names_none(
-    own: &[String],
-    header: &Header,
-    records: &[csv::StringRecord],
-    faults: &mut FaultCollector,
-) -> bool {
-    let (None, Some(at)) = (header.at[FILE], header.at[DATASET]) else {
+fn names_none(own: &[String], table: &Table, faults: &mut FaultCollector) -> bool {
+    if table.position(FILE).is_some() {
         return false;
-    };
-    let cells = records.iter().filter_map(|record| record.get(at));
-    let named: Vec<&str> = cells.filter(|cell| !cell.is_empty()).collect();
+    }
+    let named: Vec<&str> = table.cells(DATASET).collect();
     let none = !named.is_empty() && !named.iter().any(|cell| sheets::holds(own, cell));
     if none {
         let names: Vec<String> = named.iter().map(|name| format!("'{name}'")).collect();
@@ -228,71 +209,38 @@ fn names_none(
     none
 }
 
-/// Rows at the front of a file from which is told what its cells name.
-const LOOKED_AT: usize = 50;
-
-/// Whether a text begins as a run table does: with a header that has the column of files, or a setting and a column whose
-/// cells name files.
+/// Whether a text begins as a run table does: with the headings of files, or of a setting and a column whose cells name
+/// files, below any titles.
 pub(super) fn is_run_table(head: &[u8], is_file: &dyn Fn(&str) -> bool) -> bool {
-    let text = decode(head);
-    let mut reader = reader(&text, separator(&text));
-    let Ok(names) = reader.headers().cloned() else {
-        return false;
-    };
-    if names.iter().any(|name| column_of(name) == Some(FILE)) {
-        return true;
-    }
-    let rows = reader.records().filter_map(Result::ok).take(LOOKED_AT);
-    let rows: Vec<csv::StringRecord> = rows.collect();
-    let columns = columns_of(&names, &rows, [is_file, &|_: &str| false]);
-    columns.contains(&Some(FILE)) && states_setting(&columns)
-}
-
-fn is_frequency(heading: &str) -> bool {
-    column_of(heading) == Some(FREQUENCY)
+    let table = table_in(&decode(head), [is_file, &|_| false]);
+    let named = table.headings.iter().any(|h| column_of(h) == Some(FILE));
+    named || table.position(FILE).is_some() && states_setting(&table.columns)
 }
 
 /// Whether the front of a run table states drive frequencies, and no free decays.
 pub(super) fn states_drive(head: &[u8]) -> bool {
-    let text = decode(head);
-    let mut reader = reader(&text, separator(&text));
-    let headings = reader.headers().cloned().unwrap_or_default();
-    let Some(column) = headings.iter().position(is_frequency) else {
-        return false;
+    let table = table_in(&decode(head), [&|_| true, &|_| false]);
+    let decays = |row: &Line| {
+        row.cells
+            .iter()
+            .any(|cell| in_english(cell) == "free_decay")
     };
-    let rows: Vec<csv::StringRecord> = reader.records().filter_map(Result::ok).collect();
-    let decays = |row: &csv::StringRecord| row.iter().any(|cell| in_english(cell) == "free_decay");
-    let stated = |row: &csv::StringRecord| {
-        let cell = row.get(column).unwrap_or("");
-        cell.chars().any(|c| ('1'..='9').contains(&c))
-    };
-    rows.iter().any(stated) && !rows.iter().any(decays)
+    let stated = |cell: &str| cell.chars().any(|c| ('1'..='9').contains(&c));
+    table.cells(FREQUENCY).any(stated) && !table.rows.iter().any(decays)
 }
 
-/// The separator of the header line: the most frequent of comma, semicolon and tab.
-fn separator(text: &str) -> u8 {
-    let filled = |l: &&str| !l.starts_with('#') && !l.trim().is_empty();
-    let line = text.lines().find(filled).unwrap_or("");
-    let count = |b: &u8| line.bytes().filter(|c| c == b).count();
-    [b',', b';', b'\t']
-        .into_iter()
-        .rev()
-        .max_by_key(count)
-        .unwrap_or(b',')
-}
-
-fn read_header(
-    names: &csv::StringRecord,
-    columns: &[Option<usize>],
-    in_workbook: bool,
-    faults: &mut FaultCollector,
-) -> Header {
+fn read_header(table: &Table, in_workbook: bool, faults: &mut FaultCollector) -> Header {
     let mut header = Header {
         factor: [1.0; COLUMNS.len()],
         ..Header::default()
     };
+    let line = Some(table.line);
     let mut unknown = Vec::new();
-    for (index, (name, column)) in names.iter().zip(columns).enumerate() {
+    let named = table.headings.iter().map(String::as_str);
+    for (index, (name, column)) in named.zip(&table.columns).enumerate() {
+        if name.is_empty() && column.is_none() {
+            continue;
+        }
         let (bare, symbol) = if COLUMNS.contains(&name) {
             (name, None)
         } else {
@@ -304,18 +252,14 @@ fn read_header(
         };
         if header.at[column].replace(index).is_some() {
             let what = format!("the column '{bare}' is there twice");
-            faults.fault(Code::Conflict, Some(1), name, what, "remove one of them");
+            faults.fault(Code::Conflict, line, name, what, "remove one of them");
         }
+        header.whole_gap |= states_whole_gaps(name);
         match factor(column, symbol) {
             Ok(factor) => header.factor[column] = factor,
             Err(wrong) => {
-                faults.fault(
-                    Code::InvalidValue,
-                    Some(1),
-                    name,
-                    wrong.message,
-                    &wrong.remedy,
-                );
+                let (what, remedy) = (wrong.message, &wrong.remedy);
+                faults.fault(Code::InvalidValue, line, name, what, remedy);
             }
         }
     }
@@ -323,21 +267,22 @@ fn read_header(
         let what = "the run table has no column 'file'".to_owned();
         faults.fault(
             Code::Missing,
-            Some(1),
+            line,
             "file",
             what,
             "add it: the names of the files, one per record",
         );
     }
-    let complete = (header.at[FILE].is_some() || in_workbook) && states_setting(columns);
+    let complete = (header.at[FILE].is_some() || in_workbook) && states_setting(&table.columns);
     let missing = |column: usize| header.at[column].is_none();
-    note_unknown(&unknown, &missing, complete, faults);
+    note_unknown(line, &unknown, &missing, complete, faults);
     header
 }
 
 /// Columns that are none of a run table, and no remarks: notes where the columns that are needed are there and nothing like
 /// them is meant.
 fn note_unknown(
+    line: Option<usize>,
     unknown: &[(&str, &str)],
     missing: &dyn Fn(usize) -> bool,
     complete: bool,
@@ -364,14 +309,10 @@ fn note_unknown(
             ),
         };
         let what = format!("the column '{name}' is not known");
-        faults.fault(Code::UnknownEntry, Some(1), name, what, &remedy);
+        faults.fault(Code::UnknownEntry, line, name, what, &remedy);
     }
     if !unused.is_empty() {
-        let place = Place {
-            file: faults.file().to_path_buf(),
-            line: Some(1),
-            ..Place::default()
-        };
+        let place = faults.place(line, "");
         let what = format!(
             "columns that are not known are not used: {}",
             unused.join(", ")
@@ -414,44 +355,20 @@ fn factor(column: usize, symbol: Option<&str>) -> Result<f64, Wrong> {
     }
 }
 
-/// Line of a position, from 1.
-fn line_of(position: &csv::Position) -> Option<usize> {
-    usize::try_from(position.line()).ok()
-}
-
-/// A row with as many cells as the header.
-fn whole_row(
-    record: csv::Result<csv::StringRecord>,
-    columns: usize,
-    faults: &mut FaultCollector,
-) -> Option<csv::StringRecord> {
-    let record = match record {
-        Ok(record) => record,
-        Err(error) => {
-            let line = error.position().and_then(line_of);
-            faults.fault(
-                Code::Syntax,
-                line,
-                "",
-                format!("the row cannot be read: {error}"),
-                "fix the row",
-            );
-            return None;
-        }
-    };
-    if record.len() != columns {
-        let line = record.position().and_then(line_of);
-        let what = format!("the row has {} cells, the header {columns}", record.len());
-        faults.fault(Code::Syntax, line, "", what, "fix the row");
-        return None;
+/// Whether a row has as many cells as there are headings; noted as a fault if not.
+fn is_whole(row: &Line, columns: usize, faults: &mut FaultCollector) -> bool {
+    let own = row.cells.len();
+    if own != columns {
+        let what = format!("the row has {own} cells, the header {columns}");
+        faults.fault(Code::Syntax, Some(row.number), "", what, "fix the row");
     }
-    Some(record)
+    own == columns
 }
 
 /// The decimal mark of all numbers of a table; `None`, with a fault, where both are in use.
 fn decimal_mark(
     separator: u8,
-    records: &[csv::StringRecord],
+    rows: &[&Line],
     header: &Header,
     faults: &mut FaultCollector,
 ) -> Option<char> {
@@ -459,10 +376,9 @@ fn decimal_mark(
         return Some('.');
     }
     let with = |mark: char| {
-        let cells = records.iter().flat_map(|record| {
-            let line = record.position().and_then(line_of);
+        let cells = rows.iter().flat_map(|row| {
             let columns = NUMBERS.iter().filter_map(|column| header.at[*column]);
-            columns.filter_map(move |at| Some((line, record.get(at)?)))
+            columns.filter_map(move |at| Some((row.number, row.cells.get(at)?)))
         });
         let mut cells = cells.filter(|(_, cell)| is_of_digits(cell));
         cells.find(|(_, cell)| cell.contains(mark))
@@ -470,12 +386,10 @@ fn decimal_mark(
     match (with('.'), with(',')) {
         (Some((line, point)), Some((other, comma))) => {
             let what = format!(
-                "'{point}' has a point and '{comma}' in line {} a comma: which is the decimal \
-                 mark?",
-                other.unwrap_or(0)
+                "'{point}' has a point and '{comma}' in line {other} a comma: which is the decimal mark?"
             );
             let remedy = "write one decimal mark in all numbers, and no mark between thousands";
-            faults.fault(Code::InvalidValue, line, "", what, remedy);
+            faults.fault(Code::InvalidValue, Some(line), "", what, remedy);
             None
         }
         (None, Some(_)) => Some(','),
@@ -490,7 +404,7 @@ fn is_of_digits(cell: &str) -> bool {
 }
 
 fn read_row(cells: &Cells<'_>, bad: &mut BadCells, faults: &mut FaultCollector) -> Option<Row> {
-    let line = cells.line();
+    let line = cells.row.number;
     let file = cells.text(0).or_else(|| cells.workbook.map(str::to_owned));
     let Some(file) = file else {
         faults.fault(
@@ -502,13 +416,15 @@ fn read_row(cells: &Cells<'_>, bad: &mut BadCells, faults: &mut FaultCollector) 
         );
         return None;
     };
+    let clearance_m = cells.number(CLEARANCE, bad);
     Some(Row {
         line,
         file,
         dataset: cells.text(1),
         record: cells.text(2),
         drive_frequency_hz: cells.number(3, bad),
-        clearance_m: cells.number(4, bad),
+        clearance_m,
+        whole_gap: clearance_m.is_some() && cells.header.whole_gap,
         sweep: cells.word(5, bad),
         drive_amplitude: cells.number(6, bad),
         excitation: cells.word(7, bad),
@@ -518,7 +434,7 @@ fn read_row(cells: &Cells<'_>, bad: &mut BadCells, faults: &mut FaultCollector) 
 
 /// The cells of a row.
 struct Cells<'a> {
-    record: &'a csv::StringRecord,
+    row: &'a Line,
     header: &'a Header,
     /// The decimal mark of the table.
     mark: char,
@@ -527,12 +443,8 @@ struct Cells<'a> {
 }
 
 impl Cells<'_> {
-    fn line(&self) -> usize {
-        self.record.position().and_then(line_of).unwrap_or(0)
-    }
-
     fn text(&self, column: usize) -> Option<String> {
-        let cell = self.record.get(self.header.at[column]?)?;
+        let cell = self.row.cells.get(self.header.at[column]?)?;
         (!cell.is_empty()).then(|| cell.to_owned())
     }
 
@@ -541,7 +453,7 @@ impl Cells<'_> {
         match cell.replace(self.mark, ".").parse::<f64>() {
             Ok(value) if value.is_finite() => Some(value * self.header.factor[column]),
             _ => {
-                bad.0[column].push((self.line(), cell));
+                bad.0[column].push((self.row.number, cell));
                 None
             }
         }
@@ -551,7 +463,7 @@ impl Cells<'_> {
         let cell = self.text(column)?;
         let found = in_english(&cell).parse().ok();
         if found.is_none() {
-            bad.0[column].push((self.line(), cell));
+            bad.0[column].push((self.row.number, cell));
         }
         found
     }
@@ -680,6 +592,27 @@ mod tests {
         }
     }
 
+    /// A run table may be made from a table of the report.
+    #[test]
+    fn headings_and_words_of_the_reports_own_tables_are_known() {
+        for language in Language::all() {
+            for (key, column) in [
+                ("record", "record"),
+                ("sweep", "sweep"),
+                ("specimen", "specimen"),
+                ("drive_frequency", "drive_frequency"),
+                ("clearance", "clearance"),
+            ] {
+                let heading = language.text("phrase", key).replace('$', "");
+                let known = column_of(&heading).map(|c| COLUMNS[c]);
+                assert_eq!(known, Some(column), "{heading}");
+            }
+            for sweep in Sweep::VARIANTS {
+                assert_eq!(in_english(language.text("sweep", sweep)), *sweep);
+            }
+        }
+    }
+
     #[test]
     fn decimal_commas_are_read_where_no_comma_separates() {
         for text in [
@@ -723,7 +656,7 @@ mod tests {
     fn cells_that_cannot_be_read_are_one_fault_for_each_column() {
         let mut text = "file,clearance_mm,drive_frequency_hz,sweep\n".to_owned();
         for k in 0..8 {
-            text += &format!("r{k},\"8,{k}\",{k} Hz,hoch\n");
+            text += &format!("r{k},\"8,{k}\",{k} Hz,quer\n");
         }
         let (_, faults) = read_text(text.as_bytes());
         assert_eq!(
@@ -733,7 +666,7 @@ mod tests {
                  (in 8 lines: 2, 3, 4, 5, 6, 7, …). write a number; the unit belongs in the header",
                 "clearance: '8,0', '8,1', '8,2', '8,3', '8,4', '8,5', … are not numbers (in 8 lines: \
                  2, 3, 4, 5, 6, 7, …). write a decimal point",
-                "sweep: 'hoch' is not one of up, down, unknown (in 8 lines: 2, 3, 4, 5, 6, 7, …). \
+                "sweep: 'quer' is not one of up, down, unknown (in 8 lines: 2, 3, 4, 5, 6, 7, …). \
                  write one of these words",
             ]
         );
@@ -782,7 +715,7 @@ mod tests {
     #[test]
     fn symbols_and_other_words_of_a_gap_and_a_sweep_are_headings() {
         for heading in ["f [Hz]", "f (Hz)", "Excitation frequency (Hz)"] {
-            assert!(is_frequency(heading), "{heading}");
+            assert_eq!(column_of(heading), Some(FREQUENCY), "{heading}");
         }
         assert_eq!(column_of("F [N]"), None);
         for (heading, column) in [
@@ -803,7 +736,7 @@ mod tests {
         let found = "1: : columns that are not known are not used: Nr., Datum, Prüfer. ";
         assert!(faults[0].starts_with(found), "{faults:?}");
         // one that is needed may be meant, also a setting that is not there so
-        let text = "Datei;Frequenz [Hz];Spalt 2r [mm]\na.csv;8,5;2\n";
+        let text = "Datei;Frequenz [Hz];Spalt unten [mm]\na.csv;8,5;2\n";
         let (_, faults) = read_text(text.as_bytes());
         assert!(
             faults[0].contains("did you mean 'clearance'?"),
@@ -856,6 +789,90 @@ mod tests {
     }
 
     #[test]
+    fn names_without_ending_are_found_in_a_folder_below() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::create_dir(at("raw data")).unwrap();
+        for name in ["raw data/test_1.csv", "raw data/test_2.csv"] {
+            std::fs::write(at(name), "").unwrap();
+        }
+        for names in [
+            ["test_1", "test_2"],
+            ["raw data/test_1", "raw data/test_2.csv"],
+        ] {
+            let [one, other] = names;
+            let text = format!(
+                "Table 3: tests (J. Doe),,\nTest No.,Shaker frequency (Hz),Gap (mm)\n{one},5,2\n{other},6,2\n"
+            );
+            std::fs::write(at("t.csv"), &text).unwrap();
+            assert!(is_run_table(
+                text.as_bytes(),
+                &is_file(folder.path(), "t.csv")
+            ));
+            let mut faults = FaultCollector::new(&at("t.csv"));
+            let rows = read(folder.path(), "t.csv", &mut faults);
+            let files: Vec<(usize, &str)> = rows
+                .iter()
+                .map(|row| (row.line, row.file.as_str()))
+                .collect();
+            assert_eq!(
+                files,
+                [(3, "raw data/test_1.csv"), (4, "raw data/test_2.csv")]
+            );
+            assert_eq!(rows[0].drive_frequency_hz, Some(5.0));
+        }
+    }
+
+    #[test]
+    fn headings_below_titles_and_their_line_are_found() {
+        let text = "Messprotokoll Sto, M. M, 02.04.2026;;;\n;;;\nDatei;Erregerfrequenz [Hz];Spaltmaß;Durchlauf\na.lvm;10,92;0,4;aufwärts\n";
+        let (rows, faults) = read_text(text.as_bytes());
+        assert!(rows.is_empty());
+        let what =
+            "3: Spaltmaß: a clearance without unit. call it clearance_mm or \"clearance [mm]\"";
+        assert_eq!(faults, [what]);
+        let (rows, faults) = read_text(text.replace("aß;", "aß [mm];").as_bytes());
+        assert_eq!(faults, [""; 0]);
+        assert_eq!((rows[0].line, rows[0].sweep), (4, Some(Sweep::Up)));
+    }
+
+    #[test]
+    fn the_sheet_of_a_fault_is_named() {
+        let mut faults = FaultCollector::new(Path::new("s.xlsx"));
+        faults.in_sheet("Overview");
+        faults.fault(
+            Code::InvalidValue,
+            Some(5),
+            "Gap",
+            "a clearance without unit",
+            "",
+        );
+        let said = faults.into_diagnostics().to_string();
+        assert!(
+            said.contains("s.xlsx:5: sheet Overview: Gap: a clearance"),
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn whole_gaps_are_told_by_their_heading() {
+        for (heading, whole) in [
+            ("gap_2r_mm", true),
+            ("Spalt 2r [mm]", true),
+            ("Total gap (mm)", true),
+            ("gap_mm", false),
+        ] {
+            let (rows, faults) = read_text(format!("file,{heading}\na,2\n").as_bytes());
+            assert_eq!(faults, [""; 0]);
+            assert_eq!(
+                (rows[0].clearance_m, rows[0].whole_gap),
+                (Some(2e-3), whole),
+                "{heading}"
+            );
+        }
+    }
+
+    #[test]
     #[cfg(unix)]
     fn backslashes_in_names_are_named() {
         let (_, faults) = read_text(b"file,gap [mm]\nsub\\r0.csv,1\nsub\\r1.csv,1\n");
@@ -874,12 +891,10 @@ mod tests {
 
     #[test]
     fn rows_of_a_workbook_that_name_datasets_of_another_lack_a_column_of_files() {
-        let mut header = Header::default();
-        header.at[DATASET] = Some(0);
-        let rows = ["run 1", "run 2"].map(|name| csv::StringRecord::from(vec![name]));
+        let table = Table::at_front("sheet\nrun 1\nrun 2\n", [&|_| false, &|_| false]);
         let said = |own: &str| {
             let mut faults = FaultCollector::new(Path::new("s.xlsx"));
-            let none = names_none(&[own.to_owned()], &header, &rows, &mut faults);
+            let none = names_none(&[own.to_owned()], &table, &mut faults);
             (none, faults.into_diagnostics().to_string())
         };
         assert_eq!(said("run 2"), (false, String::new()));

@@ -4,6 +4,7 @@ use super::context::ResolveContext;
 use super::diagnostic::{Code, Diagnostic, Place, Severity};
 use super::discovery::Discovered;
 use super::resolved::RecordEntry;
+use super::run_table::{in_english, states_whole_gaps};
 use super::sections::records::RecordsTable;
 use super::values::{Placed, value};
 use impact_records::record::{Setting, Sweep};
@@ -124,7 +125,16 @@ pub(super) fn setting(
         .and_then(|r| r.clearance_m)
         .or(clearance)
         .or(default.clearance_m);
-    let share = if wanted.whole_gaps { 0.5 } else { 1.0 };
+    let of_row = row.filter(|r| r.clearance_m.is_some());
+    let by_heading = match of_row {
+        Some(row) => row.whole_gap,
+        None => wanted
+            .clearance
+            .as_ref()
+            .is_some_and(|a| states_whole_gaps(&a.name)),
+    };
+    let whole = wanted.whole_gaps || by_heading;
+    let share = if whole { 0.5 } else { 1.0 };
     Setting {
         stated_frequency_hz: row
             .and_then(|r| r.drive_frequency_hz)
@@ -168,7 +178,7 @@ fn attribute_sweep(
     context: &mut ResolveContext<'_>,
 ) -> Option<Sweep> {
     let text = one.attributes.get(name)?;
-    let found = super::run_table::in_english(text).parse().ok();
+    let found = in_english(text).parse().ok();
     if found.is_none() {
         let what = format!("its attribute '{name}' is '{text}', not up, down or unknown");
         context.faults.extend([attribute_fault(one, name, what)]);

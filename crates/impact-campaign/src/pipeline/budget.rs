@@ -21,40 +21,29 @@ pub(super) fn csv(budget: &Budget) -> String {
         "expanded_uncertainty",
     ]);
     for row in &budget.rows {
+        let kind = format!("{:?}", row.evaluation);
         for c in &row.contributions {
-            csv.row().texts(&[
-                row.source.into(),
-                &item(row.source),
-                &format!("{:?}", row.evaluation),
-                &number(row.standard_uncertainty),
-                &number(row.degrees_of_freedom),
-                c.parameter.name(),
-                &number(c.sensitivity),
-                &number(Some(c.uncertainty)),
-            ]);
+            csv.row()
+                .texts(&[row.source.into(), &item(row.source), &kind])
+                .numbers(&[row.standard_uncertainty, row.degrees_of_freedom])
+                .texts(&[c.parameter.name()])
+                .numbers(&[c.sensitivity, Some(c.uncertainty)]);
         }
     }
     for c in &budget.combined {
-        let standard = number(Some(c.standard_uncertainty));
-        csv.row().texts(&[
-            "combined",
-            "",
-            "",
-            &standard,
-            &number(c.degrees_of_freedom),
-            c.parameter.name(),
-            "",
-            &standard,
-            &format!("{:.6}", c.coverage_factor),
-            &number(Some(c.expanded_uncertainty)),
-        ]);
+        let standard = Some(c.standard_uncertainty);
+        csv.row()
+            .texts(&["combined", "", ""])
+            .numbers(&[standard, c.degrees_of_freedom])
+            .texts(&[c.parameter.name()])
+            .numbers(&[
+                None,
+                standard,
+                Some(c.coverage_factor),
+                Some(c.expanded_uncertainty),
+            ]);
     }
     csv.finish()
-}
-
-/// A number with seven digits; nothing for one that is missing.
-fn number(value: Option<f64>) -> String {
-    value.map(|v| format!("{v:.6e}")).unwrap_or_default()
 }
 
 /// Which of its kind a source is.

@@ -21,7 +21,7 @@ pub mod observed;
 pub mod plan;
 pub mod published;
 pub mod report;
-mod resolved_file;
+pub mod resolved_file;
 mod run;
 pub mod store;
 pub mod summary;

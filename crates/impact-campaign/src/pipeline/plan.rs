@@ -65,9 +65,9 @@ pub fn plan(
         obstacle,
     };
     progress("map", 0, 1);
-    let mut content = report::content(campaign, &observed, &found, "")?;
+    let proposals = plan.proposals.clone();
+    let mut content = report::content_with(campaign, &observed, &found, "", proposals)?;
     content.compared.comparisons.clear();
-    content.proposals.clone_from(&plan.proposals);
     let mut files = impact_report::plan_map(&content, campaign.report.decimal_comma)?;
     files.push(("plan.csv".to_owned(), csv(&plan.proposals).into_bytes()));
     write_together(out, &files)?;

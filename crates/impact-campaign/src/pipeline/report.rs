@@ -9,6 +9,7 @@ use crate::pipeline::identify::{IdentificationFile, settings};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::{Observed, PipelineError};
 use impact_identification::identify::Provenance;
+use impact_identification::identify::plan::Proposal;
 use impact_identification::replay::{self, Input};
 use impact_records::event::RigKind;
 use impact_records::language::Language;
@@ -122,6 +123,17 @@ pub fn content(
     found: &IdentificationFile,
     command_line: &str,
 ) -> Result<ReportContent, PipelineError> {
+    content_with(campaign, observed, found, command_line, Vec::new())
+}
+
+/// What the report shows, with settings that are proposed on its map.
+pub(super) fn content_with(
+    campaign: &ResolvedCampaign,
+    observed: &Observed,
+    found: &IdentificationFile,
+    command_line: &str,
+    proposals: Vec<Proposal>,
+) -> Result<ReportContent, PipelineError> {
     let aligned = campaign.with_late(observed.late());
     let read = |index: usize| {
         let entry = aligned.records.get(index)?;
@@ -133,6 +145,7 @@ pub fn content(
         brackets: &observed.brackets,
         identification: &found.identification,
         points: &campaign.report.points,
+        proposals: &proposals,
         read: &read,
     });
     let facts = facts(campaign);
@@ -146,7 +159,7 @@ pub fn content(
             ..found.provenance.clone()
         },
         compared,
-        proposals: Vec::new(),
+        proposals,
         tables: Vec::new(),
         command_line: command_line.to_owned(),
         date: campaign.report.date.clone(),

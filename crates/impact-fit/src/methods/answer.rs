@@ -176,6 +176,21 @@ pub struct Verdict {
     pub findings: Vec<Finding>,
 }
 
+impl Verdict {
+    /// Whether the records contradict the stated clearances, so that none of them is used.
+    pub fn doubts_clearances(&self) -> bool {
+        let doubt = |finding: &Finding| {
+            matches!(
+                finding,
+                Finding::WholeGapsStated { .. }
+                    | Finding::ClearancesOffAlike { .. }
+                    | Finding::ClearancesShifted { .. }
+            )
+        };
+        self.findings.iter().any(doubt)
+    }
+}
+
 impl std::fmt::Display for Verdict {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(&plain_all(&self.sentences))

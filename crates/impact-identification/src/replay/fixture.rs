@@ -152,6 +152,7 @@ fn identified(records: &[Record], rig: RigKind) -> Identified {
         brackets: &brackets,
         identification: &identification,
         points: &[],
+        proposals: &[],
         read: &|i| records.get(i).cloned(),
     });
     Identified {

@@ -1,5 +1,6 @@
 //! What a comparison starts from.
 
+use crate::identify::plan::Proposal;
 use std::collections::BTreeMap;
 
 use crate::identify::Identification;
@@ -21,6 +22,8 @@ pub struct Input<'a> {
     pub identification: &'a Identification,
     /// Names of the records to be replayed; empty: the surest of each type of motion.
     pub points: &'a [String],
+    /// Settings that are proposed: the plane reaches to them too.
+    pub proposals: &'a [Proposal],
     /// Reads a record by its index among the observations; `None` if it cannot be read.
     pub read: &'a (dyn Fn(usize) -> Option<Record> + Sync),
 }

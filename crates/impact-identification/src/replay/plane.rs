@@ -93,8 +93,8 @@ struct View {
 }
 
 impl View {
-    /// Of records at (η, ρ); `reach` is the largest ρ at which anything touches.
-    fn of(places: &[(f64, f64)], reach: f64) -> Option<Self> {
+    /// Of records, and of proposed settings, at (η, ρ); `reach` is the largest ρ at which anything touches.
+    fn of(places: &[(f64, f64)], proposed: &[(f64, f64)], reach: f64) -> Option<Self> {
         if places.len() < FEWEST_RECORDS {
             return None;
         }
@@ -102,8 +102,9 @@ impl View {
             let room = margin * (high - low).max(0.1);
             (low - room, high + room)
         };
-        let eta = span(range(places.iter().map(|p| p.0))?, 0.05);
-        let touching = places.iter().map(|p| p.1).filter(|r| *r <= reach);
+        let all = || places.iter().chain(proposed);
+        let eta = span(range(all().map(|p| p.0))?, 0.05);
+        let touching = all().map(|p| p.1).filter(|r| *r <= reach);
         let (low, high) = range(touching)?;
         // A single clearance is shown with as much of the plane about it as a figure shows.
         let rho = if high - low < 0.1 * high {
@@ -132,7 +133,10 @@ fn plane(input: &Input<'_>) -> Option<(Machine, View)> {
         Some((eta?, rho?))
     });
     let places: Vec<(f64, f64)> = places.collect();
-    let view = View::of(&places, REACH / fitted.damping_ratio)?;
+    let proposed = input.proposals.iter();
+    let proposed = proposed.map(|p| (p.frequency_ratio, p.clearance_ratio));
+    let proposed: Vec<(f64, f64)> = proposed.collect();
+    let view = View::of(&places, &proposed, REACH / fitted.damping_ratio)?;
     Some((fitted.without_asymmetry().machine(input.rig), view))
 }
 
@@ -255,18 +259,25 @@ mod tests {
     #[test]
     fn the_view_leaves_out_gaps_beyond_all_impacts() {
         let places = [(0.8, 0.5), (1.2, 1.5), (1.6, 9.0)];
-        let view = View::of(&places, 7.0).expect("a view");
+        let view = View::of(&places, &[], 7.0).expect("a view");
         assert!((view.eta.0 - 0.76).abs() < 1e-12 && (view.eta.1 - 1.64).abs() < 1e-12);
         // 12 % of 1.0 above; below it is widened to the axis by a tenth
         assert!((view.rho.1 - 1.62).abs() < 1e-12 && (view.rho.0 - 0.28).abs() < 1e-12);
-        assert_eq!(View::of(&places[..2], 7.0), None);
-        assert_eq!(View::of(&places, 0.1), None);
+        assert_eq!(View::of(&places[..2], &places, 7.0), None);
+        assert_eq!(View::of(&places, &[], 0.1), None);
+    }
+
+    #[test]
+    fn the_view_reaches_to_proposed_settings() {
+        let places = [(0.8, 0.5), (1.2, 1.5), (1.6, 0.9)];
+        let view = View::of(&places, &[(2.0, 2.5)], 7.0).expect("a view");
+        assert!(view.eta.1 > 2.0 && view.rho.1 > 2.5, "{view:?}");
     }
 
     #[test]
     fn one_clearance_is_shown_with_a_fifth_of_it_about() {
         let places = [(0.8, 2.0), (1.2, 2.0), (1.6, 2.0)];
-        let view = View::of(&places, 7.0).expect("a view");
+        let view = View::of(&places, &[], 7.0).expect("a view");
         assert!((view.rho.0 - 1.5).abs() < 1e-12 && (view.rho.1 - 2.4).abs() < 1e-12);
     }
 

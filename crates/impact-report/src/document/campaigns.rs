@@ -40,7 +40,7 @@ fn front(comparison: &Comparison, locale: Locale<'_>) -> Front {
             ComparisonOutcome::NothingChanged => "identified",
             ComparisonOutcome::Undetermined => "not_identifiable",
         },
-        headline: Rich::from(locale.message(&comparison.outcome())).plain(),
+        headline: Rich::from(locale.message(&comparison.outcome())),
         summary: Rich::from(summary(comparison, locale)),
         findings: comparison
             .remarks

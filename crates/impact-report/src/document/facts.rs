@@ -120,7 +120,8 @@ fn clearances(overview: &Overview, locale: Locale<'_>) -> String {
         .map(|r| locale.clearance(*r))
         .collect();
     match all.as_slice() {
-        [] => String::new(),
+        [] if overview.frequency_range_hz.is_none() => String::new(),
+        [] => locale.translate(Phrase::NoClearanceStated),
         [one] => format!("$r$ = {one}\u{2009}mm"),
         few if few.len() <= 8 => format!("$r$ = {}\u{2009}mm", few.join("; ")),
         many => {

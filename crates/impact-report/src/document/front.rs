@@ -20,7 +20,7 @@ pub(super) fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
     Front {
         synthetic: content.campaign.synthetic,
         verdict: id.verdict.kind.name(),
-        headline: campaign_headline(content, drawn.locale),
+        headline: Rich::from(campaign_headline(content, drawn.locale)),
         summary: Rich::from(drawn.locale.sentences(&id.verdict.sentences)),
         findings: findings(content, drawn.locale),
         answers: answers(content, drawn.locale),
@@ -50,6 +50,9 @@ fn campaign_headline(content: &ReportContent, locale: Locale<'_>) -> String {
         .filter(|s| matches!(s.verdict.kind, VerdictKind::Identified | VerdictKind::Weak))
         .count();
     match specimens - identified {
+        _ if specimens == 0 && id.verdict.doubts_clearances() => {
+            locale.translate(Phrase::ClearancesInDoubt)
+        }
         _ if specimens == 0 => locale.translate(headline(
             id.verdict.kind,
             !content.compared.records.is_empty(),

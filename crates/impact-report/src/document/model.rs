@@ -32,7 +32,8 @@ impl Rich {
 
 impl<T: AsRef<str>> From<T> for Rich {
     fn from(markup: T) -> Self {
-        Self(richtext::parse(markup.as_ref()))
+        // a number and its per cent stay in one line
+        Self(richtext::parse(&markup.as_ref().replace(" %", "\u{a0}%")))
     }
 }
 
@@ -95,7 +96,7 @@ pub(crate) struct Front {
     /// One word for the verdict: `identified`, `weak`, `not_identifiable`, `does_not_fit`.
     pub verdict: &'static str,
     /// The verdict as a headline.
-    pub headline: String,
+    pub headline: Rich,
     /// Two sentences.
     pub summary: Rich,
     /// Reasons and findings.

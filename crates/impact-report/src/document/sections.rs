@@ -73,9 +73,10 @@ fn regions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
     blocks.extend(drawn.figures_block(&[("map", &map_caption(content, drawn.locale))]));
     blocks.extend(boundaries_alone(content, drawn.locale).map(paragraph));
-    blocks.extend(tables::brackets(content, drawn.locale).map(|t| t.block("brackets")));
+    // above their table, which may end where a page does
     blocks.extend(edges(content, drawn.locale).map(paragraph));
     blocks.extend(far_brackets(content, drawn.locale).map(paragraph));
+    blocks.extend(tables::brackets(content, drawn.locale).map(|t| t.block("brackets")));
     section(
         drawn.locale.translate(Phrase::RegionsOfMotion),
         true,
@@ -135,14 +136,22 @@ fn map_caption(content: &ReportContent, locale: Locale<'_>) -> String {
     if !content.compared.comparisons.is_empty() {
         add(&locale.translate(Phrase::CaptionLetters));
     }
+    text.extend(in_doubt(content, locale));
     text
+}
+
+/// That what is drawn at the stated clearances is in doubt, where the records contradict them.
+fn in_doubt(content: &ReportContent, locale: Locale<'_>) -> Option<String> {
+    let doubted = content.identification.verdict.doubts_clearances();
+    doubted.then(|| format!(" {}", locale.translate(Phrase::CaptionClearancesInDoubt)))
 }
 
 fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
     for comparison in &content.compared.comparisons {
         let name = comparison::name(comparison);
-        let caption = captions::comparison(comparison, drawn.locale);
+        let mut caption = captions::comparison(comparison, drawn.locale);
+        caption.extend(in_doubt(content, drawn.locale));
         blocks.extend(drawn.figures_block(&[(&name, &caption)]));
     }
     if !blocks.is_empty() {

@@ -15,6 +15,7 @@ use crate::locale::Locale;
 use crate::phrase::Phrase;
 use impact_identification::replay::BracketRow;
 use impact_records::motion::BoundaryKind;
+use impact_records::record::Sweep;
 
 /// Height of the panel, points.
 const HEIGHT: f64 = 132.0;
@@ -51,22 +52,10 @@ pub(crate) fn draw(brackets: &[BracketRow], locale: Locale<'_>) -> Option<Figure
     let panel = Panel::new(rect, x, y);
     let mut canvas = Canvas::new(look::HALF_WIDTH, top + HEIGHT + look::BELOW_PANEL);
     panel.upright(&mut canvas, 0.0, look::ZERO_STROKE);
-    let mut order: Vec<usize> = (0..rows.len()).collect();
-    let rank = |kind| boundaries::ALL.iter().position(|k| *k == kind);
-    order.sort_by_key(|&i| (rank(rows[i].0.kind), rows[i].0.sweep));
-    for &i in &order {
-        let (row, low, high) = &rows[i];
+    let drawn: Vec<&BracketRow> = rows.iter().map(|r| r.0).collect();
+    for ((row, low, high), lift) in rows.iter().zip(lifts(&drawn)) {
         let (from, y) = panel.at(*low, 1e3 * row.clearance_m);
         let (to, _) = panel.at(*high, 0.0);
-        // Those of one clearance are stacked around it.
-        let beside = |k: &&usize| same(rows[**k].0.clearance_m, row.clearance_m);
-        let count = order.iter().filter(beside).count();
-        let place = order
-            .iter()
-            .filter(beside)
-            .position(|&k| k == i)
-            .unwrap_or(0);
-        let lift = STACK_STEP * (place as f64 - 0.5 * (count as f64 - 1.0));
         let kind = colour(row.kind);
         let shade = if row.left_out.is_some() {
             marks::mix(kind, 0.35)
@@ -83,6 +72,34 @@ pub(crate) fn draw(brackets: &[BracketRow], locale: Locale<'_>) -> Option<Figure
         canvas,
         csv(&rows),
     ))
+}
+
+/// How far above its clearance each bracket is drawn, points: those of upward sweeps above it, those of downward ones below,
+/// others about it.
+fn lifts(rows: &[&BracketRow]) -> Vec<f64> {
+    let rank = |i: usize| {
+        let kind = rows[i].kind;
+        (boundaries::ALL.iter().position(|k| *k == kind), i)
+    };
+    let alike = |i: usize| {
+        let own = rows[i];
+        let others = (0..rows.len()).filter(move |k| {
+            let other = rows[*k];
+            same(other.clearance_m, own.clearance_m) && other.sweep == own.sweep
+        });
+        others.collect::<Vec<_>>()
+    };
+    let lift = |i: usize| {
+        let beside = alike(i);
+        let place = beside.iter().filter(|k| rank(**k) < rank(i)).count() as f64;
+        let steps = match rows[i].sweep {
+            Sweep::Up => place + 0.5,
+            Sweep::Down => -place - 0.5,
+            Sweep::Unknown => place - 0.5 * (beside.len() as f64 - 1.0),
+        };
+        STACK_STEP * steps
+    };
+    (0..rows.len()).map(lift).collect()
 }
 
 fn colour(kind: BoundaryKind) -> Colour {
@@ -136,4 +153,39 @@ fn csv(rows: &[(&BracketRow, f64, f64)]) -> String {
             .numbers(&[Some(row.clearance_m), Some(*low), Some(*high)]);
     }
     csv.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impact_records::motion::Motion;
+
+    #[test]
+    fn brackets_of_upward_sweeps_are_above_their_clearance_and_of_downward_ones_below() {
+        let row = |kind, sweep| BracketRow {
+            kind,
+            motion: Motion::periodic(1, 1),
+            clearance_m: 1e-3,
+            rho: None,
+            frequency_low_hz: 9.0,
+            frequency_high_hz: 10.0,
+            eta: None,
+            sweep,
+            simulated_hz: Some(9.5),
+            left_out: None,
+        };
+        let rows = [
+            row(BoundaryKind::SaddleNode, Sweep::Up),
+            row(BoundaryKind::PeriodDoubling, Sweep::Down),
+            row(BoundaryKind::Grazing, Sweep::Up),
+            row(BoundaryKind::Grazing, Sweep::Unknown),
+        ];
+        let found = lifts(&rows.iter().collect::<Vec<_>>());
+        assert!(
+            found[0] > 0.0 && found[2] > 0.0 && found[0] != found[2],
+            "{found:?}"
+        );
+        assert!(found[1] < 0.0, "{found:?}");
+        assert_eq!(found[3], 0.0);
+    }
 }

@@ -53,7 +53,7 @@ impl<'a> Parts<'a> {
         text.push_str(&format!(
             "<div class=\"verdict {}\"><div class=\"headline\">{}</div><p>{}</p></div>\n",
             front.verdict,
-            escape(&front.headline),
+            rich(&front.headline),
             rich(&front.summary)
         ));
         let answers: String = front
@@ -183,7 +183,7 @@ fn answer(a: &Answer, document: &Document) -> String {
                 rich(&a.symbol)
             ));
             if let Some(half) = &a.plus_minus {
-                text.push_str(&format!("<div>± {half} {} (95 %)</div>", a.unit));
+                text.push_str(&format!("<div>± {half} {} (95\u{a0}%)</div>", a.unit));
             }
             if let Some(interval) = &a.interval {
                 text.push_str(&format!(

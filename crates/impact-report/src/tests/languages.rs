@@ -159,6 +159,12 @@ fn real_rig() -> ReportContent {
         speed_m_s: 0.3,
     });
     id.verdict.findings.extend(findings);
+    let doubted = Finding::WholeGapsStated {
+        ratio: 0.5,
+        records: 8,
+    };
+    id.verdict.findings.push(doubted);
+    content.compared.overview.clearances_m.clear();
     let stated = |coordinate, clearance_m| UncertaintySource::Stated {
         coordinate,
         clearance_m,

@@ -120,6 +120,7 @@ impl OpenCampaign {
             brackets: &self.observed.brackets,
             identification: &self.identification,
             points: &[],
+            proposals: &[],
             read: &|index| self.record(index),
         })
     }

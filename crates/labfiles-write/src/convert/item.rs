@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::hdf5::WriteError;
 use labfiles::attribute;
-use labfiles::conventions::{RECORDS_KEY, TEXTS_KEY};
+use labfiles::conventions::{COLUMNS_KEY, RECORDS_KEY, TEXTS_KEY};
 use labfiles::name_and_unit;
 use labfiles::{ChannelInfo, ReadError, Samples, Source, StoredType};
 
@@ -128,7 +128,7 @@ impl Item<'_> {
 
     /// The attributes to write: the record's own without those that the target writes otherwise.
     pub(super) fn described(&self) -> impl Iterator<Item = (&String, &String)> {
-        const ELSEWHERE: [&str; 11] = [
+        const ELSEWHERE: [&str; 12] = [
             "channels",
             "units",
             "scale",
@@ -139,6 +139,7 @@ impl Item<'_> {
             "columns",
             "start_time",
             RECORDS_KEY,
+            COLUMNS_KEY,
             TEXTS_KEY,
         ];
         self.attributes

@@ -12,7 +12,7 @@ use crate::convert::item::{ConvertError, Item, Options, heading, io};
 use crate::hdf5::WriteError;
 use crate::output::write_whole_or;
 use crate::to_f32;
-use labfiles::conventions::RECORDS_KEY;
+use labfiles::conventions::{COLUMNS_KEY, RECORDS_KEY};
 use labfiles::{Samples, StoredType};
 
 /// Write all records; with several there is a column `record`, and channels that a record lacks
@@ -88,10 +88,22 @@ fn footer(items: &[Item<'_>]) -> Vec<(String, String)> {
     if let [item] = items {
         return of(item).into_iter().collect();
     }
-    let records: BTreeMap<&str, _> = items.iter().map(|i| (i.name.as_str(), of(i))).collect();
-    serde_json::to_string(&records)
-        .map(|json| (RECORDS_KEY.to_owned(), json))
-        .into_iter()
+    let stated: BTreeMap<&str, _> = items.iter().map(|i| (i.name.as_str(), of(i))).collect();
+    let held = items.iter().map(|i| {
+        let columns = columns(std::slice::from_ref(i)).into_iter();
+        (
+            i.name.as_str(),
+            columns.map(|(name, _)| name).collect::<Vec<_>>(),
+        )
+    });
+    let held: BTreeMap<&str, _> = held.collect();
+    let texts = [
+        (RECORDS_KEY, serde_json::to_string(&stated)),
+        (COLUMNS_KEY, serde_json::to_string(&held)),
+    ];
+    let written = texts.into_iter();
+    written
+        .filter_map(|(key, json)| Some((key.to_owned(), json.ok()?)))
         .collect()
 }
 

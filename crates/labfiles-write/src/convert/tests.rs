@@ -683,3 +683,26 @@ fn channels_of_a_tidy_table_may_have_times_of_their_own() {
     let times = source.read(0, &[4]).unwrap().remove(0).into_real().unwrap();
     assert_eq!((times[0], times[1]), (0.3, 0.302));
 }
+
+#[test]
+fn records_of_unlike_channels_have_their_own_in_one_table() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name: &str| dir.path().join(name);
+    std::fs::write(path("a.csv"), "t [s],x [mm]\n0,1\n0.5,2\n1,3\n").unwrap();
+    std::fs::write(path("b.csv"), "t [s],v [m/s]\n0,1\n0.5,2\n1,3\n").unwrap();
+    let sources = ["a.csv", "b.csv"].map(|name| open(&path(name)).unwrap());
+    let out = path("both.parquet");
+    convert(
+        &sources,
+        Target::of(&out).unwrap(),
+        &out,
+        &Options::default(),
+    )
+    .unwrap();
+    let back = open(&out).unwrap();
+    let names = |d: usize| {
+        let channels = back.datasets()[d].channels.iter();
+        channels.map(|c| c.name.as_str()).collect::<Vec<_>>()
+    };
+    assert_eq!((names(0), names(1)), (vec!["t", "x"], vec!["t", "v"]));
+}

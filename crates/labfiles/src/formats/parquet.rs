@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::attribute;
-use crate::conventions::RECORDS_KEY;
+use crate::conventions::{COLUMNS_KEY, RECORDS_KEY};
 use crate::formats::csv::header::name_and_unit;
 use crate::formats::parquet::columns::Columns;
 use crate::formats::parquet::columns::SIGNATURE;
@@ -43,8 +43,15 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let own: BTreeMap<String, BTreeMap<String, String>> = own
         .and_then(|json| serde_json::from_str(json).ok())
         .unwrap_or_default();
+    let held = columns.attributes.get(COLUMNS_KEY);
+    let held: BTreeMap<String, Vec<String>> = held
+        .and_then(|json| serde_json::from_str(json).ok())
+        .unwrap_or_default();
     let (mut datasets, mut plans) = (Vec::new(), Vec::new());
-    for (name, plan) in shape::find(&columns)? {
+    for (name, mut plan) in shape::find(&columns)? {
+        if let Some(held) = held.get(&name) {
+            plan.retain(|origin| held.contains(&origin.heading));
+        }
         let own = own.get(&name).cloned().unwrap_or_default();
         datasets.push(dataset(&columns, name, &plan, own)?);
         plans.push(plan);
@@ -75,6 +82,7 @@ fn dataset(
         .or_else(|| channels.iter().position(|c| c.stored == StoredType::Time));
     let mut attributes = columns.attributes.clone();
     attributes.remove(RECORDS_KEY);
+    attributes.remove(COLUMNS_KEY);
     attributes.extend(own);
     let mut rate = attribute::sample_rate_hz(&attributes);
     let first = time_axis.and_then(|axis| columns.first_time(plan[axis].column, &plan[axis].rows));

@@ -86,6 +86,7 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("nm", Dimension::Length, 1e-9),
     ("in", Dimension::Length, 0.0254),
     ("m/s", Dimension::Velocity, 1.0),
+    ("mps", Dimension::Velocity, 1.0),
     ("cm/s", Dimension::Velocity, 1e-2),
     ("mm/s", Dimension::Velocity, 1e-3),
     ("um/s", Dimension::Velocity, 1e-6),

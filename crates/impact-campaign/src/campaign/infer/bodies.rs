@@ -1,5 +1,7 @@
 //! Channels that move beside that of a mass: a second body, the same one once more, or something that only the user knows.
 
+use std::collections::BTreeSet;
+
 use super::found::{FolderContents, InferredChannel};
 use super::look::{self, Detected};
 use super::place::Place;
@@ -81,6 +83,32 @@ pub(super) fn ask_or_note(some: &[Place<'_>], rig: RigKind, found: &mut FolderCo
         }
     };
     found.notes.push(note);
+}
+
+/// Ask for the machine of a driven rig where channels without a role are alike, and no mass y is known.
+pub(super) fn ask_of_driven(found: &mut FolderContents) {
+    let of_y = |c: &InferredChannel| c.role.is_some_and(Role::is_on_y_side);
+    if found.channels.iter().any(of_y) {
+        return;
+    }
+    let moving = others(&found.channels).into_iter().map(|(index, _)| index);
+    let moving = moving.filter(|i| !roles::is_other_axis(&found.channels, *i));
+    let free: BTreeSet<usize> = moving
+        .chain(roles::alike_without_role(&found.channels))
+        .collect();
+    if free.is_empty() {
+        return;
+    }
+    let names: Vec<&str> = free
+        .iter()
+        .map(|i| found.channels[*i].name.as_str())
+        .collect();
+    found.asks_machine = true;
+    found.notes.push(format!(
+        "no role is known for {}: if two masses strike each other, write machine = \"double\" and give each of these \
+         channels its role; if it is one mass against a stop, machine = \"single\"",
+        names.join(", ")
+    ));
 }
 
 /// Channels without a role that move and show a quantity of motion that the first mass has, with that of the second.

@@ -48,6 +48,9 @@ pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
     } else if !found.states_drive {
         of_motions(&some, found);
     }
+    if found.experiment == Experiment::Driven {
+        bodies::ask_of_driven(found);
+    }
 }
 
 /// Give the first column of heights its role, and note those that follow.

@@ -69,7 +69,7 @@ pub(super) fn of(place: Place<'_>) -> Option<Heights> {
 }
 
 /// Whether a column numbers the rows, or the trials.
-fn numbers_rows(name: &str) -> bool {
+pub(super) fn numbers_rows(name: &str) -> bool {
     let run = without_run(&format!("{} 1", name.trim()));
     timing::numbers_rows(name) || run.is_some_and(|(bare, _)| bare.is_empty())
 }

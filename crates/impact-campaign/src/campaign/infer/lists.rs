@@ -1,5 +1,6 @@
 //! Lists of times: which tables are such, and which of their columns contain the times.
 
+use super::heights::numbers_rows;
 use super::place::Place;
 use impact_records::record::changes;
 use impact_records::signal::columns;
@@ -64,7 +65,7 @@ fn listed(place: Place<'_>) -> Vec<usize> {
 
 /// The columns of numbers, without those that count the rows.
 fn numbers(set: &DatasetInfo) -> Vec<usize> {
-    let counts = |c: &ChannelInfo| c.unit.is_none() && timing::numbers_rows(&c.name);
+    let counts = |c: &ChannelInfo| c.unit.is_none() && numbers_rows(&c.name);
     let columns = set.channels.iter().enumerate();
     let columns = columns.filter(|(_, c)| c.stored != StoredType::Text && !counts(c));
     columns.map(|(i, _)| i).collect()
@@ -145,6 +146,8 @@ mod tests {
         let labels = "3.9504\t3.9504\tbounce 1\n4.5410\t4.5410\tbounce 2\n5.0400\t5.0400\tbounce 3\n\
                       5.4616\t5.4616\tbounce 4\n";
         assert_eq!(of(labels), [0]);
+        let trials = "Trial,Interval 1 (s),Interval 2 (s)\n1,0.4747,0.3942\n2,0.4730,0.3936\n3,0.4748,0.3921\n";
+        assert_eq!(of(trials), [1, 2]);
         let edges = "t_us,state\n5602888,CLOSED\n5604188,OPEN\n6076704,CLOSED\n6078028,OPEN\n";
         assert_eq!(of(edges), [0]);
         let epoch = "Timestamp,Peak\n1684140000690,0.9\n1684140001163,0.8\n1684140001581,0.7\n1684140001952,0.6\n";

@@ -455,6 +455,47 @@ mod tests {
     }
 
     #[test]
+    fn two_velocities_are_told_by_numbers_and_sides_in_their_names() {
+        for names in [
+            ["v1", "v2"],
+            ["vel1_mps", "vel2_mps"],
+            ["Masse links v", "Masse rechts v"],
+            ["laser1", "laser2"],
+        ] {
+            let mut channels: Vec<_> = names.iter().map(|name| seen(name, None)).collect();
+            channels.push(seen("force_N", None));
+            roles::assign(&mut channels);
+            let given: Vec<_> = channels.iter().map(|c| c.role).collect();
+            let roles = [Role::VelocityX, Role::VelocityY, Role::Drive];
+            assert_eq!(given, roles.map(Some), "{names:?}");
+        }
+        // of an oscilloscope
+        let mut channels = vec![seen("V1", None), seen("V2", None)];
+        roles::assign(&mut channels);
+        assert!(channels.iter().all(|c| c.role.is_none()));
+    }
+
+    #[test]
+    fn a_driven_rig_with_like_channels_without_a_role_is_asked_for_its_machine() {
+        let named = |names: [&str; 3]| {
+            let mut found = FolderContents {
+                channels: names.iter().map(|name| seen(name, None)).collect(),
+                ..FolderContents::default()
+            };
+            roles::assign(&mut found.channels);
+            bodies::ask_of_driven(&mut found);
+            (found.asks_machine, found.notes.join(" "))
+        };
+        let (asks, note) = named(["drive", "links", "rechts"]);
+        assert!(
+            asks && note.contains("no role is known for links, rechts"),
+            "{note}"
+        );
+        assert_eq!(named(["drive", "v1", "v2"]), (false, String::new()));
+        assert!(!named(["drive", "v1", "temp"]).0);
+    }
+
+    #[test]
     fn german_names_of_drive_contact_frame_and_motions_are_known() {
         let mut channels = vec![
             seen("Erreger", Some("V")),

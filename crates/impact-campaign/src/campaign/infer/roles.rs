@@ -253,10 +253,24 @@ fn side(name: &str) -> Option<char> {
     side_of(&words(name))
 }
 
+/// The number behind the word of a quantity, a sensor or a body, `vel1`, `mass2`; else the word.
+fn numbered(word: &str) -> &str {
+    const NUMBERED: [&str; 14] = [
+        "x", "v", "s", "a", "d", "vel", "disp", "pos", "acc", "laser", "ldv", "mass", "masse",
+        "cart",
+    ];
+    let letters = word.trim_end_matches(|c: char| c.is_ascii_digit());
+    if letters.len() < word.len() && NUMBERED.contains(&letters) {
+        &word[letters.len()..]
+    } else {
+        word
+    }
+}
+
 fn side_of(words: &[String]) -> Option<char> {
-    let of = |word: &str| match word {
-        "x" | "1" | "left" | "a" | "vx" | "ax" | "dx" | "x1" | "v1" | "mass1" => Some('x'),
-        "y" | "2" | "right" | "b" | "vy" | "ay" | "dy" | "x2" | "v2" | "mass2" => Some('y'),
+    let of = |word: &str| match numbered(word) {
+        "x" | "1" | "left" | "links" | "a" | "vx" | "ax" | "dx" => Some('x'),
+        "y" | "2" | "right" | "rechts" | "b" | "vy" | "ay" | "dy" => Some('y'),
         _ => None,
     };
     words.iter().rev().find_map(|w| of(w))
@@ -358,6 +372,21 @@ pub(super) fn is_touched(channel: &InferredChannel) -> bool {
     kind(channel) == Kind::Contact || (force && kind(channel) == Kind::Drive)
 }
 
+/// Channels that neither names, units nor shapes give a role, of which another such one has the same unit and goes as far.
+pub(super) fn alike_without_role(channels: &[InferredChannel]) -> Vec<usize> {
+    let free =
+        |c: &InferredChannel| c.role.is_none() && is_unknown(c) && is_signal(c) && span(c) > 0.0;
+    let alike = |a: &InferredChannel, b: &InferredChannel| {
+        a.unit == b.unit && span(a).max(span(b)) <= UNLIKE * span(a).min(span(b))
+    };
+    let has_other = |(i, c): &(usize, &InferredChannel)| {
+        let mut others = channels.iter().enumerate();
+        free(c) && others.any(|(j, other)| j != *i && free(other) && alike(c, other))
+    };
+    let each = channels.iter().enumerate();
+    each.filter(has_other).map(|(i, _)| i).collect()
+}
+
 /// Whether neither name, unit nor shape shows what a channel measures.
 pub(super) fn is_unknown(channel: &InferredChannel) -> bool {
     kind(channel) == Kind::Unknown
@@ -397,10 +426,7 @@ fn kind(channel: &InferredChannel) -> Kind {
     match () {
         () if has(&DRIVES) => Kind::Drive,
         () if has(&VELOCITIES) => Kind::Velocity,
-        // v_x, v y
-        () if matches!(&words[..], [v, side] if v == "v" && ["x", "y"].contains(&&**side)) => {
-            Kind::Velocity
-        }
+        () if is_symbol_of_velocity(shown(channel), &words) => Kind::Velocity,
         () if has(&DISPLACEMENTS) => Kind::Displacement,
         () if has(&["acc", "beschl"]) || words.iter().any(|w| ACCELERATIONS.contains(&&**w)) => {
             Kind::Acceleration
@@ -410,6 +436,13 @@ fn kind(channel: &InferredChannel) -> Kind {
         () if unit.is_none() && is_coordinate(channel, &words) => Kind::Displacement,
         () => Kind::Unknown,
     }
+}
+
+/// Whether a channel is called `v1`, `v_x` or, beside the side of a mass, `v`: a small letter, as `V` are volts.
+fn is_symbol_of_velocity(name: &str, words: &[String]) -> bool {
+    let mut written = name.split(|c: char| !c.is_alphanumeric());
+    let symbol = written.any(|word| ["v", "v1", "v2"].contains(&word));
+    symbol && side_of(words).is_some()
 }
 
 /// Whether a channel is called `x`, `y`, `x1` …, without a unit or in pixels.

@@ -2,23 +2,20 @@
 
 use std::path::Path;
 
-use super::headings::{
-    DATASET, FILE, FREQUENCY, column_of, columns_of, states_setting, words_of, words_of_settings,
-};
-use super::text::{decode, is_file, reader};
+use super::files::is_file;
+use super::headings::{DATASET, FILE, FREQUENCY, IsNamed, words_of, words_of_settings};
+use super::table::{FIRST_ROWS, Table};
+use super::text::decode;
 
 /// What separates the cells of a sheet's text.
 pub(super) const SEPARATOR: u8 = b'\t';
-/// Rows among which the headings of a sheet are looked for: titles may be above them.
-const FIRST_ROWS: usize = 10;
-
 /// A sheet of a workbook that is a run table.
 #[derive(Debug)]
 pub(in super::super) struct Sheet {
     /// Its name.
     pub(in super::super) name: String,
-    /// Its text from the headings on, below as many empty lines as there are rows above them.
-    pub(super) text: String,
+    /// Its headings and rows.
+    pub(super) table: Table,
     /// The names of all sheets of the workbook.
     pub(super) sheets: Vec<String>,
     /// Whether its rows name files, or at least one sheet of its workbook.
@@ -40,42 +37,19 @@ pub(super) fn among(
 ) -> Option<Sheet> {
     let sheets: Vec<String> = tables.iter().map(|(name, _)| name.clone()).collect();
     tables.into_iter().find_map(|(name, bytes)| {
-        let text = decode(&bytes);
-        (0..FIRST_ROWS).find_map(|skipped| headed(&name, &text, skipped, &sheets, is_file))
-    })
-}
-
-/// A sheet as a run table whose headings are below some rows; `None` if these are none.
-fn headed(
-    name: &str,
-    text: &str,
-    skipped: usize,
-    sheets: &[String],
-    is_file: &dyn Fn(&str) -> bool,
-) -> Option<Sheet> {
-    let rest: Vec<&str> = text.splitn(skipped + 1, '\n').collect();
-    let below = rest.get(skipped)?;
-    let mut reader = reader(below, SEPARATOR);
-    let headings = reader.headers().ok()?.clone();
-    let named: Vec<Option<usize>> = headings.iter().map(column_of).collect();
-    if !states_setting(&named) {
-        return None;
-    }
-    let rows: Vec<csv::StringRecord> = reader.records().filter_map(Result::ok).collect();
-    let is_sheet = |cell: &str| sheets.iter().any(|sheet| sheet == cell);
-    let columns = columns_of(&headings, &rows, [is_file, &is_sheet]);
-    let at = |column: usize| columns.iter().position(|c| *c == Some(column));
-    at(FILE).or(at(DATASET))?;
-    let names_sheet = |index: usize| {
-        let mut cells = rows.iter().filter_map(|row| row.get(index));
-        cells.any(|cell| holds(sheets, cell))
-    };
-    Some(Sheet {
-        name: name.to_owned(),
-        text: "\n".repeat(skipped) + below,
-        sheets: sheets.to_vec(),
-        names_records: at(FILE).is_some() || at(DATASET).is_some_and(names_sheet),
-        states_drive: columns.contains(&Some(FREQUENCY)),
+        let is_sheet = |cell: &str| sheets.iter().any(|sheet| sheet == cell);
+        let names_rows =
+            |table: &Table| [FILE, DATASET].iter().any(|c| table.position(*c).is_some());
+        let is_named: IsNamed<'_> = [is_file, &is_sheet];
+        let table = Table::find(&decode(&bytes), Some(SEPARATOR), is_named, names_rows)?;
+        let names_sheet = table.cells(DATASET).any(|cell| holds(&sheets, cell));
+        Some(Sheet {
+            name,
+            names_records: table.position(FILE).is_some() || names_sheet,
+            states_drive: table.position(FREQUENCY).is_some(),
+            sheets: sheets.clone(),
+            table,
+        })
     })
 }
 
@@ -113,12 +87,8 @@ mod tests {
             (found.name.as_str(), found.names_records),
             ("Settings", true)
         );
-        assert!(
-            found.text.trim_start().starts_with("sheet\t"),
-            "{}",
-            found.text
-        );
-        assert_eq!(found.text.lines().count(), 4);
+        assert_eq!(found.table.headings[0], "sheet");
+        assert_eq!((found.table.line, found.table.rows[0].number), (3, 4));
         assert!(of(&[RECORD]).is_none());
         assert!(
             none_found().contains("'dataset' (or 'sheet', "),

@@ -1,20 +1,19 @@
-//! The text of a run table: how it is decoded and read, and which of its cells are names of files.
+//! The text of a run table: how it is decoded and read.
 
-use std::path::Path;
-
-/// Whether a cell of a run table is the name of a file, in a folder or beside the table, whose path may start there.
-pub(in super::super) fn is_file(folder: &Path, table: impl AsRef<Path>) -> impl Fn(&str) -> bool {
-    let folders = [
-        Some(folder.to_path_buf()),
-        folder.join(table).parent().map(Path::to_path_buf),
-    ];
-    move |cell| folders.iter().flatten().any(|f| f.join(cell).is_file())
+/// A row of cells.
+#[derive(Debug)]
+pub(super) struct Line {
+    /// Its line in the table, from 1.
+    pub(super) number: usize,
+    /// What is in it.
+    pub(super) cells: csv::StringRecord,
 }
 
 /// A reader of a text's rows.
 pub(super) fn reader(text: &str, separator: u8) -> csv::Reader<&[u8]> {
     csv::ReaderBuilder::new()
         .delimiter(separator)
+        .has_headers(false)
         .flexible(true)
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
