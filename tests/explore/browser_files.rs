@@ -173,6 +173,44 @@ fn browser_a_map_that_is_being_replaced_is_faint() {
     assert_eq!(browser.evaluate(opacity), json!(1));
     let late = browser.evaluate("document.getElementById('legend').classList.contains('late')");
     assert_eq!(late, json!(false));
+    // a slider that is dragged asks for another map before the one before is there
+    let crisp = "(async () => { const { map } = impactid, crisp = []; \
+         for (let i = 1; i <= 24; i++) { impactid.parameters({ damping_ratio: 0.07 + 0.004 * i }); await new Promise((done) => setTimeout(done, 40)); \
+           const old = map.tiles.some((t) => t.id !== impactid.wire.newest.map && !map.isOld(t)); \
+           crisp.push(i > 6 && (old || !map.unnamed || !document.getElementById('legend').classList.contains('late'))); } \
+         return crisp.filter(Boolean).length; })()";
+    assert_eq!(browser.evaluate(crisp), json!(0));
+    browser.until(QUIET);
+    assert_eq!(browser.evaluate(opacity), json!(1));
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_a_campaign_without_records_leads_back_to_what_it_found() {
+    let campaign = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/data-samples/published-speeds/campaign.toml"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let results = folder.path().join("results");
+    let run = std::process::Command::new(env!("CARGO_BIN_EXE_impactid"))
+        .args(["-q", "run", campaign, "--out"])
+        .arg(&results)
+        .status();
+    assert!(run.is_ok_and(|status| status.code() < Some(2)));
+    let explorer = Explorer::start(&[&results.to_string_lossy()], folder.path());
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    assert_eq!(
+        browser.evaluate("document.getElementById('tab-record').hidden"),
+        json!(true)
+    );
+    let found = browser.evaluate("impactid.state.damping_ratio");
+    browser.evaluate("impactid.parameters({ damping_ratio: 0.2 })");
+    browser.key("z", 0);
+    assert_eq!(browser.evaluate("impactid.state.damping_ratio"), found);
+    browser.until(QUIET);
+    assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
 #[test]
@@ -186,6 +224,15 @@ fn browser_results_without_their_records_show_map_boundaries_and_fit() {
     let explorer = Explorer::start(&["."], folder.path());
     let mut browser = Chromium::open(&explorer.url(), (390, 844));
     browser.until("document.getElementById('message').textContent.includes('cannot be shown')");
+    let place = browser.evaluate(
+        "/Not in (\\S+) any more/.exec(document.getElementById('message').textContent)[1]",
+    );
+    assert!(
+        place
+            .as_str()
+            .is_some_and(|p| p.starts_with('/') && p.contains("double-oscillator")),
+        "{place}"
+    );
     let wide = browser.evaluate("document.getElementById('message').offsetWidth");
     assert!(wide.as_f64() > Some(350.0), "{wide}");
     browser.until(QUIET);

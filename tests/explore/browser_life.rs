@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::chromium::{Chromium, SIZE};
-use super::server::{Explorer, QUIET};
+use super::server::{Explorer, QUIET, SAMPLE};
 
 /// Another explorer on a port that one before had.
 fn again(port: u16) -> Explorer {
@@ -64,6 +64,9 @@ fn browser_a_page_goes_on_when_its_server_is_back() {
     browser.until(QUIET);
     browser.evaluate("impactid.parameters({ restitution: 0.72 })");
     browser.until(QUIET);
+    browser.key("g", 0);
+    browser.key("x", 0);
+    browser.until("document.getElementById('dialog').open && impactid.run");
     drop(explorer);
     let message = "document.getElementById('message')";
     browser.until(&format!("{message}.textContent.includes('server is gone')"));
@@ -75,10 +78,74 @@ fn browser_a_page_goes_on_when_its_server_is_back() {
     assert_eq!(browser.evaluate("impactid.state.cursor.eta"), cursor);
     let refused = browser.evaluate("impactid.wire.once({ kind: 'export', file: 'csv' }, impactid.state).catch((e) => e.message)");
     assert_eq!(refused, json!("The server is gone."));
+    // the header takes no orders either, and what is not answered is no error of the page
+    let orders = "[...document.querySelectorAll('nav, main')].every((e) => e.inert) && !document.getElementById('dialog').open \
+         && !impactid.run && document.querySelector('[data-key=g]').getAttribute('aria-pressed') === 'false'";
+    browser.until(orders);
+    browser.evaluate("impactid.player.start('1 whatever'), impactid.player.picture(1), impactid.dialogs.box.open");
+    browser.evaluate(
+        "impactid.message('something passing'), new Promise((done) => setTimeout(done, 100))",
+    );
+    browser.until(&format!(
+        "{message}.textContent.includes('server is gone') && !{message}.hidden"
+    ));
+    let thrown = browser.errors();
+    assert!(
+        !thrown.iter().any(|e| e.contains("exceptionThrown")),
+        "{thrown:?}"
+    );
     let explorer = again(port);
     // the new address is opened in another tab
     browser.call("Target.createTarget", json!({"url": explorer.url()}));
     browser.until("window.impactid?.ready === true && !document.body.classList.contains('gone')");
     browser.until(QUIET);
     assert_eq!(browser.evaluate("impactid.state.restitution"), json!(0.72));
+}
+
+/// The address of a page in a browser under another explorer.
+fn opened_on(browser: &mut Chromium, explorer: &Explorer, state: &str) {
+    let written = browser.evaluate(&format!("encodeURIComponent(JSON.stringify({state}))"));
+    browser.go("about:blank");
+    browser.go(&format!(
+        "{}&s={}",
+        explorer.url(),
+        written.as_str().unwrap()
+    ));
+    browser.until(QUIET);
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_an_address_of_the_theory_is_shown_on_a_campaign_and_the_reverse() {
+    let (theory, campaign) = (
+        Explorer::theory(),
+        Explorer::start(&[SAMPLE], &std::env::temp_dir()),
+    );
+    let mut browser = Chromium::open(&theory.url(), SIZE);
+    browser.until(QUIET);
+    let message = "document.getElementById('message').textContent";
+    opened_on(
+        &mut browser,
+        &campaign,
+        "{ ...impactid.state, restitution: 0.7 }",
+    );
+    browser.until("impactid.map.frame && document.querySelectorAll('.slider').length === 6");
+    browser.until(&format!(
+        "{message}.includes('those of this campaign are taken')"
+    ));
+    assert_eq!(browser.evaluate("[impactid.state.restitution, impactid.state.rig.natural_frequency_hz === impactid.first.rig.natural_frequency_hz]"), json!([0.7, true]));
+    // a record that is not there, and then no campaign at all
+    let elsewhere = "{ ...impactid.state, panel: 'record', record: 'nope' }";
+    opened_on(&mut browser, &campaign, elsewhere);
+    browser.until(&format!("{message}.includes('has no record nope')"));
+    let shown = "[...document.querySelectorAll('[role=tab][aria-selected=true]')].map((t) => [t.id, t.hidden])";
+    assert_eq!(browser.evaluate(shown), json!([["tab-motion", false]]));
+    opened_on(&mut browser, &theory, elsewhere);
+    browser.until(&format!("{message}.includes('not open here')"));
+    assert_eq!(browser.evaluate(shown), json!([["tab-motion", false]]));
+    assert_eq!(
+        browser.evaluate("[impactid.state.rig, impactid.scale()]"),
+        json!([null, null])
+    );
+    assert_eq!(browser.errors(), Vec::<String>::new());
 }

@@ -194,6 +194,40 @@ fn browser_names_on_the_map_have_places_of_their_own() {
     }
 }
 
+#[test]
+#[ignore = "needs chromium"]
+fn browser_names_lie_in_their_regions_and_the_key_has_every_mark() {
+    let explorer = Explorer::start(&[SAMPLE], &std::env::temp_dir());
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    let legend = "document.getElementById('legend').textContent";
+    for text in ["left out", "bracket", "95 % band"] {
+        browser.until(&format!("{legend}.includes('{text}')"));
+    }
+    browser.until("impactid.map.names.some((n) => n.text === 'ρ′')");
+    // every motion that is measured and shown has its mark, drawn in its sample
+    let marks = "[...document.querySelectorAll('#legend canvas')].filter((c) => new Set(c.getContext('2d').getImageData(0, 0, c.width, c.height).data).size > 3).length";
+    browser.until(&format!("{marks} >= 5"));
+    let outside = "(() => { const { frame: f, labels, regions } = impactid.map, c = document.createElement('canvas').getContext('2d'); \
+         return labels.filter(({ text, x, y, font }) => { c.font = font; const wide = c.measureText(text).width / 2; \
+           const places = Array.from({ length: 21 }, (_, i) => [f.ux(x + wide * (i / 10 - 1)), f.uy(y)]); \
+           return !regions.some((r) => r.text === text && places.filter((p) => r.holds(...p)).length > 16); }).map((l) => l.text); })()";
+    browser.until(
+        "impactid.map.other?.id === impactid.wire.newest.map && impactid.map.labels.length > 1",
+    );
+    assert_eq!(browser.evaluate(outside), json!([]));
+    let size = json!({"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": false});
+    browser.call("Emulation.setDeviceMetricsOverride", size);
+    let demo = "impactid.demos.find((d) => d.startsWith('6 '))";
+    browser.evaluate(&format!("void impactid.player.start({demo})"));
+    browser.until(QUIET);
+    browser.evaluate("impactid.player.stop()");
+    browser.until(
+        "impactid.map.other?.id === impactid.wire.newest.map && impactid.map.due.size === 0",
+    );
+    assert_eq!(browser.evaluate(outside), json!([]));
+}
+
 /// Names on the map that cover a record, a bracket or another name.
 const COVERED: &str = "(() => { const { frame: f, labels, names } = impactid.map, c = document.createElement('canvas').getContext('2d'), { campaign } = impactid; \
      const texts = [...labels, ...names].map(({ text, x, y, font }) => { c.font = font; return [text, x, y, c.measureText(text).width / 2, 6]; }); \

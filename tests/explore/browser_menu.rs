@@ -171,6 +171,9 @@ fn browser_how_to_draw_a_line_is_said_until_it_is_drawn() {
     browser.until(said);
     browser.evaluate("new Promise((done) => setTimeout(done, 4300))");
     assert_eq!(browser.evaluate(said), json!(true));
+    // a line without a length is none
+    browser.key("l", 0);
+    browser.until("impactid.map.drawing && impactid.state.line === null && document.getElementById('caption').textContent.startsWith('a line has two ends')");
     browser.key("ArrowRight", 0);
     browser.key("l", 0);
     browser.until("impactid.state.panel === 'line' && document.getElementById('caption').hidden");
@@ -193,6 +196,8 @@ fn browser_restitution_is_a_formula() {
         ("2 - v", "not between 0 and 1"),
         ("alert(1)", "alert"),
         ("0.9)", "not understood"),
+        ("exp(1,5; 2)/10", "exp takes one value, not 2"),
+        ("min(0,9)", "min takes two values or more"),
     ] {
         let note = apply(&mut browser, "formula", text);
         assert!(note.contains(said), "{text}: {note}");
@@ -203,6 +208,29 @@ fn browser_restitution_is_a_formula() {
     let off = "Math.max(...impactid.state.restitution.table.map(([v, r]) => Math.abs(r - Math.max(0.5, 0.95 - 0.05 * Math.sqrt(v)))))";
     let off = browser.evaluate(off).as_f64().unwrap();
     assert!(off < 1e-8, "{off}");
+    browser.until(QUIET);
+    // it is seen, and stays a formula when it is opened again and in the address
+    let law = "max(0.5, 0.95 - 0.05*v^(1/2))";
+    browser.until(&format!(
+        "document.getElementById('readout').textContent.includes('R = {law}')"
+    ));
+    let kept = "document.querySelector('#dialog-body select').value + ' ' + document.querySelector('#dialog-body textarea').value";
+    let address = browser.evaluate("location.origin + '/#' + impactid.address()");
+    let address = address.as_str().unwrap();
+    assert!(address.len() < 2500, "{address}");
+    browser.go("about:blank");
+    browser.go(address);
+    browser.until(QUIET);
+    assert_eq!(
+        browser.evaluate("impactid.state.restitution.table.length"),
+        json!(121)
+    );
+    browser.key("e", 0);
+    browser.until("document.getElementById('dialog').open");
+    assert_eq!(browser.evaluate(kept), json!(format!("formula {law}")));
+    // as it is written elsewhere
+    apply(&mut browser, "formula", "R(V) = 0,95 - 0,02v");
+    browser.until("!document.getElementById('dialog').open && Math.abs(impactid.state.restitution.table[60][1] - 0.8) < 1e-9");
     browser.until(QUIET);
     assert_eq!(browser.errors(), Vec::<String>::new());
 }

@@ -63,3 +63,32 @@ fn browser_a_run_that_is_stopped_leaves_the_settled_motion_whole() {
         assert_eq!(browser.evaluate(whole), json!([true, 8, 300]), "{trial}");
     }
 }
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_basins_follow_the_cursor_while_the_motion_runs() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.evaluate("impactid.carry(1.3, 2)");
+    browser.until(QUIET);
+    browser.key("g", 0);
+    browser.until("impactid.motion.live !== null");
+    browser.key("s", 0);
+    let shares = "document.getElementById('basin-shares').textContent";
+    let whole = "impactid.basins.tile?.id === impactid.wire.newest.basins && impactid.basins.tile.level === 1 && impactid.basins.tile.filled === 101";
+    browser.until(whole);
+    browser.until(&format!(
+        "{shares}.includes('z = 0') && {shares}.includes('z = 1')"
+    ));
+    // above the saddle-node no start leads to impacts
+    browser.evaluate("impactid.carry(1.7, 4)");
+    browser.until(whole);
+    browser.until(&format!("{shares} === 'z = 0: 100.0 %'"));
+    browser.key("Escape", 0);
+    browser.until(QUIET);
+    assert_eq!(
+        browser.evaluate(&format!("!impactid.run && {shares} === 'z = 0: 100.0 %'")),
+        json!(true)
+    );
+}

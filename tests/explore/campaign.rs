@@ -51,6 +51,7 @@ fn valid_each_kind_of_record_is_shown_with_its_evidence() {
     let missing = shown(&mut page, state, "no such record");
     assert_eq!(missing.kind(), "refused");
     residuals_rise_away_from_the_fit(&mut page, state);
+    residuals_are_those_of_the_machine_at_the_sliders(&mut page, state);
     let found = page.answer(&json!({"kind": "proposals"}), state);
     let proposals = found.header["proposals"].as_array().expect("a list");
     assert!(!proposals.is_empty() && proposals[0]["frequency_hz"].as_f64() > Some(5.0));
@@ -78,6 +79,42 @@ fn residuals_rise_away_from_the_fit(page: &mut Page, state: &Value) {
     for (near, far) in methods(&at_fit).iter().zip(methods(&off)) {
         let (near, far) = (near["rms"].as_f64().expect("a number"), far["rms"].as_f64());
         assert!(far.is_none_or(|far| far > near), "{near} {far:?}");
+    }
+}
+
+/// Unlike masses change all that is compared; where the records are compared with no such machine, it is said.
+fn residuals_are_those_of_the_machine_at_the_sliders(page: &mut Page, state: &Value) {
+    let joint = |page: &mut Page, state: &Value| {
+        let header = page.answer(&json!({"kind": "residuals"}), state).header;
+        header["joint"].as_f64().expect("a joint residual")
+    };
+    let at_fit = joint(page, state);
+    for (key, ratio) in [("drive_amplitude", 0.8), ("stiffness", 1.3), ("mass", 2.0)] {
+        let mut unlike = state.clone();
+        unlike["asymmetry"][key] = json!(ratio);
+        let residual = joint(page, &unlike);
+        assert!(residual > 1.2 * at_fit, "{key}: {residual} {at_fit}");
+    }
+    let mut others = vec![state.clone(); 3];
+    others[0]["restitution"] = json!({"table": [[0.0, 0.9], [1.0, 0.3]]});
+    others[1]["asymmetry"]["drive_amplitude"] = json!(-1.0);
+    others[2]["single"] = json!(true);
+    for (other, why) in others.iter().zip(["R(v)", "one sign", "number of masses"]) {
+        let header = page.answer(&json!({"kind": "residuals"}), other).header;
+        assert!(
+            header["none"]
+                .as_str()
+                .is_some_and(|none| none.contains(why)),
+            "{header}"
+        );
+        let frame = shown(page, other, "r0115");
+        let said = frame.header["not_simulated"].as_str().expect("why");
+        assert!(
+            said.contains(why) && frame.header["simulated"].is_null(),
+            "{}",
+            frame.header
+        );
+        assert!(frame.column("measured0").len() > 100 && frame.column("simulated0").is_empty());
     }
 }
 

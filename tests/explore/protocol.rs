@@ -302,6 +302,11 @@ fn states_of_other_versions_and_out_of_range_are_refused_with_a_reason() {
             "line.steps",
         ),
         (
+            "/line",
+            json!({"eta": [1.0, 1.0], "rho": [1.0, 1.0], "steps": 20}),
+            "another one where η stays",
+        ),
+        (
             "/basins",
             json!({"x": [0.0, 1.0], "vx": [0.0, 1.0], "cells": [100_000, 2]}),
             "basins.cells",

@@ -48,7 +48,8 @@ pub fn read_resolved(out: &Path) -> Result<ResolvedCampaign, PipelineError> {
         .map(PathBuf::as_path)
         .chain(results.ancestors().skip(1));
     let found = places.find(|base| base.join(&campaign.file).exists());
-    Ok(match found {
+    // files that are nowhere are missed where they were
+    Ok(match found.or(stated.as_deref()) {
         Some(base) if base != here[0] => campaign.below(base),
         _ => campaign,
     })
@@ -109,6 +110,11 @@ mod tests {
         write_json(&written, &text).unwrap();
         let found = read_resolved(folder.path()).unwrap().file;
         assert!(found.ends_with("crates/labfiles/Cargo.toml") && found.exists());
+        // and as if that file were gone from there
+        text["file"] = "gone.toml".into();
+        write_json(&written, &text).unwrap();
+        let missed = read_resolved(folder.path()).unwrap().file;
+        assert!(missed.is_absolute() && missed.ends_with("crates/labfiles/gone.toml"));
     }
 
     #[test]

@@ -38,8 +38,8 @@ message_table! { "why_not": WhyNot;
     Self::Unreadable { problem } => problem = Value::Message(problem);
 }
 
-/// A record by its index beside what the model with parameters does there.
-pub fn beside(input: &Input<'_>, index: usize, parameters: &Parameters) -> BesideRecord {
+/// A record by its index beside what the model with parameters does there; without them the record alone.
+pub fn beside(input: &Input<'_>, index: usize, parameters: Option<&Parameters>) -> BesideRecord {
     let Some(o) = input.observations.get(index) else {
         return BesideRecord::Nothing(WhyNot::Unknown);
     };
@@ -54,7 +54,7 @@ pub fn beside(input: &Input<'_>, index: usize, parameters: &Parameters) -> Besid
     if let Some(decay) = free_decay(o, &record, None) {
         return BesideRecord::Decay(Box::new(decay));
     }
-    match comparison(input, o, &record, 'A', Some(parameters)) {
+    match comparison(input, o, &record, 'A', parameters) {
         Some(found) => BesideRecord::Motion(Box::new(found)),
         None => BesideRecord::Nothing(WhyNot::NeitherDriveNorDecay),
     }

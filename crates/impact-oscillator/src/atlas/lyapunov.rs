@@ -1,14 +1,16 @@
-//! Largest Lyapunov exponent of a simulated motion: a variation mapped exactly through flights
+//! Largest Lyapunov exponent of a simulated motion: variations mapped exactly through flights
 //! and, by saltation matrices, through impacts and into dead zones.
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix2, Matrix4};
 
 use crate::model::contact::free_accelerations;
 use crate::model::flight::{Drive, State};
 use crate::model::simulate::{Arc, Sink};
-use crate::model::variation::{free_flow, free_flow_of_one, saltation, saltation_of_one};
+use crate::model::variation::{
+    eigenvalues, free_flow, free_flow_of_one, saltation, saltation_of_one,
+};
 use crate::model::{Impact, ImpactKind, Machine, Restitution};
 
 /// Stretches from whose scatter an exponent's error is taken.
@@ -25,7 +27,7 @@ pub(super) enum Variations {
     Open,
 }
 
-/// Follows a variation along a simulation; pass it to [`Simulator::advance`].
+/// Follows variations along a simulation; pass it to [`Simulator::advance`].
 ///
 /// [`Simulator::advance`]: crate::Simulator::advance
 ///
@@ -50,7 +52,9 @@ pub(super) enum Variations {
 pub struct Lyapunov<'a> {
     machine: &'a Machine,
     eta: f64,
-    variation: Vector4<f64>,
+    /// What has become of a variation of each coordinate, as columns, over their size.
+    variations: Matrix4<f64>,
+    /// Logarithm of their size over that at the start.
     growth: f64,
     time: f64,
     /// Time and growth at the end of each drive period.
@@ -59,14 +63,18 @@ pub struct Lyapunov<'a> {
 }
 
 impl<'a> Lyapunov<'a> {
-    /// Start with a variation of all coordinates.
+    /// Start with a variation of each coordinate.
     pub fn new(machine: &'a Machine, eta: f64) -> Self {
-        let second = if machine.y.is_some() { 0.3 } else { 0.0 };
-        let variation = Vector4::new(0.7, 0.5, second, -second).normalize();
+        let mut variations = Matrix4::identity();
+        if machine.y.is_none() {
+            variations
+                .fixed_view_mut::<2, 2>(2, 2)
+                .copy_from(&Matrix2::zeros());
+        }
         Self {
             machine,
             eta,
-            variation,
+            variations: variations.normalize(),
             growth: 0.0,
             time: 0.0,
             periods: Vec::new(),
@@ -74,13 +82,26 @@ impl<'a> Lyapunov<'a> {
         }
     }
 
-    /// Mean growth rate so far per unit of τ; −∞ where a dead zone wiped every variation out.
+    /// Mean growth rate so far of all variations together, per unit of τ; −∞ where a dead zone wiped every one out.
     pub fn exponent(&self) -> f64 {
         if self.time > 0.0 {
             self.growth / self.time
         } else {
             0.0
         }
+    }
+
+    /// Growth rate of the greatest multiplier of what was followed: after whole periods of a periodic motion, in which
+    /// variations also turn and swing, its exponent.
+    pub(super) fn of_multiplier(&self) -> f64 {
+        // the start was over its size
+        let start = if self.machine.y.is_some() {
+            4.0_f64
+        } else {
+            2.0
+        };
+        let multiplier = eigenvalues(self.machine, &self.variations)[0].norm() * start.sqrt();
+        (self.growth + multiplier.ln()) / self.time
     }
 
     /// What becomes of variations, beyond the exponent's error.
@@ -113,10 +134,13 @@ impl<'a> Lyapunov<'a> {
         };
         let (before, after) = (state(impact.vx_before), state(impact.vx_after));
         let flight = impact.tau - self.time;
-        let flown = free_flow_of_one(&self.machine.x, flight) * self.variation.xy();
+        let flown =
+            free_flow_of_one(&self.machine.x, flight) * self.variations.fixed_view::<2, 2>(0, 0);
         let struck = saltation_of_one(self.machine, &before, &after) * flown;
         self.pass(flight);
-        self.varied(Vector4::new(struck.x, struck.y, 0.0, 0.0));
+        let mut all = Matrix4::zeros();
+        all.fixed_view_mut::<2, 2>(0, 0).copy_from(&struck);
+        self.varied(all);
     }
 
     /// Time passes; at the end of a drive period the growth is noted.
@@ -144,16 +168,16 @@ impl<'a> Lyapunov<'a> {
     }
 
     fn apply(&mut self, map: &Matrix4<f64>) {
-        self.varied(map * self.variation);
+        self.varied(map * self.variations);
     }
 
-    /// The variation as it has become, whose growth is noted.
-    fn varied(&mut self, variation: Vector4<f64>) {
-        self.variation = variation;
-        let size = self.variation.norm();
+    /// The variations as they have become, whose growth is noted.
+    fn varied(&mut self, variations: Matrix4<f64>) {
+        self.variations = variations;
+        let size = self.variations.norm();
         if size > 0.0 {
             self.growth += size.ln();
-            self.variation /= size;
+            self.variations /= size;
         } else {
             self.growth = f64::NEG_INFINITY;
         }

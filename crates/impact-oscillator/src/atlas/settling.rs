@@ -1,4 +1,5 @@
-//! A motion that does not recur is chaos only where its variations grow: else it settles on.
+//! A motion that does not recur is chaos only where its variations grow: else it settles on. One that seems to recur
+//! after many periods is chaos where they do.
 
 use super::lyapunov::{Lyapunov, Variations};
 use crate::model::recurrence::observe;
@@ -33,7 +34,16 @@ pub(super) fn settle_on(
         let settle = watch.settle_periods * 2_f64.powi(round);
         simulator.advance(settle * setting.period(), &mut |_: &Impact| {});
         let begin = simulator.clone();
-        let (motion, impacts) = observe(simulator, setting, watch);
+        let (mut motion, impacts) = observe(simulator, setting, watch);
+        if settle > 0.0 && is_hardly_seen(&motion, watch) {
+            let long = Watch {
+                watch_periods: watch.watch_periods.max(CHAOTIC_PERIODS),
+                ..*watch
+            };
+            if variations(machine, begin.clone(), setting, &long) == Variations::Grow {
+                motion = SettledMotion::Chaotic;
+            }
+        }
         let open = motion == SettledMotion::Chaotic
             && settle > 0.0
             && variations(machine, begin.clone(), setting, watch) != Variations::Grow;
@@ -51,6 +61,11 @@ pub(super) fn settle_on(
         }
         round += 1;
     }
+}
+
+/// Whether a motion repeats so late that a watch shows it fewer than four times: weak chaos comes as near.
+fn is_hardly_seen(motion: &SettledMotion, watch: &Watch) -> bool {
+    matches!(motion, SettledMotion::Periodic { n, .. } if 4.0 * f64::from(*n) > watch.watch_periods)
 }
 
 /// What becomes of a motion's variations while it is watched, and longer where that leaves it open.

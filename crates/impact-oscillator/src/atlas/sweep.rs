@@ -52,7 +52,7 @@ pub struct SweepPoint {
     pub phases: Vec<f64>,
     /// Largest Lyapunov exponent per unit of τ; `None` where a dead zone wipes it out.
     pub lyapunov: Option<f64>,
-    /// Its standard error, by the scatter between stretches of the motion.
+    /// Its standard error: of a motion that repeats by how exactly it does, else by the scatter between its stretches.
     #[serde(default)]
     pub lyapunov_error: Option<f64>,
     /// Autocorrelation of X at lags of 1, 2, … drive periods; empty where X is at rest.
@@ -196,19 +196,8 @@ impl<'a> Carried<'a> {
         follower
             .clone()
             .advance(watch.watch_periods * period, &mut watched);
-        let followed = match motion {
-            SettledMotion::Chaotic => watch.watch_periods.max(CHAOTIC_PERIODS),
-            _ => watch.watch_periods,
-        };
-        let mut lyapunov = Lyapunov::new(self.machine, setting.frequency_ratio);
-        follower.advance(followed * period, &mut lyapunov);
-        // the watch alone may take a slow convergence for growth: a label agrees with the exponent stated beside it
-        let judged = watch.settle_periods > 0.0 && motion == SettledMotion::Chaotic;
-        let motion = match lyapunov.variations() {
-            Variations::Decay | Variations::Open if judged => SettledMotion::NotSettled,
-            _ => motion,
-        };
-        let exponent = Some(lyapunov.exponent()).filter(|l| l.is_finite());
+        let (motion, exponent, error) = self.exponent(&mut follower, setting, motion);
+        let exponent = Some(exponent).filter(|l| l.is_finite());
         let greatest = |of: fn(&FlightPaths) -> &Path, sign: f64| {
             let arcs = watched.arcs.iter();
             arcs.map(|arc| maximum(of(&arc.paths), arc.duration, sign))
@@ -237,9 +226,51 @@ impl<'a> Carried<'a> {
             x_speeds: of(|i| i.vx_before),
             phases: of(|i| i.phase),
             lyapunov: exponent,
-            lyapunov_error: exponent.and_then(|_| lyapunov.standard_error()),
+            lyapunov_error: exponent.and(error),
             autocorrelation: autocorrelation(&x, lags),
         })
+    }
+
+    /// The motion, with its greatest Lyapunov exponent and the exponent's standard error: by the greatest multiplier of
+    /// one that repeats, which is known as its state is; else by the growth of its variations.
+    fn exponent(
+        &self,
+        follower: &mut Simulator,
+        setting: Setting,
+        motion: SettledMotion,
+    ) -> (SettledMotion, f64, Option<f64>) {
+        let (period, watch) = (setting.period(), &self.watch);
+        let mut lyapunov = Lyapunov::new(self.machine, setting.frequency_ratio);
+        if let Some(repeats_after) = repeats_after_periods(&motion) {
+            follower.advance(repeats_after * period, &mut lyapunov);
+            let once = lyapunov.of_multiplier();
+            let times = (watch.watch_periods / repeats_after).floor().max(2.0);
+            follower.advance((times - 1.0) * repeats_after * period, &mut lyapunov);
+            let exponent = lyapunov.of_multiplier();
+            let error = (exponent - once).abs() + watch.tolerance / period;
+            return (motion, exponent, Some(error));
+        }
+        let followed = match motion {
+            SettledMotion::Chaotic => watch.watch_periods.max(CHAOTIC_PERIODS),
+            _ => watch.watch_periods,
+        };
+        follower.advance(followed * period, &mut lyapunov);
+        // the watch alone may take a slow convergence for growth: a label agrees with the exponent stated beside it
+        let judged = watch.settle_periods > 0.0 && motion == SettledMotion::Chaotic;
+        let motion = match lyapunov.variations() {
+            Variations::Decay | Variations::Open if judged => SettledMotion::NotSettled,
+            _ => motion,
+        };
+        (motion, lyapunov.exponent(), lyapunov.standard_error())
+    }
+}
+
+/// Drive periods after which a motion repeats; `None` where it does not.
+fn repeats_after_periods(motion: &SettledMotion) -> Option<f64> {
+    match motion {
+        SettledMotion::Periodic { n, .. } => Some(f64::from(*n)),
+        SettledMotion::Impactless => Some(1.0),
+        _ => None,
     }
 }
 

@@ -234,6 +234,73 @@ fn valid_a_motion_that_converges_slowly_is_periodic_and_not_chaotic() {
     assert_eq!(map.at(0, 1).label(), "1");
 }
 
+/// A motion that settles from rest at a place.
+fn settled_at(machine: &Machine, at: (f64, f64), watch: Watch) -> SweepPoint {
+    let mut carried = Carried::start(machine, at, Initial::rest(), watch).expect("a motion");
+    carried.step(at).expect("a motion")
+}
+
+/// Of like masses a variation that leaves their distance as it is decays with β whatever the impacts do, and of no
+/// impacts every one.
+#[test]
+fn valid_the_interval_of_a_periodic_motion_s_exponent_holds_it() {
+    let mut one_impact = 0;
+    for (restitution, beta) in [(0.9, 0.07), (0.5, 0.07), (0.9, 0.02), (0.8, 0.005)] {
+        let machine = Machine::symmetric(beta, restitution);
+        for eta in [0.9, 1.0, 1.1, 1.3, 1.5, 1.8] {
+            for rho in [0.3, 0.6, 1.0, 1.5, 250.0] {
+                let point = settled_at(&machine, (eta, rho), Watch::default());
+                let label = point.motion.label();
+                let exponent = point.lyapunov.expect("an exponent");
+                let half_width = 1.96 * point.lyapunov_error.expect("an error");
+                if !matches!(label.as_str(), "0" | "1") {
+                    continue;
+                }
+                one_impact += usize::from(label == "1");
+                let long = Watch {
+                    settle_periods: 1000.0,
+                    watch_periods: 2000.0,
+                    ..Watch::default()
+                };
+                let whole = if label == "0" {
+                    -beta
+                } else {
+                    let long = settled_at(&machine, (eta, rho), long).lyapunov;
+                    long.expect("an exponent")
+                };
+                assert!(
+                    (exponent - whole).abs() <= half_width
+                        && whole >= -beta - 1e-9
+                        && half_width < 2e-3,
+                    "{label} at {eta}, {rho}, R = {restitution}, β = {beta}: {exponent} ± {half_width}, {whole}"
+                );
+            }
+        }
+    }
+    assert!(one_impact > 40, "{one_impact}");
+}
+
+/// Weak chaos that nearly closes after 48 drive periods within the watch.
+#[test]
+fn chaos_is_no_period_that_is_hardly_seen_once() {
+    let machine = Machine::symmetric(0.07, 0.9);
+    let lively = Initial {
+        vx: 0.6,
+        vy: 0.6,
+        ..Initial::rest()
+    };
+    let mut carried =
+        Carried::start(&machine, (2.86, 0.1), lively, Watch::default()).expect("a motion");
+    let point = carried.step((2.86, 0.1)).expect("a motion");
+    assert_eq!(
+        point.motion,
+        SettledMotion::Chaotic,
+        "{:?} {:?}",
+        point.lyapunov,
+        point.lyapunov_error
+    );
+}
+
 /// Windows of a chaotic motion scatter as the error of each says.
 #[test]
 fn valid_the_error_of_a_lyapunov_exponent_is_its_scatter() {

@@ -20,6 +20,7 @@ use impact_fit::methods::blocks::Blocks;
 use impact_fit::parameters::Parameters;
 use impact_identification::identify::Identification;
 use impact_identification::replay::{self, Input, PlacedRecord};
+use impact_oscillator::model::params::Asymmetry;
 use impact_records::event::RigKind;
 use impact_records::message::typed;
 use impact_records::motion::Observation;
@@ -141,30 +142,44 @@ impl OpenCampaign {
         named.display().to_string()
     }
 
-    /// The fitted parameters with R, f0, β and `x_st` of the sliders.
-    pub(super) fn at_sliders(&self, state: &State) -> Parameters {
+    /// The parameters of the machine at the sliders, with gains, delays and effects of the fit; how its masses differ
+    /// is on top of what the fit has.
+    ///
+    /// # Errors
+    /// Why there are none: the identification knows machines of one R, of as many masses as the rig has, that are
+    /// driven in the same direction.
+    pub(super) fn at_sliders(&self, state: &State) -> Result<Parameters, &'static str> {
         let scale = state.rig.unwrap_or_else(|| self.scale());
+        let single = self.resolved.about.machine == RigKind::Single;
+        if state.single != single {
+            return Err("the campaign's rig has another number of masses");
+        }
         let machine = state.machine();
-        let restitution = machine
-            .restitution()
-            .constant()
-            .unwrap_or_else(|| machine.restitution().at(1.0));
+        let Some(restitution) = machine.restitution().constant() else {
+            return Err("the records are compared with one R, not with R(v)");
+        };
+        if !(single || state.asymmetry.drive_amplitude > 0.0) {
+            return Err("the records are compared with drives of one sign");
+        }
         let sliders = Parameters::symmetric(
             restitution,
             scale.natural_frequency_hz,
             state.damping_ratio,
             scale.static_deflection_m,
         );
-        let Some(joint) = &self.identification.joint_fit else {
-            return sliders;
-        };
-        Parameters {
+        let fit = self.identification.joint_fit.as_ref();
+        let fitted = fit.map_or(sliders, |joint| Parameters {
             restitution: sliders.restitution,
             natural_frequency_hz: sliders.natural_frequency_hz,
             damping_ratio: sliders.damping_ratio,
             static_deflection_m: sliders.static_deflection_m,
             ..joint.fit.parameters
-        }
+        });
+        Ok(if single {
+            fitted
+        } else {
+            unlike(fitted, state.asymmetry)
+        })
     }
 
     /// f0 and `x_st`: fitted, else stated, else of the campaign's own scale.
@@ -342,6 +357,27 @@ impl OpenCampaign {
     }
 }
 
+/// With a second mass that differs from the first, which stays as it is: parameters are means over both masses, and
+/// ratios of the first over the second per unit of mass.
+fn unlike(of_first: Parameters, of_second: Asymmetry) -> Parameters {
+    let Asymmetry {
+        drive_amplitude,
+        stiffness,
+        mass,
+    } = of_second;
+    let mean = |of_second: f64| 0.5 * (1.0 + of_second);
+    Parameters {
+        natural_frequency_hz: of_first.natural_frequency_hz * (stiffness / mass).powf(0.25),
+        damping_ratio: of_first.damping_ratio * mean(1.0 / (stiffness * mass).sqrt()),
+        static_deflection_m: of_first.static_deflection_m * mean(drive_amplitude / stiffness),
+        drive_asymmetry: of_first.drive_asymmetry + (mass / drive_amplitude).ln(),
+        stiffness_asymmetry: of_first.stiffness_asymmetry + (mass / stiffness).ln(),
+        damping_asymmetry: of_first.damping_asymmetry + mass.ln(),
+        mass_asymmetry: of_first.mass_asymmetry - mass.ln(),
+        ..of_first
+    }
+}
+
 fn fitted(p: &Parameters) -> Value {
     json!({
         "restitution": p.restitution,
@@ -362,11 +398,10 @@ fn changed_inputs(resolved: &ResolvedCampaign, found: &IdentificationFile) -> Ve
             Some(_) => changed.push(name.as_str()),
         }
     }
-    let folder = match resolved.folder() {
-        here if here.as_os_str().is_empty() => Path::new(".").display(),
-        folder => folder.display(),
-    };
+    let folder = Path::new(".").join(resolved.folder());
+    let folder = std::path::absolute(&folder).unwrap_or(folder);
     let gone = named(&gone).map(|names| {
+        let folder = folder.display();
         format!("Not in {folder} any more: {names}. What was measured there cannot be shown.")
     });
     let changed =
@@ -379,4 +414,53 @@ fn named(names: &[&str]) -> Option<String> {
     let (first, more) = names.split_at(names.len().min(NAMED));
     let more = (!more.is_empty()).then(|| format!(" and {} more", more.len()));
     (!names.is_empty()).then(|| first.join(", ") + &more.unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impact_oscillator::Machine;
+
+    /// Both masses' natural frequency, damping ratio, static deflection and mass over the first mass' ones of the
+    /// page: the same machine, however it is described.
+    #[test]
+    fn unlike_masses_are_those_of_the_map() {
+        let (f0, beta, x_st) = (12.0, 0.05, 2e-3);
+        let like = Parameters::symmetric(0.9, f0, beta, x_st);
+        for (drive_amplitude, stiffness, mass) in [
+            (1.0, 1.0, 1.0),
+            (0.95, 1.0, 1.0),
+            (1.0, 4.0, 1.0),
+            (0.7, 0.8, 1.7),
+        ] {
+            let asymmetry = Asymmetry {
+                drive_amplitude,
+                stiffness,
+                mass,
+            };
+            let wanted = Machine::asymmetric(beta, 0.9, asymmetry);
+            let found = unlike(like, asymmetry);
+            let machine = found.machine(RigKind::Double);
+            let pairs = [
+                (&machine.x, &wanted.x),
+                (machine.y.as_ref().unwrap(), wanted.y.as_ref().unwrap()),
+            ];
+            for (of_fit, of_map) in pairs {
+                let deflection = |o: &impact_oscillator::model::params::Oscillator| {
+                    o.drive_amplitude / (o.mass * o.natural_frequency_ratio.powi(2))
+                };
+                let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12 * b, "{a} {b}");
+                near(
+                    found.natural_frequency_hz * of_fit.natural_frequency_ratio,
+                    f0 * of_map.natural_frequency_ratio,
+                );
+                near(of_fit.damping_ratio, of_map.damping_ratio);
+                near(
+                    found.static_deflection_m * deflection(of_fit),
+                    x_st * deflection(of_map),
+                );
+                near(of_fit.mass / machine.x.mass, of_map.mass);
+            }
+        }
+    }
 }

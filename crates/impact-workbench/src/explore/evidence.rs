@@ -14,6 +14,7 @@ use impact_fit::solver::Block;
 use impact_fit::{Method, Remark};
 use impact_identification::identify::plan::propose;
 use impact_identification::replay::{BesideRecord, Signal, beside};
+use impact_oscillator::model::params::Asymmetry;
 use impact_oscillator::model::patience::{carry_each, still_wanted};
 use impact_records::message::plain;
 use impact_records::motion::{BoundaryKind, Motion, Observation};
@@ -39,7 +40,12 @@ pub(super) fn record(campaign: &OpenCampaign, state: &State, job: &Job) -> Resul
         .with("record", name)
         .with("stated", stated(&observations[index]))
         .with("evidence", evidence_of(campaign, index));
-    let frame = match campaign.with_input(|input| beside(input, index, &parameters)) {
+    let frame = match &parameters {
+        Ok(_) => frame,
+        Err(why) => frame.with("not_simulated", why),
+    };
+    let parameters = parameters.ok();
+    let frame = match campaign.with_input(|input| beside(input, index, parameters.as_ref())) {
         BesideRecord::Motion(c) => {
             let traces = c.traces.iter().map(|t| {
                 json!({
@@ -160,7 +166,10 @@ fn root_mean(squares: f64, count: usize) -> Option<f64> {
 
 /// Residuals of every method and of the joint fit at the sliders, and where each boundary is then.
 pub(super) fn residuals(campaign: &OpenCampaign, state: &State, job: &Job) -> Result<(), Stop> {
-    let at = campaign.at_sliders(state);
+    let at = match campaign.at_sliders(state) {
+        Ok(at) => at,
+        Err(why) => return Ok(job.send(job.frame("residuals").with("none", why))?),
+    };
     let mut methods = Vec::new();
     let (mut squares, mut count) = (0.0, 0);
     let weights = campaign.identification.joint_fit.as_ref();
@@ -187,7 +196,13 @@ pub(super) fn residuals(campaign: &OpenCampaign, state: &State, job: &Job) -> Re
     }
     let rig = campaign.resolved.about.machine;
     let predicted = campaign.observed.brackets.iter().map(|b| {
-        let closed_form = b.kind != BoundaryKind::Other;
+        // of unlike masses the place of a period doubling is not computed
+        let unlike = !state.single && state.asymmetry != Asymmetry::default();
+        let closed_form = match b.kind {
+            BoundaryKind::Other => false,
+            BoundaryKind::PeriodDoubling => !unlike,
+            _ => true,
+        };
         let boundary_hz = closed_form.then(|| predicted_hz(b, &at, rig)).flatten();
         let past = boundary_hz.map(|f| (f - b.frequency_high_hz).max(b.frequency_low_hz - f));
         json!({"boundary_hz": boundary_hz, "past_hz": past.map(|p| p.max(0.0))})

@@ -294,7 +294,13 @@ impl State {
         for end in [line.rho.0, line.rho.1] {
             limits::RHO.check("line.rho", end)?;
         }
-        Ok(())
+        let is_place = line.eta.0 == line.eta.1 && line.rho.0 == line.rho.1;
+        range(
+            "line.rho",
+            line.rho.1,
+            !is_place,
+            "another one where η stays",
+        )
     }
 
     fn check_basins(&self) -> Result<(), ModelError> {

@@ -1,12 +1,18 @@
 // A campaign on the map: records, brackets, proposals; a record beside its simulation; residuals.
 import { Frame, around, colour, mark, named, number, FONT } from "./draw.js";
 import { button, element, make } from "./fields.js";
-import { facts } from "./plots.js";
+import { facts, sampled } from "./plots.js";
 
 /** Records of sweeps up and down lie apart, as in the report, px. */
 const APART = { up: -4, down: 4 };
 
 const SYMBOLS = { "displacement x": "*x*", "displacement y": "*y*", "velocity x": "*x*′", "velocity y": "*y*′", "frame x": "frame *x*", "frame y": "frame *y*" };
+
+function drawBracket(c, [x0, x1], y, past, faint) {
+  c.strokeStyle = past ? colour("bad") : colour("ink"); c.lineWidth = past ? 2.4 : 1.6; c.globalAlpha = faint ? 0.35 : 1;
+  c.beginPath(); c.moveTo(x0, y - 5); c.lineTo(x0, y + 5); c.moveTo(x0, y); c.lineTo(x1, y); c.moveTo(x1, y - 5); c.lineTo(x1, y + 5); c.stroke();
+  c.globalAlpha = 1;
+}
 
 /** A factor and the prefix of its unit that make values neither tiny nor huge. */
 function prefixed(lists, unit) {
@@ -80,9 +86,7 @@ export class CampaignView {
       if (r.id === chosen) { c.beginPath(); c.arc(x, y, radius + 5, 0, 7); c.lineWidth = 2.2; c.strokeStyle = colour("bad"); c.stroke(); }
     }
     for (const { b, x0, x1, y, past } of this.brackets(f)) {
-      c.strokeStyle = past ? colour("bad") : colour("ink"); c.lineWidth = past ? 2.4 : 1.6; c.globalAlpha = b.out === null ? 1 : 0.35;
-      c.beginPath(); c.moveTo(x0, y - 5); c.lineTo(x0, y + 5); c.moveTo(x0, y); c.lineTo(x1, y); c.moveTo(x1, y - 5); c.lineTo(x1, y + 5); c.stroke();
-      c.globalAlpha = 1;
+      drawBracket(c, [x0, x1], y, past, b.out !== null);
     }
     c.font = `bold 14px ${FONT}`; c.textAlign = "center"; c.textBaseline = "middle";
     this.proposals.forEach((p, i) => {
@@ -91,6 +95,22 @@ export class CampaignView {
       c.lineWidth = 2; c.strokeStyle = colour("green"); c.stroke();
       c.fillStyle = colour("green"); c.fillText(String(i + 1), x, y + 1);
     });
+  }
+
+  /** What the map's key has of the campaign: marks of records by the names of their motions, and the rest. */
+  samples() {
+    const { records, brackets, curves } = this.facts;
+    const pale = records.find((r) => r.out !== null), bracket = (past) => (c, w, h) => drawBracket(c, [2, w - 2], h / 2, past, false);
+    const one = (has, draw, text) => (has ? [sampled(draw, text)] : []);
+    return {
+      marks: new Map(records.map(({ motion }) => [motion.label, (c, w, h) => mark(c, w / 2, h / 2, 4.6, motion)])),
+      others: [
+        ...one(pale, (c, w, h) => mark(c, w / 2, h / 2, 4.6, pale.motion, true), "left out"),
+        ...one(brackets.length, bracket(false), "bracket"),
+        ...one(this.residual?.brackets.some((b) => b.past_hz > 0), bracket(true), "boundary past it"),
+        ...one(curves.some((k) => k.band.length > 1), (c, w, h) => { c.globalAlpha = 0.75; c.fillStyle = colour("band"); c.fillRect(0, h / 4, w, h / 2); c.globalAlpha = 1; }, "95 % band"),
+      ],
+    };
   }
 
   head() {
@@ -116,7 +136,7 @@ export class CampaignView {
     this.select.value = frame.record;
     const s = frame.stated, same = frame.simulated?.label === s.motion.label;
     const measured = frame.shown === "decay" ? "free decay" : `measured ${named(s.motion)} (confidence ${number(s.confidence, 2)})`;
-    const simulated = frame.simulated ? `, simulated ${named(frame.simulated)}` : "";
+    const simulated = frame.simulated ? `, simulated ${named(frame.simulated)}` : frame.not_simulated && frame.shown === "motion" ? `; not simulated: ${frame.not_simulated}` : "";
     this.title.textContent = measured + simulated;
     this.title.className = !frame.simulated ? "" : same ? "good" : "bad";
     this.traces();
@@ -184,13 +204,15 @@ export class CampaignView {
     if (e.undetermined && frame.shown !== "decay") notes.push(make("p", `Undetermined: ${e.undetermined}`, "bad"));
     for (const reason of e.left_out) notes.push(make("p", `Left out: ${reason}`, "bad"));
     for (const flag of e.flags) notes.push(make("p", `${flag.message}; ${flag.remedy}.`, flag.excludes ? "bad" : "note"));
-    const key = make("p", frame.shown === "decay" ? "Solid: measured; blue dashed: the fitted decay." : frame.shown === "nothing" ? "" : "Solid: measured; blue dashed: simulated at the sliders; thin red: their difference; ticks: impacts.", "note");
+    const key = make("p", frame.shown === "decay" ? "Solid: measured; blue dashed: the fitted decay." : frame.shown === "nothing" ? "" : frame.not_simulated ? "Solid: measured; ticks: impacts." : "Solid: measured; blue dashed: simulated at the sliders; thin red: their difference; ticks: impacts.", "note");
     box.replaceChildren(key, make("h2", frame.shown === "decay" ? "Fit" : "What the label rests on"), list, ...notes);
   }
 
   residuals(frame) {
-    this.residual = frame;
+    this.residual = frame.none ? null : frame;
     if (!this.fit) return;
+    const back = button("Back to the fit (Z)", () => this.app.backToFit());
+    if (frame.none) { element("residuals").replaceChildren(make("span", `No residuals at the sliders: ${frame.none}.`), back); this.app.legend(this.app.legendStyles ?? []); this.app.map.redraw(); return; }
     // a method that the joint fit trusts less than its own noise is judged as the joint fit weighs it
     const item = (name, rms, tip, { weight = 1, ideal_rig, remarks = [] } = {}) => {
       const span = make("span"), weighed = weight ?? 1;
@@ -206,7 +228,8 @@ export class CampaignView {
     const known = frame.brackets.filter((b) => b.boundary_hz !== null), past = known.filter((b) => b.past_hz > 0);
     const most = Math.max(0, ...past.map((b) => b.past_hz));
     if (known.length) parts.push(make("span", `Boundaries: ${past.length} of ${known.length} past their brackets${past.length ? `, by up to ${number(most, 3)} Hz` : ""}`));
-    element("residuals").replaceChildren(make("span", "Residuals at the sliders:"), ...parts, button("Back to the fit (Z)", () => this.app.backToFit()));
+    element("residuals").replaceChildren(make("span", "Residuals at the sliders:"), ...parts, back);
+    this.app.legend(this.app.legendStyles ?? []);
     this.app.map.redraw();
   }
 }

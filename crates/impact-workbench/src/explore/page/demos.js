@@ -28,11 +28,11 @@ export class Demos {
     const { steps } = this.recording;
     this.recording = null;
     button.setAttribute("aria-pressed", "false");
-    app.wire.once({ kind: "write_demo", title: "Recorded in the explorer", steps }, app.state).then((f) => {
+    this.once(app.wire.once({ kind: "write_demo", title: "Recorded in the explorer", steps }, app.state), (f) => {
       this.recorded = f.text;
       download("demo.toml", f.text, "application/toml");
       app.said(`${steps.length} steps recorded; J replays them`);
-    }, (error) => app.message(error.message, error.remedy));
+    });
   }
 
   sample(always) {
@@ -43,14 +43,14 @@ export class Demos {
     if (always) r.steps.push([1, r.last]);
   }
 
-  async replay() {
-    if (this.recorded) { this.play(await this.read(this.recorded)); return; }
+  replay() {
+    if (this.recorded) { this.once(this.read(this.recorded), (demo) => this.play(demo)); return; }
     const input = document.getElementById("file");
     input.onchange = async () => {
       const file = input.files[0];
       input.value = "";
       if (!file) return;
-      try { this.play(await this.read(await file.text())); } catch (error) { this.app.message(error.message, error.remedy); }
+      this.once(this.read(await file.text()), (demo) => this.play(demo));
     };
     input.click();
   }
@@ -59,16 +59,20 @@ export class Demos {
 
   shipped(name) { return this.app.wire.once({ kind: "demo", name }); }
 
-  async start(name) { this.play(await this.shipped(name)); }
+  /** Do something with what was asked for; where it does not come, say why. */
+  once(asked, action) { return asked.then(action, (error) => this.app.message(error.message, error.remedy)); }
+
+  start(name) { return this.once(this.shipped(name), (demo) => { this.play(demo); }); }
 
   /** The first picture of a demo. */
-  async picture(n) {
+  picture(n) {
     const name = this.app.demos.find((d) => d.startsWith(`${n} `));
     if (!name) return;
-    const demo = await this.shipped(name);
-    this.playing++;
-    this.step(demo.steps[0]);
-    this.app.said(demo.steps[0].caption);
+    this.once(this.shipped(name), ({ steps: [first] }) => {
+      this.playing++;
+      this.step(first);
+      this.app.said(first.caption);
+    });
   }
 
   async play(demo) {
@@ -88,8 +92,7 @@ export class Demos {
     const { app } = this, before = app.state;
     const same = (key) => JSON.stringify(state[key]) === JSON.stringify(before[key]);
     const machine = MACHINE.every(same);
-    const next = { ...state, rig: state.rig ?? before.rig, record: state.record ?? before.record };
-    for (const key of ["rig", "record"]) if (next[key] === undefined || next[key] === null) delete next[key];
+    const next = app.here({ ...state, rig: state.rig ?? before.rig, record: state.record ?? before.record });
     if (carry) next.cursor = { ...state.cursor, start: before.cursor.start, phase: before.cursor.phase };
     else app.at = null;
     const plane = machine && same("view") && same("map_start") ? [] : ["map", "boundaries"];

@@ -1,8 +1,8 @@
 // Dialogs: initial conditions, parameters, R(v), exports, demos, keys.
 import { KEYS } from "./keys.js";
 import { copyAddress, exportFiles, png, svg } from "./exports.js";
-import { between, button, element, make, numberField, typed } from "./fields.js";
-import { tableOf } from "./formula.js";
+import { between, button, element, hasLength, make, numberField, typed } from "./fields.js";
+import { formulaOf, tableOf } from "./formula.js";
 import { turned } from "./plots.js";
 
 /** The law R(v) that a text states in one of the forms; throws where it states none. */
@@ -71,12 +71,18 @@ export class Dialogs {
     const { app } = this, c = () => app.state.cursor;
     const start = (name, key) => [name, "start", () => c().start[key], (v) => app.start({ ...c().start, [key]: v })];
     const rows = [start("X(0)", "x"), start("X′(0)", "vx"), start("Y(0)", "y"), start("Y′(0)", "vy"), ["phase φ, rad", "phase", () => turned(c().phase), (v) => app.start(c().start, v)]];
-    this.fields("Initial conditions (A)", rows, "The motion is shown from this start, not settled. Q starts it from rest.");
+    const map = ["X′ = Y′ of the map's start", "start", () => app.state.map_start.vx, (v) => { app.mapFrom(v); }];
+    this.fields("Initial conditions (A)", [...rows, map], "The motion is shown from this start, not settled. Q starts it from rest.");
   }
 
   system() {
     const { app } = this, s = () => app.state, change = (part) => { app.parameters(part); };
-    const rows = [["R", "restitution", () => (typeof s().restitution === "number" ? s().restitution : null), (v) => change({ restitution: v })], ["β", "damping_ratio", () => s().damping_ratio, (v) => change({ damping_ratio: v })]];
+    const rows = [
+      ["η of the motion", "eta", () => s().cursor.eta, (v) => { app.goTo(v, s().cursor.rho); }],
+      ["ρ of the motion", "rho", () => s().cursor.rho, (v) => { app.goTo(s().cursor.eta, v); }],
+      ["R", "restitution", () => (typeof s().restitution === "number" ? s().restitution : null), (v) => change({ restitution: v })],
+      ["β", "damping_ratio", () => s().damping_ratio, (v) => change({ damping_ratio: v })],
+    ];
     for (const [key, name] of [["drive_amplitude", "drive of Y over X"], ["stiffness", "stiffness of Y over X"], ["mass", "mass of Y over X"]]) {
       rows.push([name, key, () => s().asymmetry[key], (v) => change({ asymmetry: { ...s().asymmetry, [key]: v } })]);
     }
@@ -93,8 +99,13 @@ export class Dialogs {
   simulation() {
     const { app } = this, s = () => app.state;
     const watch = (name, key) => [name, key, () => s().watch[key], (v) => { app.set({ watch: { ...s().watch, [key]: v } }, ["motion", "panel"]); }];
-    const line = (v) => { app.set({ line: { ...(s().line ?? app.ownLine("eta")), steps: Math.round(v) } }, ["panel"]); };
-    this.fields("Parameters of the simulation (D)", [watch("periods to settle", "settle_periods"), watch("periods watched", "watch_periods"), watch("tolerance of recurrence", "tolerance"), ["Poincaré phase, rad", "phase", () => turned(s().poincare_phase), (v) => { app.set({ poincare_phase: v }, ["motion"]); }], ["steps of characteristics", "steps", () => s().line?.steps ?? 200, line]]);
+    const l = () => s().line ?? app.ownLine("eta"), line = (part) => { app.set({ line: { ...l(), ...part } }, ["panel"]); };
+    const end = (name, key, i) => [name, key, () => l()[key][i], (v) => {
+      const next = { ...l(), [key]: l()[key].with(i, v) };
+      return hasLength(next) ? line(next) : "the line's other end is there";
+    }];
+    const ends = [end("line from η", "eta", 0), end("line from ρ", "rho", 0), end("line to η", "eta", 1), end("line to ρ", "rho", 1)];
+    this.fields("Parameters of the simulation (D)", [watch("periods to settle", "settle_periods"), watch("periods watched", "watch_periods"), watch("tolerance of recurrence", "tolerance"), ["Poincaré phase, rad", "phase", () => turned(s().poincare_phase), (v) => { app.set({ poincare_phase: v }, ["motion"]); }], ["steps of characteristics", "steps", () => l().steps, (v) => line({ steps: Math.round(v) })], ...ends]);
   }
 
   /** Where the starts of the basins lie, and which masses take them. */
@@ -109,12 +120,12 @@ export class Dialogs {
 
   law() {
     const { app } = this, r = app.state.restitution;
-    const kind = typeof r === "number" ? "constant" : Object.keys(r)[0];
+    const made = formulaOf(r), kind = made ? "formula" : typeof r === "number" ? "constant" : Object.keys(r)[0];
     const select = make("select"), text = make("textarea"), note = make("p", "", "note"), kindOf = make("span");
     const forms = {
       constant: ["0.9", "R at every speed."],
       table: ["0 0.95\n6 0.85", "One pair a line: approach speed, R; linear between, constant beyond. Speeds rise."],
-      formula: ["0.95 - 0.05*v^0.4", "R as a formula in the approach speed v: + − * / ^ ( ) exp log sqrt abs min max tanh. It becomes a table of 121 speeds up to 30."],
+      formula: ["0.95 - 0.05*v^0.4", "R as a formula in the approach speed v: + − * / ^ ( ) exp log sqrt abs min max tanh. It is computed at 121 speeds up to 30, linear between."],
       power_law: ["0.05 0.4 0", "coefficient, exponent, floor: R = max(floor, 1 − coefficient·v^exponent)."],
       exponential: ["0.95 0.8 3", "slow, fast, speed: R = fast + (slow − fast)·exp(−v/speed)."],
     };
@@ -122,7 +133,7 @@ export class Dialogs {
     note.id = "law-note"; note.setAttribute("role", "status"); text.setAttribute("aria-errormessage", note.id);
     const say = (of, why) => { note.textContent = (why ? `${why}. ` : "") + forms[of][1]; note.className = why ? "fault" : "note"; text.setAttribute("aria-invalid", String(Boolean(why))); };
     const fill = (name) => {
-      const now = name === kind ? { constant: () => String(r), table: () => r.table.map((p) => p.join(" ")).join("\n"), power_law: () => [r.power_law.coefficient, r.power_law.exponent, r.power_law.floor].join(" "), exponential: () => [r.exponential.slow, r.exponential.fast, r.exponential.speed].join(" ") }[name]() : forms[name][0];
+      const now = name === kind ? { constant: () => String(r), formula: () => made, table: () => r.table.map((p) => p.join(" ")).join("\n"), power_law: () => [r.power_law.coefficient, r.power_law.exponent, r.power_law.floor].join(" "), exponential: () => [r.exponential.slow, r.exponential.fast, r.exponential.speed].join(" ") }[name]() : forms[name][0];
       text.value = now; say(name);
       kindOf.textContent = name === "formula" ? "Formula" : "Numbers";
     };

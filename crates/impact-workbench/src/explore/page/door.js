@@ -48,6 +48,9 @@ export async function enter(app, token) {
 /** The server is gone: say so until it is back, and then go on with what was shown. */
 export function lost(app) {
   document.body.classList.add("gone");
+  app.stop();
+  app.dialogs.box.close();
+  for (const orders of document.querySelectorAll("nav, main")) orders.inert = true;
   app.message("The server is gone: what is shown stays as it is.", "Start `impactid explore` again on the same port; this page goes on as soon as it knows the new address, which another tab may open.", true);
   const timer = setInterval(async () => {
     const token = await known(app.token);

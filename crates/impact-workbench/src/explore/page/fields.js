@@ -15,8 +15,14 @@ export function button(text, action) {
   return b;
 }
 
+/** A text as a sentence: names that it begins with, such as `view.eta`, stay as they are. */
+export const sentence = (text) => text.replace(/^[a-z]+(?=[ ,])/, (word) => word[0].toUpperCase() + word.slice(1)).replace(/[^.?!]$/, "$&.");
+
 /** A range as text. */
 export const between = ([low, high]) => `${low} to ${high}`.replaceAll("-", "−");
+
+/** Whether a line's ends are two places. */
+export const hasLength = ({ eta, rho }) => eta[0] !== eta[1] || rho[0] !== rho[1];
 
 /** A number as it is typed, with a comma or a point; `null` where it is none. */
 export function typed(text) {
@@ -103,20 +109,22 @@ export class Sliders {
   row(name, limit, factor, low, high, step, get, put) {
     const { app } = this, row = make("div", undefined, "slider"), range = make("input");
     const shown = () => { const v = get(); return v === null ? null : v * factor; };
-    const change = (v) => app.parameters(put(v / factor));
-    const field = numberField(name, app.limits[limit].map((v) => v * factor), shown, change);
+    const limits = app.limits[limit].map((v) => v * factor);
+    const within = (v) => Number(Math.min(limits[1], Math.max(limits[0], v)).toPrecision(12)) / factor;
+    const change = (v) => app.parameters(put(within(v)));
+    const field = numberField(name, limits, shown, change);
     Object.assign(range, { type: "range", min: low, max: high, step });
     range.setAttribute("aria-label", name); field.input.setAttribute("aria-label", `${name}, typed`);
-    const next = () => app.lookAhead([-step, step].map((by) => ({ ...app.state, ...put(Number((Number(range.value) + by).toPrecision(12)) / factor) })));
+    const next = () => app.lookAhead([-step, step].map((by) => ({ ...app.state, ...put(within(Number(range.value) + by)) })));
     range.addEventListener("focus", next);
     range.addEventListener("input", () => { change(Number(range.value)); next(); });
     row.append(make("span", name), range, field.fault, field.input);
-    return { row, range, ends: [low, high], shown, field, pair: name.endsWith("Y/X") };
+    return { row, range, ends: [low, high], step, shown, field, pair: name.endsWith("Y/X") };
   }
 
   /** Thumbs and fields at what the state holds. */
   show() {
-    for (const { row, range, ends, shown, field, pair } of this.rows) {
+    for (const { row, range, ends, step, shown, field, pair } of this.rows) {
       const v = shown();
       range.disabled = v === null;
       // what compares two masses has no meaning for one
@@ -126,6 +134,8 @@ export class Sliders {
         const [least, most] = document.activeElement === range ? [Number(range.min), Number(range.max)] : ends;
         range.min = Math.min(least, v); range.max = Math.max(most, v);
         if (Number(range.value) !== v) range.value = v;
+        // steps are counted from the least value: from one beside a step on they go through the value itself
+        if (Math.abs(range.value - v) > 1e-6 * step) { range.min = v - Math.ceil((v - range.min) / step) * step; range.value = v; }
       }
       field.show();
     }

@@ -7,8 +7,9 @@ import { Dialogs } from "./dialogs.js";
 import { listen, press } from "./keys.js";
 import { enter, lost } from "./door.js";
 import { Demos } from "./demos.js";
-import { Sliders, button, element, kept, make } from "./fields.js";
-import { number, named, colour, markColour } from "./draw.js";
+import { Sliders, button, element, hasLength, kept, make, sentence } from "./fields.js";
+import { fit, number, named, colour, markColour } from "./draw.js";
+import { formulaOf, tableOf } from "./formula.js";
 
 /** Points of a boundary. */
 const POINTS = 240;
@@ -17,6 +18,8 @@ const MOST_AHEAD = 8;
 /** What of a state the boundaries depend on. */
 const planeOf = ({ damping_ratio, restitution, single, asymmetry, view }) =>
   JSON.stringify([damping_ratio, restitution, single, asymmetry, view.eta], (_, v) => (typeof v === "number" ? Number(v.toPrecision(9)) : v));
+/** The machine and its rig, of a state. */
+const machineOf = ({ restitution, damping_ratio, single, asymmetry, rig }) => ({ restitution, damping_ratio, single, asymmetry, rig });
 /** What is asked for where anything may have changed. */
 const EVERYTHING = ["map", "boundaries", "carried", "panel", "residuals"];
 /** Parts of the state that only the map's uppermost layer shows. */
@@ -58,17 +61,18 @@ class App {
     if (hello.campaign) {
       this.campaign = new CampaignView(this, hello.campaign);
       element("title").textContent = hello.campaign.name + (hello.campaign.synthetic ? " (simulated)" : "");
-      element("tab-record").hidden = false;
+      element("tab-record").hidden = hello.campaign.records.length === 0;
     }
     document.title = `${element("title").textContent} – impactid explore`;
-    this.state = restored ?? structuredClone(hello.state);
+    this.state = this.here(restored ?? structuredClone(hello.state));
     this.good = this.state;
     this.sliders = new Sliders(this);
     listen(this);
     this.buttons();
     this.restorePanel();
     this.refresh(["map", "boundaries", restored ? "motion" : "carried", "panel", "residuals"]);
-    if (hello.notes.length) this.message(hello.notes.join(" "), "");
+    const notes = [...hello.notes, ...(restored ? this.notHere(restored) : [])];
+    if (notes.length) this.message(notes.join(" "));
     if (hello.demo) this.player.play(await this.player.read(hello.demo));
     this.ready = true;
     if (this.early) this.arrived(this.early);
@@ -77,7 +81,10 @@ class App {
   /** The state that an address holds. */
   written(text) {
     if (!text) return null;
-    try { return JSON.parse(text); } catch (error) { this.message("The state in the address cannot be read.", `${error}; this page starts afresh.`); return null; }
+    try {
+      const state = JSON.parse(text), { formula } = state.restitution ?? {};
+      return formula ? { ...state, restitution: { table: tableOf(formula) } } : state;
+    } catch (error) { this.message("The state in the address cannot be read.", `${error}; this page starts afresh.`); return null; }
   }
 
   /** What the server starts from, and the address' state where it takes it. */
@@ -89,6 +96,22 @@ class App {
   }
 
   // ---- state ---------------------------------------------------------------
+  /** A state from elsewhere as it can be shown here: with the scales of the rig that is open, and a record that there is. */
+  here({ rig, record, ...state }) {
+    const own = this.first.rig, known = this.campaign?.facts.records.some((r) => r.id === record);
+    const panel = state.panel === "record" && !known ? "motion" : state.panel;
+    return { ...state, panel, ...(own && { rig: rig ?? own }), ...(known && { record }) };
+  }
+
+  /** What of the address' state has no place here. */
+  notHere({ rig, record }) {
+    return [
+      ...(this.state.rig && !rig ? ["The address has no f₀ and xₛₜ: those of this campaign are taken."] : []),
+      ...(rig && !this.state.rig ? ["The address is that of a campaign, which is not open here: its machine is shown without records."] : []),
+      ...(record && this.state.rig && !this.state.record ? [`This campaign has no record ${record}.`] : []),
+    ];
+  }
+
   set(part, what) {
     this.state = { ...this.state, ...part };
     this.save();
@@ -119,7 +142,11 @@ class App {
     this.saving = setTimeout(() => history.replaceState(null, "", "#" + this.address()), 250);
   }
 
-  address() { return `t=${this.token}&s=${encodeURIComponent(JSON.stringify(this.state))}`; }
+  /** The page's address: of an R(v) that a formula states, the formula. */
+  address() {
+    const formula = formulaOf(this.state.restitution), state = formula ? { ...this.state, restitution: { formula } } : this.state;
+    return `t=${this.token}&s=${encodeURIComponent(JSON.stringify(state))}`;
+  }
 
   /** Ask again for what has changed. */
   refresh(what) {
@@ -217,7 +244,7 @@ class App {
     if (z) bold.style.color = markColour(z);
     const rig = this.scale();
     const hz = rig ? ` = ${number(cursor.eta * rig.natural_frequency_hz, 5)} Hz` : "", mm = rig ? ` = ${number(1e3 * cursor.rho * rig.static_deflection_m, 4)} mm` : "";
-    const r = typeof restitution === "number" ? number(restitution, 4) : "R(v)";
+    const r = typeof restitution === "number" ? number(restitution, 4) : formulaOf(restitution) ?? "R(v)";
     box.replaceChildren(bold, ` at η = ${number(cursor.eta, 5)}${hz}, ρ = ${number(cursor.rho, 5)}${mm}; R = ${r}, β = ${number(damping_ratio, 4)}`);
   }
 
@@ -230,8 +257,8 @@ class App {
   // ---- what a user does ------------------------------------------------------
   /** What follows a move: a running motion goes on by itself, what coexists with it does not. */
   moved() {
-    if (this.run) { this.motion.others(null); this.coexisting(); return []; }
-    return ["carried", ...(this.state.panel === "basins" ? ["panel"] : [])];
+    if (this.run) { this.motion.others(null); this.coexisting(); }
+    return [...(this.run ? [] : ["carried"]), ...(this.state.panel === "basins" ? ["panel"] : [])];
   }
 
   /** Move the cursor and carry the motion along. */
@@ -243,8 +270,13 @@ class App {
   nudge(de, dr, event) {
     const { view, cursor } = this.state, by = event.shiftKey ? 10 : event.ctrlKey ? 0.1 : 1;
     const step = (range) => by * (range[1] - range[0]) / 200;
-    this.carry(cursor.eta + de * step(view.eta), cursor.rho + dr * step(view.rho));
-    const { eta, rho } = this.state.cursor;
+    this.goTo(cursor.eta + de * step(view.eta), cursor.rho + dr * step(view.rho));
+  }
+
+  /** Carry the motion to a place, which the view follows. */
+  goTo(...to) {
+    this.carry(...to);
+    const { cursor: { eta, rho }, view } = this.state;
     if (eta < view.eta[0] || eta > view.eta[1] || rho < view.rho[0] || rho > view.rho[1]) {
       const about = (at, r) => [at - (r[1] - r[0]) / 2, at + (r[1] - r[0]) / 2];
       this.look(about(eta, view.eta), about(rho, view.rho));
@@ -262,12 +294,12 @@ class App {
 
   /** Change the machine: everything follows, the motion is carried along. */
   parameters(part) {
-    this.set(part, ["map", "boundaries", "residuals", "panel", ...this.moved().slice(0, 1)]);
+    this.set(part, ["map", "boundaries", "residuals", ...new Set(["panel", ...this.moved()])]);
   }
 
   /** Show a part of the plane, moved to where it is within the limits. */
   look(eta, rho) {
-    const inside = ([a, b], [low, high]) => { const size = Math.min(b - a, high - low), from = Math.min(Math.max(a, low), high - size); return [from, from + size]; };
+    const inside = ([a, b], [low, high]) => { const size = Math.min(b - a, high - low), from = Math.max(low, Math.min(a, high - size)); return [from, Math.min(high, from + size)]; };
     this.set({ view: { eta: inside(eta, this.limits.eta), rho: inside(rho, this.limits.rho) } }, ["map", "boundaries"]);
   }
 
@@ -314,10 +346,11 @@ class App {
   drawLine() {
     const { cursor } = this.state;
     if (this.map.drawing) {
+      const [eta, rho] = this.lineFrom, line = { eta: [eta, cursor.eta], rho: [rho, cursor.rho], steps: this.state.line?.steps ?? 200 };
+      if (!hasLength(line)) { this.said(`a line has two ends: ${DRAW}`, Infinity); return; }
       this.map.drawing = false;
       this.said("");
-      const [eta, rho] = this.lineFrom;
-      this.state = { ...this.state, line: { eta: [eta, cursor.eta], rho: [rho, cursor.rho], steps: this.state.line?.steps ?? 200 } };
+      this.state = { ...this.state, line };
       this.panel("line");
       return;
     }
@@ -347,9 +380,11 @@ class App {
   }
 
   toggleStart() {
-    const rest = this.state.map_start.vx === 0;
-    const v = rest ? 3 : 0;
-    this.said(rest ? "the map is computed from X′ = Y′ = 3" : "the map is computed from rest");
+    this.mapFrom(this.state.map_start.vx === 0 ? 3 : 0);
+  }
+
+  mapFrom(v) {
+    this.said(v === 0 ? "the map is computed from rest" : `the map is computed from X′ = Y′ = ${number(v)}`);
     this.set({ map_start: { x: 0, vx: v, y: 0, vy: v } }, ["map"]);
   }
 
@@ -407,9 +442,7 @@ class App {
   }
 
   backToFit() {
-    const fit = this.campaign?.fit;
-    if (!fit) return;
-    this.parameters({ restitution: fit.restitution, damping_ratio: fit.damping_ratio, rig: { natural_frequency_hz: fit.natural_frequency_hz, static_deflection_m: fit.static_deflection_m } });
+    if (this.campaign) this.parameters(machineOf(this.first));
   }
 
   /** More records were fitted. Sliders and view that are still where the fit before put them follow. */
@@ -417,13 +450,10 @@ class App {
     if (!this.ready) { this.early = frame; return; }
     if (!this.campaign) return;
     const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
-    const { restitution, damping_ratio, rig, view } = this.state, first = this.first;
-    const atFit = same([restitution, damping_ratio, rig], [first.restitution, first.damping_ratio, first.rig]);
-    const atView = same(view, first.view);
+    const atFit = same(machineOf(this.state), machineOf(this.first)), atView = same(this.state.view, this.first.view);
     this.first = frame.state;
     this.campaign.replace(frame.campaign);
-    const next = frame.state;
-    if (atFit) this.parameters({ restitution: next.restitution, damping_ratio: next.damping_ratio, rig: next.rig });
+    if (atFit) this.parameters(machineOf(this.first));
     else this.refresh(["residuals"]);
     if (atView) this.home(); else this.map.redraw();
     this.refreshPanel();
@@ -445,7 +475,7 @@ class App {
 
   /** Draw every picture now. */
   paint() {
-    this.map.redrawNow(); this.motion.paint(); this.line.paint(); this.basins.paint(); this.campaign?.traces();
+    this.samples(); this.map.redrawNow(); this.motion.paint(); this.line.paint(); this.basins.paint(); this.campaign?.traces();
   }
 
   // ---- looks ---------------------------------------------------------------------
@@ -458,8 +488,8 @@ class App {
 
   legend(styles) {
     this.legendStyles = styles;
-    const place = (s) => s.order[0] * 1e6 + s.order[1] * 1e3 + s.order[2];
-    const items = [...styles].sort((a, b) => place(a) - place(b)).map((s) => swatch(s, named(s)));
+    const place = (s) => s.order[0] * 1e6 + s.order[1] * 1e3 + s.order[2], samples = this.campaign?.samples() ?? {};
+    const items = [...styles].sort((a, b) => place(a) - place(b)).map((s) => swatch(s, named(s), samples.marks?.get(s.label)));
     for (const kind of this.map.kinds()) {
       const span = make("span"), sample = make("span", undefined, "sample"), text = make("span");
       sample.style.cssText = `width:1.6rem;border-top:${kind.width}px ${kind.dash ? "dashed" : "solid"} ${colour(kind.colour)}`;
@@ -468,7 +498,13 @@ class App {
     }
     const { vx } = this.state.map_start, from = vx === 0 ? "cells: from rest" : `cells: from X′ = Y′ = ${number(vx)}`;
     const striped = this.map.other && this.map.other.id === this.wire.newest.map ? "; striped: another motion coexists" : "";
-    element("legend").replaceChildren(...items, make("span", from + striped));
+    element("legend").replaceChildren(...items, ...(samples.others ?? []), make("span", from + striped));
+    this.samples();
+  }
+
+  /** Draw what the legend shows of the campaign. */
+  samples() {
+    for (const canvas of document.querySelectorAll("#legend canvas")) { const f = fit(canvas); canvas.sample(f.context, f.width, f.height); }
   }
 
   /** Say something for a time; what a demo says has a row of its own, and belongs to the pictures. */
@@ -480,10 +516,12 @@ class App {
     if (ms < Infinity) this.saying = setTimeout(() => { box.hidden = true; if (this.map.drawing) this.said(DRAW, Infinity); }, ms);
   }
 
+  /** A text with what can be done; one that is fixed stays, alone. */
   message(text, remedy, fixed = false) {
     const box = element("message"), close = button("Close", () => { box.hidden = true; });
+    if (box.dataset.fixed === "yes" && !fixed) return;
     box.dataset.fixed = fixed ? "yes" : "no";
-    box.replaceChildren(`${text} ${remedy ?? ""}`, close);
+    box.replaceChildren([text, remedy].filter(Boolean).map(sentence).join(" "), ...(fixed ? [] : [close]));
     box.hidden = false;
     clearTimeout(this.closing);
     if (!fixed) this.closing = setTimeout(() => { box.hidden = true; }, 15_000);

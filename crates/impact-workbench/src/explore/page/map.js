@@ -15,16 +15,21 @@ const FAINT = 0.2;
 /** A cell that is not computed yet. */
 const EMPTY = 0xffffffff;
 
+/** How far a finger, or the end of a line, moves before it has moved, px. */
+const FINGER = 6;
 /** Distance of the stripes where motions coexist, px. */
 const STRIPES = 7;
 /** Names of boundaries on the map. */
-const NAMES = { s2: "s₂", s1: "s₁" };
+const NAMES = { s2: "s₂", s1: "s₁", grazing: "ρ′", sticking: "ρₚ" };
 /** How far beside a boundary its name is where it has no place on it, px. */
 const BESIDE = 13;
 /** Least length of a boundary that is named, px. */
 const ROOM_OF_A_NAME = 45;
 /** Side of the squares by which names find their room, px. */
 const GRAIN = 3;
+/** Places along a name at which it is looked whether it lies in its region, over half its width; and how many must. */
+const LETTERS = [-1, -0.75, -0.5, -0.25, 0, 0.25, 0.5, 0.75, 1];
+const MOST_LETTERS = 0.85;
 /** Places of a region that are tried for its name. */
 const MOST_PLACES = 400;
 
@@ -67,17 +72,16 @@ export class MapView {
     this.draw();
   }
 
-  /** Another map was asked for: what is shown is that of another machine or view, and faint unless it comes at once. */
+  /** Another map was asked for: what is shown is that of another machine or view, and faint unless one that is wanted
+   * comes at once, however many are asked for until then. */
   asked() {
-    for (const what of ["late", "unnamed"]) {
-      clearTimeout(this.waiting[what]);
-      if (!this[what]) this.waiting[what] = setTimeout(() => this.mark(what, true), AT_ONCE);
-    }
+    for (const what of ["late", "unnamed"]) if (!this[what]) this.waiting[what] ??= setTimeout(() => this.mark(what, true), AT_ONCE);
   }
 
   /** Say whether cells are `late`, or names and legend `unnamed`, which follow only with the second level of a map. */
   mark(what, is) {
     clearTimeout(this.waiting[what]);
+    this.waiting[what] = undefined;
     if (this[what] === is) return;
     this[what] = is;
     document.getElementById("legend").classList.toggle("late", this.unnamed);
@@ -290,10 +294,10 @@ export class MapView {
   /** A boundary's name on the longest stretch on which a stable motion ends: near its middle, on it or beside it. */
   boundaryName(f, name, { eta, rho, exists, stale }, room) {
     const [kind, n] = name.split(":");
-    if (stale || !exists || !NAMES[kind]) return [];
+    if (stale || (n && !exists)) return [];
     let best = [0, 0];
     for (let i = 0, from = 0; i <= eta.length; i++) {
-      if (i < eta.length && exists[i] > 0 && f.holds(f.px(eta[i]), f.py(rho[i]))) continue;
+      if (i < eta.length && (!n || exists[i] > 0) && f.holds(f.px(eta[i]), f.py(rho[i]))) continue;
       if (i - from > best[1] - best[0]) best = [from, i];
       from = i + 1;
     }
@@ -301,15 +305,16 @@ export class MapView {
     if (!(f.px(eta[end - 1] ?? 0) - f.px(eta[from]) > ROOM_OF_A_NAME)) return [];
     const outwards = Array.from({ length: end - from }, (_, i) => from + i).sort((i, k) => Math.abs(i - middle) - Math.abs(k - middle));
     const beside = [0, -BESIDE, BESIDE].flatMap((by) => outwards.map((i) => [f.px(eta[i]), f.py(rho[i]) + by]));
-    const text = `${NAMES[kind]}(${n === "1" ? "1" : `1/${n}`})`;
+    const text = NAMES[kind] + (n ? `(${n === "1" ? "1" : `1/${n}`})` : "");
     return room.name(f, beside, text, { font: `13px ${FONT}`, size: 13, paint: colour(KINDS[kind].colour), halo: 4, alpha: 1 });
   }
 
   /** A region's name as large as the region allows, or small, as far inside as there is room. */
-  regionName(f, { places, text, share }, room) {
+  regionName(f, { places, text, share, holds }, room) {
     const largest = Math.round(13 + 14 * Math.min(1, Math.sqrt(share) * 2.2)), at = places.map(([eta, rho]) => [f.px(eta), f.py(rho)]);
-    for (const size of new Set([largest, 13])) {
-      const found = room.name(f, at, text, { font: `bold ${size}px ${FONT}`, size, paint: colour("ink"), halo: 3, alpha: 0.75 });
+    const within = (x, y, wide) => LETTERS.filter((k) => holds(f.ux(x + k * wide), f.uy(y))).length > MOST_LETTERS * LETTERS.length;
+    for (const size of new Set([largest, 13, 11])) {
+      const found = room.name(f, at, text, { within, font: `bold ${size}px ${FONT}`, size, paint: colour("ink"), halo: 3, alpha: 0.75 });
       if (found.length) return found;
     }
     return [];
@@ -352,9 +357,12 @@ export class MapView {
   // ---- the pointer -------------------------------------------------------
   pointer() {
     const { canvas, app } = this;
-    let mode = null, from = null, view = null;
+    let mode = null, from = null, view = null, rests = false;
+    const isThere = ({ offsetX: p, offsetY: q }) => Math.hypot(p - from[0], q - from[1]) <= FINGER;
     canvas.addEventListener("pointerdown", (event) => {
-      if (!this.frame) return;
+      // two fingers zoom the page
+      if (!event.isPrimary) mode = null;
+      if (!this.frame || !event.isPrimary) return;
       const { offsetX: p, offsetY: q } = event;
       if (!this.frame.holds(p, q)) return;
       canvas.focus(); canvas.setPointerCapture(event.pointerId);
@@ -364,19 +372,22 @@ export class MapView {
       else if (event.button === 2 || event.button === 1 || event.shiftKey) mode = "pan";
       else if (record) { mode = null; app.choose(record); return; }
       else mode = "cursor";
-      this.moved(mode, p, q, from, view);
+      // a finger may be the first of two: it counts once it moves or leaves
+      rests = mode === "line" || event.pointerType === "touch";
+      if (!rests) this.moved(mode, p, q, from, view);
     });
     canvas.addEventListener("pointermove", (event) => {
       const { offsetX: p, offsetY: q } = event;
-      if (mode) this.moved(mode, p, q, from, view);
+      rests &&= !mode || isThere(event);
+      if (mode && !rests) this.moved(mode, p, q, from, view);
       else if (this.frame) canvas.title = app.campaign?.near(this.frame, p, q)?.id ?? (this.frame.holds(p, q) ? this.named(this.frame.ux(p), this.frame.uy(q)) : "");
     });
-    const end = () => {
-      if (mode === "line") { this.drawing = false; app.panel("line"); app.said("characteristics along the line"); }
+    canvas.addEventListener("pointerup", (event) => {
+      if (mode && mode !== "line" && rests) this.moved(mode, ...from, from, view);
+      if (mode === "line" && !rests) { this.drawing = false; app.panel("line"); app.said("characteristics along the line"); }
       mode = null;
-    };
-    canvas.addEventListener("pointerup", end);
-    canvas.addEventListener("pointercancel", end);
+    });
+    canvas.addEventListener("pointercancel", () => { mode = null; });
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
@@ -437,7 +448,9 @@ function regions(tile) {
     const inner = members.filter((at) => depth[at] >= 3).sort((a, b) => depth[b] - depth[a]), step = Math.ceil(inner.length / MOST_PLACES);
     const value = ([low, high], i, count) => low + (high - low) * i / (count - 1);
     const places = inner.filter((_, i) => i % step === 0).map((at) => [value(tile.eta, at % w, w), value(tile.rho, Math.floor(at / w), h)]);
-    found.push({ places, text: tile.styles[label].label, share });
+    const index = (v, [low, high], count) => Math.round((v - low) / (high - low) * (count - 1));
+    const holds = (eta, rho) => seen[index(rho, tile.rho, h) * w + index(eta, tile.eta, w)] === start;
+    found.push({ places, text: tile.styles[label].label, share, holds });
   }
   return found.sort((a, b) => b.share - a.share);
 }
@@ -487,7 +500,7 @@ class Room {
     const inside = (v, from, length, half) => Math.max(from + half, Math.min(from + length - half, v));
     for (const place of places) {
       const x = inside(place[0], box.left, box.width, wide), y = inside(place[1], box.top, box.height, high);
-      if (!this.isFree(x, y, wide, high)) continue;
+      if (!this.isFree(x, y, wide, high) || style.within?.(x, y, wide) === false) continue;
       this.take(x, y, wide, high);
       return [{ text, x, y, ...style }];
     }

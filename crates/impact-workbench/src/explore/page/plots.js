@@ -82,6 +82,10 @@ export class MotionPanel extends Panel {
   paint() {
     if (element("panel-motion").hidden || !this.frame) return;
     this.series(); this.phase(); this.poincare(); this.correlation(); this.numbers();
+    const { motion, x_min, x_max, approach_speeds: w } = this.frame, of = `${named(motion)}, X from ${number(x_min)} to ${number(x_max)}`;
+    for (const [id, name] of [["series", "Displacements in time"], ["phase", "Phase portrait"], ["poincare", "Poincaré map"], ["autocorrelation", "Autocorrelation"]]) {
+      element(id).setAttribute("aria-label", `${name}: ${of}, ${w.length ? `approach speeds ${number(Math.min(...w))} to ${number(Math.max(...w))}` : "no impacts"}`);
+    }
   }
 
   series() {
@@ -289,6 +293,7 @@ export class LinePanel extends Panel {
       return f;
     };
     const lists = (k) => ways.map(([, d]) => d[k]);
+    element("panel-line").classList.toggle("insets", this.app.state.insets?.length > 0);
     const above = this.app.state.insets?.length ? INSETS * element("line-x").clientHeight : 8;
     const greatest = panel("line-x", around([...lists("x_max"), ...lists("x_min")]), "*X* greatest and least", (f, d, ink) => {
       f.curve(d[key], d.impactless, { colour: colour("quiet"), width: 1, dash: [4, 3] });
@@ -365,12 +370,23 @@ export class BasinsPanel extends Panel {
     });
     f.axes();
     const shares = [...t.counts.values()].sort((a, b) => b.count - a.count).slice(0, 8);
-    element("basin-shares").replaceChildren(...shares.map(({ style, count }) => swatch(style, `${named(style)}: ${(100 * count / t.total).toFixed(1)} %`)));
+    const share = ({ style, count }) => `${named(style)}: ${(100 * count / t.total).toFixed(1)} %`;
+    element("basin-shares").replaceChildren(...shares.map((s) => swatch(s.style, share(s))));
+    element("basins").setAttribute("aria-label", `Basins of attraction over the start, ${shares.map(share).join(", ")}. Arrow keys move the start.`);
   }
 }
 
-/** A tint with a text. */
-export function swatch(style, text) {
+/** A picture that a function (context, width, height) draws, with a text. */
+export function sampled(draw, text) {
+  const span = make("span"), canvas = Object.assign(make("canvas"), { sample: draw });
+  canvas.setAttribute("aria-hidden", "true");
+  span.append(canvas, text);
+  return span;
+}
+
+/** A tint, with what is drawn on it, and a text. */
+export function swatch(style, text, drawn) {
+  if (drawn) return sampled((c, w, h) => { c.fillStyle = `rgb(${tint(style).join(",")})`; c.fillRect(0, 0, w, h); drawn(c, w, h); }, text);
   const span = make("span"), box = make("span", undefined, "swatch");
   box.style.background = `rgb(${tint(style).join(",")})`; box.style.borderColor = markColour(style);
   span.append(box, text);
