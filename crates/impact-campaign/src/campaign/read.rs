@@ -83,7 +83,6 @@ fn is_run_table(path: &Path) -> bool {
     let text = std::fs::read(path).unwrap_or_default();
     run_table::is_run_table(&text, &run_table::is_file(folder, name))
 }
-}
 
 /// Read the text; an entry that cannot be read is noted in `faults` and left at its default. `None`,
 /// and the faults, if the text is not TOML or a fault has no entry: nothing can then be said of what is
