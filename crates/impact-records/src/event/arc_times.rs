@@ -332,7 +332,8 @@ mod tests {
 
     /// Two impacts of a period, at shares of it.
     fn twice_a_period(samples: f64) -> Vec<Instant> {
-        let at = |k: usize| samples * (((k / 2) as f64) + if k % 2 == 0 { 0.21 } else { 0.63 });
+        let at =
+            |k: usize| samples * (((k / 2) as f64) + if k.is_multiple_of(2) { 0.21 } else { 0.63 });
         let middle = |k: usize| Instant {
             time: at(k).floor() + 0.5,
             error: 12_f64.sqrt().recip(),

@@ -524,7 +524,7 @@ fn fuse(
     // the flights beside a jump that is seen across an impact of which the record shows too little
     let crosses = |c: &Candidate| {
         let reaches = |pulse: &&Closed| pulse.first.abs_diff(c.jump.left) <= width;
-        c.source == DetectionSource::Velocity && unsupported.iter().any(|p| reaches(&p))
+        c.source == DetectionSource::Velocity && unsupported.iter().any(reaches)
     };
     candidates.retain(|c| !crosses(c));
     Fused {
