@@ -366,3 +366,24 @@ fn reach_m(observations: &[Observation]) -> f64 {
     let most = usable.map(groups::amplitude).fold(0.0, f64::max);
     if most > 0.0 { most } else { 1.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impact_records::motion::Motion;
+    use impact_records::record::{Flag, Problem};
+
+    #[test]
+    fn records_that_are_not_there_move_no_other_in_time() {
+        let mut all: Vec<Observation> = (0..6)
+            .map(|_| Observation::of("r", 10.0, Motion::Impactless))
+            .collect();
+        for (i, observation) in all.iter_mut().enumerate() {
+            observation.setting.sequence = i;
+        }
+        for missing in &mut all[3..] {
+            missing.flags = vec![Flag::new(None, Problem::NoTimes)];
+        }
+        assert_eq!(places(&all)[..3], [-0.5, 0.0, 0.5]);
+    }
+}

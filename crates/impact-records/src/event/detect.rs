@@ -795,6 +795,41 @@ mod tests {
     }
 
     #[test]
+    fn a_jump_across_an_impact_that_the_contact_alone_shows_is_none() {
+        // the last impact is too near the end for a jump, and those before it are seen across it
+        let velocity = Series::clean(sawtooth(303));
+        let closed = [pulse(100, 102), pulse(200, 202), pulse(300, 302)];
+        let found = fuse((&Body::default(), &velocity), (&closed, None), 8, 10);
+        let places: Vec<usize> = found.candidates.iter().map(|c| c.jump.left).collect();
+        assert_eq!(places, [99, 199]);
+    }
+
+    #[test]
+    fn valid_an_inverted_channel_on_the_heavier_mass_is_looked_at() {
+        let body = |share: f64| {
+            let values = sawtooth(400).into_iter().map(|v| share * v).collect();
+            let velocity = Some(Series::clean(values));
+            Body {
+                velocity,
+                ..Body::default()
+            }
+        };
+        // the lighter mass jumps farther, so that the approach speed falls
+        let kinematics = |y: f64| {
+            let mut of = Kinematics::of(&Record::of(100.0, &[]), RigKind::Double, 1);
+            (of.x, of.y, of.relative) = (body(1.0), body(y), body(1.0 + y));
+            of
+        };
+        for (y, inverted) in [(-0.8, true), (0.8, false)] {
+            let of = kinematics(y);
+            let velocity = of.relative.velocity.as_ref().unwrap();
+            let found = fuse((&Body::default(), velocity), (&[], None), 8, 10);
+            assert_eq!(found.candidates.len(), 3);
+            assert_eq!(found.may_be_inverted(&of), inverted, "{y}");
+        }
+    }
+
+    #[test]
     fn a_pulse_belongs_to_the_jump_within_its_reach() {
         let velocity = Series::clean(sawtooth(400));
         let closed = [pulse(100, 102), pulse(245, 247)];

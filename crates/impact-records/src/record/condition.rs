@@ -825,6 +825,18 @@ mod tests {
     }
 
     #[test]
+    fn channels_that_are_not_put_together_are_of_one_length_and_can_be_looked_at() {
+        let count: Vec<f64> = (0..400).map(f64::from).collect();
+        let channels: [(Role, &[f64]); 2] =
+            [(Role::VelocityX, &count), (Role::DisplacementX, &count)];
+        let mut record = Record::of(100.0, &channels);
+        record.channels[1].values.truncate(200);
+        cut_to_shortest(&mut record);
+        inspect(&mut record, &[None, None], false);
+        assert_eq!(record.channels[0].values.len(), 200);
+    }
+
+    #[test]
     fn one_crest_of_a_free_decay_that_is_cut_off_is_named_and_a_mass_that_was_held_is_not() {
         let flags = |values: Vec<f64>| {
             let mut record = Record::of(100.0, &[(Role::DisplacementX, &values)]);
