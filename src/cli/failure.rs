@@ -228,21 +228,15 @@ pub(super) fn wrapped(text: &str) -> String {
 
 fn broken(text: &str, width: usize) -> String {
     let words = text.trim_start();
-    let indent = " ".repeat(text.len() - words.len());
-    let mut lines = vec![indent.clone()];
-    for word in words.split(' ') {
-        let line = lines.last().map_or(0, |line| line.chars().count());
-        if line > indent.len() && line + 1 + word.chars().count() > width {
-            lines.push(indent.clone());
-        }
-        if let Some(line) = lines.last_mut() {
-            if line.len() > indent.len() {
-                line.push(' ');
-            }
-            line.push_str(word);
-        }
-    }
-    lines.join("\n")
+    let indent = &text[..text.len() - words.len()];
+    let options = textwrap::Options::new(width)
+        .initial_indent(indent)
+        .subsequent_indent(indent)
+        .break_words(false)
+        .word_separator(textwrap::WordSeparator::AsciiSpace)
+        .word_splitter(textwrap::WordSplitter::NoHyphenation)
+        .wrap_algorithm(textwrap::WrapAlgorithm::FirstFit);
+    textwrap::fill(words, options)
 }
 
 /// Width of lines: broken on a terminal, whole elsewhere, so that programs find their words.

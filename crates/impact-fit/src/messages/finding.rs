@@ -248,7 +248,7 @@ pub enum Finding {
     MotionsUndetermined {
         /// How many.
         records: usize,
-        /// Of how many driven ones.
+        /// Of how many that can be used.
         of: usize,
     },
     /// Many records begin before their motion has settled.

@@ -22,7 +22,7 @@ use crate::event::arcs::{Arcs, Instant, speeds};
 use crate::event::drift::integral;
 use crate::event::impact::MassSpeeds;
 use crate::event::kinematics::{Body, Kinematics, RelativeSource, Series};
-use crate::signal::robust;
+use crate::signal::{kalman, robust};
 
 /// Relative error of an arc's area by trapezoids: it scales with the speeds.
 const TRAPEZOIDS: f64 = 1e-3;
@@ -83,15 +83,6 @@ struct State {
 }
 
 impl State {
-    /// Take in that `row`·state is a value with a variance.
-    fn learn(&mut self, row: Vector4<f64>, value: f64, variance: f64) {
-        let along = self.covariance * row;
-        let gain = along / (row.dot(&along) + variance);
-        self.mean += gain * (value - row.dot(&self.mean));
-        let once = self.covariance - gain * along.transpose();
-        self.covariance = once + (gain * variance - once * row) * gain.transpose();
-    }
-
     fn moved(&self, flow: &Matrix4<f64>, noise: &Matrix4<f64>) -> Self {
         Self {
             mean: flow * self.mean,
@@ -160,8 +151,7 @@ pub(super) fn arc_times(
 const MOST_ALIKE: usize = 8;
 
 /// The correlation between the shifts of two impacts of a record of the same kind, in the mean over all pairs: 1 where the
-/// period is a whole number of samples, 0 where the impacts are spread over the sample interval or have no period. Of
-/// places that are Δ apart it is 1 − 6Δ(1 − Δ).
+/// period is a whole number of samples, 0 where the impacts are spread over the sample interval or have no period.
 fn alike(plain: &[Instant]) -> f64 {
     let lags = 1..=MOST_ALIKE.min(plain.len() / FEWEST);
     let Some((lag, period)) = lags
@@ -173,10 +163,16 @@ fn alike(plain: &[Instant]) -> f64 {
     let count = plain.len() / lag;
     let pairs = (1..count).map(|apart| {
         let place = (apart as f64 * period).rem_euclid(1.0);
-        (count - apart) as f64 * (1.0 - 6.0 * place * (1.0 - place))
+        (count - apart) as f64 * correlation_of_places(place)
     });
     let possible = 0.5 * (count * (count - 1)) as f64;
     (pairs.sum::<f64>() / possible).max(0.0)
+}
+
+/// Correlation of the errors of two impacts whose places between samples are Δ of 0 to 1 sampling intervals apart, where
+/// an error runs evenly through its range from one sample to the next: 1 − 6Δ(1 − Δ).
+pub fn correlation_of_places(apart: f64) -> f64 {
+    1.0 - 6.0 * apart * (1.0 - apart)
 }
 
 /// The time between each impact and the one so many later, in samples, by least squares, if all are that but for the
@@ -235,7 +231,13 @@ fn smoothed(
             let row = Vector4::new(-start.after_m_s, end.before_m_s, from - to, 0.0);
             // Noise adds up over the arc.
             let error = velocity.noise * (to - from).sqrt() + TRAPEZOIDS * end.before_m_s.abs();
-            state.learn(row, -area, error * error);
+            kalman::update(
+                &mut state.mean,
+                &mut state.covariance,
+                row,
+                -area,
+                error * error,
+            );
         }
         let Some(next) = plain.get(k + 2) else { break };
         let between = 0.5 * (next.time - from);

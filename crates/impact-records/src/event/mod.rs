@@ -29,6 +29,7 @@ mod refine;
 mod ringing;
 mod touches;
 
+pub use arc_times::correlation_of_places;
 pub(crate) use calming::calmed;
 pub use channel_lags::ChannelLag;
 pub(crate) use detect::detect_at;

@@ -31,18 +31,16 @@ pub(super) fn resample(record: &mut Record, times: &mut Vec<f64>) -> Option<Flag
     if !(usable && motion && rises) {
         return None;
     }
-    let strays = || wrong.is_empty() && time_axis::strays_unrounded(times);
-    let uneven = Uneven::of(times).filter(|_| !wrong.is_empty() || strays())?;
-    let slow = record.channels.iter().all(|c| uneven.foretells(&c.values));
+    let nearly_even = wrong.is_empty();
+    if nearly_even && !time_axis::strays_unrounded(times) {
+        return None;
+    }
+    let uneven = Uneven::of(times)?;
     // times that are taken late scatter, though the samples do not
-    let scattered = || {
-        wrong.is_empty()
-            && record
-                .channels
-                .iter()
-                .any(|c| uneven.evenly_foretold(&c.values))
+    let shows_times = |values: &[f64]| {
+        uneven.foretells(values) && !(nearly_even && uneven.evenly_foretold(values))
     };
-    if !slow || scattered() {
+    if !record.channels.iter().all(|c| shows_times(&c.values)) {
         return None;
     }
     let even: Vec<f64> = (0..uneven.count)

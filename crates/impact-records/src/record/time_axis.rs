@@ -185,14 +185,7 @@ const DIVISIONS: usize = 40;
 /// The range of what straight lines leave of times, s, of the step near one for which it is least: twice the least
 /// greatest distance from a line whose start is free.
 fn least_range(times: &[f64], near: f64) -> f64 {
-    let range = |step: f64| {
-        let rest = times.iter().enumerate();
-        let rest = rest.map(|(i, t)| t - times[0] - i as f64 * step);
-        let ends = rest.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), r| {
-            (r.min(low), r.max(high))
-        });
-        ends.1 - ends.0
-    };
+    let range = |step: f64| range_about(times, step);
     // a line that is farther off than this leaves more over the whole length
     let width = 2.0 * range(near) / (times.len() - 1) as f64;
     let (mut low, mut high) = (near - width, near + width);
@@ -238,6 +231,16 @@ fn strays(times: &[f64], step: f64) -> f64 {
     times.iter().enumerate().map(stray).fold(0.0, f64::max)
 }
 
+/// The range of what straight lines of a step leave of times, s.
+fn range_about(times: &[f64], step: f64) -> f64 {
+    let rest = times.iter().enumerate();
+    let rest = rest.map(|(i, t)| t - times[0] - i as f64 * step);
+    let ends = rest.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), r| {
+        (r.min(low), r.max(high))
+    });
+    ends.1 - ends.0
+}
+
 /// Part of a step by which times may stray from equal steps before they count as uneven.
 const EVEN: f64 = 0.02;
 
@@ -248,8 +251,9 @@ const DECIMALS: i32 = 9;
 /// with which they are printed.
 pub(super) fn strays_unrounded(times: &[f64]) -> bool {
     let step = nearest_step(times);
-    let rounding_s = 1.05 * printed_unit_s(times, step);
-    least_range(times, step) > rounding_s.max(EVEN * step)
+    let even_s = (1.05 * printed_unit_s(times, step)).max(EVEN * step);
+    // of most axes the nearest line shows already that they do not
+    range_about(times, step) > even_s && least_range(times, step) > even_s
 }
 
 /// The greatest power of ten up to a step, s, of which all times are whole multiples; zero if none is.

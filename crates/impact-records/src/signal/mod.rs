@@ -7,6 +7,7 @@ pub mod decay;
 pub mod digits;
 pub mod drift;
 pub mod interpolation;
+pub mod kalman;
 pub mod local_fit;
 pub mod onsets;
 pub(crate) mod ringing;

@@ -487,6 +487,9 @@ fn drifts(decay: &Decay) -> bool {
     drift.is_some_and(|d| d.z_score().abs() > CHANGES)
 }
 
+/// What is left of the squared amplitude from which on it hardly falls: nine tenths of the amplitude.
+const HARDLY_FALLS: f64 = 0.81;
+
 /// What a significant drift leaves open of the frequency, Hz: it is anywhere between that at the beginning and that at
 /// rest, and the standard error is that of an interval that reaches the farther one.
 fn drift_error_hz(decay: &Decay) -> f64 {
@@ -504,7 +507,8 @@ fn drift_error_hz(decay: &Decay) -> f64 {
 }
 
 /// The frequency toward which a drift leads as the motion dies away, Hz, if it goes with the square of the amplitude, as
-/// that of a pendulum and of springs that harden does; that of the last quarter where amplitudes are not known.
+/// that of a pendulum and of springs that harden does; that of the last quarter where the amplitude hardly
+/// falls, so that the drift has another cause, or is not known.
 fn at_rest_hz(drift: &Drift, parts: &[PartOfDecay]) -> f64 {
     let [Some(first), Some(last)] = [parts.first(), parts.last()].map(|p| p.map(|p| p.amplitude))
     else {
@@ -516,7 +520,10 @@ fn at_rest_hz(drift: &Drift, parts: &[PartOfDecay]) -> f64 {
     let last_hz = drift.last_hz + per_length_hz * (0.125 - middle);
     let between_hz = per_length_hz * (1.0 - 2.0 * middle);
     let left = (last / first).powi(2);
-    last_hz + between_hz * left / (1.0 - left).max(f64::EPSILON)
+    if left > HARDLY_FALLS {
+        return drift.last_hz;
+    }
+    last_hz + between_hz * left / (1.0 - left)
 }
 
 /// Records whose natural frequency is not that of their specimen but that of another.

@@ -64,6 +64,20 @@ fn valid_a_long_decay_that_drifts_does_not_draw_f0_from_short_ones_that_do_not()
     assert!((low..=high).contains(&undamped), "{f0:?}");
 }
 
+#[test]
+fn an_undamped_motion_that_drifts_has_a_frequency_between_its_ends() {
+    let tone = fitted(3.0, |t| (TAU * 8.0 * (t + 2e-3 * t * t)).cos());
+    assert!(tone.course.drift.is_some_and(|d| d.z_score() > 10.0));
+    let found = pooled(&[observation(vec![tone])], Effects::none()).unwrap();
+    let [low, high] = found
+        .parameters
+        .natural_frequency_hz
+        .unwrap()
+        .interval95
+        .unwrap();
+    assert!(7.9 < low && high < 8.2, "{low} {high}");
+}
+
 /// A pendulum, integrated by the classical Runge–Kutta method: its frequency rises toward that of small swings as it dies
 /// away. Where the record shows that, the interval holds the latter.
 #[test]

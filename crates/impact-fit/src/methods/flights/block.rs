@@ -8,7 +8,7 @@
 //! it may be off moves the gap at it by the closing speed, and the flight after it by the jump of
 //! the velocities.
 
-use nalgebra::{Matrix4, SMatrix, SVector, Vector4, Vector5};
+use nalgebra::{Matrix4, Vector4, Vector5};
 
 use crate::methods::impacts::block::corners_in;
 use crate::parameters::own::Circumstances;
@@ -21,6 +21,7 @@ use impact_oscillator::model::variation::free_flow;
 use impact_records::event::{CornerShift, Impact, RigKind, extrapolation_error};
 use impact_records::motion::{Motion, Observation};
 use impact_records::record::Role;
+use impact_records::signal::kalman::{Innovation, update};
 
 /// One impact as it was measured, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -315,37 +316,6 @@ fn node(together: bool, impact: &Impact, (missed, integrated): (f64, bool)) -> O
     })
 }
 
-/// What a measurement is off its prediction.
-#[derive(Debug, Clone, Copy)]
-struct Innovation {
-    /// Over its deviation.
-    relative: f64,
-    /// Its variance.
-    spread: f64,
-}
-
-/// Take a measurement of h·state with a variance into a mean and a covariance; gives its innovation.
-fn learn<const N: usize>(
-    mean: &mut SVector<f64, N>,
-    covariance: &mut SMatrix<f64, N, N>,
-    h: SVector<f64, N>,
-    value: f64,
-    variance: f64,
-) -> Innovation {
-    let along = *covariance * h;
-    let spread = h.dot(&along) + variance;
-    let apart = value - h.dot(mean);
-    let gain = along / spread;
-    *mean += gain * apart;
-    // Joseph's form, (1 − g hᵀ) P (1 − g hᵀ)ᵀ + v g gᵀ, which rounding cannot make indefinite.
-    let once = *covariance - gain * along.transpose();
-    *covariance = once + (gain * variance - once * h) * gain.transpose();
-    Innovation {
-        relative: apart / spread.sqrt(),
-        spread,
-    }
-}
-
 /// Mean and covariance of (X, X', Y, Y'), dimensionless.
 #[derive(Debug, Clone, Copy)]
 struct Belief {
@@ -363,7 +333,7 @@ impl Belief {
 
     /// Take a measurement of h·state with a variance in; gives its innovation.
     fn learn(&mut self, h: Vector4<f64>, value: f64, variance: f64) -> Innovation {
-        learn(&mut self.mean, &mut self.covariance, h, value, variance)
+        update(&mut self.mean, &mut self.covariance, h, value, variance)
     }
 
     /// Newton's law at an impact that fills the gap, with an R that scatters by a deviation. Its time is measured late by
@@ -382,7 +352,7 @@ impl Belief {
         let mut covariance = self.covariance.fixed_resize::<5, 5>(0.0);
         covariance[(4, 4)] = time_error * time_error;
         let h = Vector5::new(1.0, 0.0, 1.0, 0.0, -closing);
-        let touched = learn(&mut mean, &mut covariance, h, gap, 0.0);
+        let touched = update(&mut mean, &mut covariance, h, gap, 0.0);
         let before = mean.fixed_rows::<4>(0).into_owned();
         let r = machine.restitution().at((before[1] + before[3]).max(0.0));
         let (mx, my) = machine.mobility();

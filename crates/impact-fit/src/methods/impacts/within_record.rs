@@ -19,6 +19,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::methods::impacts::block::{ImpactBlock, SpeedPair};
 use crate::solver::normal::inverse;
+use impact_records::event::correlation_of_places;
 use impact_records::signal::robust;
 
 /// Terms of the law over the speed that records may follow.
@@ -51,19 +52,16 @@ impl Deviations {
 
     /// K: the variance of the mean over that of independent errors.
     fn alike(&self) -> f64 {
-        let pair =
-            |a: &Option<f64>, b: &Option<f64>| a.zip(*b).map_or(0.0, |(a, b)| alike((a - b).abs()));
+        let pair = |a: &Option<f64>, b: &Option<f64>| {
+            a.zip(*b)
+                .map_or(0.0, |(a, b)| correlation_of_places((a - b).abs()))
+        };
         let apart = self.places.iter().enumerate().map(|(i, a)| {
             let others = self.places[i + 1..].iter();
             others.map(|b| pair(a, b)).sum::<f64>()
         });
         1.0 + 2.0 * apart.sum::<f64>() / self.count()
     }
-}
-
-/// Correlation of the errors of two impacts whose places between samples are apart.
-fn alike(apart: f64) -> f64 {
-    1.0 - 6.0 * apart * (1.0 - apart)
 }
 
 /// Find what the impacts of each record share, and enlarge their errors by it. Undriven impacts, whose order

@@ -3,11 +3,10 @@
 use impact_fit::messages::Finding;
 use impact_records::motion::{Motion, Observation, Undetermined};
 
-/// That most records of motions that were driven long enough, and have settled, do not repeat and are not irregular
-/// either: what the channels show is not the motion alone, and the few other records are no sample of the campaign.
+/// That the motions of most records were driven long enough and have settled, but neither repeat nor are irregular: what the channels show is not the motion alone, and the few other records are no sample of the campaign.
 pub fn undetermined_motions(observations: &[Observation]) -> Option<Finding> {
-    let driven = observations.iter().filter(|o| !o.excluded());
-    let motions: Vec<&Motion> = driven.map(|o| &o.classification.motion).collect();
+    let usable = observations.iter().filter(|o| !o.excluded());
+    let motions: Vec<&Motion> = usable.map(|o| &o.classification.motion).collect();
     let records = motions.iter().filter(|m| is_disturbed(m)).count();
     (2 * records > motions.len()).then_some(Finding::MotionsUndetermined {
         records,
