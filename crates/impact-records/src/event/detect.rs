@@ -1,5 +1,7 @@
 //! From a record to its impacts: contact pulses and velocity jumps fused, times refined.
 
+use std::f64::consts::SQRT_2;
+
 use crate::event::arcs::{self, Arcs, Candidate, DEGREE, Instant};
 use crate::event::channel_lags::{ChannelLag, channel_lags};
 use crate::event::contact::{Closed, closed_intervals};
@@ -521,10 +523,14 @@ fn fuse(
         }
     }
     let mut candidates = candidates(&jumps, closed, search.gap, dead_from, velocity);
-    // the flights beside a jump that is seen across an impact of which the record shows too little
+    // the flights beside a jump that is seen across an impact of which the record shows too little, not the samples
     let crosses = |c: &Candidate| {
         let reaches = |pulse: &&Closed| pulse.first.abs_diff(c.jump.left) <= width;
-        c.source == DetectionSource::Velocity && unsupported.iter().any(reaches)
+        let shown = c
+            .jump
+            .fall(&velocity.values)
+            .is_some_and(|fall| fall + 3.0 * SQRT_2 * velocity.noise > SHOWN * c.jump.height.abs());
+        c.source == DetectionSource::Velocity && !shown && unsupported.iter().any(reaches)
     };
     candidates.retain(|c| !crosses(c));
     Fused {
@@ -582,18 +588,12 @@ impl Fused {
 
     /// At how many candidates a mass's velocity rises.
     fn going_up(&self, velocity: &Series) -> usize {
-        let rises = |c: &&Candidate| {
-            let [before, after] =
-                [c.jump.left, c.jump.left + c.jump.gap].map(|i| velocity.values.get(i));
-            before
-                .zip(after)
-                .is_some_and(|(before, after)| after > before)
-        };
+        let rises = |c: &&Candidate| c.jump.fall(&velocity.values).is_some_and(|fall| fall < 0.0);
         self.candidates.iter().filter(rises).count()
     }
 }
 
-/// Share of a jump that the flights beside it must show.
+/// Share of a jump that the samples or the flights beside it must show.
 const SHOWN: f64 = 0.5;
 /// Height of a jump, over that of the one before it, up to which it may be what that one's ringing leaves; any that
 /// the contact does not show, after one that it does, may be.
@@ -800,8 +800,18 @@ mod tests {
         let velocity = Series::clean(sawtooth(303));
         let closed = [pulse(100, 102), pulse(200, 202), pulse(300, 302)];
         let found = fuse((&Body::default(), &velocity), (&closed, None), 8, 10);
-        let places: Vec<usize> = found.candidates.iter().map(|c| c.jump.left).collect();
-        assert_eq!(places, [99, 199]);
+        let places = |found: &Fused| -> Vec<usize> {
+            found.candidates.iter().map(|c| c.jump.left).collect()
+        };
+        assert_eq!(places(&found), [99, 199]);
+        // of two impacts that follow each other closely the contact may show one, and the velocity the other
+        let velocity = Series::clean(sawtooth(400));
+        let closed = [pulse(100, 102), pulse(205, 205), pulse(300, 302)];
+        let found = fuse((&Body::default(), &velocity), (&closed, None), 8, 10);
+        assert_eq!(
+            (places(&found).as_slice(), found.unsupported),
+            ([99, 199, 299].as_slice(), 1)
+        );
     }
 
     #[test]

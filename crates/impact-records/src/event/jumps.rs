@@ -32,6 +32,11 @@ impl Jump {
         self.left as f64 + 0.5 * self.gap as f64
     }
 
+    /// By how much the velocity's samples beside the jump fall; `None` beyond the record.
+    pub(super) fn fall(&self, values: &[f64]) -> Option<f64> {
+        Some(values.get(self.left)? - values.get(self.left + self.gap)?)
+    }
+
     /// Height over its standard error, positive for a jump down as impacts make it.
     pub(super) fn significance(&self) -> f64 {
         -self.height / self.error
