@@ -29,6 +29,7 @@ class Channel:
     delay_s: float = 0.0
     smear: float = 0.0  # share of a sample by which software shifts readings, by straight lines between them
     low_pass: tuple = (0, 0.0)  # order and corner in Hz of a Butterworth filter
+    resonance: tuple = (0.0, 0.0)  # frequency in Hz and damping ratio of the sensor's own vibration
     band_limit: float = 0.0  # corner over the sampling rate of a converter's filter of linear phase
     pickup_drive: float = 0.0  # volts per volt of the generator
     pickup_contact: float = 0.0  # volts per volt of the contact
@@ -111,6 +112,7 @@ def motion_channel(c, d, kind, speed):
     c = replace(c, high_passed=kind.high_pass_hidden or c.role == "velocity_y")
     if c.role[-1] in kind.low_pass_of:
         c = replace(c, low_pass=kind.low_pass)
+    c = replace(c, resonance=kind.resonance)
     c = replace(c, band_limit=kind.band_limit)
     if kind.smear:
         c = replace(c, smear=kind.smear if kind.smear > 0.0 else d["smear_x"] if of_x else d["smear_y"])
@@ -124,7 +126,7 @@ def times_needed(channel, ticks):
     if channel.role in ("drive", "contact"):
         return np.empty(0)
     period = ticks[1] - ticks[0]
-    if channel.low_pass[0]:
+    if highest_corner(channel):
         return fine_times(channel, ticks)
     if channel.band_limit:
         return dense_times(channel, ticks)
@@ -137,12 +139,27 @@ def times_needed(channel, ticks):
     return base
 
 
+def highest_corner(channel):
+    """The highest corner or resonance of the channel's filters, Hz; 0 where it has none."""
+    return max(channel.low_pass[1], channel.resonance[0])
+
+
+def slowest_decay_s(channel):
+    """The longest time constant of the channel's filters."""
+    poles, _ = poles_and_residues(channel)
+    return 1.0 / np.min(-poles.real)
+
+
+def fine_parts(channel, period):
+    """Parts of a sample in which the channel's filters are worked out."""
+    return max(1, int(np.ceil(period * 60.0 * highest_corner(channel))))
+
+
 def fine_times(channel, ticks):
     """An even grid that holds the ticks (of accelerations: the middles between them) and begins before them."""
     period = ticks[1] - ticks[0]
-    corner = channel.low_pass[1]
-    parts = max(1, int(np.ceil(period * 60.0 * corner)))
-    lead = int(np.ceil(40.0 / (2.0 * np.pi * corner) / period)) + 1
+    parts = fine_parts(channel, period)
+    lead = int(np.ceil(40.0 * slowest_decay_s(channel) / period)) + 1
     shift = 0.5 * period if channel.role.startswith("acceleration") else 0.0
     count = (lead + len(ticks) - 1 + (1 if shift else 0)) * parts + 1
     return ticks[0] - channel.delay_s - shift - lead * period + period / parts * np.arange(count)
@@ -186,10 +203,9 @@ def sensor(channel, motion, ticks):
     times = times_needed(channel, ticks)
     value = quantity(channel, motion, times)
     averaged = channel.role.startswith("acceleration")
-    if channel.low_pass[0]:
+    if highest_corner(channel):
         value = low_passed(channel, motion, times, value)
-        parts = max(1, int(np.ceil(period * 60.0 * channel.low_pass[1])))
-        value = value[::parts][-(len(ticks) + averaged) :]
+        value = value[:: fine_parts(channel, period)][-(len(ticks) + averaged) :]
     if channel.band_limit:
         value = band_limited(channel, motion, times, value)
     if averaged:
@@ -220,10 +236,9 @@ def freeze(columns, kind, rng):
 
 
 def low_passed(channel, motion, times, value):
-    """A Butterworth filter on a signal that is even between its jumps and kinks."""
-    order, corner = channel.low_pass
+    """The channel's filters on a signal that is even between its jumps and kinks."""
     smooth = value.copy()
-    poles, residues = butterworth(order, corner)
+    poles, residues = poles_and_residues(channel)
     breaks, integrals = breaks_of(channel, motion, times)
     for at, height in breaks:
         smooth -= height * np.maximum(0.0, times - at) ** integrals * (times >= at)
@@ -277,14 +292,19 @@ def band_limited(channel, motion, times, value):
     return out
 
 
-def butterworth(order, corner):
-    """Poles and residues of a Butterworth low-pass of unit gain."""
-    omega = 2.0 * np.pi * corner
-    j = np.arange(order)
-    poles = omega * np.exp(1j * np.pi * (2 * j + order + 1) / (2 * order))
-    gain = np.prod(-poles)
-    others = [np.prod([poles[i] - poles[k] for k in range(order) if k != i]) for i in range(order)]
-    return poles, gain / np.array(others)
+def poles_and_residues(channel):
+    """Poles and residues of the Butterworth low-pass and the sensor's resonance, together of unit gain."""
+    poles = np.zeros(0, complex)
+    order, corner = channel.low_pass
+    if order:
+        j = np.arange(order)
+        poles = 2.0 * np.pi * corner * np.exp(1j * np.pi * (2 * j + order + 1) / (2 * order))
+    frequency, damping = channel.resonance
+    if frequency:
+        along = 2.0 * np.pi * frequency * np.exp(1j * np.arccos(-damping))
+        poles = np.concatenate([poles, [along, along.conjugate()]])
+    others = [np.prod([pole - other for other in poles if other != pole]) for pole in poles]
+    return poles, np.prod(-poles) / np.array(others)
 
 
 @njit(cache=True)

@@ -57,10 +57,11 @@ class Kind:
     late_s: tuple = ()  # (role, s) pairs
     low_pass: tuple = (0, 0.0)  # order and corner in Hz, of the channels of motion
     low_pass_stated: bool = False
+    resonance: tuple = (0.0, 0.0)  # frequency in Hz and damping ratio of each sensor's own vibration
     low_pass_of: str = "xy"  # the channels of motion that it has
     frozen: float = 0.0  # share of the records in which the converter repeats a value for some time
     band_limit: float = 0.0  # corner over the rate of the filter of linear phase in a delta-sigma converter
-    high_pass_hidden: bool = False  # both velocities behind the high-pass, which is not stated
+    high_pass_hidden: bool = False  # both channels of motion behind the high-pass, which is not stated
     noise: float = 1.0  # over that of the typical converter
     contact_missed: float = 0.0  # share of the impacts that the contact does not show
     chatter: bool = False  # a closed contact opens twice for a moment
@@ -141,6 +142,16 @@ KINDS = {
     "pickup_contact": Kind("velocity x picks up 0.3 % of the contact", pickup_contact=3e-3),
     "pickup_drive_large": Kind("velocity x picks up 2 % of the generator", pickup_drive=2e-2),
     "high_pass_hidden": Kind("both velocities behind a high-pass of 0.4 Hz that is not stated", high_pass_hidden=True),
+    "accel_high_pass_hidden": Kind(
+        "accelerometers behind a high-pass that is not stated", roles=("drive", "contact", *ACCELERATIONS[1:]), bits=16, high_pass_hidden=True
+    ),
+    "accel_resonance": Kind(
+        "accelerometers that resonate at 5 kHz, 20 kHz", roles=("drive", "contact", *ACCELERATIONS[1:]), bits=16, rate_hz=2e4, resonance=(5e3, 0.02)
+    ),
+    "piezo": Kind(
+        "the same at 2 kHz behind a high-pass that is not stated", roles=("drive", "contact", *ACCELERATIONS[1:]), bits=16,
+        high_pass_hidden=True, resonance=(5e3, 0.02),
+    ),
     "noise_10": Kind("ten times the noise", noise=10.0),
     "bits_8": Kind("a converter of 8 bits", bits=8),
     "contact_missed": Kind("the contact misses 5 % of the impacts", contact_missed=0.05),

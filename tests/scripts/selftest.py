@@ -1,5 +1,6 @@
 """The simulator against closed forms and published numbers; `laboratory.py --selftest` runs it."""
 
+import functools
 import math
 
 import numpy as np
@@ -120,17 +121,21 @@ def filters():
     p, deflection, omega = symmetric(0.05, 0.7, 1.2, 1.5)
     p[rig.CORNER_X] = p[rig.CORNER_Y] = 2.0 * math.pi * corner
     ticks = 20.0 + np.arange(800) / 2000.0
-    channel = instruments.Channel("velocity_x", "v", low_pass=(1, corner))
-    times = instruments.times_needed(channel, ticks)
+    channel = functools.partial(instruments.Channel, "velocity_x", "v")
+    integrator = channel(low_pass=(1, corner))
+    times = instruments.times_needed(integrator, ticks)
     states, impacts = np.empty((len(times), rig.STATES)), np.empty((1000, 6))
     _, n = rig.move(np.zeros(rig.STATES), 0.0, times[-1] + 1e-9, p, False, times, states, impacts)
     motion = instruments.Motion(times, states, impacts[:n], 5e-4, p[rig.OMEGA], p[rig.PHASE])
     integrated = motion.at(times)[np.searchsorted(times, ticks - 1e-9), 8]
     size = deflection * omega
-    check("low-pass of order 1", instruments.sensor(channel, motion, ticks) / size, integrated / size, 1e-4)
-    poles, residues = instruments.butterworth(4, 200.0)
-    check("gain of a Butterworth filter at 0 and its corner", [abs(sum(-residues / poles)), abs(
-        sum(residues / (400j * math.pi - poles)))], [1.0, math.sqrt(0.5)], 1e-12)
+    check("low-pass of order 1", instruments.sensor(integrator, motion, ticks) / size, integrated / size, 1e-4)
+    gains_of = {"gain of a Butterworth filter at 0 and its corner": (channel(low_pass=(4, 200.0)), math.sqrt(0.5)),
+        "gain of a sensor at 0 and its resonance": (channel(resonance=(200.0, 0.02)), 25.0)}
+    for name, (filtered, at_corner) in gains_of.items():
+        poles, residues = instruments.poles_and_residues(filtered)
+        gains = [abs(sum(residues / (2j * math.pi * frequency - poles))) for frequency in (0.0, 200.0)]
+        check(name, gains, [1.0, at_corner], 1e-12)
 
 
 def band_limit():
