@@ -391,6 +391,7 @@ impl Remark {
             Self::NotOneDegreeOfFreedom { .. }
             | Self::WaveformsUnexplained { .. }
             | Self::StatesDeviate { .. }
+            | Self::WhichRestitution { .. }
             | Self::FewUsable { .. } => Some(Cause::Symptom),
             _ => None,
         }

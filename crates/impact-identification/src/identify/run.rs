@@ -674,7 +674,7 @@ impl<'a> IdentificationRun<'a> {
             effects: nominal.effects.without(EffectKind::Pickup),
             ..*nominal
         };
-        let curve = joint::curve();
+        let curve = joint::curve_and_waveforms();
         // without what delays, gains and asymmetries took of it
         let begin = nominal.applied(start.ideal());
         let fit = |blocks: &Blocks| joint::rough(blocks, begin, &curve, &open);

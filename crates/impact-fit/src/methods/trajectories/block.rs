@@ -73,6 +73,15 @@ impl TrajectoryBlock {
         other
     }
 
+    /// Of so many records at most, evenly chosen over the frequency of the drive.
+    #[must_use]
+    pub fn few(&self, most: usize) -> Self {
+        let mut records: Vec<&TrajectoryRecord> = self.records.iter().collect();
+        records.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+        let stride = records.len().div_ceil(most.max(1)).max(1);
+        self.with_records(records.into_iter().step_by(stride).cloned().collect())
+    }
+
     /// Relative error that every point is allowed beside the noise.
     pub fn relative_error(&self) -> f64 {
         self.relative_error

@@ -1,5 +1,5 @@
-//! Whether channels have passed a high-pass that is not stated: the resonance curve is fitted once more as if
-//! one of them had, then another one beside it, as long as that explains far more.
+//! Whether channels have passed a high-pass that is not stated: the resonance curve and some waveforms are fitted once
+//! more as if one of them had, then another one beside it, or all of them, as long as that explains far more.
 
 use crate::identify::diagnostics::suspicion::SURE;
 use impact_fit::messages::Finding;
@@ -8,11 +8,14 @@ use impact_fit::methods::weighing::LEAST_ALLOWANCE;
 use impact_fit::parameters::gain_index;
 use impact_fit::solver::Fit;
 use impact_records::record::Role;
+use std::sync::Arc;
 
 /// Standard uncertainty of the corners' logarithms in these fits.
 pub const WIDE: f64 = 1.5;
 /// Points of the resonance curve that are looked at.
 const FEW: usize = 64;
+/// Waveforms that are looked at.
+const RECORDS: usize = 12;
 /// Lowest frequency of the drive over the corner from which a fit starts.
 const BELOW: f64 = 20.0;
 /// The same over a corner that is found, at most: a lower one turns phases by less than 0.001 rad, so that what the fit
@@ -21,41 +24,29 @@ const FURTHEST_BELOW: f64 = 1e3;
 /// Least ratio of the sums of squares without and with the high-pass: errors of the model may make less.
 const CLEARLY: f64 = 1.5;
 
-/// The channels without a stated high-pass of which the resonance curve shows one, by the least cost of a fit
+/// The channels without a stated high-pass of which resonance curve and waveforms show one, by the least cost of a fit
 /// of it in which corners are [`WIDE`] open.
 pub fn undeclared(blocks: &Blocks, fit: &dyn Fn(&Blocks) -> Option<Fit>) -> Vec<Finding> {
-    let mut now = blocks.with_trajectory(blocks.trajectory.with_records(Vec::new()));
+    let mut now = blocks.with_trajectory(blocks.trajectory.few(RECORDS));
     now.resonance = blocks.resonance.few(FEW);
     // what a high-pass makes of a record is no error of its own
     for point in &mut now.resonance.points {
         point.own_relative_error = 0.0;
     }
     now.resonance.allow(LEAST_ALLOWANCE);
-    let frequencies = now.resonance.points.iter().map(|p| p.frequency_hz);
+    let of_curve = now.resonance.points.iter().map(|p| p.frequency_hz);
+    let of_records = now.trajectory.records.iter().map(|r| r.frequency_hz);
+    let frequencies = of_curve.chain(of_records);
     let start_hz = frequencies.fold(f64::INFINITY, f64::min) / BELOW;
     let Some(mut here) = fit(&now) else {
         return Vec::new();
     };
-    let mut z_scores: Vec<(Role, f64)> = Vec::new();
-    loop {
-        let tried = unstated(&now).into_iter().filter_map(|role| {
-            let other = behind(&now, role, start_hz);
-            Some((role, fit(&other)?, other))
-        });
-        let best = tried.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
-        let Some((role, there, other)) = best else {
-            break;
-        };
-        let typical = (there.cost / there.residuals.max(1) as f64).max(1.0);
-        let z_score = ((here.cost - there.cost) / typical).max(0.0).sqrt();
-        let without_effect = BELOW / there.parameters.corner(role) > FURTHEST_BELOW;
-        if z_score <= SURE || here.cost < CLEARLY * there.cost || without_effect {
-            break;
-        }
-        z_scores.push((role, z_score));
-        (here, now) = (there, other);
+    let mut found: Vec<(Role, f64)> = Vec::new();
+    while let Some(step) = step(&now, &here, start_hz, fit) {
+        found.extend(step.roles.iter().map(|role| (*role, step.z_score)));
+        (here, now) = (step.fit, step.blocks);
     }
-    let found = z_scores.into_iter();
+    let found = found.into_iter();
     let found = found.map(|(channel, z_score)| Finding::UndeclaredHighPass {
         channel,
         corner_hz: start_hz * here.parameters.corner(channel),
@@ -64,24 +55,143 @@ pub fn undeclared(blocks: &Blocks, fit: &dyn Fn(&Blocks) -> Option<Fit>) -> Vec<
     found.collect()
 }
 
-/// The channels of the resonance curve that no high-pass is stated of.
+/// Channels of which a high-pass is found, and the fit with it.
+struct Step {
+    roles: Vec<Role>,
+    z_score: f64,
+    fit: Fit,
+    blocks: Blocks,
+}
+
+/// The next channel of which a high-pass explains far more, or all together: two masses whose channels turn phases
+/// alike are fitted by another natural frequency as well as one of them can be.
+fn step(
+    now: &Blocks,
+    here: &Fit,
+    start_hz: f64,
+    fit: &dyn Fn(&Blocks) -> Option<Fit>,
+) -> Option<Step> {
+    let roles = unstated(now);
+    let tried = |roles: Vec<Role>| {
+        let blocks = behind(now, &roles, start_hz);
+        let fit = fit(&blocks)?;
+        let typical = (fit.cost / fit.residuals.max(1) as f64).max(1.0);
+        let z_score = ((here.cost - fit.cost) / typical).max(0.0).sqrt();
+        Some(Step {
+            roles,
+            z_score,
+            fit,
+            blocks,
+        })
+    };
+    let explains = |step: &Step| {
+        let mut corners = step
+            .roles
+            .iter()
+            .map(|role| step.fit.parameters.corner(*role));
+        step.z_score > SURE
+            && here.cost >= CLEARLY * step.fit.cost
+            && corners.all(|corner| BELOW / corner <= FURTHEST_BELOW)
+    };
+    let alone = roles.iter().filter_map(|role| tried(vec![*role]));
+    let best = alone.min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
+    let together = || tried(roles.clone()).filter(|_| roles.len() > 1);
+    best.filter(explains)
+        .or_else(|| together().filter(explains))
+}
+
+/// The channels that no high-pass is stated of.
 fn unstated(blocks: &Blocks) -> Vec<Role> {
-    let responses = blocks.resonance.points.iter().flat_map(|p| &p.responses);
-    let without = responses.filter(|r| r.high_pass_hz.is_none() && gain_index(r.role).is_some());
-    let mut roles: Vec<Role> = without.map(|r| r.role).collect();
+    let channels = blocks
+        .resonance
+        .channels()
+        .chain(blocks.trajectory.channels());
+    let without =
+        channels.filter(|(role, corner_hz)| corner_hz.is_none() && gain_index(*role).is_some());
+    let mut roles: Vec<Role> = without.map(|(role, _)| role).collect();
     roles.sort_unstable();
     roles.dedup();
     roles
 }
 
-/// As if a channel had passed a high-pass.
-fn behind(blocks: &Blocks, role: Role, corner_hz: f64) -> Blocks {
+/// As if channels had passed a high-pass.
+fn behind(blocks: &Blocks, roles: &[Role], corner_hz: f64) -> Blocks {
     let mut other = blocks.clone();
     for point in &mut other.resonance.points {
-        for response in point.responses.iter_mut().filter(|r| r.role == role) {
+        for response in point
+            .responses
+            .iter_mut()
+            .filter(|r| roles.contains(&r.role))
+        {
             *response = response.behind(Some(corner_hz), point.frequency_hz);
+        }
+    }
+    for record in &mut other.trajectory.records {
+        record.reduced = None;
+        let folded = Arc::make_mut(&mut record.folded);
+        for channel in folded
+            .channels
+            .iter_mut()
+            .filter(|c| roles.contains(&c.role))
+        {
+            channel.high_pass_hz = Some(corner_hz);
         }
     }
     other.resonance.allow(LEAST_ALLOWANCE);
     other
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::run::identify;
+    use impact_fit::fixture::{evidence, observed, recorded};
+    use impact_records::record::Record;
+
+    const CORNER_HZ: f64 = 0.5;
+
+    /// A record without displacements of which both velocities have passed a high-pass of the first order, not stated.
+    fn passed(mut record: Record) -> Record {
+        let kept = (-std::f64::consts::TAU * CORNER_HZ / record.sample_rate_hz).exp();
+        let displacements = [Role::DisplacementX, Role::DisplacementY];
+        record.channels.retain(|c| !displacements.contains(&c.role));
+        let motion = record.channels.iter_mut().filter(|c| c.role.is_motion());
+        for channel in motion {
+            if channel.high_pass_hz.take().is_none() {
+                let (mut before, mut out) = (channel.values[0], 0.0);
+                for value in &mut channel.values {
+                    out = kept * out + 0.5 * (1.0 + kept) * (*value - before);
+                    (before, *value) = (*value, out);
+                }
+            }
+        }
+        record
+    }
+
+    #[test]
+    fn valid_a_high_pass_of_all_channels_is_found_although_the_resonance_curve_does_not_tell_it() {
+        let records = recorded(0.75, 12.0, 40, 4).into_iter().map(passed);
+        let observations = observed(&records.collect::<Vec<_>>());
+        let found = identify(&evidence(&observations)).suspicions;
+        let corners = found.iter().filter_map(|finding| match finding {
+            Finding::UndeclaredHighPass {
+                channel, corner_hz, ..
+            } => Some((*channel, *corner_hz)),
+            _ => None,
+        });
+        let corners: Vec<(Role, f64)> = corners.collect();
+        let velocities = corners.iter().map(|(channel, _)| *channel);
+        assert_eq!(
+            Vec::from_iter(velocities),
+            [Role::VelocityX, Role::VelocityY],
+            "{found:?}"
+        );
+        for (channel, corner_hz) in corners {
+            // this filter starts with each record, and is not settled as a laboratory's is
+            assert!(
+                (corner_hz / CORNER_HZ - 1.0).abs() < 0.15,
+                "{channel:?}: {corner_hz}"
+            );
+        }
+    }
 }
