@@ -251,6 +251,19 @@ pub enum Finding {
         /// Of how many that can be used.
         of: usize,
     },
+    /// A channel shows hardly anything of a motion that the same channel of the other mass shows.
+    FaintChannel {
+        /// The channel.
+        channel: Role,
+        /// That of the other mass.
+        other: Role,
+        /// In how many records.
+        records: usize,
+        /// Of how many in which the masses hit.
+        of: usize,
+        /// What it shows of the other one, in the median of these records.
+        share: f64,
+    },
     /// Many records begin before their motion has settled.
     RecordsNotSettled {
         /// How many.
@@ -376,6 +389,7 @@ impl Finding {
             Self::UndeclaredHighPass { .. } | Self::MotionsUndetermined { .. } => {
                 Some(Cause::Channel)
             }
+            Self::FaintChannel { records, of, .. } if 4 * records > *of => Some(Cause::Channel),
             Self::RigChanged { .. }
             | Self::ClearanceOnOtherRig { .. }
             | Self::SweepsDownOnOtherRig { .. } => Some(Cause::Change),
@@ -506,6 +520,14 @@ message_table! { "finding": Finding, key = template_key;
     Self::MotionsUndetermined { records, of } =>
         records = Value::Count(*records),
         of = Value::Count(*of);
+    Self::FaintChannel { channel, other, records, of, share } =>
+        channel = Value::Message(channel),
+        other = Value::Message(other),
+        key = Value::Name(channel.name()),
+        other_key = Value::Name(other.name()),
+        records = Value::Count(*records),
+        of = Value::Count(*of),
+        times = Value::Shortest(two_digits(share.recip()));
     Self::RecordsNotSettled { records, of, wait_s } =>
         records = Value::Count(*records),
         of = Value::Count(*of),

@@ -12,6 +12,7 @@ use crate::identify::diagnostics::common_scale::{self, CommonScale, common_scale
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::doubt::{self, Doubt, Suspicion};
 use crate::identify::diagnostics::drives::drives;
+use crate::identify::diagnostics::faint_channel::faint_channels;
 use crate::identify::diagnostics::gain_change;
 use crate::identify::diagnostics::late_channel;
 use crate::identify::diagnostics::refuted_gains::{self, Opened};
@@ -533,6 +534,8 @@ impl<'a> IdentificationRun<'a> {
         let Widened { methods, joint, .. } = results;
         suspicions.extend(settling::not_settled(observations, &joint.parameters));
         suspicions.extend(undetermined_motions(observations));
+        let lighter = self.evidence.nominal.mass_asymmetry.map(|[ratio, _]| ratio);
+        suspicions.extend(faint_channels(self.evidence.rig, observations, lighter));
         let changes = self.changes(cause::leading(suspicions, methods));
         let Changes {
             of_gain,

@@ -71,7 +71,7 @@ pub fn withdraw(
                 ..own.clone()
             };
             replaced.push(parameter);
-        } else if estimate.value.is_some() {
+        } else if estimate.value.is_some() || estimate.note == Some(Note::NotOneNumber) {
             let note = estimate.note.take();
             let kept = note.filter(|n| *n == Note::NotOneNumber && cause == Cause::Contact);
             estimate.weaken(kept.unwrap_or(Note::Bent));

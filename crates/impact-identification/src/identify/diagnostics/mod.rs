@@ -10,6 +10,7 @@ pub mod common_scale;
 pub mod contradicting_gap;
 pub mod doubt;
 pub mod drives;
+pub mod faint_channel;
 pub mod gain_change;
 pub mod late_channel;
 pub mod missing;
