@@ -92,34 +92,57 @@ impl Response {
         whole::index(number.floor().max(0.0)).min(self.turns.len() - 1)
     }
 
-    /// At a time of a swing, in samples.
-    fn at(&self, t: f64, swing: usize) -> f64 {
+    /// The part of a swing that decays, Re(z e^{λt}): z and what is added to it.
+    fn swung(&self, swing: usize) -> (Complex<f64>, f64) {
         if swing < self.begins {
-            return 0.0;
+            return (Complex::ZERO, 0.0);
         }
         let [omega, sigma, ..] = self.rates;
         let about = self.about(swing);
-        let own = t - self.turn(swing);
-        let swung = (self.turns[swing] - about) * (-sigma * own).exp();
-        let (sin, cos) = (omega * own).sin_cos();
+        let size = self.turns[swing] - about;
         let squared = omega * omega + sigma * sigma;
         match self.quantity {
-            MotionSignal::Displacement => about + swung * (cos + sigma / omega * sin),
-            MotionSignal::Velocity => -swung * squared / omega * sin,
-            MotionSignal::Acceleration => -swung * squared * (cos - sigma / omega * sin),
+            MotionSignal::Displacement => (size * Complex::new(1.0, -sigma / omega), about),
+            MotionSignal::Velocity => (Complex::new(0.0, size * squared / omega), 0.0),
+            MotionSignal::Acceleration => (-size * squared * Complex::new(1.0, sigma / omega), 0.0),
         }
     }
 
-    /// Means over as many samples as those of a series, whose swings are those of a response of near rates.
+    /// e^{λt} at a time of a swing, in samples.
+    fn grown(&self, t: f64, swing: usize) -> Complex<f64> {
+        (rate(&self.rates) * (t - self.turn(swing))).exp()
+    }
+
+    /// At a time of a swing, in samples.
+    fn at(&self, t: f64, swing: usize) -> f64 {
+        let (size, added) = self.swung(swing);
+        added + (size * self.grown(t, swing)).re
+    }
+
+    /// Means over as many samples as those of a series, whose swings are those of a response of near rates. Within a swing
+    /// the mean over a sample's parts is the value in its middle but for a factor.
     fn means(&self, swings: &Self, series: &Means) -> Vec<f64> {
         let parts = series.factor.clamp(1, MOST_PARTS);
         let middle = 0.5 * (parts as f64 - 1.0);
+        let offsets: Vec<f64> = (0..parts)
+            .map(|k| (k as f64 - middle) / parts as f64)
+            .collect();
+        let reach = middle / parts as f64;
+        let lambda = rate(&self.rates);
+        let of_parts: Complex<f64> = offsets.iter().map(|by| (lambda * by).exp()).sum();
+        let of_parts = of_parts / parts as f64;
         let mean = |i: usize| {
-            let of = |k: usize| {
-                let t = i as f64 + (k as f64 - middle) / parts as f64;
-                self.at(t, swings.swing(t))
-            };
-            (0..parts).map(of).sum::<f64>() / parts as f64
+            let t = i as f64;
+            let [swing, last] = [t - reach, t + reach].map(|t| swings.swing(t));
+            if swing != last {
+                let parts_of = offsets
+                    .iter()
+                    .map(|by| self.at(t + by, swings.swing(t + by)));
+                return parts_of.sum::<f64>() / parts as f64;
+            }
+            let grown = self.grown(t, swing);
+            let (size, added) = self.swung(swing);
+            added + (size * of_parts * grown).re
         };
         (0..series.count).map(mean).collect()
     }
@@ -161,4 +184,61 @@ pub(super) fn slopes(series: &Means, rates: Rates, swings: usize) -> [Vec<f64>; 
         let pairs = after.iter().zip(&before);
         pairs.map(|(a, b)| (a - b) / (2.0 * step)).collect()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prop_means_are_those_of_a_response_at_the_times_of_their_parts() {
+        for quantity in [
+            MotionSignal::Displacement,
+            MotionSignal::Velocity,
+            MotionSignal::Acceleration,
+        ] {
+            for (factor, swings) in [(1, 0), (7, 0), (10, 3)] {
+                let rates = [0.137, 0.004, 0.0, 5.3];
+                let count = 300;
+                let series = Means {
+                    count,
+                    factor,
+                    quantity,
+                };
+                let response = Response::from(swings, rates, quantity, count as f64);
+                for (i, mean) in column(&series, rates, swings).into_iter().enumerate() {
+                    let times =
+                        (0..factor).map(|k| i as f64 + (k as f64 + 0.5) / factor as f64 - 0.5);
+                    let sum: f64 = times.map(|t| response.at(t, response.swing(t))).sum();
+                    let apart = mean - sum / factor as f64;
+                    assert!(apart.abs() < 1e-12, "{quantity:?} {factor} {i}: {apart}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn valid_a_swing_obeys_the_equation_of_motion_beside_friction() {
+        // q'' + 2σq' + ω0²q = ω0² about, at rest at its turning points
+        let [omega, sigma] = [0.137, 0.004];
+        let rates = [omega, sigma, 0.0, 5.3];
+        let of = |quantity| Response::of(rates, quantity, 300.0);
+        let all = [
+            MotionSignal::Displacement,
+            MotionSignal::Velocity,
+            MotionSignal::Acceleration,
+        ]
+        .map(of);
+        let squared = omega * omega + sigma * sigma;
+        for swing in 1..8 {
+            for share in [0.0, 0.3, 0.8] {
+                let t = all[0].turn(swing) + share * std::f64::consts::PI / omega;
+                let [q, velocity, acceleration] = [0, 1, 2].map(|k| all[k].at(t, swing));
+                let force = squared * all[0].about(swing);
+                let left = acceleration + 2.0 * sigma * velocity + squared * q - force;
+                assert!(left.abs() < 1e-12, "{swing} {share}: {left}");
+                assert!(share > 0.0 || velocity.abs() < 1e-12, "{velocity}");
+            }
+        }
+    }
 }
