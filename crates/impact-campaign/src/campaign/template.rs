@@ -380,6 +380,13 @@ fn table(
 fn events(text: &mut String, content: ContactContent, then: &[String]) -> std::fmt::Result {
     let (word, what) = match content {
         ContactContent::Signal => return writeln!(text),
+        ContactContent::Times if !then.is_empty() => {
+            ("times", "each row is a throw: the times of its impacts")
+        }
+        ContactContent::Intervals if !then.is_empty() => (
+            "intervals",
+            "each row is a throw: the times from an impact to the next",
+        ),
         ContactContent::Times => (
             "times",
             "each row is the time of an impact, or of a change of the contact: those that close it count",
@@ -403,11 +410,11 @@ fn events(text: &mut String, content: ContactContent, then: &[String]) -> std::f
         ),
     };
     writeln!(text, "content = \"{word}\"          # {what}")?;
+    if !then.is_empty() {
+        let names: Vec<String> = then.iter().map(|name| quoted(name)).collect();
+        writeln!(text, "then = [{}]", names.join(", "))?;
+    }
     if content.is_of_heights() {
-        if !then.is_empty() {
-            let names: Vec<String> = then.iter().map(|name| quoted(name)).collect();
-            writeln!(text, "then = [{}]", names.join(", "))?;
-        }
         writeln!(
             text,
             "# height_uncertainty = \"2 mm\" # of each height; their scatter tells it if not given"

@@ -70,6 +70,8 @@ pub enum Note {
     Drifts,
     /// The damping ratio changes over the decay.
     DampingChanges,
+    /// Flights do not become shorter beyond the errors of R.
+    FlightsAlike,
     /// Three times in one record leave nothing that tells their errors.
     TimesNotTold {
         /// The error that each is given, s.

@@ -155,7 +155,7 @@ pub struct ChannelSetup {
     /// What the contact's channel contains.
     #[serde(default)]
     pub content: ContactContent,
-    /// Of heights: the columns of the heights that follow in the same row.
+    /// Of a list: the columns that follow in the same row.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub then: Vec<ChannelKey>,
     /// Of heights: standard uncertainty of each, m.

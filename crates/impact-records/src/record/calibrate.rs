@@ -115,11 +115,16 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
         return record;
     }
     if content != ContactContent::Signal {
+        let Some(beside) = columns_beside(source, setup, dataset, &mut record) else {
+            return record;
+        };
         let closed_s = match content {
-            ContactContent::Times => keep_closings(source, setup, dataset, &mut record, &kept),
+            ContactContent::Times if beside.is_empty() => {
+                keep_closings(source, setup, dataset, &mut record, &kept)
+            }
             _ => 0.0,
         };
-        events::settle(&mut record, content, closed_s);
+        events::settle(&mut record, content, closed_s, &beside);
         stated(&mut record.listed, dataset);
         return record;
     }
@@ -161,13 +166,9 @@ fn settle_heights(
     let (Some(first), Ok(bound)) = (first, bind(contact, dataset)) else {
         return;
     };
-    let mut beside = Vec::new();
-    for key in &contact.then {
-        match column(source, setup.dataset, dataset, contact, key) {
-            Ok(values) => beside.push(values),
-            Err(flag) => return record.flags.push(flag),
-        }
-    }
+    let Some(beside) = columns_beside(source, setup, dataset, record) else {
+        return;
+    };
     let unit_m = bound.to_si.to_si.abs();
     let all = beside.iter().flatten().chain(&first);
     let raw: Vec<f64> = all.map(|h| (h + bound.offset_si) / unit_m).collect();
@@ -187,7 +188,24 @@ fn settle_heights(
     heights::settle(record, contact.content, &beside, (step_m, known));
 }
 
-/// The heights of a further column, m, calibrated as the first.
+/// The columns that follow that of the contact in the same row; `None`, with a flag, where one cannot be read.
+fn columns_beside(
+    source: &dyn Source,
+    setup: &RecordSetup<'_>,
+    dataset: &DatasetInfo,
+    record: &mut Record,
+) -> Option<Vec<Vec<f64>>> {
+    let contact = setup.channels.iter().find(|c| c.role == Role::Contact);
+    let then = contact
+        .into_iter()
+        .flat_map(|c| c.then.iter().map(move |key| (c, key)));
+    let read: Result<Vec<Vec<f64>>, Flag> = then
+        .map(|(contact, key)| column(source, setup.dataset, dataset, contact, key))
+        .collect();
+    read.map_err(|flag| record.flags.push(flag)).ok()
+}
+
+/// The values of a further column, SI, calibrated as the first.
 fn column(
     source: &dyn Source,
     index: usize,

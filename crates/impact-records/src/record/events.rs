@@ -9,16 +9,33 @@ use labfiles::units::Dimension;
 /// Fewest impacts from which flight times can be compared.
 const FEWEST: usize = 3;
 
+/// Time between throws that a table has in its rows, over the longest flight: far more than a flight that is two, the impact
+/// between them missing.
+const REST: f64 = 10.0;
+
 /// Turn a contact that is stated as events into the times of its impacts, s. The record then has the
-/// mean rate of its impacts as its rate. `closed_s` is how long a contact lasts, if the rows have told it.
-pub(super) fn settle(record: &mut Record, content: ContactContent, closed_s: f64) {
+/// mean rate of its impacts as its rate. `closed_s` is how long a contact lasts, if the rows have told it; `beside` are the
+/// columns that follow where each row is a throw of its own.
+pub(super) fn settle(
+    record: &mut Record,
+    content: ContactContent,
+    closed_s: f64,
+    beside: &[Vec<f64>],
+) {
     let rate_hz = record.sample_rate_hz;
     let Some(channel) = record.channels.iter_mut().find(|c| c.role == Role::Contact) else {
         return;
     };
-    let printed = || printed_step(&channel.values);
+    let printed = || {
+        let columns = beside.iter().map(|column| printed_step(column));
+        columns.fold(printed_step(&channel.values), f64::min)
+    };
     let (found, step_s) = match content {
         ContactContent::Signal | ContactContent::Heights | ContactContent::Rebounds => return,
+        ContactContent::Times | ContactContent::Intervals if !beside.is_empty() => {
+            let times = across(channel, beside, content);
+            (times.map(|times| (times, 0.0, None)), printed())
+        }
         ContactContent::Times => (
             times(&channel.values)
                 .map_err(|row| not_rising(channel, row))
@@ -54,6 +71,44 @@ pub(super) fn settle(record: &mut Record, content: ContactContent, closed_s: f64
     channel.threshold = None;
     record.flags.extend(note);
     record.channels.retain(|c| c.role == Role::Contact);
+}
+
+/// The times of throws that lie along the rows, one throw after the other with a rest between them. A row ends at the first
+/// cell that is empty, or zero; one with too few impacts is passed over.
+fn across(
+    channel: &Channel,
+    beside: &[Vec<f64>],
+    content: ContactContent,
+) -> Result<Vec<f64>, Flag> {
+    let mut throws: Vec<Vec<f64>> = Vec::new();
+    for (row, first) in channel.values.iter().enumerate() {
+        let after = beside.iter().filter_map(|column| column.get(row).copied());
+        let cells: Vec<f64> = std::iter::once(*first).chain(after).collect();
+        let throw = match content {
+            ContactContent::Intervals => added_up(&cells),
+            _ => {
+                let filled = cells.iter().copied().take_while(|t| t.is_finite());
+                let times: Vec<f64> = filled.collect();
+                if let Some(at) = times.windows(2).position(|w| w[1] <= w[0]) {
+                    return Err(not_rising(channel, at + 2));
+                }
+                times
+            }
+        };
+        if throw.len() >= FEWEST {
+            throws.push(throw);
+        }
+    }
+    let flights = throws
+        .iter()
+        .flat_map(|t| t.windows(2).map(|w| w[1] - w[0]));
+    let rest_s = REST * flights.fold(0.0, f64::max);
+    let mut times: Vec<f64> = Vec::new();
+    for throw in throws {
+        let begin_s = times.last().map_or(0.0, |last| last + rest_s);
+        times.extend(throw.iter().map(|t| begin_s + t - throw[0]));
+    }
+    Ok(times)
 }
 
 /// The impacts among listed times, how long each contact lasts, where the list tells it, and a note on that.
@@ -155,7 +210,7 @@ mod tests {
     #[test]
     fn intervals_add_up_to_times_until_one_is_zero() {
         let mut list = record(&[0.5, 0.4, 0.32, 0.0]);
-        settle(&mut list, ContactContent::Intervals, 0.0);
+        settle(&mut list, ContactContent::Intervals, 0.0, &[]);
         let times = list.values(Role::Contact).unwrap();
         assert_eq!(times.len(), 4);
         assert!((times[3] - 1.22).abs() < 1e-12);
@@ -164,9 +219,39 @@ mod tests {
     }
 
     #[test]
+    fn throws_along_the_rows_follow_each_other_after_a_rest() {
+        let beside = [vec![0.4, 0.5, 0.4], vec![0.32, 0.0, 0.3]];
+        let mut list = record(&[0.5, 0.0, 0.5]);
+        settle(&mut list, ContactContent::Intervals, 0.0, &beside);
+        let times = list.values(Role::Contact).unwrap().to_vec();
+        let expected = [0.0, 0.5, 0.9, 1.22, 6.22, 6.72, 7.12, 7.42];
+        assert_eq!(times.len(), expected.len());
+        for (time, expected) in times.iter().zip(expected) {
+            assert!((time - expected).abs() < 1e-12, "{times:?}");
+        }
+        assert!((list.listed.error_s - 1e-2 / 12f64.sqrt()).abs() < 1e-15);
+        let mut list = record(&[0.1, 7.0]);
+        let beside = [vec![0.6, 7.5], vec![1.0, 7.9]];
+        settle(&mut list, ContactContent::Times, 0.0, &beside);
+        assert_eq!(list.values(Role::Contact).unwrap().len(), 6);
+        let mut back = record(&[0.1]);
+        settle(
+            &mut back,
+            ContactContent::Times,
+            0.0,
+            &[vec![0.6], vec![0.5]],
+        );
+        assert!(
+            back.flags[0].message().contains("impact 3"),
+            "{:?}",
+            back.flags
+        );
+    }
+
+    #[test]
     fn a_list_of_times_with_the_last_impact_first_is_turned_around() {
         let mut list = record(&[1.22, 0.9, 0.5, 0.0]);
-        settle(&mut list, ContactContent::Times, 0.0);
+        settle(&mut list, ContactContent::Times, 0.0, &[]);
         assert_eq!(list.values(Role::Contact).unwrap(), [0.0, 0.5, 0.9, 1.22]);
         assert!(list.flags.is_empty());
     }
@@ -174,14 +259,14 @@ mod tests {
     #[test]
     fn lists_that_are_none_are_refused_with_the_row() {
         let mut back = record(&[1.0, 2.0, 1.5, 3.0]);
-        settle(&mut back, ContactContent::Times, 0.0);
+        settle(&mut back, ContactContent::Times, 0.0, &[]);
         assert!(
             back.flags[0].message().contains("impact 3"),
             "{:?}",
             back.flags
         );
         let mut short = record(&[1.0, 2.0, f64::NAN]);
-        settle(&mut short, ContactContent::Times, 0.0);
+        settle(&mut short, ContactContent::Times, 0.0, &[]);
         assert_eq!(short.flags[0].code, FlagCode::NoImpact);
     }
 
@@ -189,7 +274,7 @@ mod tests {
     fn the_row_at_which_the_intervals_grow_is_named() {
         // passages of a gate
         let mut gate = record(&[0.0, 0.12, 0.5, 0.62, 0.9, 1.02, 1.22, 1.34]);
-        settle(&mut gate, ContactContent::Times, 0.0);
+        settle(&mut gate, ContactContent::Times, 0.0, &[]);
         assert_eq!(gate.flags[0].code, FlagCode::ContactUnclear);
         let message = gate.flags[0].message();
         let start = "3 of 7 intervals are longer than the one before, the first of them the one that ends with row 3";
@@ -205,14 +290,14 @@ mod tests {
             (vec![0.5_f64.sqrt(), 1.1_f64.sqrt(), 1.4_f64.sqrt()], 0.0),
         ] {
             let mut list = record(&times);
-            settle(&mut list, ContactContent::Times, 0.0);
+            settle(&mut list, ContactContent::Times, 0.0, &[]);
             assert!(
                 (list.listed.error_s - step_s / 12f64.sqrt()).abs() < 1e-15,
                 "{times:?}"
             );
         }
         let mut changes = record(&[0.0, 2e-3, 0.5, 0.502, 0.9, 0.902]);
-        settle(&mut changes, ContactContent::Times, 0.0);
+        settle(&mut changes, ContactContent::Times, 0.0, &[]);
         assert_eq!(changes.values(Role::Contact).unwrap(), [0.0, 0.5, 0.9]);
         assert!((changes.listed.error_s - 2.236e-3 / 12f64.sqrt()).abs() < 1e-6);
         assert_eq!(changes.flags[0].code, FlagCode::ContactChanges);

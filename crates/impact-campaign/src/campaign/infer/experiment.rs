@@ -31,6 +31,13 @@ const FEWEST_SOUNDS: usize = 4;
 pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
     let Some(first) = places.first() else { return };
     let times = lists::of_times(*first);
+    if let Some(content) = lists::along_rows(*first, &times) {
+        list(*first, times[0], &mut found.channels);
+        let names = times.iter().filter_map(|i| found.channels.get(*i));
+        found.then = names.skip(1).map(|c| c.name.clone()).collect();
+        found.experiment = Experiment::Events(content);
+        return;
+    }
     if !times.is_empty() {
         found.experiment = Experiment::Events(events(*first, &times, &mut found.channels));
         return;
@@ -224,13 +231,20 @@ fn events(place: Place<'_>, listed: &[usize], channels: &mut [InferredChannel]) 
         Some(at) => (Some(*at), ContactContent::Times),
         None => (listed.first().copied(), ContactContent::Intervals),
     };
+    if let Some(at) = at {
+        list(place, at, channels);
+    }
+    content
+}
+
+/// Take a column as the list of the impacts.
+fn list(place: Place<'_>, at: usize, channels: &mut [InferredChannel]) {
     without_roles(channels);
-    if let Some((at, channel)) = at.and_then(|at| Some((at, channels.get_mut(at)?))) {
+    if let Some(channel) = channels.get_mut(at) {
         channel.role = Some(Role::Contact);
         let unit = channel.unit.as_deref();
         channel.counted_in = Some(AxisUnit::of(unit, &channel.name, &place.numbers(at)));
     }
-    content
 }
 
 /// Samples a second by which sounds are looked for where the files state none: R does not depend on it.

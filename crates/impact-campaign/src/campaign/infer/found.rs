@@ -39,7 +39,7 @@ pub struct FolderContents {
     pub records: usize,
     /// Tables that are no records, as those of settings and notes: files, or sheets of them.
     pub others: Vec<String>,
-    /// Columns of heights that follow those of the contact's channel in the same row.
+    /// Columns of a list that follow that of the contact's channel in the same row.
     pub then: Vec<String>,
     /// Whether the records leave open if one mass moves or two.
     pub asks_machine: bool,

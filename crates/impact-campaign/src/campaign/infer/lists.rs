@@ -2,7 +2,7 @@
 
 use super::heights::numbers_rows;
 use super::place::Place;
-use impact_records::record::changes;
+use impact_records::record::{ContactContent, changes};
 use impact_records::signal::columns;
 use labfiles::units::{self, Dimension};
 use labfiles::{ChannelInfo, DatasetInfo, StoredType, timing};
@@ -60,6 +60,41 @@ fn listed(place: Place<'_>) -> Vec<usize> {
             vec![*time]
         }
         _ => Vec::new(),
+    }
+}
+
+/// Part of the rows that go the same way where each is a throw of its own.
+const MOSTLY: f64 = 0.9;
+
+/// What the rows of several columns of times are, where each is a throw of its own: times that rise along them, or flights that
+/// become shorter, and neither down the first column.
+pub(super) fn along_rows(place: Place<'_>, columns: &[usize]) -> Option<ContactContent> {
+    let values: Vec<Vec<f64>> = columns.iter().map(|i| place.numbers(*i)).collect();
+    let first = values.first()?;
+    let row = |k: usize| -> Vec<f64> {
+        let cells = values.iter().filter_map(|column| column.get(k).copied());
+        cells.take_while(|t| t.is_finite()).collect()
+    };
+    let rows: Vec<Vec<f64>> = (0..first.len()).map(row).collect();
+    let goes = |all: &[f64], down: bool| {
+        let mut steps = all.windows(2).map(|w| w[1] - w[0]);
+        steps.all(|step| if down { step < 0.0 } else { step > 0.0 })
+    };
+    let mostly = |fewest: usize, down: bool| {
+        let long = rows.iter().filter(|row| row.len() >= fewest);
+        let along = long.filter(|row| goes(row, down)).count();
+        along as f64 >= MOSTLY * rows.len() as f64
+    };
+    let shorter = first.windows(2).filter(|w| w[1] < w[0]).count() as f64;
+    let steps = first.len().saturating_sub(1) as f64;
+    if goes(first, false) {
+        None
+    } else if mostly(3, false) {
+        Some(ContactContent::Times)
+    } else if mostly(2, true) && shorter < MOST_SHORTER * steps {
+        Some(ContactContent::Intervals)
+    } else {
+        None
     }
 }
 
@@ -129,16 +164,38 @@ fn changes_at(place: Place<'_>) -> Option<usize> {
 mod tests {
     use super::*;
 
-    /// The columns of a list in a text.
-    fn of(text: &str) -> Vec<usize> {
+    /// What is found in a list in a text.
+    fn found<T>(text: &str, find: impl Fn(Place<'_>) -> T) -> T {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("list.csv");
         std::fs::write(&path, text).unwrap();
         let source = labfiles::open(&path).unwrap();
-        listed(Place {
+        find(Place {
             source: source.as_ref(),
             dataset: 0,
         })
+    }
+
+    /// The columns of a list in a text.
+    fn of(text: &str) -> Vec<usize> {
+        found(text, listed)
+    }
+
+    #[test]
+    fn rows_are_throws_where_they_go_one_way_and_the_columns_do_not() {
+        let along = |text: &str| found(text, |place| along_rows(place, &listed(place)));
+        let flights = "trial,t1_s,t2_s,t3_s\n1,0.61,0.50,0.42\n2,0.64,0.53,0.43\n3,0.60,0.49,0.41\n4,0.65,0.54,0.45\n";
+        assert_eq!(along(flights), Some(ContactContent::Intervals));
+        let times =
+            "trial,b1 (s),b2 (s),b3 (s)\n1,0.3,0.91,1.41\n2,0.3,0.94,1.47\n3,0.3,0.90,1.39\n";
+        assert_eq!(along(times), Some(ContactContent::Times));
+        // each column is a throw
+        let columns =
+            "a (s),b (s),c (s)\n0.61,0.64,0.60\n0.50,0.53,0.49\n0.42,0.43,0.41\n0.35,0.36,0.34\n";
+        assert_eq!(along(columns), None);
+        // times beside their intervals
+        let both = "t (s),interval (s)\n1.0,0.50\n1.42,0.42\n1.77,0.35\n2.06,0.29\n";
+        assert_eq!(along(both), None);
     }
 
     #[test]

@@ -49,7 +49,7 @@ keys! {
         /// after it, below each other or, with `then`, along each row; `"rebounds"`: each of `then` is one of the drop from
         /// `channel`
         content: Placed<ContactContent>;
-        /// of heights: the columns of the heights that follow in the same row, `["rebound"]`
+        /// of times, intervals and heights: the columns that follow in the same row, `["rebound"]`
         then: Placed<Vec<WrittenKey>>;
         /// of heights: standard uncertainty of each, `"2 mm"`; by their scatter, and at least their last digit, if not given
         height_uncertainty: Placed<WrittenQuantity>;
@@ -243,7 +243,7 @@ fn resolve_one(
     Some(setup)
 }
 
-/// The columns of heights that follow; the content says what they are for.
+/// The columns that follow in the same row of a list; the content says what they are for.
 fn then(
     role: Role,
     written: &ChannelTable,
@@ -261,11 +261,24 @@ fn then(
         context.fault(Code::Missing, placed, &key("then"), what, remedy);
     }
     let uncertain = written.height_uncertainty.as_ref().map(Spanned::span);
-    let named = written.then.as_ref().map(Spanned::span);
-    if let (Some(span), false) = (named.or(uncertain), content.is_of_heights()) {
+    if let (Some(span), false) = (uncertain, content.is_of_heights()) {
         let placed = Spanned::new(span, ());
-        let what = "then and height_uncertainty are those of heights".to_owned();
-        let remedy = "write content = \"heights\" or \"rebounds\", or remove them";
+        let what = "height_uncertainty is that of heights".to_owned();
+        let remedy = "write content = \"heights\" or \"rebounds\", or remove it";
+        context.fault(
+            Code::Conflict,
+            &placed,
+            &key("height_uncertainty"),
+            what,
+            remedy,
+        );
+    }
+    let named = written.then.as_ref().map(Spanned::span);
+    if let (Some(span), false) = (named, content.is_list()) {
+        let placed = Spanned::new(span, ());
+        let what = "then continues the rows of a list".to_owned();
+        let remedy =
+            "write content = \"times\", \"intervals\", \"heights\" or \"rebounds\", or remove it";
         context.fault(Code::Conflict, &placed, &key("then"), what, remedy);
     }
     let placed = of_contact(role, &written.then, "then", &key("then"), context);

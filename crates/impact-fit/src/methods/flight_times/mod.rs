@@ -174,7 +174,8 @@ fn rises_by_contacts(rows: &[(&Row, Fitted)], known: Known, unlisted: &Unlisted)
     !trend.as_ref().is_some_and(is_change)
 }
 
-/// R with the error that the rows leave of it and what times do not contain.
+/// R with the error that the rows leave of it and what times do not contain. Where it may be 1, the flights need not be those
+/// of a mass that bounces: trials one below the other are as long in the mean.
 fn estimated(
     value: f64,
     error: f64,
@@ -194,6 +195,10 @@ fn estimated(
         } else {
             Note::TimesNotTold { error_s: error }
         });
+    }
+    let alike = estimate.interval95.is_some_and(|[_, high]| high >= 1.0);
+    if alike && !known.heights {
+        estimate.weaken(Note::FlightsAlike);
     }
     estimate
 }
@@ -510,6 +515,32 @@ mod tests {
         let odd = |r: &Remark| matches!(r, Remark::OddRecord { .. });
         assert!(!found.remarks.iter().any(odd), "{:?}", found.remarks);
         assert_eq!(found.fits, Some(false), "{:?}", found.remarks);
+    }
+
+    #[test]
+    fn valid_trials_below_each_other_are_no_flights_of_one_mass() {
+        // the first flights of ten throws, of 0.6 s but for the hand
+        let flights = (0..10).map(|k: usize| 0.6 + 0.04 * (k as f64 * 2.399_963).sin());
+        let times = flights.scan(0.0, |time, flight| {
+            *time += flight;
+            Some(*time)
+        });
+        let times: Vec<f64> = std::iter::once(0.0).chain(times).collect();
+        let found = pooled(&[timed("a", &times)]).expect("a result");
+        let r = found.parameters.restitution.expect("R");
+        assert_eq!((r.status, r.note), (Status::Weak, Some(Note::FlightsAlike)));
+    }
+
+    #[test]
+    fn rests_between_the_throws_of_a_list_are_no_flights_left_out() {
+        let throws = [0.0, 20.0, 40.0].into_iter();
+        let times: Vec<f64> = throws
+            .flat_map(|at| row(0.8, 5).into_iter().map(move |t| t + at))
+            .collect();
+        let found = pooled(&[timed("a", &times)]).expect("a result");
+        let left = |r: &Remark| matches!(r, Remark::FlightsLeftOut { .. });
+        assert!(!found.remarks.iter().any(left), "{:?}", found.remarks);
+        assert_eq!(found.observations, 15);
     }
 
     #[test]

@@ -9,6 +9,8 @@ use impact_records::signal::robust;
 /// Ratios of a flight to the one before, relative to the median, outside of which an impact was missed
 /// or something else was heard.
 const PLAUSIBLE: [f64; 2] = [0.6, 1.6];
+/// Ratio to the flight before from which on a lone one is the time between two throws of one list.
+const REST: f64 = 3.0;
 /// Greatest ratio that is possible but for errors of the times.
 const GREATEST: f64 = 1.05;
 
@@ -139,7 +141,8 @@ pub(super) fn rows(records: &[(usize, &Observation)]) -> Rows {
                 continue;
             }
             if end - begin < 2 {
-                found.left_out += end - begin;
+                let rests = begin > 0 && ratios[begin - 1] > REST;
+                found.left_out += usize::from(!rests);
             } else {
                 found.rows.push(Row {
                     record: *record,
