@@ -43,8 +43,9 @@ keys! {
         delay_uncertainty: Placed<WrittenQuantity>;
         /// of the contact: the level between open and closed
         threshold: Placed<WrittenQuantity>;
-        /// of the contact: `"signal"` (default); `"times"` or `"intervals"` of impacts, one in each row, or of changes
-        /// of the contact, closed, open, closed …, with or without a column of its state; `"sound"` of a microphone. R
+        /// of the contact: `"signal"` (default); `"times"` or `"intervals"` of impacts, one in each row or, with `then`,
+        /// along each row, which is then a throw of its own; or of changes of the contact, closed, open, closed …, with or
+        /// without a column of its state; `"sound"` of a microphone. R
         /// then follows from the flight times, under `flight = "constant_force"`; or `"heights"` of a drop and of the tops
         /// after it, below each other or, with `then`, along each row; `"rebounds"`: each of `then` is one of the drop from
         /// `channel`
