@@ -8,6 +8,7 @@ mod labview;
 mod loggers;
 mod matlab;
 mod rig;
+mod trials;
 mod workbook;
 
 use std::fs;

@@ -9,6 +9,26 @@ use labfiles::units::Dimension;
 /// Fewest impacts from which flight times can be compared.
 const FEWEST: usize = 3;
 
+/// The impacts of a list.
+struct Found {
+    times_s: Vec<f64>,
+    /// How long each contact lasts; 0 where the list does not tell it.
+    contact_s: f64,
+    /// What was taken.
+    note: Option<Flag>,
+}
+
+impl Found {
+    /// Impacts of which nothing but their times is known.
+    fn alone(times_s: Vec<f64>) -> Self {
+        Self {
+            times_s,
+            contact_s: 0.0,
+            note: None,
+        }
+    }
+}
+
 /// Time between throws that a table has in its rows, over the longest flight: far more than a flight that is two, the impact
 /// between them missing.
 const REST: f64 = 10.0;
@@ -33,8 +53,7 @@ pub(super) fn settle(
     let (found, step_s) = match content {
         ContactContent::Signal | ContactContent::Heights | ContactContent::Rebounds => return,
         ContactContent::Times | ContactContent::Intervals if !beside.is_empty() => {
-            let times = across(channel, beside, content);
-            (times.map(|times| (times, 0.0, None)), printed())
+            (across(channel, beside, content), printed())
         }
         ContactContent::Times => (
             times(&channel.values)
@@ -46,12 +65,16 @@ pub(super) fn settle(
         ContactContent::Sound => {
             let found = onsets::find(&channel.values, rate_hz);
             let times = found.iter().map(|i| i / rate_hz).collect();
-            (Ok((times, 0.0, None)), rate_hz.recip())
+            (Ok(Found::alone(times)), rate_hz.recip())
         }
     };
-    let (times_s, lasting_s, note) = match found {
-        Ok((times, ..)) if times.len() < FEWEST => {
-            let flag = too_few(channel, times.len(), content);
+    let Found {
+        times_s,
+        contact_s,
+        note,
+    } = match found {
+        Ok(found) if found.times_s.len() < FEWEST => {
+            let flag = too_few(channel, found.times_s.len(), content);
             return record.flags.push(flag);
         }
         Ok(found) => found,
@@ -60,7 +83,7 @@ pub(super) fn settle(
     let span_s = times_s[times_s.len() - 1] - times_s[0];
     record.sample_rate_hz = (times_s.len() - 1) as f64 / span_s.max(f64::MIN_POSITIVE);
     // where in a step, and where in the contact, the impact was is not known
-    let contact_s = closed_s.max(lasting_s);
+    let contact_s = closed_s.max(contact_s);
     record.listed = ListedTimes {
         error_s: step_s.hypot(contact_s) / 12f64.sqrt(),
         contact_s,
@@ -75,11 +98,7 @@ pub(super) fn settle(
 
 /// The times of throws that lie along the rows, one throw after the other with a rest between them. A row ends at the first
 /// cell that is empty, or zero; one with too few impacts is passed over.
-fn across(
-    channel: &Channel,
-    beside: &[Vec<f64>],
-    content: ContactContent,
-) -> Result<Vec<f64>, Flag> {
+fn across(channel: &Channel, beside: &[Vec<f64>], content: ContactContent) -> Result<Found, Flag> {
     let mut throws: Vec<Vec<f64>> = Vec::new();
     for (row, first) in channel.values.iter().enumerate() {
         let after = beside.iter().filter_map(|column| column.get(row).copied());
@@ -103,21 +122,33 @@ fn across(
         .iter()
         .flat_map(|t| t.windows(2).map(|w| w[1] - w[0]));
     let rest_s = REST * flights.fold(0.0, f64::max);
+    let problem = Problem::ThrowsInRows {
+        throws: throws.len(),
+        impacts: throws.iter().map(Vec::len).sum(),
+    };
+    let note = Flag::new(Some(&channel.name), problem).excluding(false);
     let mut times: Vec<f64> = Vec::new();
     for throw in throws {
         let begin_s = times.last().map_or(0.0, |last| last + rest_s);
         times.extend(throw.iter().map(|t| begin_s + t - throw[0]));
     }
-    Ok(times)
+    Ok(Found {
+        note: Some(note),
+        ..Found::alone(times)
+    })
 }
 
-/// The impacts among listed times, how long each contact lasts, where the list tells it, and a note on that.
-fn impacts(times: Vec<f64>, channel: &Channel) -> Result<(Vec<f64>, f64, Option<Flag>), Flag> {
+/// The impacts among listed times.
+fn impacts(times: Vec<f64>, channel: &Channel) -> Result<Found, Flag> {
     match listing(&times) {
-        Listing::Impacts => Ok((times, 0.0, None)),
+        Listing::Impacts => Ok(Found::alone(times)),
         Listing::Changes(Closings { times_s, closed_s }) => {
             let note = alternating(channel, times_s.len(), closed_s);
-            Ok((times_s, closed_s, Some(note)))
+            Ok(Found {
+                times_s,
+                contact_s: closed_s,
+                note: Some(note),
+            })
         }
         Listing::Unclear(rises) => Err(unclear(channel, rises)),
     }
@@ -230,6 +261,12 @@ mod tests {
             assert!((time - expected).abs() < 1e-12, "{times:?}");
         }
         assert!((list.listed.error_s - 1e-2 / 12f64.sqrt()).abs() < 1e-15);
+        let [taken] = &list.flags[..] else {
+            panic!("{:?}", list.flags);
+        };
+        assert!(!list.excluded());
+        let said = "each row is taken as a throw of its own: 2 throws with 8 impacts";
+        assert!(taken.message().contains(said), "{}", taken.message());
         let mut list = record(&[0.1, 7.0]);
         let beside = [vec![0.6, 7.5], vec![1.0, 7.9]];
         settle(&mut list, ContactContent::Times, 0.0, &beside);

@@ -540,7 +540,7 @@ mod tests {
         let found = pooled(&[timed("a", &times)]).expect("a result");
         let left = |r: &Remark| matches!(r, Remark::FlightsLeftOut { .. });
         assert!(!found.remarks.iter().any(left), "{:?}", found.remarks);
-        assert_eq!(found.observations, 15);
+        assert_eq!(found.observations, 18);
     }
 
     #[test]

@@ -274,6 +274,13 @@ problems! {
         /// Rows that are impacts.
         impacts: usize,
     };
+    /// Each row is a throw.
+    ContactChanges: ThrowsInRows {
+        /// Throws that have enough impacts.
+        throws: usize,
+        /// Their impacts.
+        impacts: usize,
+    };
     /// Either of two lines may be the contact.
     ContactUnclear: EitherLine {
         /// A line.

@@ -149,6 +149,9 @@ message_table! { "problem": Problem;
     Self::GroupsOfRows { closed_s, impacts } =>
         length = Value::Number(1e3 * closed_s, 3),
         impacts = Value::Count(*impacts);
+    Self::ThrowsInRows { throws, impacts } =>
+        throws = Value::Count(*throws),
+        impacts = Value::Count(*impacts);
     Self::HeightsTaken { impacts, drops, highest_m, lowest_m } =>
         impacts = Value::Count(*impacts),
         drops = Value::Count(*drops),
