@@ -90,7 +90,7 @@ fn step(
             .iter()
             .map(|role| step.fit.parameters.corner(*role));
         step.z_score > SURE
-            && here.cost >= CLEARLY * step.fit.cost
+            && (here.cost >= CLEARLY * step.fit.cost || leaves_noise(&step.fit))
             && corners.all(|corner| BELOW / corner <= FURTHEST_BELOW)
     };
     let alone = roles.iter().filter_map(|role| tried(vec![*role]));
@@ -98,6 +98,11 @@ fn step(
     let together = || tried(roles.clone()).filter(|_| roles.len() > 1);
     best.filter(explains)
         .or_else(|| together().filter(explains))
+}
+
+/// Whether a fit leaves nothing beside the noise, so that no error of the model is in what it gained.
+fn leaves_noise(fit: &Fit) -> bool {
+    fit.cost <= fit.residuals as f64
 }
 
 /// The channels that no high-pass is stated of.
