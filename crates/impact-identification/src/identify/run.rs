@@ -677,10 +677,10 @@ impl<'a> IdentificationRun<'a> {
             effects: nominal.effects.without(EffectKind::Pickup),
             ..*nominal
         };
-        let curve = joint::curve_and_waveforms();
+        let both = joint::curve_and_waveforms();
         // without what delays, gains and asymmetries took of it
         let begin = nominal.applied(start.ideal());
-        let fit = |blocks: &Blocks| joint::rough(blocks, begin, &curve, &open);
+        let fit = |blocks: &Blocks| joint::rough(blocks, begin, &both, &open);
         let mut found = undeclared_high_pass::undeclared(&self.selection.blocks, &fit);
         found.extend(suspicion::corners(&joint.fit, joint.factor, nominal));
         let stated = self.selection.blocks.asymmetries(&self.stated);

@@ -78,11 +78,6 @@ fn turned_around(record: &mut Record) -> Option<Flag> {
 
 /// The motion of the masses against each other, of the first quantity that was measured.
 fn motion_together(record: &Record) -> Option<Vec<f64>> {
-    let quantities = [
-        [Role::VelocityX, Role::VelocityY],
-        [Role::DisplacementX, Role::DisplacementY],
-        [Role::AccelerationX, Role::AccelerationY],
-    ];
     let of = |roles: &[Role; 2]| {
         let mut measured = roles.iter().filter_map(|r| record.values(*r));
         let first = measured.next()?.to_vec();
@@ -91,7 +86,7 @@ fn motion_together(record: &Record) -> Option<Vec<f64>> {
         };
         Some(first.iter().zip(second).map(|(a, b)| a + b).collect())
     };
-    quantities.iter().find_map(of)
+    Role::OF_BOTH.iter().find_map(of)
 }
 
 /// Whether a motion scatters while the contact is closed as it does while it is open. Masses that touch rest.

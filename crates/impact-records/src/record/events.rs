@@ -2,6 +2,7 @@
 
 use super::changes::{Closings, Listing, Rises, listing};
 use super::content::ContactContent;
+use super::table_rows::table_rows;
 use super::{Channel, Flag, ListedTimes, Problem, Record, Role};
 use crate::signal::onsets;
 use labfiles::units::Dimension;
@@ -100,9 +101,7 @@ pub(super) fn settle(
 /// cell that is empty, or zero; one with too few impacts is passed over.
 fn across(channel: &Channel, beside: &[Vec<f64>], content: ContactContent) -> Result<Found, Flag> {
     let mut throws: Vec<Vec<f64>> = Vec::new();
-    for (row, first) in channel.values.iter().enumerate() {
-        let after = beside.iter().filter_map(|column| column.get(row).copied());
-        let cells: Vec<f64> = std::iter::once(*first).chain(after).collect();
+    for cells in table_rows(&channel.values, beside) {
         let throw = match content {
             ContactContent::Intervals => added_up(&cells),
             _ => {

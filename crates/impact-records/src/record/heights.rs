@@ -1,6 +1,7 @@
 //! Impacts that a table states by heights: a mass falls from one height and rises to the next.
 
 use super::content::ContactContent;
+use super::table_rows::table_rows;
 use super::{Channel, Flag, ListedTimes, Problem, Record};
 
 /// Greatest share of the steps of a list that may rise, each to a new drop: rebounds of one height rise and fall alike.
@@ -79,9 +80,8 @@ fn across(
     channel: &Channel,
 ) -> Result<Vec<Drop>, Flag> {
     let mut drops = Vec::new();
-    for (row, first) in first.iter().enumerate() {
-        let after = beside.iter().filter_map(|column| column.get(row).copied());
-        let row_of: Drop = std::iter::once(*first).chain(after).collect();
+    for (row, row_of) in table_rows(first, beside).enumerate() {
+        let first = row_of[0];
         if row_of.iter().any(|h| *h < 0.0) {
             return Err(negative(channel, row));
         }
@@ -89,7 +89,7 @@ fn across(
         let own: Vec<Drop> = match content {
             ContactContent::Rebounds if first.is_finite() => {
                 let tops = row_of[1..].iter().filter(|h| filled(h));
-                tops.map(|top| vec![*first, *top]).collect()
+                tops.map(|top| vec![first, *top]).collect()
             }
             ContactContent::Rebounds => Vec::new(),
             _ => vec![row_of.iter().copied().take_while(filled).collect()],

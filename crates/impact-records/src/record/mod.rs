@@ -23,6 +23,7 @@ mod low_pass;
 pub mod problem;
 mod role;
 mod spikes;
+mod table_rows;
 pub mod time_axis;
 mod times;
 

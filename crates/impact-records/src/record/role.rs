@@ -50,6 +50,13 @@ pub enum Role {
 crate::message_table! { "role": Role; }
 
 impl Role {
+    /// The same quantity of both masses, x first.
+    pub const OF_BOTH: [[Self; 2]; 3] = [
+        [Self::VelocityX, Self::VelocityY],
+        [Self::DisplacementX, Self::DisplacementY],
+        [Self::AccelerationX, Self::AccelerationY],
+    ];
+
     /// All roles, in the order of campaign.toml.
     pub const ALL: &[Self] = <Self as strum::VariantArray>::VARIANTS;
 

@@ -6,6 +6,7 @@ use crate::evidence::direction::{change, relative_length};
 use crate::evidence::forces::{self, Forces, Lengths, Resistance};
 use crate::evidence::pickup::Pickups;
 use crate::evidence::shared_error::Whitening;
+use crate::methods::thinning::evenly_over;
 use crate::parameters::effect::{Acts, Effect};
 use crate::parameters::own::Circumstances;
 use crate::parameters::{Coordinate, Parameters, gain_index};
@@ -173,11 +174,8 @@ impl ResonanceBlock {
     /// Of so many records at most, evenly chosen over the frequency of the drive.
     #[must_use]
     pub fn few(&self, most: usize) -> Self {
-        let mut points: Vec<&ResonancePoint> = self.points.iter().collect();
-        points.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
-        let stride = points.len().div_ceil(most.max(1)).max(1);
         Self {
-            points: points.into_iter().step_by(stride).cloned().collect(),
+            points: evenly_over(&self.points, most, |point| point.frequency_hz),
             ..*self
         }
     }

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::evidence::pickup::Pickups;
 use crate::evidence::waveform::{Phases, Terms};
+use crate::methods::thinning::evenly_over;
 use crate::methods::trajectories::nearest_orbit::NearestOrbit;
 use crate::methods::trajectories::record::{Perturbation, TrajectoryRecord};
 use crate::methods::trajectories::record_motion::{Column, RecordMotion, Slopes};
@@ -76,10 +77,9 @@ impl TrajectoryBlock {
     /// Of so many records at most, evenly chosen over the frequency of the drive.
     #[must_use]
     pub fn few(&self, most: usize) -> Self {
-        let mut records: Vec<&TrajectoryRecord> = self.records.iter().collect();
-        records.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
-        let stride = records.len().div_ceil(most.max(1)).max(1);
-        self.with_records(records.into_iter().step_by(stride).cloned().collect())
+        self.with_records(evenly_over(&self.records, most, |record| {
+            record.frequency_hz
+        }))
     }
 
     /// Relative error that every point is allowed beside the noise.

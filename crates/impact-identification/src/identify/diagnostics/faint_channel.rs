@@ -13,13 +13,6 @@ const FEWEST_IMPACTS: usize = 3;
 /// the inverse of their masses; what drives and springs add is of the same size in a rig of two masses alike.
 const FAINT: f64 = 0.1;
 
-/// The same quantity of both masses.
-const PAIRS: [[Role; 2]; 3] = [
-    [Role::VelocityX, Role::VelocityY],
-    [Role::DisplacementX, Role::DisplacementY],
-    [Role::AccelerationX, Role::AccelerationY],
-];
-
 /// The channels that show hardly anything of the impacts of two masses; `lighter`:
 /// ln(`m_x`/`m_y`) if it is stated.
 pub fn faint_channels(
@@ -27,7 +20,9 @@ pub fn faint_channels(
     observations: &[Observation],
     lighter: Option<f64>,
 ) -> impl Iterator<Item = Finding> {
-    let pairs = PAIRS.into_iter().filter(move |_| rig == RigKind::Double);
+    let pairs = Role::OF_BOTH
+        .into_iter()
+        .filter(move |_| rig == RigKind::Double);
     let expected = lighter.unwrap_or(0.0);
     pairs.flat_map(move |[x, y]| {
         // of y over that of x, as a logarithm

@@ -38,6 +38,9 @@ pub fn undeclared(blocks: &Blocks, fit: &dyn Fn(&Blocks) -> Option<Fit>) -> Vec<
     let of_records = now.trajectory.records.iter().map(|r| r.frequency_hz);
     let frequencies = of_curve.chain(of_records);
     let start_hz = frequencies.fold(f64::INFINITY, f64::min) / BELOW;
+    if unstated(&now).is_empty() {
+        return Vec::new();
+    }
     let Some(mut here) = fit(&now) else {
         return Vec::new();
     };

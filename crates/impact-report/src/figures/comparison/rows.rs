@@ -73,12 +73,7 @@ fn row<'a>(
 
 /// The residual of the best channel that has one: velocity first.
 fn residual_row(comparison: &ReplayedRecord) -> Option<Row<'_>> {
-    let families = [
-        [Role::VelocityX, Role::VelocityY],
-        [Role::DisplacementX, Role::DisplacementY],
-        [Role::AccelerationX, Role::AccelerationY],
-    ];
-    families.iter().find_map(|roles| {
+    Role::OF_BOTH.iter().find_map(|roles| {
         let traces = pick(comparison, roles, |t| t.residual.is_some());
         let dimension = traces.first()?.0.dimension;
         let peak = traces
