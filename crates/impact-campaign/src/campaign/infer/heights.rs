@@ -40,7 +40,7 @@ pub(super) fn of(place: Place<'_>) -> Option<Heights> {
     let counts =
         |c: &ChannelInfo| c.stored == StoredType::Text || c.unit.is_none() && numbers_rows(&c.name);
     let used: Vec<usize> = (0..channels.len())
-        .filter(|i| !counts(&channels[*i]) && !called(&channels[*i], &COMPUTED))
+        .filter(|i| !counts(&channels[*i]) && !is_computed(&channels[*i]))
         .collect();
     let named = used.iter().any(|i| called(&channels[*i], &HEIGHTS));
     let lengths = used.iter().all(|i| may_be_height(&channels[*i]));
@@ -72,6 +72,11 @@ pub(super) fn of(place: Place<'_>) -> Option<Heights> {
 pub(super) fn numbers_rows(name: &str) -> bool {
     let run = without_run(&format!("{} 1", name.trim()));
     timing::numbers_rows(name) || run.is_some_and(|(bare, _)| bare.is_empty())
+}
+
+/// Whether a column is computed from others by its name.
+pub(super) fn is_computed(channel: &ChannelInfo) -> bool {
+    called(channel, &COMPUTED)
 }
 
 fn called(channel: &ChannelInfo, stems: &[&str]) -> bool {

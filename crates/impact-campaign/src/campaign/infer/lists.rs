@@ -1,6 +1,6 @@
 //! Lists of times: which tables are such, and which of their columns contain the times.
 
-use super::heights::numbers_rows;
+use super::heights::{is_computed, numbers_rows};
 use super::place::Place;
 use impact_records::record::{ContactContent, changes};
 use impact_records::signal::columns;
@@ -10,6 +10,8 @@ use labfiles::{ChannelInfo, DatasetInfo, StoredType, timing};
 /// Fewest and most rows of a list.
 const FEWEST_EVENTS: u64 = 3;
 const MOST_EVENTS: u64 = 400;
+/// Fewest columns of times that contain a throw along each row beside columns of other numbers.
+const FEWEST_BESIDE: usize = 3;
 /// How many times longer than the shortest the longest interval of a list is where other columns are beside it: samples
 /// are taken at even times.
 const UNEVEN: f64 = 1.2;
@@ -32,7 +34,8 @@ pub(super) fn of_times(place: Place<'_>) -> Vec<usize> {
 
 /// The columns of a list that contain times or intervals; none where the dataset is no list.
 ///
-/// A table of few rows is one if all its columns are in units of time. Beside remarks, as in a track of labels or beside
+/// A table of few rows is one if all its columns are in units of time, or those of times contain a throw along each row.
+/// Beside remarks, as in a track of labels or beside
 /// the state of a line, its times must be uneven. Beside other numbers, and where neither a name nor a unit states
 /// that a column contains times, they must be those of a mass that bounces: each interval shorter than the one before.
 fn listed(place: Place<'_>) -> Vec<usize> {
@@ -51,8 +54,12 @@ fn listed(place: Place<'_>) -> Vec<usize> {
     if others.is_empty() && !set.channels.iter().any(text) {
         return of_time;
     }
-    let named = |i: &usize| of_time.contains(i) || timing::is_time_name(&set.channels[*i].name);
+    let named = |i: &usize| of_time.contains(i) || is_named_time(&set.channels[*i].name);
     let (named, others): (Vec<usize>, Vec<usize>) = numbers.iter().partition(|i| named(i));
+    let throws = others.is_empty() || named.len() >= FEWEST_BESIDE;
+    if throws && along_rows(place, &named).is_some() {
+        return named;
+    }
     match (named.first(), others.first()) {
         (Some(time), None) if is_uneven(&place.numbers(*time)) => named,
         (Some(time), Some(_)) if bounces(&place.numbers(*time)) => vec![*time],
@@ -98,12 +105,18 @@ pub(super) fn along_rows(place: Place<'_>, columns: &[usize]) -> Option<ContactC
     }
 }
 
-/// The columns of numbers, without those that count the rows.
+/// The columns of numbers, without those that count the rows or are computed from others.
 fn numbers(set: &DatasetInfo) -> Vec<usize> {
     let counts = |c: &ChannelInfo| c.unit.is_none() && numbers_rows(&c.name);
     let columns = set.channels.iter().enumerate();
-    let columns = columns.filter(|(_, c)| c.stored != StoredType::Text && !counts(c));
+    let columns =
+        columns.filter(|(_, c)| c.stored != StoredType::Text && !counts(c) && !is_computed(c));
     columns.map(|(i, _)| i).collect()
+}
+
+/// Whether a name is that of a time, which may be one of several: `t`, `Time 2`, `t3`.
+fn is_named_time(name: &str) -> bool {
+    timing::is_time_name(name.trim_end_matches(|c: char| c.is_ascii_digit()))
 }
 
 /// Whether a column is in a unit of time.
@@ -189,6 +202,14 @@ mod tests {
         let times =
             "trial,b1 (s),b2 (s),b3 (s)\n1,0.3,0.91,1.41\n2,0.3,0.94,1.47\n3,0.3,0.90,1.39\n";
         assert_eq!(along(times), Some(ContactContent::Times));
+        // remarks, means and heights beside them
+        let beside = "trial,drop (cm),t1 (s),t2 (s),t3 (s),mean (s),surface\n1,50,0.61,0.50,0.42,0.51,oak\n2,55,0.64,0.53,0.43,0.53,oak\n3,50,0.60,0.49,0.41,0.50,oak\n4,55,0.65,0.54,0.45,0.55,oak\n";
+        assert_eq!(of(beside), [2, 3, 4]);
+        assert_eq!(along(beside), Some(ContactContent::Intervals));
+        let without_unit = "trial,t1,t2,t3\n1,0.61,0.50,0.42\n2,0.64,0.53,0.43\n3,0.60,0.49,0.41\n";
+        assert_eq!(of(without_unit), [1, 2, 3]);
+        let heights = "trial,h1,h2,h3\n1,0.61,0.50,0.42\n2,0.64,0.53,0.43\n3,0.60,0.49,0.41\n";
+        assert!(of(heights).is_empty());
         // each column is a throw
         let columns =
             "a (s),b (s),c (s)\n0.61,0.64,0.60\n0.50,0.53,0.49\n0.42,0.43,0.41\n0.35,0.36,0.34\n";
