@@ -88,10 +88,18 @@ fn none_found(folder: &Path, found: &FolderContents) -> Failure {
         faults += &format!("; {}", counted(more, "more file"));
     }
     let remedy = found.refused.first().map(|r| r.remedy.clone());
+    let of_lists = || (!found.others.is_empty()).then(name_columns);
     Failure::new(
         format!("no record found in {}{faults}", folder.display()),
-        remedy.unwrap_or_else(name_records),
+        remedy.or_else(of_lists).unwrap_or_else(name_records),
     )
+}
+
+/// How the columns of a list are recognised.
+fn name_columns() -> String {
+    "name the columns of a list by what they contain, with their units: heights as drop height (cm) and rebound height (cm), \
+     times of impacts as time (s), times from an impact to the next as flight 1 (s), flight 2 (s)"
+        .to_owned()
 }
 
 /// Files that the summary and an error name.
@@ -181,6 +189,11 @@ mod tests {
              is neither a series of 16 samples or more nor a list of times or heights"
         );
         assert_eq!(remedy, "save table2struct(T) of 1");
+        let list = FolderContents {
+            others: found.others.clone(),
+            ..FolderContents::default()
+        };
+        assert_eq!(only(&list).1, name_columns());
         found.refused = (1..=6).map(refused).collect();
         let (message, _) = only(&found);
         assert!(

@@ -28,7 +28,10 @@ pub(super) fn print_left_out(observations: &[Observation], speech: &Speech, verb
 fn faults(observations: &[Observation]) -> Diagnostics {
     let wanted = |o: &&Observation| !o.has_flag(FlagCode::Excluded);
     let each = observations.iter().filter(wanted).filter_map(|o| {
-        let contradicts = |f: &&Flag| f.code == FlagCode::BeyondStop;
+        let contradicts = |f: &&Flag| {
+            let codes = [FlagCode::BeyondStop, FlagCode::DriveAmplitudeContradicts];
+            codes.contains(&f.code)
+        };
         let mut flags = o.flags.iter();
         let excluding = flags.clone().find(|f| f.excludes);
         let first = excluding.or_else(|| flags.find(contradicts))?;

@@ -13,7 +13,7 @@
 //! ```
 //! use impact_records::event::{DetectSettings, RigKind, detect};
 //! use impact_records::motion::{ClassifySettings, classify};
-//! use impact_records::record::{Channel, Excitation, Record, Role, Setting, Sweep};
+//! use impact_records::record::{Channel, Record, Role, Setting, Sweep};
 //! use labfiles::units::Dimension;
 //!
 //! let channel = |role: Role, values: Vec<f64>| Channel {
@@ -42,7 +42,7 @@
 //!         drive_amplitude: 1.0,
 //!         sequence: 0,
 //!         specimen: None,
-//!         excitation: Excitation::Harmonic,
+//!         ..Setting::default()
 //!     },
 //!     listed: Default::default(),
 //!     flags: Vec::new(),

@@ -67,6 +67,14 @@ impl<'a> Value<'a> {
     pub fn list(messages: &'a [impl Message]) -> Self {
         Self::List(messages.iter().map(|m| Self::Message(m)).collect())
     }
+
+    /// The first of some names, separated by commas.
+    pub fn some_names(names: &'a [String]) -> Self {
+        const SHOWN: usize = 6;
+        let shown = names.iter().take(SHOWN).map(String::as_str);
+        let more = (names.len() > SHOWN).then_some("…");
+        Self::List(shown.chain(more).map(Self::Name).collect())
+    }
 }
 
 /// How the values of a message are printed.

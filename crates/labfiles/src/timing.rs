@@ -386,6 +386,9 @@ impl AxisUnit {
     /// assert_eq!(seconds(None, "ts", &[1.732_651_200_000e18, 1.732_651_200_001e18]), Some(1e-9));
     /// assert_eq!(seconds(None, "Time", &[0.0, 0.5]), Some(1.0));
     /// assert_eq!(seconds(None, "Time", &[0.0, 10.0, 20.0]), None);
+    /// // 10:30:00 and on by 0.1 s, as a spreadsheet keeps it
+    /// let clock = [0.4375, 0.437501157, 0.437502315, 0.437503472, 0.43750463];
+    /// assert_eq!(seconds(None, "Time", &clock), Some(86_400.0));
     /// assert_eq!(seconds(None, "Tiempo (milisegundos)", &[0.0, 0.5]), Some(1e-3));
     /// ```
     pub fn of(unit: Option<&str>, name: &str, values: &[f64]) -> Self {
@@ -588,11 +591,35 @@ const DAYS: [[f64; 2]; 2] = [[712_224.0, 767_376.0], [18_264.0, 73_416.0]];
 /// Steps below this are of no time in s since a start so long ago: 80 kHz and more, after hours or days.
 const LEAST_STEP_S: f64 = 1.25e-5;
 
-/// Whether times without a unit count days from a date of this age, and go on by less than a second.
+/// Whether times without a unit count days from a date of this age, or from midnight, and go on by less than a second.
 fn counts_days(times: &[f64]) -> bool {
     let first = times.iter().copied().find(|t| t.is_finite());
     let of_age = first.is_some_and(|t| DAYS.iter().any(|[from, to]| (*from..*to).contains(&t)));
-    of_age && crate::rate::median_step(times).is_some_and(|step| step < LEAST_STEP_S)
+    (of_age || is_clock(times))
+        && crate::rate::median_step(times).is_some_and(|step| step < LEAST_STEP_S)
+}
+
+/// Times of day over the length of a record, at least, from which numbers below 1 may be parts of a day.
+const AFTER_MIDNIGHT: f64 = 20.0;
+/// Digits of steps that people choose, and how near a step is to one.
+const ROUND: [f64; 6] = [1.0, 2.0, 2.5, 4.0, 5.0, 10.0];
+const NEARLY: f64 = 2e-3;
+
+/// Whether numbers below 1 are a clock's, as parts of a day, the way spreadsheets keep it: long after midnight, and by a
+/// step that is round in seconds of a day alone.
+fn is_clock(times: &[f64]) -> bool {
+    let finite = || times.iter().copied().filter(|t| t.is_finite());
+    let (Some(first), Some(last)) = (finite().next(), finite().next_back()) else {
+        return false;
+    };
+    let length = last - first;
+    let step = length / finite().count().saturating_sub(1).max(1) as f64;
+    let round = |step: f64| {
+        let digits = step / 10f64.powf(step.log10().floor());
+        ROUND.iter().any(|r| (digits / r - 1.0).abs() < NEARLY)
+    };
+    let in_a_day = first < 1.0 && last < 1.0 && length > 0.0 && first > AFTER_MIDNIGHT * length;
+    in_a_day && round(86_400.0 * step) && !round(step)
 }
 
 /// A time without a unit beyond this is no time in s since the start of a record: 32 years.

@@ -345,7 +345,7 @@ pub fn calibrated(raw: &RawRecord, truth: &Truth, faults: &Faults) -> Record {
             drive_amplitude: 1.0,
             sequence: 0,
             specimen: None,
-            excitation: Default::default(),
+            ..record::Setting::default()
         },
         listed: Default::default(),
         flags: Vec::new(),

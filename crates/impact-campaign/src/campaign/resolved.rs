@@ -15,8 +15,8 @@ use super::sources::Sources;
 use super::values::{Excitation, Flight};
 use impact_records::event::DetectSettings;
 use impact_records::motion::{ClassifySettings, LateChannel};
-use impact_records::record::Setting;
 use impact_records::record::calibrate::{ChannelSetup, RecordSetup, StatedTimes};
+use impact_records::record::{Role, Setting};
 
 /// Its name in a folder of results, which every one has.
 pub(crate) const RESOLVED: &str = "campaign.resolved.json";
@@ -123,6 +123,15 @@ impl ResolvedCampaign {
             if found.is_some_and(|l| l.inverted) {
                 setup.sign = -setup.sign;
             }
+        }
+        campaign
+    }
+
+    /// The campaign with channels turned in those records in which they were found to be of the other sign.
+    pub fn with_turned<'a>(&self, turned: impl IntoIterator<Item = (usize, &'a [Role])>) -> Self {
+        let mut campaign = self.clone();
+        for (record, roles) in turned {
+            campaign.records[record].setting.turned = roles.to_vec();
         }
         campaign
     }

@@ -149,6 +149,7 @@ pub(super) fn setting(
         sequence: 0,
         excitation: row.and_then(|r| r.excitation).unwrap_or(default.excitation),
         specimen: row.and_then(|r| r.specimen.clone()).or(specimen),
+        turned: Vec::new(),
     }
 }
 

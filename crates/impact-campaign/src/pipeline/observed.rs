@@ -14,8 +14,9 @@ use impact_fit::methods::resonance::force_law::force_law;
 use impact_identification::identify::identify_campaign;
 use impact_records::motion::{
     Bracket, ForceLaw, LateChannel, Observation, brackets, follow_force_law, inverted_channels,
-    late_channels, scale_drives,
+    late_channels, scale_drives, turned_channels,
 };
+use impact_records::record::{Flag, FlagCode, Problem};
 use labfiles_write::output::OutputError;
 
 /// All records as observed.
@@ -44,9 +45,7 @@ impl Observed {
         campaign: &ResolvedCampaign,
         progress: Progress<'_>,
     ) -> Result<Self, PipelineError> {
-        let kept = BlockCache::none();
-        let whole = campaign.records.len();
-        let observations = observe::observe_in_chunks(campaign, &kept, whole, progress)?;
+        let observations = observe_all(campaign, progress)?;
         Self::corrected(campaign, observations, progress)
     }
 
@@ -103,7 +102,8 @@ impl Observed {
         observations: Vec<Observation>,
         progress: Progress<'_>,
     ) -> Result<Self, PipelineError> {
-        let observations = aligned(campaign, observations, progress)?;
+        let mut observations = aligned(campaign, observations, progress)?;
+        leave_out_other_rows(&mut observations);
         Ok(Self::bracketed(observations))
     }
 
@@ -131,7 +131,7 @@ impl Observed {
 }
 
 /// The observations; made again where they show that channels are not as stated, with these corrected: signs by the
-/// directions of jumps, channels beside each other by the times of impacts, then the drive's, and a low-pass that no
+/// directions of jumps, in some records or in all, channels beside each other by the times of impacts, then the drive's, and a low-pass that no
 /// jump shows, by the phases of the motion. The drive amplitudes are as measured, and follow the law of the force that
 /// the resonance curve shows.
 fn aligned(
@@ -139,6 +139,13 @@ fn aligned(
     observations: Vec<Observation>,
     progress: Progress<'_>,
 ) -> Result<Vec<Observation>, OutputError> {
+    let turned = turned_channels(&observations);
+    let campaign = &campaign.with_turned(turned.iter().map(|(i, roles)| (*i, &roles[..])));
+    let observations = if turned.is_empty() {
+        observations
+    } else {
+        observe_all(campaign, progress)?
+    };
     let found = inverted_channels(&observations);
     let observations = corrected(campaign, observations, found, progress)?;
     let found = late_channels(&observations);
@@ -172,6 +179,45 @@ fn follow_the_force(campaign: &ResolvedCampaign, observations: &mut [Observation
     }
 }
 
+/// Share of the records with a drive of another frequency than stated up to which these are single rows that contradict, and not
+/// what all frequencies have in common.
+const SINGLE_ROWS: f64 = 0.2;
+
+/// Leave out single records whose drive is not that of their row: the row's clearance and sweep may be another record's.
+fn leave_out_other_rows(observations: &mut [Observation]) {
+    let of = observations.iter().filter(|o| o.drive.is_some()).count();
+    let contradicts = |o: &&mut Observation| o.has_flag(FlagCode::DriveFrequencyContradicts);
+    let rows = observations.iter_mut().filter(contradicts).count();
+    if rows as f64 > SINGLE_ROWS * of as f64 {
+        return;
+    }
+    for o in observations.iter_mut().filter(contradicts) {
+        let both = o.drive.zip(o.setting.stated_frequency_hz);
+        if let Some((drive, stated_hz)) = both {
+            let problem = Problem::RowOfAnother {
+                measured_hz: drive.frequency_hz,
+                stated_hz,
+            };
+            o.flags
+                .retain(|f| f.code != FlagCode::DriveFrequencyContradicts);
+            o.flags.push(Flag::new(None, problem));
+        }
+    }
+}
+
+/// All records, without checkpoints.
+fn observe_all(
+    campaign: &ResolvedCampaign,
+    progress: Progress<'_>,
+) -> Result<Vec<Observation>, OutputError> {
+    observe::observe_in_chunks(
+        campaign,
+        &BlockCache::none(),
+        campaign.records.len(),
+        progress,
+    )
+}
+
 /// The observations with what was found of channels corrected too; the same where nothing was.
 fn corrected(
     campaign: &ResolvedCampaign,
@@ -183,9 +229,7 @@ fn corrected(
         return Ok(observations);
     }
     let late = LateChannel::together(evidence::late(&observations), found);
-    let (campaign, kept) = (campaign.with_late(&late), BlockCache::none());
-    let whole = campaign.records.len();
-    let mut again = observe::observe_in_chunks(&campaign, &kept, whole, progress)?;
+    let mut again = observe_all(&campaign.with_late(&late), progress)?;
     for observation in &mut again {
         observation.late.clone_from(&late);
     }

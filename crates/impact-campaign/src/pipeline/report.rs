@@ -134,7 +134,9 @@ pub(super) fn content_with(
     command_line: &str,
     proposals: Vec<Proposal>,
 ) -> Result<ReportContent, PipelineError> {
-    let aligned = campaign.with_late(observed.late());
+    let turned = observed.observations.iter().enumerate();
+    let turned = turned.map(|(i, o)| (i, &o.setting.turned[..]));
+    let aligned = campaign.with_late(observed.late()).with_turned(turned);
     let read = |index: usize| {
         let entry = aligned.records.get(index)?;
         Some(read_one(&aligned, entry))

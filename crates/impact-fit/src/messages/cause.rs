@@ -9,10 +9,10 @@ pub enum Cause {
     Channel,
     /// The records are not of one rig in one state.
     Change,
-    /// The contact has no single coefficient of restitution.
-    Contact,
     /// Many records begin before their motions have settled, which takes them for steady ones.
     Unsettled,
+    /// The contact has no single coefficient of restitution.
+    Contact,
     /// A stated number is wrong, and the fit carries its error.
     Statement,
     /// An effect beyond the model that the fit carries.
@@ -24,7 +24,7 @@ pub enum Cause {
 impl Cause {
     /// Whether the model has no place for it, so that it bends the fits that it reaches.
     pub fn bends(self) -> bool {
-        self <= Self::Contact
+        matches!(self, Self::Channel | Self::Change | Self::Contact)
     }
 
     /// Whether the data of a method can be bent by it.

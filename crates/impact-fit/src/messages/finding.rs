@@ -244,6 +244,38 @@ pub enum Finding {
         /// The same of all others.
         others: Vec<StatedValue>,
     },
+    /// All clearances are counted from another zero than where the masses touch.
+    CommonZero {
+        /// What has to be added to each, m.
+        added_m: f64,
+    },
+    /// A channel is of the other sign in some records; they are turned.
+    TurnedChannel {
+        /// The channel.
+        channel: Role,
+        /// The records.
+        records: Vec<String>,
+        /// Number of records.
+        of: usize,
+    },
+    /// Impacts are seen whose speeds are hardly known, and no method has a result.
+    UncertainSpeeds {
+        /// How many.
+        impacts: usize,
+        /// Standard error of their speeds over these, in the median.
+        share: f64,
+    },
+    /// Some records, in no order, are of another rig than all others.
+    RigsMixed {
+        /// Their names.
+        records: Vec<String>,
+        /// Number of records.
+        of: usize,
+        /// What differs, as these records have it.
+        own: Vec<StatedValue>,
+        /// The same of all others.
+        others: Vec<StatedValue>,
+    },
     /// The motions of most records are not known.
     MotionsUndetermined {
         /// How many.
@@ -392,11 +424,13 @@ impl Finding {
             Self::FaintChannel { records, of, .. } if 4 * records > *of => Some(Cause::Channel),
             Self::RigChanged { .. }
             | Self::ClearanceOnOtherRig { .. }
-            | Self::SweepsDownOnOtherRig { .. } => Some(Cause::Change),
+            | Self::SweepsDownOnOtherRig { .. }
+            | Self::RigsMixed { .. } => Some(Cause::Change),
             Self::RecordsNotSettled { records, of, .. } if 4 * records > *of => {
                 Some(Cause::Unsettled)
             }
             Self::WrongClearance { .. }
+            | Self::CommonZero { .. }
             | Self::WrongGain { .. }
             | Self::GainOrClearances { .. }
             | Self::GainsOrClearances { .. }
@@ -407,6 +441,7 @@ impl Finding {
             | Self::UnsteadyChannel { .. }
             | Self::ForceLaw { .. }
             | Self::InvertedChannel { .. }
+            | Self::TurnedChannel { .. }
             | Self::UndeclaredLowPass { .. }
             | Self::WrongCorner { .. }
             | Self::SidesUnlike { .. }
@@ -515,6 +550,21 @@ message_table! { "finding": Finding, key = template_key;
         own = Value::list(own),
         others = Value::list(others);
     Self::SweepsDownOnOtherRig { own, others } =>
+        own = Value::list(own),
+        others = Value::list(others);
+    Self::CommonZero { added_m } => added_mm = millimetres(*added_m);
+    Self::TurnedChannel { channel, records, of } =>
+        channel = Value::Message(channel),
+        count = Value::Count(records.len()),
+        of = Value::Count(*of),
+        records = Value::some_names(records);
+    Self::UncertainSpeeds { impacts, share } =>
+        count = Value::Count(*impacts),
+        share = Value::Percent(*share, 0);
+    Self::RigsMixed { records, of, own, others } =>
+        count = Value::Count(records.len()),
+        of = Value::Count(*of),
+        records = Value::some_names(records),
         own = Value::list(own),
         others = Value::list(others);
     Self::MotionsUndetermined { records, of } =>

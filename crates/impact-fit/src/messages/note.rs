@@ -70,6 +70,8 @@ pub enum Note {
     Drifts,
     /// The damping ratio changes over the decay.
     DampingChanges,
+    /// Decays have unlike damping ratios.
+    DampingsDiffer,
     /// Flights do not become shorter beyond the errors of R.
     FlightsAlike,
     /// Three times in one record leave nothing that tells their errors.

@@ -364,6 +364,13 @@ pub enum Remark {
         /// Greatest relative deviation of a natural frequency from the mean.
         spread: f64,
     },
+    /// The free decays have unlike damping ratios.
+    DecaysDampingDiffers {
+        /// The least.
+        low: f64,
+        /// The greatest.
+        high: f64,
+    },
     /// The method has no result.
     NoResult {
         /// Why.
@@ -527,6 +534,9 @@ message_table! { "remark": Remark, key = template_key;
         count = Value::Count(*count),
         times = Value::Number(*times, 0);
     Self::DecaysDiffer { spread } => share = Value::Percent(*spread, 1);
+    Self::DecaysDampingDiffers { low, high } =>
+        low = Value::Number(*low, 4),
+        high = Value::Number(*high, 4);
     Self::NoResult { why } => why = Value::Message(why);
     Self::PublishedSpeedsMet { damping_ratio, deviation } =>
         value = Value::Number(*damping_ratio, 4),

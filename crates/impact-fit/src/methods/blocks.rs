@@ -208,6 +208,9 @@ impl Blocks {
             record.place = places[record.observation];
             record.group = groups[record.observation];
         }
+        for pair in &mut self.impact.pairs {
+            pair.place = places[pair.observation];
+        }
         for record in &mut self.flight.records {
             record.group = groups[record.observation];
         }

@@ -206,6 +206,8 @@ effects! {
     PickupX = "pickup_x": Pickup, 1e-3, Percent, Channel;
     /// The same of mass y
     PickupY = "pickup_y": Pickup, 1e-3, Percent, Channel;
+    /// Change of R from the first record to the last
+    RestitutionDrift = "restitution_drift": Drift, 1e-2, One, Impacts;
 }
 
 impl Effect {

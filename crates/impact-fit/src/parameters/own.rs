@@ -115,7 +115,8 @@ impl Parameters {
         let beyond = press_law * contact.press * at.press_per_s
             + drag_law * contact.drag * self.decay_per_s();
         let over_speed = self.effect(Effect::RestitutionSpeed) * at.log_speed();
-        let restitution = self.restitution + over_speed + contact_s * beyond;
+        let in_time = drift(Effect::RestitutionDrift);
+        let restitution = self.restitution + over_speed + in_time + contact_s * beyond;
         let own = Self {
             restitution: restitution.clamp(0.0, 1.0),
             natural_frequency_hz: self.natural_frequency_hz
@@ -203,6 +204,7 @@ impl Parameters {
                 Effect::ContactDuration => length(1e-3 * slower),
                 Effect::ContactSpeed => length(duration_s * slower_slope),
                 Effect::RestitutionSpeed => only(0, at.log_speed()),
+                Effect::RestitutionDrift => only(0, at.place),
                 Effect::ContactLaw => only(0, contact_s * of_law),
                 Effect::ContactReach => clearance(contact_s * speed * contact.reach * pressed),
                 _ => None,

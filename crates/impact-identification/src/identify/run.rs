@@ -9,6 +9,7 @@ use crate::identify::diagnostics::cause;
 use crate::identify::diagnostics::change::{Change, Fitted, Search};
 use crate::identify::diagnostics::clock;
 use crate::identify::diagnostics::common_scale::{self, CommonScale, common_scale};
+use crate::identify::diagnostics::common_zero;
 use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::doubt::{self, Doubt, Suspicion};
 use crate::identify::diagnostics::drives::drives;
@@ -21,6 +22,7 @@ use crate::identify::diagnostics::stated_clearances;
 use crate::identify::diagnostics::stated_frequencies;
 use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
+use crate::identify::diagnostics::uncertain_speeds::uncertain_speeds;
 use crate::identify::diagnostics::undeclared_high_pass;
 use crate::identify::diagnostics::undeclared_low_pass;
 use crate::identify::diagnostics::undetermined::undetermined_motions;
@@ -160,7 +162,10 @@ fn without_clearances(evidence: &Evidence<'_>, contradicted: Finding) -> Identif
         ..*evidence
     };
     let mut run = IdentificationRun::of(&without, begun(&without), without.nominal);
-    run.contradicted = Some(stated_clearances::suspicion(contradicted));
+    run.contradicted = Some(stated_clearances::suspicion(
+        contradicted,
+        run.evidence.observations,
+    ));
     let mut found = with_gains_judged(run);
     let brackets = evidence.brackets.iter().enumerate();
     let left_out = brackets.map(|(index, bracket)| LeftOut {
@@ -291,6 +296,12 @@ impl<'a> IdentificationRun<'a> {
             let Some(odd) = self.odd_gap() else {
                 break;
             };
+            if self.odd_gaps.is_empty()
+                && let Some(zero) = self.common_zero()
+            {
+                self.odd_gaps.push(zero);
+                break;
+            }
             let records = self.selection.of_gap(odd.stated_m);
             let others = self.selection.leave_out_gap(odd.stated_m);
             if others {
@@ -302,6 +313,19 @@ impl<'a> IdentificationRun<'a> {
                 break;
             }
         }
+    }
+
+    /// That all clearances are counted from another zero, where one of them seems to be off.
+    fn common_zero(&self) -> Option<Suspicion> {
+        let blocks = &self.selection.blocks;
+        let uncertainty_m = self.evidence.nominal.clearance_uncertainty_m;
+        let open = Nominal {
+            clearance_uncertainty_m: common_zero::OPEN * uncertainty_m,
+            ..self.evidence.nominal
+        };
+        let both = joint::curve_and_waveforms();
+        let found = joint::rough(blocks, self.found.begin, &both, &open)?;
+        common_zero::common_zero(&found.parameters, &blocks.gaps_m, uncertainty_m)
     }
 
     /// A gap that is far off with the clearance with which its records fit what all others say: to first order about a
@@ -534,6 +558,7 @@ impl<'a> IdentificationRun<'a> {
         let Widened { methods, joint, .. } = results;
         suspicions.extend(settling::not_settled(observations, &joint.parameters));
         suspicions.extend(undetermined_motions(observations));
+        suspicions.extend(uncertain_speeds(observations, methods));
         let lighter = self.evidence.nominal.mass_asymmetry.map(|[ratio, _]| ratio);
         suspicions.extend(faint_channels(self.evidence.rig, observations, lighter));
         let changes = self.changes(cause::leading(suspicions, methods));
@@ -585,10 +610,11 @@ impl<'a> IdentificationRun<'a> {
         let search = Search::new(self.evidence, fitted);
         let groups = cause.is_none_or(|cause| cause == Cause::Contact);
         let between_groups = || groups.then(|| search.between_groups()).flatten();
+        let in_no_order = || groups.then(|| search.in_no_order()).flatten();
         let of_gain = search.gain_in_time();
         let in_time = || of_gain.is_none().then(|| search.in_time()).flatten();
         Some(Changes {
-            of_rig: in_time().or_else(between_groups),
+            of_rig: in_time().or_else(between_groups).or_else(in_no_order),
             of_gain: of_gain.map(|change| change.suspicion(self.evidence, joint)),
         })
     }
@@ -668,7 +694,11 @@ impl<'a> IdentificationRun<'a> {
             let found = joint::fit(&problem, start).ok()?;
             Some((found.fit.cost, found.fit.residuals))
         };
-        if let Some(found) = swapped_channels::swapped(&self.selection.blocks, &cost) {
+        // what a low-pass that is not stated leaves of jumps fits neither way
+        let mut late = self.evidence.observations.iter().flat_map(|o| &o.late);
+        let filtered = late.any(|l| l.low_pass.is_some());
+        let swapped = || swapped_channels::swapped(&self.selection.blocks, &cost);
+        if let Some(found) = (!filtered).then(swapped).flatten() {
             return vec![found.into()];
         }
         let open = Nominal {
@@ -681,7 +711,8 @@ impl<'a> IdentificationRun<'a> {
         // without what delays, gains and asymmetries took of it
         let begin = nominal.applied(start.ideal());
         let fit = |blocks: &Blocks| joint::rough(blocks, begin, &both, &open);
-        let mut found = undeclared_high_pass::undeclared(&self.selection.blocks, &fit);
+        let picking_up = |blocks: &Blocks| joint::rough(blocks, begin, &both, nominal);
+        let mut found = undeclared_high_pass::undeclared(&self.selection.blocks, &fit, &picking_up);
         found.extend(suspicion::corners(&joint.fit, joint.factor, nominal));
         let stated = self.selection.blocks.asymmetries(&self.stated);
         found.extend(suspicion::sides(&joint.fit, &Vec::from_iter(stated)));

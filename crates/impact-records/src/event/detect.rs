@@ -123,7 +123,7 @@ pub struct Detection {
 ///
 /// ```
 /// use impact_records::event::{DetectSettings, RigKind, detect};
-/// use impact_records::record::{Channel, Excitation, Record, Role, Setting, Sweep};
+/// use impact_records::record::{Channel, Record, Role, Setting, Sweep};
 /// use labfiles::units::Dimension;
 ///
 /// let values = (0..800).map(|i| (i % 100) as f64 / 49.5 - 1.0).collect();
@@ -147,7 +147,7 @@ pub struct Detection {
 ///         drive_amplitude: 1.0,
 ///         sequence: 0,
 ///         specimen: None,
-///         excitation: Excitation::Harmonic,
+///         ..Setting::default()
 ///     },
 ///     listed: Default::default(),
 ///     flags: Vec::new(),
@@ -776,7 +776,7 @@ fn wrong_way(found: &Fused, record: &Record) -> Option<Flag> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{Channel, Excitation, FlagCode, Setting, Sweep};
+    use crate::record::{Channel, FlagCode, Setting, Sweep};
     use rand::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
 
@@ -1006,7 +1006,7 @@ mod tests {
                 drive_amplitude: 1.0,
                 sequence: 0,
                 specimen: None,
-                excitation: Excitation::Harmonic,
+                ..Setting::default()
             },
             listed: ListedTimes::default(),
             flags: Vec::new(),

@@ -95,7 +95,7 @@ impl Bracket {
 /// ```
 /// use impact_records::event::{DetectSettings, RigKind};
 /// use impact_records::motion::{BoundaryKind, ClassifySettings, Motion, brackets, observe};
-/// use impact_records::record::{Excitation, Record, Setting, Sweep};
+/// use impact_records::record::{Record, Setting, Sweep};
 ///
 /// let observed = |sequence: usize, frequency_hz: f64, motion: Motion| {
 ///     let record = Record {
@@ -109,7 +109,7 @@ impl Bracket {
 ///             drive_amplitude: 1.0,
 ///             sequence,
 ///             specimen: None,
-///             excitation: Excitation::Harmonic,
+///             ..Setting::default()
 ///         },
 ///         listed: Default::default(),
 ///         flags: Vec::new(),

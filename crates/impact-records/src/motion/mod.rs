@@ -21,7 +21,7 @@ pub use bracket::{BoundaryKind, Bracket, brackets};
 pub use classify::{Classification, ClassifySettings, MotionEvidence, classify};
 pub use fold::{Folded, FoldedChannel, FoldedPoint};
 pub use force_law::ForceLaw;
-pub use inverted::inverted_channels;
+pub use inverted::{inverted_channels, turned_channels};
 pub use kind::Motion;
 pub use late::{late_channels, one_pole_hz};
 pub use late_channel::LateChannel;

@@ -448,11 +448,22 @@ pub fn scale_drives(observations: &mut [Observation]) {
         let Some(nominal) = crate::signal::robust::median(&measured).filter(|m| *m > 0.0) else {
             continue;
         };
+        let stated = observations
+            .iter()
+            .filter(|o| o.setting.specimen == group)
+            .map(Observation::stated_drive);
+        let (least, greatest) = columns::extremes(&stated.collect::<Vec<f64>>());
+        let is_stated = greatest > (1.0 + DRIVE_CHANGES) * least;
         for o in observations.iter_mut().filter(same) {
             let Some(drive) = o.drive else { continue };
-            let ratio = drive.amplitude / nominal;
-            if (ratio / o.stated_drive() - 1.0).abs() > DRIVE_CHANGES {
-                o.setting.drive_amplitude = ratio * o.force_factor();
+            let (measured, stated) = (drive.amplitude / nominal, o.stated_drive());
+            let apart = (measured / stated - 1.0).abs();
+            if is_stated && apart > DRIVE_CONTRADICTS {
+                let problem = Problem::AmplitudeUnlikeStated { measured, stated };
+                o.flags.push(Flag::new(None, problem).excluding(false));
+            }
+            if apart > DRIVE_CHANGES {
+                o.setting.drive_amplitude = measured * o.force_factor();
             }
         }
     }
@@ -470,12 +481,18 @@ pub fn follow_force_law(observations: &mut [Observation], law: ForceLaw) {
 
 /// Relative change of the measured drive amplitude from which it counts.
 const DRIVE_CHANGES: f64 = 5e-3;
+/// Relative difference of it from a stated one from which it is named.
+const DRIVE_CONTRADICTS: f64 = 0.1;
 
-/// Free decays of the motion channels of mass x, else of mass y.
+/// Free decays of the motion channels of mass x, else of mass y; of both where they swing at unlike frequencies.
 fn free_decays(record: &Record) -> Vec<Decay> {
     let of_mass = |y| decay::fit_channels(&watched(record, y), record.sample_rate_hz);
-    let of_x = of_mass(false);
-    if of_x.is_empty() { of_mass(true) } else { of_x }
+    let [mut found, of_y] = [false, true].map(of_mass);
+    if found.is_empty() {
+        return of_y;
+    }
+    decay::append_unlike(&mut found, of_y);
+    found
 }
 
 /// The motion channels of a mass without gaps.

@@ -209,6 +209,15 @@ pub struct BoundChannel {
     pub range_si: Option<f64>,
 }
 
+impl BoundChannel {
+    /// The same with the other sign.
+    pub(super) fn turned(mut self) -> Self {
+        self.to_si.to_si = -self.to_si.to_si;
+        self.offset_si = -self.offset_si;
+        self
+    }
+}
+
 /// Find a role's channel in a dataset and settle its conversion, from metadata alone.
 ///
 /// # Errors

@@ -7,7 +7,7 @@ pub use super::bind::{BoundChannel, ChannelKey, ChannelSetup, RecordSetup, State
 use super::times::Clocks;
 use super::{Channel, ContactContent, Flag, FlagCode, ListedTimes, Problem, Record, Role, Setting};
 use super::{changes, condition, consistency, contact_levels, events, heights, late};
-use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
+use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, units};
 
 /// A record without channels, for a file that cannot be read.
 pub fn unreadable(id: &str, setting: &Setting, error: &ReadError) -> Record {
@@ -63,6 +63,7 @@ fn empty(id: &str, setting: &Setting) -> Record {
 ///     sequence: 0,
 ///     specimen: None,
 ///     excitation: Excitation::Harmonic,
+///     ..Setting::default()
 /// };
 /// let channels = [ChannelSetup::plain(Role::VelocityX, ChannelKey::Name("v".into()))];
 /// let record = calibrate(
@@ -205,7 +206,7 @@ fn columns_beside(
     read.map_err(|flag| record.flags.push(flag)).ok()
 }
 
-/// The values of a further column, SI, calibrated as the first.
+/// The values of a further column, SI, calibrated as the first, whose unit it has where it states none.
 fn column(
     source: &dyn Source,
     index: usize,
@@ -213,8 +214,14 @@ fn column(
     contact: &ChannelSetup,
     key: &ChannelKey,
 ) -> Result<Vec<f64>, Flag> {
+    let stated = |key: &ChannelKey| dataset.channels[key.find(dataset)?].unit.as_deref();
+    let of_first = || units::parse_unit(stated(&contact.source)?);
+    let unit = contact
+        .unit
+        .or_else(|| of_first().filter(|_| stated(key).is_none()));
     let own = ChannelSetup {
         source: key.clone(),
+        unit,
         ..contact.clone()
     };
     let bound = bind(&own, dataset)?;
@@ -313,6 +320,9 @@ fn bind_all<'a>(
     let mut bound = Vec::with_capacity(setup.channels.len());
     for channel in setup.channels {
         match bind(channel, dataset) {
+            Ok(found) if setup.setting.turned.contains(&channel.role) => {
+                bound.push((channel, found.turned()));
+            }
             Ok(found) => bound.push((channel, found)),
             Err(flag) => flags.push(flag),
         }

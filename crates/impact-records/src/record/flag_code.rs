@@ -120,6 +120,10 @@ flag_codes! {
     DriveNotHarmonic = "drive_not_harmonic",
     /// Measured and stated drive frequency differ.
     DriveFrequencyContradicts = "drive_frequency_contradicts",
+    /// A record's drive is not that of its row of the run table.
+    RowContradicts = "row_contradicts",
+    /// Measured and stated drive amplitude differ.
+    DriveAmplitudeContradicts = "drive_amplitude_contradicts",
     /// A displacement goes beyond the stop without an impact.
     BeyondStop = "beyond_stop",
     /// Jumps of the approach velocity go up.

@@ -151,6 +151,9 @@ pub struct Setting {
     /// How it was excited.
     #[serde(default)]
     pub excitation: Excitation,
+    /// Channels that were found to be of the other sign in this record and not in others; they are turned as it is read.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub turned: Vec<Role>,
 }
 
 impl Default for Setting {
@@ -164,6 +167,7 @@ impl Default for Setting {
             sequence: 0,
             specimen: None,
             excitation: Excitation::default(),
+            turned: Vec::new(),
         }
     }
 }

@@ -61,11 +61,11 @@ pub(super) fn ask_or_note(some: &[Place<'_>], rig: RigKind, found: &mut FolderCo
         return;
     }
     let name = |index: usize| found.channels[index].name.clone();
-    let axes = rig == RigKind::Single
-        && others
-            .iter()
-            .all(|(i, _)| roles::is_other_axis(&found.channels, *i));
+    let axes = others
+        .iter()
+        .all(|(i, _)| roles::is_other_axis(&found.channels, *i));
     let names: Vec<String> = others.iter().map(|(index, _)| name(*index)).collect();
+    let moves = if names.len() == 1 { "moves" } else { "move" };
     let names = names.join(", ");
     let note = match rig {
         RigKind::Single if axes => {
@@ -74,12 +74,19 @@ pub(super) fn ask_or_note(some: &[Place<'_>], rig: RigKind, found: &mut FolderCo
         RigKind::Single => {
             found.asks_machine = true;
             format!(
-                "{names} moves too: if it is a second body, write machine = \"double\" and give it the role of mass y; if it \
+                "{names} {moves} too: if it is a second body, write machine = \"double\" and give it the role of mass y; if it \
                  shows the same body, or one that is not struck, write machine = \"single\""
             )
         }
+        RigKind::Double if axes => {
+            found.asks_machine = true;
+            format!(
+                "{names} {moves} too: the bodies do not meet along one axis, and R is that along the line of impact; give \
+                 coordinates along that line, or write machine = \"double\" if the bodies meet along the axis of the channels above"
+            )
+        }
         RigKind::Double => {
-            format!("{names} moves too, and is not used: check which two bodies collide")
+            format!("{names} {moves} too without a role: check which two bodies collide")
         }
     };
     found.notes.push(note);

@@ -7,9 +7,10 @@ use super::look::{Detected, correlation, notes, read, strikes, strikes_once};
 use super::place::{Place, spread};
 use super::{contact, drive, lists};
 use impact_records::event::{Detection, RigKind};
-use impact_records::record::{ContactContent, FlagCode, Record, Role};
+use impact_records::record::{Channel, ContactContent, FlagCode, Record, Role};
 use impact_records::signal::decay::{self, Decay, Watched};
 use impact_records::signal::onsets;
+use impact_records::signal::robust;
 use labfiles::timing::AxisUnit;
 
 /// Records that are looked at.
@@ -39,7 +40,12 @@ pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
         return;
     }
     if !times.is_empty() {
-        found.experiment = Experiment::Events(events(*first, &times, &mut found.channels));
+        let content = events(*first, &times, &mut found.channels);
+        found.experiment = Experiment::Events(content);
+        if content == ContactContent::Times {
+            let note = other_lists(*first, &times, &found.channels);
+            found.notes.extend(note);
+        }
         return;
     }
     if let Some(listed) = heights::of(*first) {
@@ -193,9 +199,30 @@ fn unnamed_decay(some: &[Place<'_>], channels: &[InferredChannel]) -> Option<usi
     tried.find(|index| {
         let mut guessed = channels.to_vec();
         guessed[*index].role = Some(Role::VelocityX);
-        let decaying = some.iter().filter(|place| decays(&read(**place, &guessed)));
+        let decaying = some
+            .iter()
+            .filter(|place| decays(&from_greatest(read(**place, &guessed))));
         2 * decaying.count() > some.len()
     })
+}
+
+/// Samples of an unnamed channel that are looked at, and those of them before its greatest excursion.
+const MOST_SAMPLES: usize = 50_000;
+const BEFORE_GREATEST: usize = 2_000;
+
+/// The part of a long record of one channel that begins at its greatest excursion, where a decay would.
+fn from_greatest(mut record: Record) -> Record {
+    let long = |c: &&mut Channel| c.values.len() > MOST_SAMPLES;
+    for channel in record.channels.iter_mut().filter(long) {
+        let mean = robust::mean(&channel.values);
+        let excursion = |v: &f64| (v - mean).abs();
+        let excursions = channel.values.iter().map(excursion).enumerate();
+        let greatest = excursions.max_by(|a, b| a.1.total_cmp(&b.1));
+        let first = greatest.map_or(0, |(i, _)| i.saturating_sub(BEFORE_GREATEST));
+        channel.values.drain(..first);
+        channel.values.truncate(MOST_SAMPLES);
+    }
+    record
 }
 
 /// Words in the names of times from one event to the next.
@@ -236,6 +263,34 @@ fn events(place: Place<'_>, listed: &[usize], channels: &mut [InferredChannel]) 
     }
     content
 }
+
+/// That further columns are lists of times of their own, which are not used: times beside their intervals, or beginnings
+/// beside ends, are none.
+fn other_lists(place: Place<'_>, listed: &[usize], channels: &[InferredChannel]) -> Option<String> {
+    let used = listed
+        .iter()
+        .find(|i| channels[**i].role == Some(Role::Contact))?;
+    let own = place.numbers(*used);
+    let differs = |i: &&usize| {
+        let values = place.numbers(**i);
+        let last = values.iter().rfind(|v| v.is_finite());
+        let last = last.zip(own.iter().rfind(|v| v.is_finite()));
+        let far = last.is_some_and(|(a, b)| (a / b - 1.0).abs() > UNLIKE_LISTS);
+        far && !are_intervals(&channels[**i].name, &values)
+    };
+    let others = listed.iter().filter(|i| *i != used).filter(differs);
+    let names: Vec<&str> = others.map(|i| channels[*i].name.as_str()).collect();
+    let first = channels[*used].name.as_str();
+    (!names.is_empty()).then(|| {
+        format!(
+            "{}: taken for another list than {first}, and not used here: give it a campaign of its own",
+            names.join(", ")
+        )
+    })
+}
+
+/// Difference of the last times of two lists, over one of them, that beginnings and ends of the same impacts do not have.
+const UNLIKE_LISTS: f64 = 0.02;
 
 /// Take a column as the list of the impacts.
 fn list(place: Place<'_>, at: usize, channels: &mut [InferredChannel]) {

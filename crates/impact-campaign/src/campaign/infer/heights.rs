@@ -19,8 +19,47 @@ const HEIGHTS: [&str; 7] = [
     "hauteur",
     "altezza",
 ];
-/// Words in the names of what is computed from other columns.
-const COMPUTED: [&str; 5] = ["mean", "average", "avg", "mittel", "moyenne"];
+/// Stems of words for what falls and rises again, whose lengths are heights.
+const MOTIONS: [&str; 5] = ["drop", "bounce", "fall", "rebond", "chute"];
+/// Stems of words in the names of lengths that no body has reached: computed, expected, or its size; lower case.
+const COMPUTED: [&str; 30] = [
+    "mean",
+    "average",
+    "avg",
+    "mittel",
+    "moyenne",
+    "lost",
+    "loss",
+    "verlust",
+    "differen",
+    "delta",
+    "δ",
+    "ratio",
+    "deviation",
+    "uncertain",
+    "error",
+    "abw",
+    "unsicher",
+    "fehler",
+    "energ",
+    "percent",
+    "prozent",
+    "efficien",
+    "restitution",
+    "±",
+    "theor",
+    "expect",
+    "predict",
+    "diamet",
+    "durchmess",
+    "radius",
+];
+/// Whole words of the same.
+const COMPUTED_WORDS: [&str; 7] = ["sd", "std", "stdev", "sem", "cor", "diff", "unc"];
+/// Words that count the tops of a throw, lower case.
+const ORDINALS: [&str; 10] = [
+    "first", "second", "third", "fourth", "fifth", "erste", "zweite", "dritte", "vierte", "next",
+];
 /// Part of the heights below each other that are below the one before.
 const MOSTLY: f64 = 0.6;
 /// Least fall from the second column to the third over that from the first to the second, in logarithms, of heights
@@ -33,28 +72,33 @@ pub(super) struct Heights {
     pub(super) content: ContactContent,
 }
 
-/// The heights of a table that has nothing else but numbers of its rows and what is computed from them.
+/// The heights of a table: a column of them beside numbers of its rows and what is computed from it, or columns in a unit
+/// of length beside others of no time.
 pub(super) fn of(place: Place<'_>) -> Option<Heights> {
     let channels = &place.set().channels;
     let rows = channels.iter().map(|c| c.samples).max().unwrap_or(0);
     let counts =
         |c: &ChannelInfo| c.stored == StoredType::Text || c.unit.is_none() && numbers_rows(&c.name);
-    let used: Vec<usize> = (0..channels.len())
+    let numbers: Vec<usize> = (0..channels.len())
         .filter(|i| !counts(&channels[*i]) && !is_computed(&channels[*i]))
         .collect();
-    let named = used.iter().any(|i| called(&channels[*i], &HEIGHTS));
-    let lengths = used.iter().all(|i| may_be_height(&channels[*i]));
-    if rows > MOST_ROWS || !named || !lengths {
+    let (used, others): (Vec<usize>, Vec<usize>) =
+        numbers.iter().partition(|i| may_be_height(&channels[**i]));
+    let named = used.iter().any(|i| names_height(&channels[*i]));
+    let alone =
+        others.is_empty() || used.len() > 1 && !others.iter().any(|i| may_be_time(&channels[*i]));
+    if rows > MOST_ROWS || !named || !alone {
         return None;
     }
-    let values: Vec<Vec<f64>> = used.iter().map(|i| place.numbers(*i)).collect();
+    let values = in_one_unit(place, &used);
     let content = match values.as_slice() {
         [] => None,
         [below] => falls(below).then_some(ContactContent::Heights),
         [first, second] => below(first, second).then_some(ContactContent::Heights),
         [first, second, third, ..] => {
             let all = values[1..].iter().all(|column| below(first, column));
-            let follow = fall(second, third) > FOLLOWS * fall(first, second);
+            let tops = used[1..].iter().map(|i| &channels[*i]);
+            let follow = numbered(tops) && fall(second, third) > FOLLOWS * fall(first, second);
             all.then_some(if follow {
                 ContactContent::Heights
             } else {
@@ -76,7 +120,52 @@ pub(super) fn numbers_rows(name: &str) -> bool {
 
 /// Whether a column is computed from others by its name.
 pub(super) fn is_computed(channel: &ChannelInfo) -> bool {
-    called(channel, &COMPUTED)
+    called(channel, &COMPUTED) || words(&channel.name).any(|w| COMPUTED_WORDS.contains(&&*w))
+}
+
+/// Whether each of some names has a number in it, as where they count the tops of a throw; names without are those of
+/// bodies or floors.
+fn numbered<'a>(mut channels: impl Iterator<Item = &'a ChannelInfo>) -> bool {
+    let counts = |word: &str| {
+        word.contains(|c: char| c.is_ascii_digit()) || ORDINALS.iter().any(|o| word.starts_with(o))
+    };
+    channels.all(|channel| words(&channel.name).any(|word| counts(&word)))
+}
+
+/// The words of a name, lower case.
+fn words(name: &str) -> impl Iterator<Item = String> {
+    let words = name.split(|c: char| !c.is_alphanumeric());
+    words.map(str::to_lowercase)
+}
+
+/// Whether a column may be that of a time: by its unit or, without one, its name.
+fn may_be_time(channel: &ChannelInfo) -> bool {
+    match units::unit_of(channel.unit.as_deref(), &channel.name) {
+        Some(unit) => unit.dimension == Dimension::Time,
+        None => timing::is_time_name(&channel.name),
+    }
+}
+
+/// Whether a column is one of heights by its name: of a height, or of what falls and rises in a unit of length.
+fn names_height(channel: &ChannelInfo) -> bool {
+    let in_length = units::unit_of(channel.unit.as_deref(), &channel.name).is_some();
+    called(channel, &HEIGHTS) || in_length && called(channel, &MOTIONS)
+}
+
+/// The numbers of columns, m; a column without a unit has that of the first one with one.
+fn in_one_unit(place: Place<'_>, columns: &[usize]) -> Vec<Vec<f64>> {
+    let channels = &place.set().channels;
+    let factor = |i: &usize| {
+        let channel = &channels[*i];
+        units::unit_of(channel.unit.as_deref(), &channel.name).map(|unit| unit.to_si)
+    };
+    let of_first = columns.iter().find_map(factor).unwrap_or(1.0);
+    let numbers = |i: &usize| {
+        let factor = factor(i).unwrap_or(of_first);
+        let values = place.numbers(*i).into_iter();
+        values.map(|value| factor * value).collect()
+    };
+    columns.iter().map(numbers).collect()
 }
 
 fn called(channel: &ChannelInfo, stems: &[&str]) -> bool {
@@ -147,6 +236,13 @@ mod tests {
         let trials = "Drop height (cm),Trial 1 (cm),Trial 2 (cm),Trial 3 (cm),Average (cm)\n\
                       100,64,63,65,64\n80,51,50.5,52,51.2\n60,38,38.5,39,38.5\n";
         assert_eq!(of_text(trials), Some((vec![0, 1, 2, 3], Rebounds)));
+        // of two balls, beside what is computed from them and other quantities
+        let bodies = "Drop height (cm),Ball A rebound (cm),Ball B rebound (cm)\n100,64,36\n80,51,29\n60,38,22\n";
+        assert_eq!(of_text(bodies), Some((vec![0, 1, 2], Rebounds)));
+        let lost = "Drop height (cm),Rebound height (cm),Height lost (cm),SD (cm),COR\n100,64,36,1,0.8\n80,51,29,1,0.8\n";
+        assert_eq!(of_text(lost), Some((vec![0, 1], Heights)));
+        let warm = "Temperature (°C),Drop (m),Bounce (cm)\n20,1.0,64\n30,0.8,51\n40,0.6,38\n";
+        assert_eq!(of_text(warm), Some((vec![1, 2], Heights)));
         let column = "bounce,height (cm)\n0,100\n1,64.2\n2,40.9\n3,26.0\n";
         assert_eq!(of_text(column), Some((vec![1], Heights)));
     }

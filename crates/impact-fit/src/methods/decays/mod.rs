@@ -62,6 +62,10 @@ const FREQUENCY_MATTERS: f64 = 1e-3;
 const NO_SINGLE: f64 = 5.0;
 /// Relative range of the damping ratio along a decay that matters.
 const DAMPING_MATTERS: f64 = 0.15;
+/// Difference of the damping ratios of two decays, over the greater one, that is none of one oscillator, and in standard
+/// errors: of the furthest two of some, by chance one in a hundred thousand is.
+const UNLIKE_DAMPINGS: f64 = 0.2;
+const SURELY_UNLIKE: f64 = 6.0;
 /// Amplitude beside a decay, over its own, that is told: of a tone, and of a drift.
 const TELLING: [f64; 2] = [0.02, 0.1];
 /// Widening of an interval by slow noise that is told, which changes no number: nine tenths of its variance are that
@@ -315,6 +319,9 @@ fn judge(result: &mut MethodResult, decays: &[&Decay], (spread, friction): (f64,
     let fades = median(&|d| d.fading) > FADES;
     let plain = structure < if fades { FADING_STRUCTURE } else { STRUCTURE };
     let damping_changes = judge_damping(result, decays, friction);
+    if !damping_changes && !friction {
+        judge_dampings(result, decays);
+    }
     let frequency_changes = judge_frequency(result, decays);
     // what changes along a decay is the structure that it leaves
     let told = plain || damping_changes || frequency_changes;
@@ -335,6 +342,35 @@ fn judge(result: &mut MethodResult, decays: &[&Decay], (spread, friction): (f64,
         allow_for_another(result, structure, periods);
     }
     result.remarks.extend(beats);
+}
+
+/// Whether the decays are of one damping ratio, where it does not change along them.
+fn judge_dampings(result: &mut MethodResult, decays: &[&Decay]) {
+    let estimate = result.parameters.damping_ratio.as_mut();
+    let estimate = estimate.filter(|e| e.note != Some(Note::DampingChanges));
+    let Some((estimate, [low, high])) = estimate.zip(unlike_dampings(decays)) else {
+        return;
+    };
+    estimate.weaken(Note::DampingsDiffer);
+    if let Some(interval) = &mut estimate.interval95 {
+        *interval = [interval[0].min(low), interval[1].max(high)];
+    }
+    result.fits = Some(false);
+    result
+        .remarks
+        .push(Remark::DecaysDampingDiffers { low, high });
+}
+
+/// The least and the greatest damping ratio of decays of which two differ by more than their errors, and by an amount that
+/// is none of one oscillator.
+fn unlike_dampings(decays: &[&Decay]) -> Option<[f64; 2]> {
+    let by_value = |a: &&&Decay, b: &&&Decay| a.damping_ratio.total_cmp(&b.damping_ratio);
+    let least = decays.iter().min_by(by_value)?;
+    let most = decays.iter().max_by(by_value)?;
+    let apart = most.damping_ratio - least.damping_ratio;
+    let error = most.damping_ratio_error.hypot(least.damping_ratio_error);
+    let unlike = apart > UNLIKE_DAMPINGS * most.damping_ratio && apart > SURELY_UNLIKE * error;
+    unlike.then_some([least.damping_ratio, most.damping_ratio])
 }
 
 /// Widen the intervals by what an oscillation that decays leave, of a share of them and of a frequency near theirs, moves

@@ -317,3 +317,22 @@ fn prop_a_hand_that_stops_the_mass_over_some_periods_is_no_friction_of_the_rig()
     assert!(told.held() >= 20, "{told:?} of {drawn}");
     assert!(2 * told.named > drawn, "{told:?} of {drawn}");
 }
+
+/// Decays of one oscillator in media of unlike damping.
+#[test]
+fn valid_decays_of_unlike_damping_are_no_undamped_motion() {
+    let decays: Vec<Decay> = [0.004, 0.02, 0.06]
+        .map(|beta| {
+            fitted(6.0, move |t| {
+                (-TAU * 8.0 * beta * t).exp() * (TAU * 8.0 * t).cos()
+            })
+        })
+        .into();
+    let found = pooled(&[observation(decays)], Effects::none()).unwrap();
+    let differ = |r: &Remark| matches!(r, Remark::DecaysDampingDiffers { .. });
+    assert!(found.remarks.iter().any(differ), "{:?}", found.remarks);
+    let damping = found.parameters.damping_ratio.unwrap();
+    let [low, high] = damping.interval95.unwrap();
+    assert!(low < 0.005 && high > 0.059, "{damping:?}");
+    assert_eq!(damping.note, Some(Note::DampingsDiffer));
+}

@@ -335,4 +335,19 @@ mod tests {
             .expect("R");
         assert!((r - 0.8).abs() < 5e-3, "{r}");
     }
+
+    #[test]
+    fn valid_rebounds_of_one_height_that_scatter_show_no_change_with_the_height() {
+        let mut rng = ChaCha8Rng::seed_from_u64(11);
+        for _ in 0..40 {
+            let drop = |_| {
+                let r: f64 = 0.8 + rng.random_range(-0.02..0.02);
+                vec![1.0, r * r]
+            };
+            let drops: Vec<Vec<f64>> = (0..12).map(drop).collect();
+            let found = pooled(&[listed("one height", &drops, 1e-3)]).expect("R");
+            let changes = |r: &Remark| matches!(r, Remark::RestitutionByHeight { .. });
+            assert!(!found.remarks.iter().any(changes), "{:?}", found.remarks);
+        }
+    }
 }

@@ -177,9 +177,24 @@ pub(super) struct Trend {
     pub(super) ends: [f64; 2],
 }
 
+/// Least ratio of the greatest height of a fall to the least one over which R may be a line: falls from one height scatter
+/// with the rebounds, whose R goes with them.
+const HEIGHTS_DIFFER: f64 = 1.2;
+
+/// Whether all falls are from one height.
+fn from_one_height(fits: &[(&Row, Fitted)]) -> bool {
+    let falls = fits.iter().filter_map(|(row, _)| row.falls()).flatten();
+    let heights: Vec<f64> = falls.map(|fall| fall.before_m).collect();
+    let (least, greatest) = columns::extremes(&heights);
+    !heights.is_empty() && greatest < HEIGHTS_DIFFER * least
+}
+
 /// How R changes along the bounces of rows, its logarithm a line over their number, or over the height, with one slope
 /// for all.
 pub(super) fn trend(fits: &[(&Row, Fitted)], stated_s: Option<f64>) -> Option<Trend> {
+    if from_one_height(fits) {
+        return None;
+    }
     let ratios = Ratios::of(fits.iter().map(|(row, _)| *row));
     let mixed = ratios
         .mixed(true, stated_s)

@@ -32,6 +32,8 @@ pub struct SpeedPair {
     pub lags: [Option<Lag>; 2],
     /// What the velocities pick up of the drive there per unit of strength of [`PICKUPS`], m/s.
     pub picked_up_m_s: [f64; 2],
+    /// Place of the record in the campaign: −½ (first) to ½ (last).
+    pub place: f64,
     /// Where between two samples the impact falls, counted from the first one of its record, in sampling
     /// intervals; `None` where the motion does not tell.
     pub sample_place: Option<f64>,
@@ -53,6 +55,7 @@ impl SpeedPair {
             corner_shifts: [None, None],
             lags: [None, None],
             picked_up_m_s: [0.0; 2],
+            place: 0.0,
             sample_place: None,
             in_record: 1.0,
         }
@@ -245,6 +248,7 @@ impl ImpactBlock {
                     corner_shifts: impact.corner_shifts,
                     lags: impact.lags,
                     picked_up_m_s: picked_up_m_s(&pickups, &observations[i], impact.time_s),
+                    place: 0.0,
                     sample_place: sample_place(&observations[i], impact.time_s),
                     in_record: 1.0,
                 };
@@ -467,8 +471,9 @@ impl Block for ImpactBlock {
         let shift = pair.shift(parameters);
         let (before, after) = (pair.before_m_s + shift, pair.after_m_s - shift);
         let over_speed = parameters.effect(Effect::RestitutionSpeed) * self.speed_log(pair, r);
+        let in_time = parameters.effect(Effect::RestitutionDrift) * pair.place * before;
         Some(vec![
-            (after - r * before - over_speed) / self.error(pair, r),
+            (after - r * before - over_speed - in_time) / self.error(pair, r),
         ])
     }
 
@@ -493,6 +498,10 @@ impl Block for ImpactBlock {
                 -(1.0 + r) * own.map(|s| s.speed_m_s).sum::<f64>() / error
             }
             Coordinate::Effect(Effect::RestitutionSpeed) => -self.speed_log(pair, r) / error,
+            Coordinate::Effect(Effect::RestitutionDrift) => {
+                let before = pair.before_m_s + pair.shift(parameters);
+                -pair.place * before / error
+            }
             Coordinate::Effect(effect) => {
                 let place = PICKUPS.iter().position(|p| p == effect);
                 (1.0 + r) * place.map_or(0.0, |i| pair.picked_up_m_s[i]) / error
@@ -506,7 +515,7 @@ impl Block for ImpactBlock {
     fn touches(&self, coordinate: Coordinate) -> bool {
         match coordinate {
             Coordinate::Corner(index) => self.has_corner(index),
-            Coordinate::Effect(Effect::RestitutionSpeed) => !self.free,
+            Coordinate::Effect(Effect::RestitutionSpeed | Effect::RestitutionDrift) => !self.free,
             Coordinate::Effect(effect) => self.picks_up(effect),
             _ => coordinate == Coordinate::Restitution,
         }
@@ -573,6 +582,7 @@ mod tests {
             by_time_m_s: [4e-3, 1e-3],
             corner_shifts: [shift(Role::VelocityX, 3e-3), shift(Role::VelocityY, -2e-3)],
             picked_up_m_s: [0.3, -0.1],
+            place: 0.3,
             ..SpeedPair::of_speeds(0.5, 0.37, 5e-3)
         };
         let mut block = ImpactBlock::of_pairs(vec![pair], 4e-3);
@@ -582,6 +592,7 @@ mod tests {
         block.typical_approach_m_s = 0.3;
         let coordinates = [
             Coordinate::Effect(Effect::RestitutionSpeed),
+            Coordinate::Effect(Effect::RestitutionDrift),
             Coordinate::Restitution,
             Coordinate::Corner(0),
             Coordinate::Corner(1),

@@ -198,10 +198,18 @@ fn explains(ratios: &[GroupedRatio], grouping: Grouping, constant: f64) -> Optio
         1.0
     };
     let explained = deviate((constant - left) / scale, groups.len() - 1);
-    let values = means.iter().map(|m| m.0);
-    let low = values.clone().fold(f64::INFINITY, f64::min);
-    let high = values.fold(f64::NEG_INFINITY, f64::max);
-    (explained > SIGNIFICANT && high - low > MATTERS).then_some(explained)
+    let range = 12f64.sqrt() * between(&means, (constant - left) / scale);
+    (explained > SIGNIFICANT && range > MATTERS).then_some(explained)
+}
+
+/// Standard deviation of groups beyond the errors of their means, by what they explain of χ² (DerSimonian and Laird 1986);
+/// of values that lie evenly it is their range over √12.
+fn between(means: &[(f64, f64, f64)], explained: f64) -> f64 {
+    let weights = || means.iter().map(|m| m.1.powi(-2));
+    let all: f64 = weights().sum();
+    let squares: f64 = weights().map(|w| w * w).sum();
+    let beyond = explained - (means.len() - 1) as f64;
+    (beyond.max(0.0) / (all - squares / all)).sqrt()
 }
 
 /// The normal deviate of a χ² (Wilson and Hilferty 1931).

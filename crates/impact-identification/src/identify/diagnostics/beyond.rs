@@ -7,8 +7,10 @@ use impact_fit::parameters::effect::{Effect, EffectKind};
 
 /// Standard errors from which an effect is named: by chance one in two thousand reaches them.
 const NAMED: f64 = 3.5;
-/// Accepted strengths from which pickup is named: less is in every laboratory, and the data tell a fifth of
-/// one.
+/// Accepted strengths from which an effect is named: a twentieth of what a good laboratory accepts is of no interest,
+/// however small the noise that shows it.
+const NAMED_STRENGTH: f64 = 0.05;
+/// The same of pickup: less is in every laboratory, and the data tell a fifth of one.
 const NAMED_PICKUP: f64 = 2.0;
 /// χ² of two degrees of freedom that is as rare.
 const NAMED_PAIR: f64 = 15.3;
@@ -27,15 +29,15 @@ pub fn beyond(found: &MethodFit, speed_m_s: f64) -> Vec<Finding> {
             single => {
                 let (strength, standard_error) = estimated(found, single)?;
                 let z_score = strength / standard_error;
-                let matters = effect.kind() != EffectKind::Pickup
-                    || strength.abs() > NAMED_PICKUP * effect.accepted();
-                (z_score.abs() > NAMED && matters).then_some(Finding::BeyondModel {
-                    effect,
-                    strength,
-                    standard_error,
-                    z_score,
-                    speed_m_s,
-                })
+                (z_score.abs() > NAMED && matters(effect, strength)).then_some(
+                    Finding::BeyondModel {
+                        effect,
+                        strength,
+                        standard_error,
+                        z_score,
+                        speed_m_s,
+                    },
+                )
             }
         })
         .collect()
@@ -55,6 +57,15 @@ pub fn unexplained(mut beyond: Vec<Finding>, suspicions: &[Finding]) -> Vec<Find
     beyond
 }
 
+/// Whether an effect is of interest by its strength.
+fn matters(effect: Effect, strength: f64) -> bool {
+    let accepted = match effect.kind() {
+        EffectKind::Pickup => NAMED_PICKUP,
+        _ => NAMED_STRENGTH,
+    };
+    strength.abs() > accepted * effect.accepted()
+}
+
 fn estimated(found: &MethodFit, effect: Effect) -> Option<(f64, f64)> {
     let coordinate = Coordinate::Effect(effect);
     let error = found.spread(coordinate)?.error;
@@ -69,7 +80,7 @@ fn harmonic(found: &MethodFit, cos: Effect, sin: Effect, speed_m_s: f64) -> Opti
     let (u, v) = (a / ea, b / eb);
     let chi2 = (u * u - 2.0 * correlation * u * v + v * v) / (1.0 - correlation * correlation);
     let strength = a.hypot(b);
-    (chi2 > NAMED_PAIR).then(|| Finding::BeyondModel {
+    (chi2 > NAMED_PAIR && matters(cos, strength)).then(|| Finding::BeyondModel {
         effect: cos,
         strength,
         standard_error: (a * ea).hypot(b * eb) / strength,

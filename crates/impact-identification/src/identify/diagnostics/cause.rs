@@ -18,8 +18,9 @@ use impact_fit::parameters::Coordinate;
 pub fn explains(cause: Cause, finding: &Finding) -> bool {
     let later = finding.cause().is_some_and(|other| other > cause);
     if cause == Cause::Unsettled {
-        // what is still dying away looks like friction, drag and a force against frequency
-        return finding.cause() == Some(Cause::Effect);
+        // what is still dying away looks like friction, drag and a force against frequency, and its waveforms like late
+        // channels, which bend the speeds at impacts
+        return matches!(finding.cause(), Some(Cause::Effect | Cause::Contact));
     }
     let reached = match finding {
         Finding::Misfit { method, .. } => cause.reaches(*method),
@@ -37,7 +38,7 @@ pub fn leading(suspicions: &[Finding], methods: &BTreeMap<Method, MethodResult>)
     let remarks = misfits.flat_map(|m| &m.remarks);
     let named = suspicions.iter().filter_map(Finding::cause);
     let all = named.chain(remarks.filter_map(|remark| remark.cause()));
-    all.filter(|cause| *cause <= Cause::Unsettled).min()
+    all.filter(|cause| *cause <= Cause::Contact).min()
 }
 
 /// Withdraw from a joint result what a cause reaches: a parameter is that of the method, out of those
@@ -58,10 +59,12 @@ pub fn withdraw(
             of.filter(move |(method, _)| cause.reaches(**method) == reached)
                 .filter_map(move |(method, found)| {
                     let own = found.parameters.get(parameter)?;
-                    Some((*method, own, half_width(own)?))
+                    let is_one = cause != Cause::Unsettled || !is_no_one_number(own);
+                    Some((*method, own, half_width(own).filter(|_| is_one)?))
                 })
         };
-        if telling(true).next().is_none() {
+        let bent = cause == Cause::Unsettled && is_no_one_number(estimate);
+        if telling(true).next().is_none() && !bent {
             continue;
         }
         let best = telling(false).min_by(|a, b| a.2.total_cmp(&b.2));
@@ -99,6 +102,11 @@ pub fn doubt_without_one_degree_of_freedom(
             estimate.doubt(Note::Bent);
         }
     }
+}
+
+/// Whether no single value of a parameter holds.
+fn is_no_one_number(estimate: &Estimate) -> bool {
+    estimate.note == Some(Note::NotOneNumber)
 }
 
 /// Half an estimate's interval, SI; `None` where it has none.
@@ -205,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn records_that_have_not_settled_explain_effects_alone() {
+    fn records_that_have_not_settled_explain_effects_and_the_law_of_the_contact_alone() {
         let early = |records| Finding::RecordsNotSettled {
             records,
             of: 72,
@@ -214,6 +222,7 @@ mod tests {
         let none = BTreeMap::new();
         assert_eq!(leading(&[early(57)], &none), Some(Cause::Unsettled));
         assert_eq!(leading(&[early(6)], &none), None);
+        assert_eq!(leading(&[early(57)], &methods()), Some(Cause::Unsettled));
         let drag = Finding::BeyondModel {
             effect: Effect::Drag,
             strength: 0.04,

@@ -8,7 +8,8 @@ use impact_fit::method_fit::MethodFit;
 use impact_fit::methods::blocks::Blocks;
 use impact_fit::parameters::{Coordinate, GAIN_ROLES};
 use impact_records::motion::{Observation, one_pole_hz};
-use impact_records::record::LowPass;
+use impact_records::record::{LowPass, Role};
+use std::collections::BTreeSet;
 
 /// Standard deviations of what is stated from which a delay is named.
 const SURE: f64 = 4.0;
@@ -66,6 +67,7 @@ pub fn late_channels(
         let finding = Finding::InvertedChannel { channel: l.role };
         finding.into()
     });
+    let turned = turned_channels(observations).map(Suspicion::from);
     let unsteady = moved.iter().filter_map(|l| {
         let finding = Finding::UnsteadyChannel {
             channel: l.role,
@@ -75,10 +77,26 @@ pub fn late_channels(
     });
     let motion = GAIN_ROLES.iter().enumerate().filter_map(of);
     inverted
+        .chain(turned)
         .chain(unsteady)
         .chain(motion)
         .chain(others)
         .collect()
+}
+
+/// The channels that are of the other sign in some records.
+fn turned_channels(observations: &[Observation]) -> impl Iterator<Item = Finding> {
+    let roles = observations.iter().flat_map(|o| &o.setting.turned);
+    let roles: BTreeSet<Role> = roles.copied().collect();
+    roles.into_iter().map(move |channel| {
+        let turned = |o: &&Observation| o.setting.turned.contains(&channel);
+        let own = observations.iter().filter(turned);
+        Finding::TurnedChannel {
+            channel,
+            records: own.map(|o| o.record.clone()).collect(),
+            of: observations.len(),
+        }
+    })
 }
 
 /// What is open where a filter's order is not known, or its corner: behind one pole an amplitude at the frequency f

@@ -13,6 +13,7 @@ use impact_fit::messages::{Finding, Note};
 use impact_fit::parameters::{Coordinate, Parameters};
 use impact_records::event::{Impact, RigKind};
 use impact_records::motion::Observation;
+use impact_records::record::Role;
 use impact_records::signal::robust;
 
 /// Records from which a contradiction is none of single rows of the run table.
@@ -39,18 +40,37 @@ pub fn contradicted(evidence: &Evidence<'_>, fitted: &Parameters) -> Option<Find
     found(evidence.rig, &pairs)
 }
 
-/// The finding, and what it leaves open of `x_st`: where all clearances seem to be off by one factor, the scales of the
-/// channels may be.
-pub fn suspicion(finding: Finding) -> Suspicion {
-    let doubts = match finding {
-        Finding::ClearancesOffAlike { ratio, .. } => vec![Doubt {
-            parameter: Coordinate::Deflection,
+/// The finding, and what it leaves open: where all clearances seem to be off by one factor, the scales of the channels
+/// may be, and with them `x_st`; where no stated frequency confirms the time, that may be too, and with it f0.
+pub fn suspicion(finding: Finding, observations: &[Observation]) -> Suspicion {
+    let open = |ratio: f64| {
+        move |parameter| Doubt {
+            parameter,
             by: ratio.ln().abs(),
             note: Note::InstrumentOff,
-        }],
+        }
+    };
+    let doubts = match finding {
+        Finding::ClearancesOffAlike { ratio, .. } => {
+            let time = time_scales_motion(observations).then_some(Coordinate::Frequency);
+            let parameters = std::iter::once(Coordinate::Deflection).chain(time);
+            parameters.map(open(ratio)).collect()
+        }
         _ => Vec::new(),
     };
     Suspicion { finding, doubts }
+}
+
+/// Whether a time axis that is off by a factor would scale all motions: they are integrated from velocities or
+/// accelerations, and no record states its frequency.
+fn time_scales_motion(observations: &[Observation]) -> bool {
+    let states = |o: &Observation| o.setting.stated_frequency_hz.is_some();
+    let displacement = |role| matches!(role, Role::DisplacementX | Role::DisplacementY);
+    let measures = |o: &Observation| {
+        let roles = [false, true].map(|of_y| o.speed_from(of_y));
+        roles.into_iter().flatten().any(displacement)
+    };
+    !observations.iter().any(|o| states(o) || measures(o))
 }
 
 /// What pairs of stated and flown clearances, m, have in common where it is not that they are alike.
@@ -148,6 +168,7 @@ impl Flight {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impact_records::motion::Motion;
 
     fn pairs(flown: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
         let stated = (1..9).map(|i| 5e-4 * f64::from(i));
@@ -206,15 +227,25 @@ mod tests {
             ratio: 1e-3,
             records: 8,
         };
-        let doubts = suspicion(alike).doubts;
-        assert_eq!(doubts.len(), 1);
-        assert_eq!(doubts[0].parameter, Coordinate::Deflection);
-        assert!((doubts[0].by - 1000f64.ln()).abs() < 1e-12);
+        let mut observation = Observation::of("r", 12.0, Motion::Impactless);
+        let open = |o: &Observation| {
+            let doubts = suspicion(alike.clone(), std::slice::from_ref(o)).doubts;
+            assert!(doubts.iter().all(|d| (d.by - 1000f64.ln()).abs() < 1e-12));
+            doubts.iter().map(|d| d.parameter).collect::<Vec<_>>()
+        };
+        // without a stated frequency the time may be off instead
+        observation.setting.stated_frequency_hz = None;
+        assert_eq!(
+            open(&observation),
+            [Coordinate::Deflection, Coordinate::Frequency]
+        );
+        observation.setting.stated_frequency_hz = Some(12.0);
+        assert_eq!(open(&observation), [Coordinate::Deflection]);
         let shifted = Finding::ClearancesShifted {
             added_m: 1e-3,
             records: 8,
         };
-        assert_eq!(suspicion(shifted).doubts, []);
+        assert_eq!(suspicion(shifted, &[]).doubts, []);
     }
 
     #[test]

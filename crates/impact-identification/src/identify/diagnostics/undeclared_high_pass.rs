@@ -25,8 +25,13 @@ const FURTHEST_BELOW: f64 = 1e3;
 const CLEARLY: f64 = 1.5;
 
 /// The channels without a stated high-pass of which resonance curve and waveforms show one, by the least cost of a fit
-/// of it in which corners are [`WIDE`] open.
-pub fn undeclared(blocks: &Blocks, fit: &dyn Fn(&Blocks) -> Option<Fit>) -> Vec<Finding> {
+/// `fit` in which corners are [`WIDE`] open; none where what channels pick up of the drive, which `picking_up` fits, explains
+/// as much.
+pub fn undeclared(
+    blocks: &Blocks,
+    fit: &dyn Fn(&Blocks) -> Option<Fit>,
+    picking_up: &dyn Fn(&Blocks) -> Option<Fit>,
+) -> Vec<Finding> {
     let mut now = blocks.with_trajectory(blocks.trajectory.few(RECORDS));
     now.resonance = blocks.resonance.few(FEW);
     // what a high-pass makes of a record is no error of its own
@@ -44,10 +49,14 @@ pub fn undeclared(blocks: &Blocks, fit: &dyn Fn(&Blocks) -> Option<Fit>) -> Vec<
     let Some(mut here) = fit(&now) else {
         return Vec::new();
     };
+    let stated = now.clone();
     let mut found: Vec<(Role, f64)> = Vec::new();
     while let Some(step) = step(&now, &here, start_hz, fit) {
         found.extend(step.roles.iter().map(|role| (*role, step.z_score)));
         (here, now) = (step.fit, step.blocks);
+    }
+    if !found.is_empty() && picking_up(&stated).is_some_and(|other| other.cost <= here.cost) {
+        return Vec::new();
     }
     let found = found.into_iter();
     let found = found.map(|(channel, z_score)| Finding::UndeclaredHighPass {

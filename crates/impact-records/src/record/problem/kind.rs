@@ -633,6 +633,21 @@ problems! {
         /// The units.
         units: MistakenUnits,
     };
+    /// Some records alone have another drive frequency than their rows of the run table state, so that their other settings may be
+    /// others too.
+    RowContradicts: RowOfAnother {
+        /// Measured, Hz.
+        measured_hz: f64,
+        /// Stated, Hz.
+        stated_hz: f64,
+    };
+    /// Measured and stated drive amplitude differ.
+    DriveAmplitudeContradicts: AmplitudeUnlikeStated {
+        /// Measured, over that of the records of the nominal drive.
+        measured: f64,
+        /// Stated, over the nominal one.
+        stated: f64,
+    };
     /// A displacement goes beyond the stop without an impact.
     BeyondStop: PathBeyondStop {
         /// How far it goes, m.

@@ -284,6 +284,12 @@ message_table! { "problem": Problem;
     Self::FrequencyUnlikeStated { measured_hz, stated_hz } =>
         measured = Value::Number(*measured_hz, 4),
         stated = Value::Number(*stated_hz, 4);
+    Self::RowOfAnother { measured_hz, stated_hz } =>
+        measured = Value::Number(*measured_hz, 4),
+        stated = Value::Number(*stated_hz, 4);
+    Self::AmplitudeUnlikeStated { measured, stated } =>
+        measured = Value::Number(*measured, 2),
+        stated = Value::Number(*stated, 2);
     Self::FrequencyInOtherUnits { measured_hz, stated_hz, units } =>
         measured = Value::Number(*measured_hz, 4),
         stated = Value::Number(*stated_hz, 4),

@@ -1,6 +1,7 @@
 //! Two decays whose frequencies are so near that they beat.
 
 use super::descent::{self, Projected, equations};
+use super::fits::peak;
 use super::least_squares::{Point, Series};
 use super::noise::structured;
 use super::shape::{Rates, Shape};
@@ -71,6 +72,9 @@ pub(super) fn find_within(series: &Series, one: &Point, limits: &Limits) -> Opti
         let other = lines * line;
         [other, -other].map(|off| [omega - 0.2 * off, 0.5 * sigma, omega + off, 0.5 * sigma])
     });
+    // further apart, the other one is the tone of what one decay leaves
+    let tone = peak(&left).map(|other| [omega, sigma, other, sigma]);
+    let starts = starts.chain(tone);
     let pairs = starts.filter_map(|rates| descent::descend(Pair::of(&plain, rates)?));
     let best = pairs.min_by(|a, b| a.squares.total_cmp(&b.squares))?;
     told(&best, dot(&left, &left), limits)

@@ -13,6 +13,9 @@ const BEYOND: f64 = 0.02;
 /// of the time to a tenth: a half to nearly all of it by then, as e^(−t/τ) leaves a third.
 const FROM: f64 = 0.8;
 const HALFWAY: [f64; 2] = [0.15, 0.5];
+/// Points on the way, and how long it is through them at most, over the fall between: what swings goes to and fro.
+const POINTS: usize = 24;
+const ASTRAY: f64 = 1.3;
 /// Fewest samples on the way.
 const FEWEST: usize = 8;
 
@@ -50,7 +53,13 @@ pub fn comes_to_rest(channel: &Watched<'_>) -> bool {
     let first_at_rest = shares.iter().position(|s| *s < rest_again);
     let halfway = shares[begin + (end - begin) / 2] / FROM;
     let least = shares.iter().copied().fold(f64::INFINITY, f64::min);
+    let on_the_way: Vec<f64> = (0..=POINTS)
+        .map(|k| shares[begin + (end - begin) * k / POINTS])
+        .collect();
+    let way: f64 = on_the_way.windows(2).map(|w| (w[1] - w[0]).abs()).sum();
+    let straight = way < ASTRAY * (FROM + POINTS as f64 * noise);
     noise * STANDS_OUT < 1.0
+        && straight
         && first_at_rest.is_some_and(|first| first > end)
         && end >= begin + FEWEST
         && least > -BEYOND - 4.0 * noise

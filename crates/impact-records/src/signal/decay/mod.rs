@@ -30,6 +30,7 @@ use prepared::{LEAST_PERIODS, Prepared};
 use shape::Shape;
 
 use crate::signal::{robust, whole};
+use nalgebra::{Matrix5, Vector5};
 
 pub use change::{Course, DampingLaw, Drift, LEAST_TESTED, PartOfDecay, RESOLVED};
 pub use creep::comes_to_rest;
@@ -140,6 +141,18 @@ impl Decay {
         self.damping_ratio < UNDAMPED * self.damping_ratio_error
     }
 
+    /// Whether it is a motion that decays beyond doubt.
+    fn is_clear(&self) -> bool {
+        self.periods >= CLEAR_PERIODS && self.residual_ratio < CLEAR_LEAVES && !self.is_undamped()
+    }
+
+    /// Whether its frequency is another one beyond errors.
+    fn is_unlike(&self, other: &Self) -> bool {
+        let apart = (self.natural_frequency_hz / other.natural_frequency_hz).ln();
+        let error = self.relative_error().hypot(other.relative_error());
+        apart.abs() > UNLIKE + GROWS * error
+    }
+
     /// Standard error of f0 over f0.
     pub fn relative_error(&self) -> f64 {
         self.natural_frequency_error_hz / self.natural_frequency_hz
@@ -169,25 +182,45 @@ pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Decay> {
         .next()
 }
 
+/// Difference of the logarithms of f0 from which two channels show no motion of one oscillator.
+const UNLIKE: f64 = 0.02;
+/// Fewest periods, and greatest part of the signal that the fit leaves, with which a channel shows a motion of its own.
+const CLEAR_PERIODS: f64 = 5.0;
+const CLEAR_LEAVES: f64 = 0.3;
+
 /// Fit the free decays that several channels of equal length show, one after each blow or release: those of
-/// the channel that determines f0 best.
+/// the channel that determines f0 best, then those of others that clearly swing at another frequency.
 ///
 /// Channels are often computed from each other, so that together they tell no more than the best one. Empty
 /// with fewer than one and a half periods to fit, or if nothing decays.
 pub fn fit_channels(channels: &[Watched<'_>], rate_hz: f64) -> Vec<Decay> {
-    let best = |decays: &[Decay]| {
-        let errors = decays.iter().map(Decay::relative_error);
-        errors.fold(f64::INFINITY, f64::min)
-    };
     let of_channel = |(index, channel): (usize, &Watched<'_>)| {
         let mut decays = of_channel(*channel, rate_hz);
         decays.iter_mut().for_each(|d| d.channel = index);
         decays
     };
     let all = channels.iter().enumerate().map(of_channel);
-    all.filter(|decays| !decays.is_empty())
-        .min_by(|a, b| best(a).total_cmp(&best(b)))
-        .unwrap_or_default()
+    let mut all: Vec<Vec<Decay>> = all.filter(|decays| !decays.is_empty()).collect();
+    all.sort_by(|a, b| least_error(a).total_cmp(&least_error(b)));
+    let mut all = all.into_iter();
+    let mut found = all.next().unwrap_or_default();
+    all.for_each(|others| append_unlike(&mut found, others));
+    found
+}
+
+/// Add the decays of another channel, or of another mass, if they clearly are of another frequency than those found.
+pub fn append_unlike(found: &mut Vec<Decay>, others: Vec<Decay>) {
+    let by_error = |a: &&Decay, b: &&Decay| a.relative_error().total_cmp(&b.relative_error());
+    let best = others.iter().min_by(by_error);
+    let both = best.zip(found.iter().min_by(by_error));
+    if both.is_some_and(|(other, own)| other.is_clear() && other.is_unlike(own)) {
+        found.extend(others);
+    }
+}
+
+fn least_error(decays: &[Decay]) -> f64 {
+    let errors = decays.iter().map(Decay::relative_error);
+    errors.fold(f64::INFINITY, f64::min)
 }
 
 /// How many times as much the decays may leave with steady tones taken away as without: more is left where the tones
@@ -200,12 +233,43 @@ fn of_channel(channel: Watched<'_>, rate_hz: f64) -> Vec<Decay> {
     if !found.is_empty() {
         return found;
     }
-    let level = without_line(channel.values);
-    let channel = Watched {
-        values: &level,
-        ..channel
+    let without = |drift: &dyn Fn(&[f64]) -> Vec<f64>| {
+        let level = drift(channel.values);
+        let channel = Watched {
+            values: &level,
+            ..channel
+        };
+        of_values(channel, rate_hz)
     };
-    of_values(channel, rate_hz)
+    let found = without(&without_line);
+    if !found.is_empty() {
+        return found;
+    }
+    // what the curve leaves of another one swings two or three times
+    let mut found = without(&without_curve);
+    found.retain(|decay| decay.periods >= CLEAR_PERIODS);
+    found
+}
+
+/// Samples less the polynomial of the fourth degree that is nearest to them: what creeps to rest, as e^(−t/τ).
+fn without_curve(samples: &[f64]) -> Vec<f64> {
+    let last = samples.len().saturating_sub(1).max(1) as f64;
+    let powers = |i: usize| {
+        let x = 2.0 * i as f64 / last - 1.0;
+        Vector5::from_fn(|k, _| x.powi(i32::try_from(k).unwrap_or(0)))
+    };
+    let mut squares = Matrix5::zeros();
+    let mut products = Vector5::zeros();
+    for (i, value) in samples.iter().enumerate() {
+        let row = powers(i);
+        squares += row * row.transpose();
+        products += row * *value;
+    }
+    let Some(solved) = squares.cholesky().map(|c| c.solve(&products)) else {
+        return samples.to_vec();
+    };
+    let values = samples.iter().enumerate();
+    values.map(|(i, v)| v - powers(i).dot(&solved)).collect()
 }
 
 /// Samples less the straight line through the medians of their first and their last third.
@@ -313,8 +377,11 @@ fn until_rest(part: &Cleared<'_>, decay: &Decay, rate_hz: f64) -> Option<Decay> 
     Some(cut)
 }
 
-/// A decay of a part up to where something begins to rub.
+/// A decay of a part up to where something begins to rub; `None` where another decay beside it explains the whole.
 fn before_rub(part: &Cleared<'_>, decay: &Decay, rate_hz: f64) -> Option<Decay> {
+    if decay.beside.beat.is_some() {
+        return None;
+    }
     let friction = decay.beside_friction?;
     let before = decay.part(part, friction.unchanged?, rate_hz)?;
     let mut cut = of_part(&before, rate_hz)?;

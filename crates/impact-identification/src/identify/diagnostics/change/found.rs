@@ -1,6 +1,6 @@
 //! A campaign of two rigs: what both parts of it say, and in what they differ.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::speeds::apart_at_one_speed;
 use impact_fit::estimate::{Estimate, Status, estimate_within};
@@ -24,7 +24,7 @@ pub(super) const LEAST_OF_R: f64 = 5e-3;
 /// The least change that is one of the rig: the mean of a part moves by 3/4 of an accepted drift's
 /// deviations over the campaign where that is 1.5 deviations in size; twice that, three deviations, is
 /// beyond what a good laboratory accepts. R absolute, the others relative.
-fn least(parameter: Coordinate) -> f64 {
+pub(super) fn least(parameter: Coordinate) -> f64 {
     match parameter {
         Coordinate::Restitution => LEAST_OF_R,
         Coordinate::Frequency => 1.5 * Effect::FrequencyDrift.accepted(),
@@ -56,6 +56,13 @@ pub(super) enum Other {
     Clearance(f64),
     /// Those of sweeps down.
     SweepsDown,
+    /// Some in no order.
+    Mixed {
+        /// Their places in the order of acquisition, from 0.
+        ranks: BTreeSet<usize>,
+        /// Their names.
+        records: Vec<String>,
+    },
 }
 
 impl Other {
@@ -65,6 +72,7 @@ impl Other {
             Self::From { rank, .. } => at >= *rank,
             Self::Clearance(gap_m) => observation.setting.clearance_m == Some(*gap_m),
             Self::SweepsDown => observation.setting.sweep == Sweep::Down,
+            Self::Mixed { ranks, .. } => ranks.contains(&at),
         }
     }
 }
@@ -129,6 +137,12 @@ impl Change {
                 others,
             },
             Other::SweepsDown => Finding::SweepsDownOnOtherRig { own, others },
+            Other::Mixed { records, .. } => Finding::RigsMixed {
+                records: records.clone(),
+                of,
+                own,
+                others,
+            },
         }
     }
 
@@ -147,6 +161,12 @@ impl Change {
         }
         self.parts.keys().copied().collect()
     }
+}
+
+/// Whether a value of a part is one that can be stated: a fit of few records may leave it open by orders of magnitude.
+pub(super) fn is_stated(parameter: Coordinate, part: (f64, Spread)) -> bool {
+    let estimate = stated(parameter, part);
+    estimate.value.is_some_and(f64::is_finite) && estimate.interval95.is_some()
 }
 
 fn stated(parameter: Coordinate, (value, spread): (f64, Spread)) -> Estimate {

@@ -3,17 +3,18 @@
 //! First it is looked for where in the campaign, if anywhere, the fit of all would gain most by a change: by
 //! the rows of the records at the fit's optimum (a score test: no fit is made), by the records that the fit
 //! lost, and by R of the records' impacts. The two parts about that moment are then fitted each by itself,
-//! with allowances of their own, and compared. So are the records of each clearance with all others, and those
-//! of both directions of the sweep.
+//! with allowances of their own, and compared. So are the records of each clearance with all others, those
+//! of both directions of the sweep, and two groups of records in whatever order that differ in what each record tells.
 
 mod found;
+mod mixture;
 mod moment;
 mod rows;
 mod search;
 mod speeds;
 
 pub use found::Change;
-use found::Other;
+use found::{Other, is_stated};
 pub(super) use rows::Step;
 pub use search::{Fitted, Search};
 
@@ -62,6 +63,11 @@ impl Search<'_> {
         self.apart(of)
     }
 
+    /// The records, in whatever order, that are of another rig than all others; `None` of one rig.
+    pub fn in_no_order(&self) -> Option<Change> {
+        self.apart(self.mixed()?)
+    }
+
     /// Both parts of a campaign, each fitted by itself, where they differ by more than R over the speed explains.
     fn apart(&self, of: Other) -> Option<Change> {
         let observations = self
@@ -79,6 +85,7 @@ impl Search<'_> {
         let compared = first.into_iter();
         let compared = compared.filter(|(c, _)| phases || *c == Coordinate::Restitution);
         let common = compared.filter_map(|(c, a)| Some((c, [a, *other.get(&c)?])));
+        let common = common.filter(|(c, both)| both.iter().all(|part| is_stated(*c, *part)));
         let change = Change {
             of,
             parts: common.collect(),

@@ -11,7 +11,7 @@ pub(super) struct Impacted {
     /// R.
     pub(super) ratio: f64,
     /// Inverse variance of R.
-    weight: f64,
+    pub(super) weight: f64,
 }
 
 /// R of each impact of a block.

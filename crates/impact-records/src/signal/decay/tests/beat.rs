@@ -81,3 +81,42 @@ fn valid_beats_are_told_over_a_range_of_the_limits() {
         assert_eq!(told, [0, 8, 8], "{limits:?}");
     }
 }
+
+/// A weaker mode that beats with the decay many times: what its beat makes of the envelope is no rub.
+#[test]
+fn valid_a_partner_of_many_beats_is_told_and_no_rub() {
+    let mut rng = ChaCha8Rng::seed_from_u64(44);
+    for (ratio, apart) in [
+        (0.1, 1.07),
+        (0.2, 1.12),
+        (0.2, 1.185),
+        (0.3, 0.9),
+        (0.15, 0.85),
+    ] {
+        let decay = |hz: f64, t: f64| {
+            let natural = std::f64::consts::TAU * hz;
+            (-0.01 * natural * t).exp() * (natural * t).cos()
+        };
+        let samples: Vec<f64> = (0..2000)
+            .map(|i| {
+                let t = f64::from(i) / 100.0;
+                let shock: f64 = StandardNormal.sample(&mut rng);
+                decay(3.784, t) + ratio * decay(apart * 3.784, t) + 2e-3 * shock
+            })
+            .collect();
+        let found = super::super::fit_channels(&[Watched::displacement(&samples)], 100.0);
+        let [decay] = found.as_slice() else {
+            panic!("{ratio} {apart}: {found:?}");
+        };
+        let begins = decay.beside_friction.and_then(|friction| friction.begins);
+        assert!(begins.is_none() || decay.beside.beat.is_some(), "{decay:?}");
+        let other = decay.beside.beat.map(|beat| beat[1]);
+        let other = other.or(decay.beside.mode.map(|mode| mode[0]));
+        let other = other.expect("the other mode");
+        assert!(
+            (other / (apart * 3.784) - 1.0).abs() < 0.01,
+            "{ratio} {apart}: {other}"
+        );
+        assert!(decay.periods > 20.0, "{ratio} {apart}: {}", decay.periods);
+    }
+}

@@ -786,3 +786,26 @@ fn clipped_samples_are_known_where_a_drift_was_taken_from_them() {
     assert_eq!(channel.clear_from(0..5), 3);
     assert_eq!(channel.clear_from(3..5), 3);
 }
+
+/// 5 mm of 0.8 Hz on what creeps to rest by more than that within nine seconds.
+#[test]
+fn valid_a_decay_on_creep_is_told_by_its_swings() {
+    let (f0, beta, rate_hz) = (0.8, 0.04, 100.0);
+    let natural = TAU * f0;
+    let value =
+        |t: f64| 5.0 * (-beta * natural * t).exp() * (natural * t).cos() + 6.0 * (-t / 9.0).exp();
+    let mut random = ChaCha8Rng::seed_from_u64(30);
+    let mut noise = || -> f64 { StandardNormal.sample(&mut random) };
+    let samples: Vec<f64> = (0..4000)
+        .map(|i| value(f64::from(i) / rate_hz) + 0.005 * noise())
+        .collect();
+    let channel = Watched::displacement(&samples);
+    assert!(!super::comes_to_rest(&channel));
+    let found = fit_channels(&[channel], rate_hz);
+    let found = found.first().expect("a decay");
+    assert!(
+        (found.natural_frequency_hz / f0 - 1.0).abs() < 2e-3,
+        "{found:?}"
+    );
+    assert!((found.damping_ratio / beta - 1.0).abs() < 0.1, "{found:?}");
+}
