@@ -134,6 +134,8 @@ pub enum Note {
     Differentiated,
     /// The velocities ring beside the impacts.
     Ringing,
+    /// Accelerations are clipped at most impacts.
+    Clipped,
     /// The solver failed.
     SolverFailed,
     /// The data do not separate the parameters.
@@ -151,6 +153,7 @@ impl From<&FitError> for Note {
             FitError::OneOfTwo => Self::OneOfTwo,
             FitError::Differentiated => Self::Differentiated,
             FitError::Ringing => Self::Ringing,
+            FitError::Clipped => Self::Clipped,
             FitError::Solver => Self::SolverFailed,
             FitError::Singular => Self::NotSeparable,
         }

@@ -7,7 +7,8 @@ pub mod effect;
 pub mod gap_errors;
 pub mod own;
 
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 
 pub use self::coordinate::{CHANNELS, Coordinate};
 use self::effect::Effect;
@@ -46,8 +47,8 @@ pub struct Parameters {
     /// Delay of the channels against the drive's, s, in the same order.
     #[serde(default)]
     pub delays_s: [f64; CHANNELS],
-    /// Strengths of the effects beyond the model, by their places.
-    #[serde(default)]
+    /// Strengths of the effects beyond the model, by their places; zero of those that results of earlier versions lack.
+    #[serde(default = "no_effects", deserialize_with = "effects")]
     pub effects: [f64; Effect::COUNT],
     /// Common error of all clearances (the zero of the screw that sets them), m.
     #[serde(default)]
@@ -55,6 +56,21 @@ pub struct Parameters {
     /// Error of each stated clearance beside it, m, in the order of the stated ones.
     #[serde(default)]
     pub gap_errors_m: GapErrors,
+}
+
+fn no_effects() -> [f64; Effect::COUNT] {
+    [0.0; Effect::COUNT]
+}
+
+/// The strengths of the first effects, up to all of them.
+fn effects<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; Effect::COUNT], D::Error> {
+    let known = Vec::<f64>::deserialize(from)?;
+    let mut all = no_effects();
+    let first = all.get_mut(..known.len());
+    first
+        .ok_or_else(|| D::Error::invalid_length(known.len(), &"the strengths of known effects"))?
+        .copy_from_slice(&known);
+    Ok(all)
 }
 
 impl Parameters {
@@ -255,6 +271,20 @@ mod tests {
     use nalgebra::{DMatrix, Matrix2, Vector2};
 
     use super::*;
+
+    #[test]
+    fn strengths_of_effects_that_earlier_results_lack_are_zero() {
+        let mut whole = Parameters::symmetric(0.8, 12.0, 0.05, 1e-3);
+        whole.effects = [0.25; Effect::COUNT];
+        let mut written = serde_json::to_value(whole).expect("JSON");
+        let strengths = written["effects"].as_array_mut().expect("a list");
+        strengths.pop();
+        let read: Parameters = serde_json::from_value(written.clone()).expect("parameters");
+        assert_eq!(read.effects[Effect::COUNT - 2..], [0.25, 0.0]);
+        let strengths = written["effects"].as_array_mut().expect("a list");
+        strengths.extend([0.0.into(), 0.0.into()]);
+        assert!(serde_json::from_value::<Parameters>(written).is_err());
+    }
 
     /// f0, β and `x_st` of two uncoupled masses over the nominal ones, from the eigenvalues of their
     /// state matrix and the solution of their static equations; frequencies are assigned to masses by

@@ -103,6 +103,9 @@ pub enum FitError {
     /// The velocities rang beside the impacts.
     #[error("the velocities ring beside the impacts")]
     Ringing,
+    /// The accelerations are clipped at most impacts.
+    #[error("the accelerations are clipped at most impacts")]
+    Clipped,
     /// The solver ended without a point.
     #[error("the solver failed")]
     Solver,

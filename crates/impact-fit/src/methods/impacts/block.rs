@@ -146,6 +146,8 @@ pub enum FirstValueOnly {
     Differentiated,
     /// Velocities rang beside the impacts: their flights are known farther from them only.
     Ringing,
+    /// Accelerations are clipped at the impacts of most records: those of the others are the softest.
+    Clipped,
 }
 
 /// Whether the speeds of driven motions come from displacements.
@@ -164,15 +166,16 @@ fn differentiated(observations: &[Observation]) -> bool {
 /// it. Of sound velocities none ring.
 const RINGING: f64 = 0.1;
 
-/// Whether the velocities of driven motions with impacts ring beside these.
-fn ringing(observations: &[Observation]) -> bool {
+/// Share of them from which accelerations are clipped at the impacts of most.
+const CLIPPED: f64 = 0.5;
+
+/// Share of the driven motions with impacts that are such.
+fn share_of_driven(observations: &[Observation], is_such: impl Fn(&Observation) -> bool) -> f64 {
     let driven = observations
         .iter()
         .filter(|o| !o.excluded() && o.drive.is_some() && !o.impacts.is_empty());
-    let (all, rang) = driven.fold((0, 0), |(all, rang), o| {
-        (all + 1, rang + u32::from(o.smoothed))
-    });
-    f64::from(rang) > RINGING * f64::from(all)
+    let all = driven.clone().count().max(1);
+    driven.filter(|o| is_such(o)).count() as f64 / all as f64
 }
 
 /// On which corners speeds depend, by their index.
@@ -271,8 +274,11 @@ impl ImpactBlock {
                 Some(FirstValueOnly::OneOfTwo)
             } else if differentiated(observations) {
                 Some(FirstValueOnly::Differentiated)
+            } else if share_of_driven(observations, |o| o.smoothed) > RINGING {
+                Some(FirstValueOnly::Ringing)
             } else {
-                ringing(observations).then_some(FirstValueOnly::Ringing)
+                let clipped = share_of_driven(observations, Observation::speeds_lack_spikes);
+                (clipped > CLIPPED).then_some(FirstValueOnly::Clipped)
             },
             push: push(observations),
             ..Self::of_pairs(pairs, relative_error)

@@ -18,6 +18,7 @@ pub fn from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<Fit
         Some(FirstValueOnly::OneOfTwo) => return Some(Err(FitError::OneOfTwo)),
         Some(FirstValueOnly::Differentiated) => return Some(Err(FitError::Differentiated)),
         Some(FirstValueOnly::Ringing) => return Some(Err(FitError::Ringing)),
+        Some(FirstValueOnly::Clipped) => return Some(Err(FitError::Clipped)),
         None => {}
     }
     let list: Vec<(&dyn Block, f64)> = vec![(&blocks.impact, 1.0)];

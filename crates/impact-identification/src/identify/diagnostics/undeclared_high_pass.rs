@@ -26,7 +26,7 @@ const CLEARLY: f64 = 1.5;
 
 /// The channels without a stated high-pass of which resonance curve and waveforms show one, by the least cost of a fit
 /// `fit` in which corners are [`WIDE`] open; none where what channels pick up of the drive, which `picking_up` fits, explains
-/// as much.
+/// down to the noise.
 pub fn undeclared(
     blocks: &Blocks,
     fit: &dyn Fn(&Blocks) -> Option<Fit>,
@@ -55,7 +55,12 @@ pub fn undeclared(
         found.extend(step.roles.iter().map(|role| (*role, step.z_score)));
         (here, now) = (step.fit, step.blocks);
     }
-    if !found.is_empty() && picking_up(&stated).is_some_and(|other| other.cost <= here.cost) {
+    // a high-pass of several channels is explained by a pick-up of one as little as by a high-pass of one
+    let picked_up = |other: Fit| {
+        let noise = CLEARLY * other.residuals as f64;
+        other.cost <= noise && CLEARLY * other.cost <= here.cost
+    };
+    if !found.is_empty() && picking_up(&stated).is_some_and(picked_up) {
         return Vec::new();
     }
     let found = found.into_iter();
