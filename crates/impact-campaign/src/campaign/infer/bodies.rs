@@ -61,9 +61,9 @@ pub(super) fn ask_or_note(some: &[Place<'_>], rig: RigKind, found: &mut FolderCo
         return;
     }
     let name = |index: usize| found.channels[index].name.clone();
-    let axes = others
-        .iter()
-        .all(|(i, _)| roles::is_other_axis(&found.channels, *i));
+    let axes = others.iter().all(|(i, _)| {
+        roles::is_other_axis(&found.channels, *i) || is_named_as_axis(&found.channels, *i)
+    });
     let names: Vec<String> = others.iter().map(|(index, _)| name(*index)).collect();
     let moves = if names.len() == 1 { "moves" } else { "move" };
     let names = names.join(", ");
@@ -90,6 +90,15 @@ pub(super) fn ask_or_note(some: &[Place<'_>], rig: RigKind, found: &mut FolderCo
         }
     };
     found.notes.push(note);
+}
+
+/// Whether a channel is called as one with a role is but for the letter of the axis: `y1` beside `x1`.
+fn is_named_as_axis(channels: &[InferredChannel], index: usize) -> bool {
+    let name = channels[index].name.to_lowercase();
+    let along_x = ["y", "z"].map(|axis| name.replacen(axis, "x", 1));
+    let with_role = channels.iter().filter(|c| c.role.is_some());
+    let mut names = with_role.map(|c| c.name.to_lowercase());
+    names.any(|own| own != name && along_x.contains(&own))
 }
 
 /// Ask for the machine of a driven rig where channels without a role are alike, and no mass y is known.

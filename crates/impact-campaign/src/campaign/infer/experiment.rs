@@ -71,6 +71,12 @@ fn of_heights(listed: &Heights, found: &mut FolderContents) {
     without_roles(&mut found.channels);
     let names = listed.columns.iter().filter_map(|i| found.channels.get(*i));
     found.then = names.skip(1).map(|c| c.name.clone()).collect();
+    if listed.of_bodies {
+        found.notes.push(format!(
+            "{}: taken for rebounds of one body; if they are of unlike bodies or floors, give each a campaign of its own",
+            found.then.join(", ")
+        ));
+    }
     if let Some(first) = listed
         .columns
         .first()

@@ -69,6 +69,8 @@ const FOLLOWS: f64 = 0.4;
 /// How a table states heights: the columns in their order, and what they contain.
 pub(super) struct Heights {
     pub(super) columns: Vec<usize>,
+    /// Whether the names of the rebounds are those of bodies or floors, and no numbers.
+    pub(super) of_bodies: bool,
     pub(super) content: ContactContent,
 }
 
@@ -91,14 +93,15 @@ pub(super) fn of(place: Place<'_>) -> Option<Heights> {
         return None;
     }
     let values = in_one_unit(place, &used);
+    let tops = used.iter().skip(1).map(|i| &channels[*i]);
+    let of_bodies = used.len() > 2 && !numbered(tops);
     let content = match values.as_slice() {
         [] => None,
         [below] => falls(below).then_some(ContactContent::Heights),
         [first, second] => below(first, second).then_some(ContactContent::Heights),
         [first, second, third, ..] => {
             let all = values[1..].iter().all(|column| below(first, column));
-            let tops = used[1..].iter().map(|i| &channels[*i]);
-            let follow = numbered(tops) && fall(second, third) > FOLLOWS * fall(first, second);
+            let follow = !of_bodies && fall(second, third) > FOLLOWS * fall(first, second);
             all.then_some(if follow {
                 ContactContent::Heights
             } else {
@@ -108,6 +111,7 @@ pub(super) fn of(place: Place<'_>) -> Option<Heights> {
     };
     Some(Heights {
         columns: used,
+        of_bodies,
         content: content?,
     })
 }

@@ -118,6 +118,9 @@ pub fn pooled(observations: &[Observation], effects: Effects) -> Option<MethodRe
     let apart = frequencies.iter().map(|p| (p.value - f).abs());
     let apart = apart.fold(0.0, f64::max);
     judge(&mut result, &decays, (apart, shared.is_some()));
+    if !shared.is_some_and(|s| s.is_told()) {
+        judge_dampings(&mut result, &decays);
+    }
     if let Some(periods) = too_short(&decays) {
         leave_weak(&mut result, Note::FewPeriods { periods });
     }
@@ -319,9 +322,6 @@ fn judge(result: &mut MethodResult, decays: &[&Decay], (spread, friction): (f64,
     let fades = median(&|d| d.fading) > FADES;
     let plain = structure < if fades { FADING_STRUCTURE } else { STRUCTURE };
     let damping_changes = judge_damping(result, decays, friction);
-    if !damping_changes && !friction {
-        judge_dampings(result, decays);
-    }
     let frequency_changes = judge_frequency(result, decays);
     // what changes along a decay is the structure that it leaves
     let told = plain || damping_changes || frequency_changes;
@@ -346,8 +346,11 @@ fn judge(result: &mut MethodResult, decays: &[&Decay], (spread, friction): (f64,
 
 /// Whether the decays are of one damping ratio, where it does not change along them.
 fn judge_dampings(result: &mut MethodResult, decays: &[&Decay]) {
+    let changes = |r: &Remark| matches!(r, Remark::DecaysDamping { .. });
+    if result.remarks.iter().any(changes) {
+        return;
+    }
     let estimate = result.parameters.damping_ratio.as_mut();
-    let estimate = estimate.filter(|e| e.note != Some(Note::DampingChanges));
     let Some((estimate, [low, high])) = estimate.zip(unlike_dampings(decays)) else {
         return;
     };

@@ -328,7 +328,7 @@ fn valid_decays_of_unlike_damping_are_no_undamped_motion() {
             })
         })
         .into();
-    let found = pooled(&[observation(decays)], Effects::none()).unwrap();
+    let found = pooled(&[observation(decays)], Effects::all()).unwrap();
     let differ = |r: &Remark| matches!(r, Remark::DecaysDampingDiffers { .. });
     assert!(found.remarks.iter().any(differ), "{:?}", found.remarks);
     let damping = found.parameters.damping_ratio.unwrap();
