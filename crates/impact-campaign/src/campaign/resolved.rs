@@ -128,6 +128,7 @@ impl ResolvedCampaign {
     }
 
     /// The campaign with channels turned in those records in which they were found to be of the other sign.
+    #[must_use]
     pub fn with_turned<'a>(&self, turned: impl IntoIterator<Item = (usize, &'a [Role])>) -> Self {
         let mut campaign = self.clone();
         for (record, roles) in turned {

@@ -359,9 +359,11 @@ fn judge_dampings(result: &mut MethodResult, decays: &[&Decay]) {
         *interval = [interval[0].min(low), interval[1].max(high)];
     }
     result.fits = Some(false);
-    result
-        .remarks
-        .push(Remark::DecaysDampingDiffers { low, high });
+    let of_several = |r: &Remark| matches!(r, Remark::DecaysDiffer { .. });
+    if !result.remarks.iter().any(of_several) {
+        let differ = Remark::DecaysDampingDiffers { low, high };
+        result.remarks.push(differ);
+    }
 }
 
 /// The least and the greatest damping ratio of decays of which two differ by more than their errors, and by an amount that

@@ -202,7 +202,7 @@ fn explains(ratios: &[GroupedRatio], grouping: Grouping, constant: f64) -> Optio
     (explained > SIGNIFICANT && range > MATTERS).then_some(explained)
 }
 
-/// Standard deviation of groups beyond the errors of their means, by what they explain of χ² (DerSimonian and Laird 1986);
+/// Standard deviation of groups beyond the errors of their means, by what they explain of χ² (`DerSimonian` and Laird 1986);
 /// of values that lie evenly it is their range over √12.
 fn between(means: &[(f64, f64, f64)], explained: f64) -> f64 {
     let weights = || means.iter().map(|m| m.1.powi(-2));

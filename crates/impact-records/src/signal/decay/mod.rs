@@ -141,9 +141,16 @@ impl Decay {
         self.damping_ratio < UNDAMPED * self.damping_ratio_error
     }
 
-    /// Whether it is a motion that decays beyond doubt.
+    /// Whether it is a motion that decays beyond doubt, and the only one of its channel.
     fn is_clear(&self) -> bool {
-        self.periods >= CLEAR_PERIODS && self.residual_ratio < CLEAR_LEAVES && !self.is_undamped()
+        let beside = [self.beside.hum, self.beside.mode];
+        let other = beside
+            .iter()
+            .flatten()
+            .any(|[_, ratio]| *ratio > CLEAR_LEAVES);
+        let alone = !other && self.beside.beat.is_none();
+        let fits = self.residual_ratio < CLEAR_LEAVES;
+        alone && fits && self.periods >= SURE_PERIODS && !self.is_undamped()
     }
 
     /// Whether its frequency is another one beyond errors.
@@ -184,9 +191,12 @@ pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Decay> {
 
 /// Difference of the logarithms of f0 from which two channels show no motion of one oscillator.
 const UNLIKE: f64 = 0.02;
-/// Fewest periods, and greatest part of the signal that the fit leaves, with which a channel shows a motion of its own.
+/// Fewest periods, and greatest part of the signal that the fit leaves and that tones beside it are, with which a channel shows
+/// a motion of its own.
+const SURE_PERIODS: f64 = 10.0;
+const CLEAR_LEAVES: f64 = 0.1;
+/// Fewest periods of a decay that are told from what a curve leaves of creep.
 const CLEAR_PERIODS: f64 = 5.0;
-const CLEAR_LEAVES: f64 = 0.3;
 
 /// Fit the free decays that several channels of equal length show, one after each blow or release: those of
 /// the channel that determines f0 best, then those of others that clearly swing at another frequency.
