@@ -116,7 +116,7 @@ mod tests {
             let mut o = Observation::of("r", 12.0, Motion::Impactless);
             o.setting.sequence = i;
             // every third record has no impacts
-            if i % 3 != 0 {
+            if !i.is_multiple_of(3) {
                 o.impacts = (0..4)
                     .map(|k| Impact::at(0.1 * f64::from(k), 0.5))
                     .collect();

@@ -197,7 +197,7 @@ mod tests {
             assert!(two_values(&told(scattered.iter().copied()), 0.0).is_none());
             // a third of them at another value
             let two = scattered.iter().enumerate();
-            let two = two.map(|(i, s)| 0.02 * s + if i % 3 == 0 { 1.0 } else { 0.0 });
+            let two = two.map(|(i, s)| 0.02 * s + if i.is_multiple_of(3) { 1.0 } else { 0.0 });
             let groups = two_values(&told(two), 0.0).expect("two groups");
             assert_eq!(
                 Vec::from_iter(groups.smaller),
