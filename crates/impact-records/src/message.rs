@@ -68,12 +68,19 @@ impl<'a> Value<'a> {
         Self::List(messages.iter().map(|m| Self::Message(m)).collect())
     }
 
+    /// Names or groups that a message lists at most.
+    pub const NAMED: usize = 6;
+
     /// The first of some names, separated by commas.
     pub fn some_names(names: &'a [String]) -> Self {
-        const SHOWN: usize = 6;
-        let shown = names.iter().take(SHOWN).map(String::as_str);
-        let more = (names.len() > SHOWN).then_some("…");
-        Self::List(shown.chain(more).map(Self::Name).collect())
+        let first = names.iter().take(Self::NAMED);
+        Self::abridged(first.map(|name| Self::Name(name)), names.len())
+    }
+
+    /// The first of `count` values, separated by commas, with an ellipsis for the others.
+    pub fn abridged(first: impl ExactSizeIterator<Item = Self>, count: usize) -> Self {
+        let more = (count > first.len()).then_some(Self::Name("…"));
+        Self::List(first.chain(more).collect())
     }
 }
 

@@ -129,12 +129,11 @@ impl ResolvedCampaign {
 
     /// The campaign with channels turned in those records in which they were found to be of the other sign.
     #[must_use]
-    pub fn with_turned<'a>(&self, turned: impl IntoIterator<Item = (usize, &'a [Role])>) -> Self {
-        let mut campaign = self.clone();
+    pub fn with_turned(mut self, turned: impl IntoIterator<Item = (usize, Vec<Role>)>) -> Self {
         for (record, roles) in turned {
-            campaign.records[record].setting.turned = roles.to_vec();
+            self.records[record].setting.turned = roles;
         }
-        campaign
+        self
     }
 
     /// What [`impact_records::record::calibrate::calibrate`] needs for one of its records.

@@ -131,21 +131,29 @@ impl Observed {
 }
 
 /// The observations; made again where they show that channels are not as stated, with these corrected: signs by the
-/// directions of jumps, in some records or in all, channels beside each other by the times of impacts, then the drive's, and a low-pass that no
-/// jump shows, by the phases of the motion. The drive amplitudes are as measured, and follow the law of the force that
-/// the resonance curve shows.
+/// directions of jumps, in some records or in all, channels beside each other by the times of impacts, then the drive's,
+/// and a low-pass that no jump shows, by the phases of the motion. The drive amplitudes are as measured, and follow the
+/// law of the force that the resonance curve shows.
 fn aligned(
     campaign: &ResolvedCampaign,
     observations: Vec<Observation>,
     progress: Progress<'_>,
 ) -> Result<Vec<Observation>, OutputError> {
     let turned = turned_channels(&observations);
-    let campaign = &campaign.with_turned(turned.iter().map(|(i, roles)| (*i, &roles[..])));
-    let observations = if turned.is_empty() {
-        observations
-    } else {
-        observe_all(campaign, progress)?
-    };
+    if turned.is_empty() {
+        return aligned_in_all(campaign, observations, progress);
+    }
+    let campaign = campaign.clone().with_turned(turned);
+    let again = observe_all(&campaign, progress)?;
+    aligned_in_all(&campaign, again, progress)
+}
+
+/// The same of what all records have in common.
+fn aligned_in_all(
+    campaign: &ResolvedCampaign,
+    observations: Vec<Observation>,
+    progress: Progress<'_>,
+) -> Result<Vec<Observation>, OutputError> {
     let found = inverted_channels(&observations);
     let observations = corrected(campaign, observations, found, progress)?;
     let found = late_channels(&observations);
@@ -185,23 +193,23 @@ const SINGLE_ROWS: f64 = 0.2;
 
 /// Leave out single records whose drive is not that of their row: the row's clearance and sweep may be another record's.
 fn leave_out_other_rows(observations: &mut [Observation]) {
-    let of = observations.iter().filter(|o| o.drive.is_some()).count();
-    let contradicts = |o: &&mut Observation| o.has_flag(FlagCode::DriveFrequencyContradicts);
-    let rows = observations.iter_mut().filter(contradicts).count();
-    if rows as f64 > SINGLE_ROWS * of as f64 {
+    let driven = observations.iter().filter(|o| o.drive.is_some()).count();
+    let contradicts = |o: &Observation| o.has_flag(FlagCode::DriveFrequencyContradicts);
+    let rows = observations.iter().filter(|o| contradicts(o)).count();
+    if rows as f64 > SINGLE_ROWS * driven as f64 {
         return;
     }
-    for o in observations.iter_mut().filter(contradicts) {
-        let both = o.drive.zip(o.setting.stated_frequency_hz);
-        if let Some((drive, stated_hz)) = both {
-            let problem = Problem::RowOfAnother {
-                measured_hz: drive.frequency_hz,
-                stated_hz,
-            };
-            o.flags
-                .retain(|f| f.code != FlagCode::DriveFrequencyContradicts);
-            o.flags.push(Flag::new(None, problem));
-        }
+    for o in observations.iter_mut().filter(|o| contradicts(o)) {
+        let Some((drive, stated_hz)) = o.drive.zip(o.setting.stated_frequency_hz) else {
+            continue;
+        };
+        let problem = Problem::RowOfAnother {
+            measured_hz: drive.frequency_hz,
+            stated_hz,
+        };
+        o.flags
+            .retain(|f| f.code != FlagCode::DriveFrequencyContradicts);
+        o.flags.push(Flag::new(None, problem));
     }
 }
 

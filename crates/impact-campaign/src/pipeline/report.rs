@@ -135,7 +135,7 @@ pub(super) fn content_with(
     proposals: Vec<Proposal>,
 ) -> Result<ReportContent, PipelineError> {
     let turned = observed.observations.iter().enumerate();
-    let turned = turned.map(|(i, o)| (i, &o.setting.turned[..]));
+    let turned = turned.map(|(i, o)| (i, o.setting.turned.clone()));
     let aligned = campaign.with_late(observed.late()).with_turned(turned);
     let read = |index: usize| {
         let entry = aligned.records.get(index)?;

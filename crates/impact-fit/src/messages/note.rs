@@ -135,7 +135,7 @@ pub enum Note {
     /// The velocities ring beside the impacts.
     Ringing,
     /// Accelerations are clipped at most impacts.
-    Clipped,
+    ClippedAccelerations,
     /// The solver failed.
     SolverFailed,
     /// The data do not separate the parameters.
@@ -153,7 +153,7 @@ impl From<&FitError> for Note {
             FitError::OneOfTwo => Self::OneOfTwo,
             FitError::Differentiated => Self::Differentiated,
             FitError::Ringing => Self::Ringing,
-            FitError::Clipped => Self::Clipped,
+            FitError::Clipped => Self::ClippedAccelerations,
             FitError::Solver => Self::SolverFailed,
             FitError::Singular => Self::NotSeparable,
         }

@@ -48,19 +48,14 @@ impl Message for GroupPoint {
     }
 }
 
-/// Groups that a remark names.
-const NAMED: usize = 6;
-
 /// The first few groups.
 fn named(groups: &[GroupPoint]) -> Value<'_> {
-    abridged(&groups[..groups.len().min(NAMED)], groups.len())
+    abridged(&groups[..groups.len().min(Value::NAMED)], groups.len())
 }
 
 /// The first of `count` messages, with an ellipsis for the others.
 fn abridged(first: &[impl Message], count: usize) -> Value<'_> {
-    let mut each: Vec<Value<'_>> = first.iter().map(|m| Value::Message(m)).collect();
-    each.extend((count > first.len()).then_some(Value::Name("…")));
-    Value::List(each)
+    Value::abridged(first.iter().map(|m| Value::Message(m)), count)
 }
 
 /// Relative deviation of responses from which one degree of freedom does not fit.

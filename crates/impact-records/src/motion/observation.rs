@@ -188,8 +188,7 @@ impl Observation {
 
     /// The free decay that determines f0 best.
     pub fn best_decay(&self) -> Option<&Decay> {
-        let by = |a: &&Decay, b: &&Decay| a.relative_error().total_cmp(&b.relative_error());
-        self.decays.iter().min_by(by)
+        decay::best(&self.decays)
     }
 
     /// Whether no impact was detected.

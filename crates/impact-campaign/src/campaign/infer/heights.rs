@@ -1,6 +1,7 @@
 //! Tables of heights: which columns contain those of drops and of the tops after impacts.
 
 use super::place::Place;
+use super::roles::words;
 use impact_records::record::ContactContent;
 use impact_records::signal::robust;
 use labfiles::units::{self, Dimension};
@@ -124,7 +125,10 @@ pub(super) fn numbers_rows(name: &str) -> bool {
 
 /// Whether a column is computed from others by its name.
 pub(super) fn is_computed(channel: &ChannelInfo) -> bool {
-    called(channel, &COMPUTED) || words(&channel.name).any(|w| COMPUTED_WORDS.contains(&&*w))
+    called(channel, &COMPUTED)
+        || words(&channel.name)
+            .iter()
+            .any(|w| COMPUTED_WORDS.contains(&&**w))
 }
 
 /// Whether each of some names has a number in it, as where they count the tops of a throw; names without are those of
@@ -133,13 +137,7 @@ fn numbered<'a>(mut channels: impl Iterator<Item = &'a ChannelInfo>) -> bool {
     let counts = |word: &str| {
         word.contains(|c: char| c.is_ascii_digit()) || ORDINALS.iter().any(|o| word.starts_with(o))
     };
-    channels.all(|channel| words(&channel.name).any(|word| counts(&word)))
-}
-
-/// The words of a name, lower case.
-fn words(name: &str) -> impl Iterator<Item = String> {
-    let words = name.split(|c: char| !c.is_alphanumeric());
-    words.map(str::to_lowercase)
+    channels.all(|channel| words(&channel.name).iter().any(|word| counts(word)))
 }
 
 /// Whether a column may be that of a time: by its unit or, without one, its name.

@@ -35,9 +35,9 @@ pub(super) fn of_times(place: Place<'_>) -> Vec<usize> {
 /// The columns of a list that contain times or intervals; none where the dataset is no list.
 ///
 /// A table of few rows is one if all its columns are in units of time, or those of times contain a throw along each row.
-/// Beside remarks, as in a track of labels or beside
-/// the state of a line, its times must be uneven. Beside other numbers, and where neither a name nor a unit states
-/// that a column contains times, they must be those of a mass that bounces: each interval shorter than the one before.
+/// Beside remarks, as in a track of labels or beside the state of a line, its times must be uneven. Beside other numbers,
+/// and where neither a name nor a unit states that a column contains times, they must be those of a mass that bounces:
+/// each interval shorter than the one before.
 fn listed(place: Place<'_>) -> Vec<usize> {
     let set = place.set();
     let rows = set.channels.iter().map(|c| c.samples).max().unwrap_or(0);

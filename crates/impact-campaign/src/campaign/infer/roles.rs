@@ -235,7 +235,8 @@ fn without_unit(name: &str) -> &str {
     }
 }
 
-fn words(name: &str) -> Vec<String> {
+/// The words of a name, lower case.
+pub(super) fn words(name: &str) -> Vec<String> {
     name.to_lowercase()
         .split(|c: char| !c.is_alphanumeric())
         .filter(|w| !w.is_empty())

@@ -493,21 +493,16 @@ impl Block for ImpactBlock {
         let r = parameters.restitution;
         let residuals = self.residuals(item, parameters)?;
         let error = self.error(pair, r);
+        let before = pair.before_m_s + pair.shift(parameters);
         let slope = |coordinate: &Coordinate| match coordinate {
-            Coordinate::Restitution => {
-                let before = pair.before_m_s + pair.shift(parameters);
-                -before / error - residuals[0] * self.shared(pair, r)
-            }
+            Coordinate::Restitution => -before / error - residuals[0] * self.shared(pair, r),
             Coordinate::Corner(index) => {
                 let shifts = pair.corner_shifts.iter().flatten();
                 let own = shifts.filter(|s| gain_index(s.role) == Some(*index));
                 -(1.0 + r) * own.map(|s| s.speed_m_s).sum::<f64>() / error
             }
             Coordinate::Effect(Effect::RestitutionSpeed) => -self.speed_log(pair, r) / error,
-            Coordinate::Effect(Effect::RestitutionDrift) => {
-                let before = pair.before_m_s + pair.shift(parameters);
-                -pair.place * before / error
-            }
+            Coordinate::Effect(Effect::RestitutionDrift) => -pair.place * before / error,
             Coordinate::Effect(effect) => {
                 let place = PICKUPS.iter().position(|p| p == effect);
                 (1.0 + r) * place.map_or(0.0, |i| pair.picked_up_m_s[i]) / error

@@ -14,6 +14,9 @@ pub fn uncertain_speeds(
     observations: &[Observation],
     methods: &BTreeMap<Method, MethodResult>,
 ) -> Option<Finding> {
+    if !methods.is_empty() {
+        return None;
+    }
     let used = observations.iter().filter(|o| !o.excluded());
     let share = |i: &Impact| Some(i.speed_error_m_s()? / i.approach_speed_before_m_s?);
     let shares: Vec<f64> = used
@@ -21,10 +24,9 @@ pub fn uncertain_speeds(
         .filter_map(share)
         .filter(|share| *share > 0.0)
         .collect();
-    let share = robust::median(&shares).filter(|_| methods.is_empty())?;
     Some(Finding::UncertainSpeeds {
         impacts: shares.len(),
-        share,
+        share: robust::median(&shares)?,
     })
 }
 

@@ -281,10 +281,8 @@ message_table! { "problem": Problem;
         rate = in_campaign(*rate),
         ratio = Value::Number(*ratio, 4),
         units = Value::Message(units);
-    Self::FrequencyUnlikeStated { measured_hz, stated_hz } =>
-        measured = Value::Number(*measured_hz, 4),
-        stated = Value::Number(*stated_hz, 4);
-    Self::RowOfAnother { measured_hz, stated_hz } =>
+    Self::FrequencyUnlikeStated { measured_hz, stated_hz }
+    | Self::RowOfAnother { measured_hz, stated_hz } =>
         measured = Value::Number(*measured_hz, 4),
         stated = Value::Number(*stated_hz, 4);
     Self::AmplitudeUnlikeStated { measured, stated } =>

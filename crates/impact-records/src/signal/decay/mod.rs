@@ -211,7 +211,8 @@ pub fn fit_channels(channels: &[Watched<'_>], rate_hz: f64) -> Vec<Decay> {
     };
     let all = channels.iter().enumerate().map(of_channel);
     let mut all: Vec<Vec<Decay>> = all.filter(|decays| !decays.is_empty()).collect();
-    all.sort_by(|a, b| least_error(a).total_cmp(&least_error(b)));
+    let error = |decays: &[Decay]| best(decays).map_or(f64::INFINITY, Decay::relative_error);
+    all.sort_by(|a, b| error(a).total_cmp(&error(b)));
     let mut all = all.into_iter();
     let mut found = all.next().unwrap_or_default();
     all.for_each(|others| append_unlike(&mut found, others));
@@ -220,17 +221,16 @@ pub fn fit_channels(channels: &[Watched<'_>], rate_hz: f64) -> Vec<Decay> {
 
 /// Add the decays of another channel, or of another mass, if they clearly are of another frequency than those found.
 pub fn append_unlike(found: &mut Vec<Decay>, others: Vec<Decay>) {
-    let by_error = |a: &&Decay, b: &&Decay| a.relative_error().total_cmp(&b.relative_error());
-    let best = others.iter().min_by(by_error);
-    let both = best.zip(found.iter().min_by(by_error));
+    let both = best(&others).zip(best(found));
     if both.is_some_and(|(other, own)| other.is_clear() && other.is_unlike(own)) {
         found.extend(others);
     }
 }
 
-fn least_error(decays: &[Decay]) -> f64 {
-    let errors = decays.iter().map(Decay::relative_error);
-    errors.fold(f64::INFINITY, f64::min)
+/// The decay that determines f0 best.
+pub fn best(decays: &[Decay]) -> Option<&Decay> {
+    let by_error = |a: &&Decay, b: &&Decay| a.relative_error().total_cmp(&b.relative_error());
+    decays.iter().min_by(by_error)
 }
 
 /// How many times as much the decays may leave with steady tones taken away as without: more is left where the tones

@@ -8,7 +8,6 @@ use super::ranks;
 use super::search::Search;
 use super::speeds::{Impacted, impacts};
 use impact_fit::parameters::Coordinate;
-use impact_fit::solver::normal::Normal;
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
 
@@ -61,19 +60,22 @@ impl Search<'_> {
         let Some(place) = free.iter().position(|c| *c == coordinate) else {
             return Vec::new();
         };
-        let mut of_records: BTreeMap<usize, Normal> = BTreeMap::new();
+        // information and gradient
+        let mut of_records: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
         for (observation, rows) in &self.rows {
-            let own = of_records.entry(*observation);
-            own.or_insert_with(|| Normal::zeros(free.len()))
-                .inform(rows);
+            let Some(k) = rows.places.iter().position(|p| *p == place) else {
+                continue;
+            };
+            let slopes = rows.slopes.column(k);
+            let own = of_records.entry(*observation).or_default();
+            own[0] += slopes.norm_squared();
+            own[1] += slopes.dot(&rows.residuals);
         }
-        let told = of_records.into_iter().map(|(observation, normal)| {
-            let information = normal.matrix[(place, place)];
-            Told {
-                observation,
-                value: -normal.gradient[place] / information,
-                error: information.sqrt().recip(),
-            }
+        let told = of_records.into_iter();
+        let told = told.map(|(observation, [information, gradient])| Told {
+            observation,
+            value: -gradient / information,
+            error: information.sqrt().recip(),
         });
         told.filter(|t| t.value.is_finite() && t.error.is_finite())
             .collect()

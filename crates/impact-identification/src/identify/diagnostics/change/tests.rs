@@ -13,7 +13,7 @@ use crate::identify::run::identify;
 use impact_fit::VerdictKind;
 use impact_fit::estimate::Status;
 use impact_fit::fixture::{evidence, observed, recorded};
-use impact_fit::messages::{Finding, Note};
+use impact_fit::messages::{Finding, Note, StatedValue};
 use impact_fit::methods::answer::MethodResult;
 use impact_fit::methods::impacts::block::{ImpactBlock, SpeedPair};
 use impact_fit::solver::normal::Normal;
@@ -167,6 +167,32 @@ fn valid_sweeps_down_on_another_rig_are_named() {
         let apart = (value.value - truth).abs();
         assert!(apart < 1.5 * value.half_width, "{value:?}");
     }
+}
+
+#[test]
+fn valid_records_of_two_rigs_in_no_order_are_named() {
+    let rigs = [recorded(0.8, 12.0, 72, 11), recorded(0.76, 12.1, 72, 11)];
+    let mixed = |other: usize| {
+        let both = rigs[0].iter().zip(&rigs[other]).enumerate();
+        // neither by turns nor by the clearances, which change from record to record
+        let one = both.map(|(i, (own, other))| if i * i % 5 < 2 { own } else { other });
+        let observations = observed(&one.cloned().collect::<Vec<_>>());
+        identify(&evidence(&observations))
+    };
+    let is_named = |finding: &&Finding| matches!(finding, Finding::RigsMixed { .. });
+    assert_eq!(mixed(0).suspicions.iter().find(is_named), None);
+    let found = mixed(1);
+    assert_eq!(found.verdict.kind, VerdictKind::DoesNotFit);
+    let named = found.suspicions.iter().find(is_named);
+    let Some(Finding::RigsMixed { own, others, .. }) = named else {
+        panic!("{:?}", found.suspicions);
+    };
+    let of = |values: &[StatedValue], parameter| {
+        let value = values.iter().find(|v| v.parameter == parameter);
+        value.expect("a value").value
+    };
+    let r = [own, others].map(|values| of(values, Coordinate::Restitution));
+    assert!(r[0].min(r[1]) < 0.77 && r[0].max(r[1]) > 0.79, "{r:?}");
 }
 
 #[test]
