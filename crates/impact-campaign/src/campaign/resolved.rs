@@ -120,6 +120,7 @@ impl ResolvedCampaign {
             let found = late.iter().find(|l| l.role == setup.role);
             setup.delay_s += found.map_or(0.0, |l| l.delay_s);
             setup.low_pass = setup.low_pass.or(found.and_then(|l| l.low_pass));
+            setup.high_pass_hz = setup.high_pass_hz.or(found.and_then(|l| l.high_pass_hz));
             if found.is_some_and(|l| l.inverted) {
                 setup.sign = -setup.sign;
             }

@@ -104,7 +104,7 @@ pub enum Finding {
     UnsteadyChannel {
         /// The channel.
         channel: Role,
-        /// Median difference of its delays from their median, ms.
+        /// How far its delays differ, ms.
         scatter_ms: f64,
     },
     /// The driving force rises with a power of the frequency, beside what is stated or recorded of it.
@@ -143,6 +143,13 @@ pub enum Finding {
         corner_hz: f64,
         /// How sure.
         z_score: f64,
+    },
+    /// The drive's channel has passed a high-pass that is not stated; it is undone.
+    DriveHighPass {
+        /// The channel.
+        channel: Role,
+        /// Its corner, Hz.
+        corner_hz: f64,
     },
     /// A channel has passed a low-pass that is not stated.
     UndeclaredLowPass {
@@ -243,6 +250,11 @@ pub enum Finding {
         own: Vec<StatedValue>,
         /// The same of all others.
         others: Vec<StatedValue>,
+    },
+    /// Two gaps have each other's clearances.
+    ClearancesExchanged {
+        /// Their clearances as stated, m.
+        pair_m: [f64; 2],
     },
     /// All clearances are counted from another zero than where the masses touch.
     CommonZero {
@@ -430,6 +442,7 @@ impl Finding {
                 Some(Cause::Unsettled)
             }
             Self::WrongClearance { .. }
+            | Self::ClearancesExchanged { .. }
             | Self::CommonZero { .. }
             | Self::WrongGain { .. }
             | Self::GainOrClearances { .. }
@@ -442,6 +455,7 @@ impl Finding {
             | Self::ForceLaw { .. }
             | Self::InvertedChannel { .. }
             | Self::TurnedChannel { .. }
+            | Self::DriveHighPass { .. }
             | Self::UndeclaredLowPass { .. }
             | Self::WrongCorner { .. }
             | Self::SidesUnlike { .. }
@@ -506,7 +520,8 @@ message_table! { "finding": Finding, key = template_key;
         key = Value::Name(channel.name()),
         share = Value::Percent(deviation.abs(), 0),
         direction = direction(*deviation);
-    Self::UndeclaredHighPass { channel, corner_hz, .. } =>
+    Self::UndeclaredHighPass { channel, corner_hz, .. }
+    | Self::DriveHighPass { channel, corner_hz } =>
         channel = Value::Message(channel),
         key = Value::Name(channel.name()),
         corner = Value::Shortest(two_digits(*corner_hz));
@@ -552,6 +567,9 @@ message_table! { "finding": Finding, key = template_key;
     Self::SweepsDownOnOtherRig { own, others } =>
         own = Value::list(own),
         others = Value::list(others);
+    Self::ClearancesExchanged { pair_m: [one_m, other_m] } =>
+        one_mm = millimetres(*one_m),
+        other_mm = millimetres(*other_m);
     Self::CommonZero { added_m } => added_mm = millimetres(*added_m);
     Self::TurnedChannel { channel, records, of } =>
         channel = Value::Message(channel),
@@ -639,6 +657,10 @@ fn template_key(finding: &Finding) -> String {
             };
             format!("{which}_{what}")
         }
+        Finding::UnsteadyChannel {
+            channel: Role::Drive,
+            ..
+        } => "unsteady_drive".to_owned(),
         Finding::GainChanged { deviation, .. } if *deviation < 0.0 => "gain_fell".to_owned(),
         Finding::GainsPart { deviation, .. } if *deviation < 0.0 => "gains_part_less".to_owned(),
         Finding::UndeclaredLowPass { order: Some(1), .. } => "undeclared_low_pass_1".to_owned(),

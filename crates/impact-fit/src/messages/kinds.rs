@@ -35,6 +35,11 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         later_ms,
         z_score: 0.0,
     });
+    // a channel of the motion at another time in each record too
+    let unsteady = Finding::UnsteadyChannel {
+        channel: Role::VelocityX,
+        scatter_ms: 1.0,
+    };
     // a gain that fell too
     let fallen = [
         Finding::GainChanged {
@@ -86,6 +91,7 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         .chain(boxed(late.into_iter()))
         .chain(boxed(fallen.into_iter()))
         .chain(boxed(filters.into_iter()))
+        .chain(boxed([unsteady].into_iter()))
         .chain(boxed(beyond))
         .chain(boxed(Undetermined::iter()))
         .chain(boxed(FlagCode::ALL.into_iter()))

@@ -10,7 +10,7 @@ use crate::identify::diagnostics::change::{Change, Fitted, Search};
 use crate::identify::diagnostics::clock;
 use crate::identify::diagnostics::common_scale::{self, CommonScale, common_scale};
 use crate::identify::diagnostics::common_zero;
-use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
+use crate::identify::diagnostics::contradicting_gap::{Contradicting, Contradiction, exchanged};
 use crate::identify::diagnostics::doubt::{self, Doubt, Suspicion};
 use crate::identify::diagnostics::drives::drives;
 use crate::identify::diagnostics::faint_channel::faint_channels;
@@ -122,6 +122,9 @@ fn with_open_gains(evidence: &Evidence<'_>, contradicted: Option<Suspicion>) -> 
 
 /// The identification by all fits, with masses that are not as stated left to the data.
 fn completed(mut run: IdentificationRun<'_>) -> Identification {
+    if let Some(pair_m) = run.without_odd_gaps() {
+        return with_exchanged(run.evidence, pair_m);
+    }
     run.without_contradictions();
     let Some(masses) = run.other_masses() else {
         return run.identification();
@@ -136,8 +139,30 @@ fn completed(mut run: IdentificationRun<'_>) -> Identification {
     };
     let mut again = IdentificationRun::of(&other, begun(&other), run.stated);
     again.contradicted = run.contradicted;
+    again.without_odd_gaps();
     again.without_contradictions();
     again.identification()
+}
+
+/// The identification with the clearances of two gaps exchanged.
+fn with_exchanged(evidence: &Evidence<'_>, pair_m: [f64; 2]) -> Identification {
+    let mut observations = evidence.observations.to_vec();
+    for o in &mut observations {
+        o.setting.clearance_m = o.setting.clearance_m.map(|own| exchanged(own, pair_m));
+    }
+    let mut brackets = evidence.brackets.to_vec();
+    for bracket in &mut brackets {
+        bracket.clearance_m = exchanged(bracket.clearance_m, pair_m);
+    }
+    let other = Evidence {
+        observations: &observations,
+        brackets: &brackets,
+        ..*evidence
+    };
+    let mut run = IdentificationRun::of(&other, begun(&other), other.nominal);
+    let finding = Finding::ClearancesExchanged { pair_m };
+    run.odd_gaps.push(finding.into());
+    completed(run)
 }
 
 /// What an identification begins with: everything that may be used, and the fit of the resonance curve.
@@ -241,7 +266,6 @@ impl<'a> IdentificationRun<'a> {
 
     /// Fit again without what contradicts the others.
     fn without_contradictions(&mut self) {
-        self.without_odd_gaps();
         self.with_contacts_over_speed();
         self.without_straining();
         self.without_influential();
@@ -290,11 +314,14 @@ impl<'a> IdentificationRun<'a> {
         self.found.joint = problem.map(|problem| joint::fit(&problem, start));
     }
 
-    /// Leave out, one by one, gaps that are not as stated.
-    fn without_odd_gaps(&mut self) {
+    /// Leave out, one by one, gaps that are not as stated; nothing where two have each other's clearances, which are returned.
+    fn without_odd_gaps(&mut self) -> Option<[f64; 2]> {
         while self.odd_gaps.len() < MOST_ODD_GAPS {
-            let Some(odd) = self.odd_gap() else {
-                break;
+            let odd = match self.odd_gap()? {
+                Contradicting::One(odd) => odd,
+                Contradicting::Exchanged(pair_m) => {
+                    return Some(pair_m).filter(|_| self.odd_gaps.is_empty());
+                }
             };
             if self.odd_gaps.is_empty()
                 && let Some(zero) = self.common_zero()
@@ -313,6 +340,7 @@ impl<'a> IdentificationRun<'a> {
                 break;
             }
         }
+        None
     }
 
     /// That all clearances are counted from another zero, where one of them seems to be off.
@@ -629,8 +657,8 @@ impl<'a> IdentificationRun<'a> {
         )
     }
 
-    /// The gap that deviates most from what the others say, if one does and not all do alike.
-    fn odd_gap(&self) -> Option<OddGap> {
+    /// The gap that deviates most from what the others say, if one does and not all do alike, or two that are exchanged.
+    fn odd_gap(&self) -> Option<Contradicting> {
         let joint = self.found.together()?;
         if self.common_scale().is_some() {
             return None;
@@ -643,21 +671,31 @@ impl<'a> IdentificationRun<'a> {
         } = &self.selection;
         let weight = 1.0 / self.found.waveforms()?.factor;
         let uncertainty_m = self.evidence.nominal.clearance_uncertainty_m;
-        let start = self.found.begin;
-        let both = joint::curve_and_waveforms();
-        let fit = |blocks: &Blocks, start: &Parameters| {
-            let found = joint::rough(blocks, *start, &both, &self.evidence.nominal)?;
-            let mean_square = found.cost / found.residuals.max(1) as f64;
-            Some((found.parameters, mean_square))
+        let contradicting = match self.contradiction(joint) {
+            Some(Contradicting::One(odd)) => Some(odd),
+            Some(exchanged) => return Some(exchanged),
+            None => None,
         };
-        let starts = [&start, &joint.fit.parameters];
-        let contradicting = contradicting_gap(blocks, lost, starts, &fit);
         let lost = suspicion::lost_gap(&blocks.trajectory, lost, &joint.fit.parameters, *typical);
         let allowed = |odd: &OddGap| (odd.fitting_m - odd.stated_m).abs() > 4.0 * uncertainty_m;
         contradicting
             .or(lost)
             .filter(allowed)
             .or_else(|| suspicion::odd_gap(blocks, weight, joint, uncertainty_m))
+            .map(Contradicting::One)
+    }
+
+    /// What a few records of each gap tell that contradict each other, if they do.
+    fn contradiction(&self, joint: &MethodFit) -> Option<Contradicting> {
+        let Selection { blocks, lost, .. } = &self.selection;
+        let both = joint::curve_and_waveforms();
+        let fit = |blocks: &Blocks, start: &Parameters| {
+            let found = joint::rough(blocks, *start, &both, &self.evidence.nominal)?;
+            let mean_square = found.cost / found.residuals.max(1) as f64;
+            Some((found.parameters, mean_square))
+        };
+        let starts = [&self.found.begin, &joint.fit.parameters];
+        Contradiction::of(blocks, lost, starts, &fit)?.told()
     }
 
     /// Mistakes of the laboratory that the data give away, gaps that were found odd among them.

@@ -1,9 +1,12 @@
 //! The drive's frequency and phase, measured from its channel.
 
+use std::f64::consts::TAU;
+
+use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use crate::record::consistency::{ComparedChannels, mistaken};
-use crate::record::{Flag, Problem, Record, Role};
+use crate::record::{Channel, Flag, Problem, Record, Role};
 use crate::signal::tone;
 
 /// The drive as measured from its channel: amplitude · cos(2π f t + phase).
@@ -35,8 +38,7 @@ impl DriveTone {
 
     /// Phase of the drive at a time since the first sample, rad in [0, 2π).
     pub fn phase_at(&self, time_s: f64) -> f64 {
-        (std::f64::consts::TAU * self.frequency_hz * time_s + self.phase_rad)
-            .rem_euclid(std::f64::consts::TAU)
+        (TAU * self.frequency_hz * time_s + self.phase_rad).rem_euclid(TAU)
     }
 
     /// Drive period, s.
@@ -50,7 +52,7 @@ const NOT_HARMONIC: f64 = 0.5;
 
 /// Measure the drive of a record from its drive channel.
 ///
-/// Returns the tone, if the record has a drive channel that holds one, and flags: a drive that is
+/// Returns the tone, if the record has a drive channel that holds one, as it was before the channel's filters, and flags: a drive that is
 /// not a harmonic tone, and a measured frequency that differs from the stated one by more than
 /// `tolerance` (relative) and three standard errors.
 pub(super) fn measure(record: &Record, tolerance: f64) -> (Option<DriveTone>, Vec<Flag>) {
@@ -64,17 +66,28 @@ pub(super) fn measure(record: &Record, tolerance: f64) -> (Option<DriveTone>, Ve
     if ratio > NOT_HARMONIC {
         return (None, vec![no_tone(&channel.name)]);
     }
+    let passed = passed(channel, tone.frequency_hz);
     let drive = DriveTone {
         frequency_hz: tone.frequency_hz,
         frequency_error_hz: tone.frequency_error_hz,
-        amplitude: tone.amplitude,
-        phase_rad: tone.phase_rad,
+        amplitude: tone.amplitude / passed.norm(),
+        phase_rad: tone.phase_rad - passed.arg(),
         residual_ratio: ratio,
     };
     let flags = contradiction(record, &channel.name, &drive, tolerance)
         .into_iter()
         .collect();
     (Some(drive), flags)
+}
+
+/// What the filters stated of a channel make of a unit amplitude at a frequency.
+fn passed(channel: &Channel, frequency_hz: f64) -> Complex<f64> {
+    let rate = Complex::new(0.0, TAU * frequency_hz);
+    let corner = channel.high_pass_hz.map_or(0.0, |hz| TAU * hz);
+    let high = rate / (rate + corner);
+    channel
+        .low_pass
+        .map_or(high, |low| high * low.transfer(rate))
 }
 
 /// Relative deviation from the stated frequency within which a motion's tone is the drive's.
@@ -134,7 +147,7 @@ fn contradiction(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::FlagCode;
+    use crate::record::{FlagCode, LowPass};
 
     fn tone(frequency_hz: f64, phase_rad: f64) -> impl Fn(usize) -> f64 {
         move |i| (std::f64::consts::TAU * frequency_hz * i as f64 / 2000.0 + phase_rad).cos()
@@ -156,6 +169,26 @@ mod tests {
         // A quarter period after the first sample the phase is 0.4 + π/2.
         let quarter = drive.phase_at(0.25 * drive.period_s());
         assert!((quarter - 0.4 - std::f64::consts::FRAC_PI_2).abs() < 1e-7);
+    }
+
+    #[test]
+    fn valid_the_drive_is_that_before_the_channel_s_filters() {
+        // 2 cos(θ + 0.4) behind f/(f − i f_c): 1/√2 of it and an eighth of a turn ahead; behind one pole as far behind
+        let plain = tone(12.6, 0.4);
+        let ahead = tone(12.6, 0.4 + 0.25 * std::f64::consts::PI);
+        let mut shown = record(|i| std::f64::consts::SQRT_2 * ahead(i));
+        shown.channels[0].high_pass_hz = Some(12.6);
+        let mut both = record(plain);
+        both.channels[0].high_pass_hz = Some(12.6);
+        both.channels[0].low_pass = Some(LowPass {
+            corner_hz: 12.6,
+            order: 1,
+        });
+        for passed in [shown, both] {
+            let drive = measure(&passed, 5e-3).0.expect("a drive");
+            assert!((drive.amplitude - 2.0).abs() < 1e-8, "{drive:?}");
+            assert!((drive.phase_at(0.0) - 0.4).abs() < 1e-7, "{drive:?}");
+        }
     }
 
     #[test]

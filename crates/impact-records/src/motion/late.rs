@@ -55,7 +55,7 @@ pub fn late_channels(observations: &[Observation]) -> Vec<LateChannel> {
         told(role, &same.collect::<Vec<_>>())
     };
     let told: Vec<Told> = roles.iter().copied().filter_map(of).collect();
-    let steady = !told.is_empty();
+    let steady: Vec<Role> = told.iter().map(|t| t.role).collect();
     let reference_s = if by_contact {
         beside_contact(&told)
     } else {
@@ -79,10 +79,10 @@ pub fn late_channels(observations: &[Observation]) -> Vec<LateChannel> {
     let contact = (by_contact && by_s > 0.0).then(|| LateChannel::by(Role::Contact, by_s));
     let mut found: Vec<LateChannel> = late.chain(contact).collect();
     // beside a channel whose delay behind the contact is the same in all records
-    if by_contact && steady {
+    if by_contact && !steady.is_empty() {
         found.extend(roles.iter().filter_map(|role| unsteady(*role, &all)));
     }
-    let displacements = late_displacements(observations, &found);
+    let displacements = late_displacements(observations, &found, &steady);
     found.extend(displacements);
     found
 }
@@ -100,8 +100,13 @@ fn unsteady(role: Role, all: &[(&Observation, &ChannelLag)]) -> Option<LateChann
 }
 
 /// Displacements that are later or earlier than the velocity of the same mass, by their phases at the drive's frequency
-/// in impactless records; `found`: what is known of the velocities.
-fn late_displacements(observations: &[Observation], found: &[LateChannel]) -> Vec<LateChannel> {
+/// in impactless records, or at another time in each record beside a velocity that is `steady`; `found`: what is known of
+/// the velocities.
+fn late_displacements(
+    observations: &[Observation],
+    found: &[LateChannel],
+    steady: &[Role],
+) -> Vec<LateChannel> {
     let pairs = [
         (Role::DisplacementX, Role::VelocityX),
         (Role::DisplacementY, Role::VelocityY),
@@ -109,20 +114,60 @@ fn late_displacements(observations: &[Observation], found: &[LateChannel]) -> Ve
     let of = |(displacement, velocity): (Role, Role)| {
         // what is known of a filter is in the phases already
         let usable = observations.iter().filter(|o| !o.excluded() && !o.low_pass);
-        let lags =
-            usable.filter_map(|o| Some((o.lag_s(displacement, velocity)?, o.sample_rate_hz)));
-        let (lags_s, rates_hz): (Vec<f64>, Vec<f64>) = lags.unzip();
-        let step_s = robust::median(&rates_hz)?.recip();
+        let mut lags: Vec<Lag> = usable
+            .filter_map(|o| lag(o, displacement, velocity))
+            .collect();
+        let step_s = robust::median(&of_each(&lags, |lag| lag.rate_hz))?.recip();
+        let lags_s = of_each(&lags, |lag| lag.behind_s);
         let behind_s = robust::median(&lags_s)?;
         let apart_s = robust::median_absolute_deviation(&lags_s)?;
-        let alike = lags_s.len() >= FEWEST_RECORDS && apart_s <= ALIKE * step_s;
+        if lags.len() < FEWEST_RECORDS {
+            return None;
+        }
+        if apart_s > ALIKE * step_s {
+            // what goes with the frequency, as behind a high-pass, is no scatter
+            let own_s = neighbours_apart_s(&mut lags)?;
+            let unsteady = own_s > UNNOTICED * step_s && steady.contains(&velocity);
+            return unsteady.then(|| LateChannel::unsteady(displacement, own_s));
+        }
         let of_velocity = found.iter().find(|late| late.role == velocity);
         let filtered = of_velocity.is_some_and(|late| late.low_pass.is_some());
         let delay_s = behind_s + of_velocity.map_or(0.0, |late| late.delay_s);
         let noticed = delay_s.abs() > UNNOTICED * step_s;
-        (alike && noticed && !filtered).then(|| LateChannel::by(displacement, delay_s))
+        (noticed && !filtered).then(|| LateChannel::by(displacement, delay_s))
     };
     pairs.into_iter().filter_map(of).collect()
+}
+
+/// By how much a channel is behind another in an impactless record.
+struct Lag {
+    behind_s: f64,
+    frequency_hz: f64,
+    rate_hz: f64,
+}
+
+fn lag(o: &Observation, channel: Role, reference: Role) -> Option<Lag> {
+    Some(Lag {
+        behind_s: o.lag_s(channel, reference)?,
+        frequency_hz: o.frequency_hz()?,
+        rate_hz: o.sample_rate_hz,
+    })
+}
+
+fn of_each(lags: &[Lag], value: impl Fn(&Lag) -> f64) -> Vec<f64> {
+    lags.iter().map(value).collect()
+}
+
+/// By how much lags differ from those of neighbours in frequency, s, the mean: a difference has √2 times the deviation of a
+/// lag.
+fn neighbours_apart_s(lags: &mut [Lag]) -> Option<f64> {
+    lags.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+    let between = lags.iter().zip(lags.iter().skip(1));
+    let apart_s: Vec<f64> = between
+        .map(|(a, b)| (b.behind_s - a.behind_s).abs())
+        .collect();
+    let mean_s = robust::mean(&apart_s);
+    (!apart_s.is_empty()).then_some(mean_s * std::f64::consts::FRAC_1_SQRT_2)
 }
 
 /// The lag of the earliest channel.
@@ -298,8 +343,24 @@ mod tests {
         // the velocity is late as well: the contact tells that
         let known = [LateChannel::by(Role::VelocityX, 4.0 * step_s)];
         assert_eq!(
-            late_displacements(&observed(-4.0 * step_s, 0.0), &known),
+            late_displacements(&observed(-4.0 * step_s, 0.0), &known, &[]),
             []
+        );
+        // at another time in each record, beside a velocity that is not
+        let mut each = observed(0.0, 0.0).to_vec();
+        for (o, samples) in each.iter_mut().zip([6.0, -4.0, 5.0, -6.0]) {
+            let turn =
+                -std::f64::consts::TAU * o.frequency_hz().expect("a drive") * samples * step_s;
+            let displacement = &mut o.response[1];
+            *displacement = displacement.times(nalgebra::Complex::from_polar(1.0, turn));
+        }
+        assert_eq!(late_displacements(&each, &[], &[]), []);
+        let found = late_displacements(&each, &[], &[Role::VelocityX]);
+        assert_eq!(found.len(), 1);
+        assert!(
+            found[0]
+                .unsteady_s
+                .is_some_and(|apart_s| apart_s > 4.0 * step_s)
         );
     }
 

@@ -1,4 +1,4 @@
-//! A channel that is later than stated, of the other sign, or at another time in each record.
+//! A channel that is later than stated, of the other sign, behind a filter, or at another time in each record.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,6 +14,10 @@ pub struct LateChannel {
     /// The low-pass that its jumps show and that is not stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub low_pass: Option<LowPass>,
+    /// The high-pass that it has passed and that is not stated, as the phases of the motion show it of a drive's channel,
+    /// Hz.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub high_pass_hz: Option<f64>,
     /// What is not known of how much that low-pass lowers an amplitude at the frequency f, over ½(f/`f_c`)²: all of
     /// it where its order is not known.
     #[serde(default = "all")]
@@ -33,9 +37,18 @@ impl LateChannel {
             role,
             delay_s,
             low_pass: None,
+            high_pass_hz: None,
             order_share: all(),
             inverted: false,
             unsteady_s: None,
+        }
+    }
+
+    /// A channel behind a high-pass of a corner, Hz.
+    pub fn behind(role: Role, high_pass_hz: f64) -> Self {
+        Self {
+            high_pass_hz: Some(high_pass_hz),
+            ..Self::by(role, 0.0)
         }
     }
 
@@ -64,6 +77,7 @@ impl LateChannel {
                     old.delay_s += new.delay_s;
                     old.inverted ^= new.inverted;
                     old.low_pass = old.low_pass.or(new.low_pass);
+                    old.high_pass_hz = old.high_pass_hz.or(new.high_pass_hz);
                     old.unsteady_s = old.unsteady_s.or(new.unsteady_s);
                 }
                 None => all.push(new),

@@ -1,31 +1,26 @@
-//! Channels that are not as stated, as impactless records show them: a drive's channel that is later than the channels
-//! of the motion, or of the other sign; channels of the motion behind a low-pass of one pole. Phases tell them, as the
-//! amplitudes tell f0 and β. More poles turn phases as a delay does.
+//! Channels that are not as stated, as impactless records show them: the drive's channel ([`super::drive_channel`]), or
+//! channels of the motion behind a low-pass of one pole. Phases tell them, as the amplitudes tell f0 and β. More poles turn
+//! phases as a delay does.
 
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
 use crate::evidence::{Evidence, Nominal};
-use crate::messages::ONE_DEGREE_OF_FREEDOM;
 use crate::methods::blocks::Blocks;
+use crate::methods::resonance::drive_channel;
 use crate::methods::resonance::fit;
 use crate::methods::resonance::misfit::{least_of, left_by, misfit};
-use crate::methods::resonance::result::deviation;
+use crate::methods::resonance::phases::{
+    Cause, EXPLAINED, ONE, Phases, fastest_hz, with_responses,
+};
+use crate::methods::resonance::unsteady;
 use impact_records::motion::{LateChannel, Observation};
 use impact_records::record::{LowPass, Role};
 
-/// Greatest lag that is looked for, in periods of the fastest drive.
-const WIDEST: f64 = 1.0;
-/// Steps of the search in such a period: a tenth of a radian apart.
-const STEPS: f64 = 60.0;
-/// Times the stated uncertainty of delays from which a lag counts.
-const SURE: f64 = 4.0;
-/// Part of the misfit without a lag that one with it may leave: an unstated high-pass, whose phase lag falls with the
-/// frequency instead of rising with it, leaves more, as `valid_a_high_pass_that_is_not_stated_is_no_late_drive` has it
-/// over corners of 0.5 to 4 Hz.
+/// Part of the misfit without a cause that one with it may leave: a lag leaves more of an unstated high-pass, whose phase
+/// lag falls with the frequency instead of rising with it, as `valid_a_high_pass_that_is_not_stated_is_no_late_drive` has
+/// it over corners of 0.5 to 4 Hz.
 const LEFT: f64 = 0.1;
-/// Misfit, a mean square in units of the errors, up to which nothing is left to explain.
-const EXPLAINED: f64 = 4.0;
 /// Greatest time constant of a pole that is looked for, and the steps of the search, in radians of the fastest drive: a
 /// corner at a third of it.
 const SLOWEST: f64 = 3.0;
@@ -47,12 +42,6 @@ pub fn misstated_channels(evidence: &Evidence<'_>) -> Vec<LateChannel> {
     best.map(|best| best.channels).unwrap_or_default()
 }
 
-/// Channels that are not as stated, and the misfit that is left with them.
-struct Cause {
-    channels: Vec<LateChannel>,
-    left: f64,
-}
-
 /// The causes that leave little of the misfit without them; `None` where the phases tell nothing.
 fn causes(evidence: &Evidence<'_>, blocks: &Blocks) -> Option<Vec<Cause>> {
     if blocks.resonance.points.is_empty() || !blocks.resonance.has_phases() {
@@ -60,16 +49,12 @@ fn causes(evidence: &Evidence<'_>, blocks: &Blocks) -> Option<Vec<Cause>> {
     }
     let stated = fit::start(blocks, &evidence.nominal)?;
     let at_once = left_by(blocks, &stated)?;
-    let fits = deviation(&blocks.resonance, &stated) < ONE_DEGREE_OF_FREEDOM;
-    let by_drive = |late, left| Cause {
-        channels: vec![late],
-        left,
+    let phases = Phases {
+        evidence,
+        blocks,
+        stated: &stated,
+        at_once,
     };
-    let late = lag(blocks, &evidence.nominal, at_once, fits)
-        .map(|(lag_s, left)| by_drive(LateChannel::by(Role::Drive, lag_s), left));
-    let turned = with_responses(blocks, |_, _| -ONE);
-    let turned = misfit(&turned, &evidence.nominal)
-        .map(|left| by_drive(LateChannel::inverted(Role::Drive), left));
     let sets = if at_once > EXPLAINED {
         sets(blocks, evidence.observations)
     } else {
@@ -83,16 +68,40 @@ fn causes(evidence: &Evidence<'_>, blocks: &Blocks) -> Option<Vec<Cause>> {
         };
         pole.cause(at_once)
     });
-    let all = late.into_iter().chain(turned).chain(filtered);
-    Some(all.filter(|cause| cause.left < LEFT * at_once).collect())
+    let explains = |cause: &Cause| cause.left < LEFT * at_once;
+    let of_drive = drive_channel::causes(&phases);
+    let mut found: Vec<Cause> = of_drive.chain(filtered).filter(explains).collect();
+    if found.is_empty() && at_once > EXPLAINED {
+        let candidates = may_be_unsteady(blocks, evidence.observations);
+        found.extend(unsteady::channel(&phases, &candidates).filter(explains));
+    }
+    Some(found)
+}
+
+/// The channels that may be at another time in each record: those of the motion if there are several, and the drive's where
+/// the frequencies are known without it.
+fn may_be_unsteady(blocks: &Blocks, observations: &[Observation]) -> Vec<Role> {
+    let mut roles = measured(blocks);
+    if roles.len() < 2 {
+        roles.clear();
+    }
+    let states = |o: &Observation| o.setting.stated_frequency_hz.is_some();
+    roles.extend(observations.iter().all(states).then_some(Role::Drive));
+    roles
+}
+
+/// The channels of the motion that impactless records have.
+fn measured(blocks: &Blocks) -> Vec<Role> {
+    let mut roles: Vec<Role> = blocks.resonance.channels().map(|(role, _)| role).collect();
+    roles.sort_unstable();
+    roles.dedup();
+    roles
 }
 
 /// Channels of the motion that may have passed one filter, with what is known of each: all, those of one mass, those of
 /// one quantity, each alone.
 fn sets(blocks: &Blocks, observations: &[Observation]) -> Vec<Vec<LateChannel>> {
-    let mut roles: Vec<Role> = blocks.resonance.channels().map(|(role, _)| role).collect();
-    roles.sort_unstable();
-    roles.dedup();
+    let roles = measured(blocks);
     let together = |alike: &dyn Fn(Role) -> bool| -> Vec<Role> {
         roles.iter().copied().filter(|role| alike(*role)).collect()
     };
@@ -174,58 +183,6 @@ impl OnePole<'_> {
             known.map_or(ONE, |c| factor(rate) * (-rate * c.delay_s).exp())
         };
         misfit(&with_responses(self.blocks, of_channel), self.nominal)
-    }
-}
-
-/// The factor that changes nothing.
-const ONE: Complex<f64> = Complex::new(1.0, 0.0);
-
-/// The blocks with all responses times a factor of their channel and iω, 1/s.
-fn with_responses(blocks: &Blocks, factor: impl Fn(Role, Complex<f64>) -> Complex<f64>) -> Blocks {
-    let mut changed = blocks.clone();
-    for point in &mut changed.resonance.points {
-        let rate = Complex::new(0.0, TAU * point.frequency_hz);
-        for response in &mut point.responses {
-            *response = response.times(factor(response.role, rate));
-        }
-    }
-    let relative_error = changed.resonance.relative_error();
-    changed.resonance.allow(relative_error);
-    changed
-}
-
-/// The frequency of the fastest drive, Hz.
-fn fastest_hz(blocks: &Blocks) -> f64 {
-    let points = blocks.resonance.points.iter();
-    points.map(|p| p.frequency_hz).fold(0.0, f64::max)
-}
-
-/// The lag of the drive's channel with which the phases fit best, s, if it is noticed, and the misfit that it leaves;
-/// `at_once`: that without one, and whether the responses are those of one degree of freedom then.
-fn lag(blocks: &Blocks, nominal: &Nominal, at_once: f64, fits: bool) -> Option<(f64, f64)> {
-    let misfit = |lag_s: f64| misfit(blocks, &behind(nominal, lag_s));
-    let stated = nominal.delay_uncertainties_s.iter();
-    let stated_s = stated.map(|own| own.unwrap_or(blocks.half_sample_s()));
-    let unnoticed_s = SURE * stated_s.fold(0.0, f64::max);
-    // the phases fit, and best near no lag
-    if fits
-        && [-unnoticed_s, unnoticed_s]
-            .into_iter()
-            .all(|lag_s| misfit(lag_s).is_none_or(|with| with > at_once))
-    {
-        return None;
-    }
-    let step_s = 1.0 / (STEPS * fastest_hz(blocks));
-    let lag_s = least_of(WIDEST * STEPS * step_s, step_s, &misfit)?;
-    let left = misfit(lag_s)?;
-    (lag_s.abs() > unnoticed_s).then_some((lag_s, left))
-}
-
-/// What is stated, with the motion's channels as much earlier as the drive is later.
-fn behind(nominal: &Nominal, lag_s: f64) -> Nominal {
-    Nominal {
-        delays_s: nominal.delays_s.map(|delay_s| delay_s - lag_s),
-        ..*nominal
     }
 }
 
@@ -314,6 +271,54 @@ mod tests {
             let found = misstated_channels(&evidence(&observations));
             assert_eq!(found, [], "{corner_hz} Hz");
         }
+    }
+
+    #[test]
+    fn valid_a_high_pass_of_the_drive_s_channel_is_told() {
+        let known = observed(&recorded(0.8, 12.0, 60, 42));
+        for corner_hz in [0.3, 1.5, 5.0] {
+            let mut observations = known.clone();
+            for o in &mut observations {
+                let Some(tone) = o.tone() else { continue };
+                // the motion over the drive's channel, which shows f/(f − i f_c) of the drive
+                let over_drive = Complex::new(1.0, -corner_hz / tone.frequency_hz);
+                for r in &mut o.response {
+                    *r = r.times(over_drive / over_drive.norm());
+                    r.high_pass_hz = None;
+                }
+                let drive = o.drive.iter_mut();
+                drive.for_each(|drive| drive.amplitude /= over_drive.norm());
+            }
+            let [found] = misstated_channels(&evidence(&observations))[..] else {
+                panic!("{corner_hz} Hz");
+            };
+            assert_eq!(found.role, Role::Drive);
+            let off = found.high_pass_hz.expect("a high-pass") / corner_hz - 1.0;
+            assert!(off.abs() < 0.05, "{off} at {corner_hz} Hz");
+        }
+    }
+
+    #[test]
+    fn valid_a_drive_at_another_time_in_each_record_is_told_where_frequencies_are_stated() {
+        let mut observations = observed(&recorded(0.8, 12.0, 60, 42));
+        for (i, o) in observations.iter_mut().enumerate() {
+            let Some(tone) = o.tone() else { continue };
+            let late = 3e-3 * ((i * 7 % 13) as f64 - 6.0) / 6.0;
+            let turned = Complex::from_polar(1.0, TAU * tone.frequency_hz * late);
+            let responses = o.response.iter_mut();
+            responses.for_each(|r| *r = r.times(turned));
+            o.setting.stated_frequency_hz = None;
+        }
+        assert_eq!(misstated_channels(&evidence(&observations)), []);
+        for o in &mut observations {
+            o.setting.stated_frequency_hz = o.frequency_hz();
+        }
+        let [found] = misstated_channels(&evidence(&observations))[..] else {
+            panic!("one channel");
+        };
+        assert_eq!(found.role, Role::Drive);
+        let scatter_s = found.unsteady_s.expect("a scatter");
+        assert!((1e-3..3e-3).contains(&scatter_s), "{scatter_s}");
     }
 
     #[test]

@@ -2,11 +2,14 @@
 
 pub mod block;
 pub mod channels;
+mod drive_channel;
 pub mod fit;
 pub mod force_law;
 mod misfit;
+mod phases;
 mod result;
 mod select;
+mod unsteady;
 
 use crate::method::Method;
 use crate::method_fit::MethodFit;

@@ -1,4 +1,4 @@
-//! Channels whose delay or sign is not as stated: found by the impacts before the fit, or by the fit.
+//! Channels whose delay, sign or filter is not as stated: found by the impacts before the fit, or by the fit.
 
 use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
 use crate::identify::diagnostics::suspicion::INFORMED;
@@ -67,6 +67,13 @@ pub fn late_channels(
         let finding = Finding::InvertedChannel { channel: l.role };
         finding.into()
     });
+    let filtered = moved.iter().filter_map(|l| {
+        let finding = Finding::DriveHighPass {
+            channel: l.role,
+            corner_hz: l.high_pass_hz?,
+        };
+        Some(finding.into())
+    });
     let turned = turned_channels(observations).map(Suspicion::from);
     let unsteady = moved.iter().filter_map(|l| {
         let finding = Finding::UnsteadyChannel {
@@ -78,6 +85,7 @@ pub fn late_channels(
     let motion = GAIN_ROLES.iter().enumerate().filter_map(of);
     inverted
         .chain(turned)
+        .chain(filtered)
         .chain(unsteady)
         .chain(motion)
         .chain(others)

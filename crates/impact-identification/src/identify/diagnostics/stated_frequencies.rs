@@ -3,7 +3,7 @@
 
 use impact_fit::messages::Finding;
 use impact_records::motion::Observation;
-use impact_records::record::FlagCode;
+use impact_records::record::{FlagCode, Role};
 use impact_records::signal::robust;
 
 /// Records from which a contradiction is none of single rows of the run table.
@@ -28,11 +28,20 @@ pub fn no_drive(observations: &[Observation]) -> Option<Finding> {
         .filter(|o| o.setting.stated_frequency_hz.is_some());
     let records = stating.clone().count();
     let with_tone = stating.clone().filter(|o| o.motion_tone.is_some()).count();
-    let none = records > 0 && stating.into_iter().all(|o| o.drive.is_none());
+    let none = records > 0
+        && stating
+            .into_iter()
+            .all(|o| o.drive.is_none() && !left_out(o));
     none.then_some(match with_tone {
         0 => Finding::DriveNotMeasured { records },
         records => Finding::PhaseNotMeasured { records },
     })
+}
+
+/// Whether the drive's channel is left out, which is named where that is found.
+fn left_out(observation: &Observation) -> bool {
+    let mut late = observation.late.iter();
+    late.any(|l| l.role == Role::Drive && l.unsteady_s.is_some())
 }
 
 /// That more than half of the records that state a frequency are driven at another one.

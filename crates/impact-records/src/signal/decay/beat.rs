@@ -3,7 +3,7 @@
 use super::descent::{self, Projected, equations};
 use super::fits::peak;
 use super::least_squares::{Point, Series};
-use super::noise::structured;
+use super::noise::{Noise, structured};
 use super::shape::{Rates, Shape};
 use crate::signal::columns::dot;
 use crate::signal::robust;
@@ -14,7 +14,7 @@ use crate::signal::robust;
 pub(super) struct Limits {
     /// Share of the decay that one shape must leave, beside noise, before two are tried.
     pub(super) left: f64,
-    /// Squares that two decays leave over those that one leaves, at most.
+    /// Squares that two decays leave beside the noise over those that one leaves, at most.
     pub(super) explained: f64,
     /// Phase by which the two run apart over the record, at least, rad.
     pub(super) apart: f64,
@@ -25,6 +25,11 @@ pub(super) struct Limits {
     /// Distances of the frequencies that are tried first, in lines of the spectrum.
     pub(super) lines: [f64; 3],
 }
+
+/// Difference of Bayes' criteria that is very strong (Kass and Raftery 1995).
+const TOLD: f64 = 10.0;
+/// Parameters of another decay: rates and amplitudes.
+const OF_ANOTHER: f64 = 4.0;
 
 pub(super) const LIMITS: Limits = Limits {
     left: 0.03,
@@ -77,11 +82,11 @@ pub(super) fn find_within(series: &Series, one: &Point, limits: &Limits) -> Opti
     let starts = starts.chain(tone);
     let pairs = starts.filter_map(|rates| descent::descend(Pair::of(&plain, rates)?));
     let best = pairs.min_by(|a, b| a.squares.total_cmp(&b.squares))?;
-    told(&best, dot(&left, &left), limits)
+    told(&best, &left, limits)
 }
 
-/// Whether two decays are told from one that leaves squares.
-fn told(pair: &Pair<'_>, of_one: f64, limits: &Limits) -> Option<Beat> {
+/// Whether two decays are told from one by what that leaves.
+fn told(pair: &Pair<'_>, left: &[f64], limits: &Limits) -> Option<Beat> {
     let series = pair.series;
     let count = series.values.len() as f64;
     let centre = robust::mean(&series.values);
@@ -91,7 +96,7 @@ fn told(pair: &Pair<'_>, of_one: f64, limits: &Limits) -> Option<Beat> {
     let (strong, weak) = (first.max(second), first.min(second));
     let apart = (pair.rates[0] - pair.rates[2]).abs() * count;
     let decay = pair.rates[1].min(pair.rates[3]) * count > -1.0;
-    let is_told = pair.squares < limits.explained * of_one
+    let is_told = is_explained(pair, left, limits.explained)
         && apart > limits.apart
         && decay
         && strong < limits.cancels * greatest
@@ -105,6 +110,15 @@ fn told(pair: &Pair<'_>, of_one: f64, limits: &Limits) -> Option<Beat> {
         frequencies,
         ratio: weak / strong,
     })
+}
+
+/// Whether two decays explain what one leaves beside the noise, but for a share, and surely (Schwarz 1978).
+fn is_explained(pair: &Pair<'_>, left: &[f64], share: f64) -> bool {
+    let density = Noise::fitted(&pair.rest, &[]).density(pair.rates[0]);
+    let independent = left.len() as f64 / density.max(1.0);
+    let gain = independent * (dot(left, left) / pair.squares.max(f64::MIN_POSITIVE)).ln();
+    let remains = structured(&pair.rest).powi(2);
+    gain > TOLD + OF_ANOTHER * independent.ln() && remains < share * structured(left).powi(2)
 }
 
 impl<'a> Pair<'a> {

@@ -1,6 +1,6 @@
 //! Where decays begin: after each blow of a record, or after its release.
 
-use crate::signal::{robust, spectrum, whole};
+use crate::signal::{columns, robust, spectrum, whole};
 
 /// Share of the greatest excursion from which the motion has begun.
 const BEGUN: f64 = 0.7;
@@ -8,6 +8,10 @@ const BEGUN: f64 = 0.7;
 const HELD: f64 = 0.35;
 /// Part of a period that the motion may have lasted before.
 const BEFORE: f64 = 0.75;
+/// Samples before a motion that tell whether the mass is at rest.
+const TELL_REST: usize = 8;
+/// Standard deviations of their noise within which it still is.
+const AT_REST: f64 = 4.0;
 /// Share of the greatest excursion that a blow reaches, of those that are fitted.
 const BLOW: f64 = 0.15;
 /// Rise of the excursions, within a period, that is a blow.
@@ -89,13 +93,26 @@ pub(super) fn begin(samples: &[f64]) -> Option<(usize, usize)> {
 }
 
 /// The first sample that may be of the decay, of a period in samples: the motion may have begun before its
-/// first great excursion, unless the mass was held there before it was released.
-pub(super) fn earliest((first, held): (usize, usize), period: f64) -> usize {
+/// first great excursion, unless the mass was held there before it was released, or at rest up to there.
+pub(super) fn earliest(samples: &[f64], (first, held): (usize, usize), period: f64) -> usize {
     if (held - first) as f64 > HELD * period {
-        held
-    } else {
-        first.saturating_sub(whole::index(BEFORE * period))
+        return held;
     }
+    let earliest = first.saturating_sub(whole::index(BEFORE * period));
+    let (before, between) = samples[..first].split_at(earliest);
+    earliest + rests(before, between)
+}
+
+/// Samples `between` up to the last one that is at rest as those `before` are; none where too few tell that.
+fn rests(before: &[f64], between: &[f64]) -> usize {
+    if before.len() < TELL_REST {
+        return 0;
+    }
+    let level = robust::mean(before);
+    let rest: Vec<f64> = before.iter().map(|v| v - level).collect();
+    let least = (AT_REST * robust::rms(&rest)).max(columns::digit(before));
+    let last = between.iter().rposition(|v| (v - level).abs() <= least);
+    last.map_or(0, |last| last + 1)
 }
 
 /// The part of a decay in which it is well above what is left of it.

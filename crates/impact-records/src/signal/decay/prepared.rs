@@ -146,7 +146,7 @@ impl Prepared {
         let known: Vec<[f64; 2]> = part.tones.iter().copied().chain(mode).collect();
         let quantity = part.channel.quantity;
         let start = if begun.0 < begun.1 {
-            blows::earliest(begun, std::f64::consts::TAU / rates[0])
+            blows::earliest(&cleared, begun, std::f64::consts::TAU / rates[0])
         } else {
             begun.1
         };

@@ -4,10 +4,10 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::super::Watched;
 use super::super::beat::{LIMITS, Limits, find_within};
 use super::super::hum::Cleared;
 use super::super::prepared::Prepared;
+use super::super::watched::{MotionSignal, Watched};
 
 const RATE_HZ: f64 = 60.0;
 
@@ -118,5 +118,74 @@ fn valid_a_partner_of_many_beats_is_told_and_no_rub() {
             "{ratio} {apart}: {other}"
         );
         assert!(decay.periods > 20.0, "{ratio} {apart}: {}", decay.periods);
+    }
+}
+
+/// An accelerometer that rests before a release: the jump there is the beginning, also beside a partner whose beat hides what
+/// does not follow.
+#[test]
+fn valid_an_acceleration_that_jumps_from_rest_begins_there_beside_a_partner() {
+    let mut rng = ChaCha8Rng::seed_from_u64(45);
+    for (ratio, apart, noise) in [(0.26, 1.174, 0.03), (0.2, 1.185, 0.04), (0.16, 1.122, 0.08)] {
+        let decay = |hz: f64, t: f64| {
+            let natural = std::f64::consts::TAU * hz;
+            (-0.01 * natural * t).exp() * (natural * t).cos()
+        };
+        let samples: Vec<f64> = (-100..1900)
+            .map(|i| {
+                let t = f64::from(i) / 100.0;
+                let shock: f64 = StandardNormal.sample(&mut rng);
+                let moves = decay(3.784, t) + ratio * decay(apart * 3.784, t);
+                if i < 0 {
+                    noise * shock
+                } else {
+                    3.0 * moves + noise * shock
+                }
+            })
+            .collect();
+        let channel = Watched::new(&samples, MotionSignal::Acceleration);
+        let found = super::super::fit_channels(&[channel], 100.0);
+        let [decay] = found.as_slice() else {
+            panic!("{ratio} {apart}: {found:?}");
+        };
+        assert!((98..105).contains(&decay.first), "{}", decay.first);
+        let begins = decay.beside_friction.and_then(|friction| friction.begins);
+        assert_eq!(begins, None, "{decay:?}");
+        // the damped frequency is 3.784 Hz
+        let off = decay.natural_frequency_hz - 3.784 / (1.0f64 - 1e-4).sqrt();
+        assert!(
+            off.abs() < 3.0 * decay.natural_frequency_error_hz,
+            "{decay:?}"
+        );
+        let mode = decay.beside.mode.map(|mode| mode[0]);
+        let beat = decay.beside.beat.map(|beat| beat[1]);
+        let other = mode.or(beat).expect("the other mode");
+        assert!((other / (apart * 3.784) - 1.0).abs() < 0.01, "{other}");
+    }
+}
+
+/// A partner near by beside noise of a tenth: what two decays leave is noise alone.
+#[test]
+fn valid_a_beat_is_told_beside_noise() {
+    let mut rng = ChaCha8Rng::seed_from_u64(46);
+    let tell = |ratio: f64, rng: &mut ChaCha8Rng| {
+        let decay = |hz: f64, t: f64| {
+            let natural = std::f64::consts::TAU * hz;
+            (-0.015 * natural * t).exp() * (natural * t).cos()
+        };
+        let samples: Vec<f64> = (0..1200)
+            .map(|i| {
+                let t = f64::from(i) / 100.0;
+                let shock: f64 = StandardNormal.sample(rng);
+                decay(3.318, t) + ratio * decay(3.57, t) + 0.02 * shock
+            })
+            .collect();
+        let prepared = Prepared::of(&Cleared::plain(Watched::displacement(&samples)));
+        let prepared = prepared.expect("a decay");
+        find_within(&prepared.series, &prepared.free, &LIMITS)
+    };
+    for _ in 0..8 {
+        assert!(tell(0.15, &mut rng).is_some());
+        assert!(tell(0.0, &mut rng).is_none());
     }
 }
