@@ -35,7 +35,7 @@ pub(super) fn settle_on(
         simulator.advance(settle * setting.period(), &mut |_: &Impact| {});
         let begin = simulator.clone();
         let (mut motion, impacts) = observe(simulator, setting, watch);
-        if settle > 0.0 && is_hardly_seen(&motion, watch) {
+        if is_hardly_seen(&motion, watch) {
             let long = Watch {
                 watch_periods: watch.watch_periods.max(CHAOTIC_PERIODS),
                 ..*watch
@@ -63,9 +63,13 @@ pub(super) fn settle_on(
     }
 }
 
-/// Whether a motion repeats so late that a watch shows it fewer than four times: weak chaos comes as near.
-fn is_hardly_seen(motion: &SettledMotion, watch: &Watch) -> bool {
-    matches!(motion, SettledMotion::Periodic { n, .. } if 4.0 * f64::from(*n) > watch.watch_periods)
+/// Whether a motion repeats so late that a watch shows it fewer than four times: weak chaos comes as near. One with a
+/// dead zone, which wipes out every variation, is none, and what is only watched is not judged.
+pub(super) fn is_hardly_seen(motion: &SettledMotion, watch: &Watch) -> bool {
+    let SettledMotion::Periodic { n, dead_zone, .. } = *motion else {
+        return false;
+    };
+    watch.settle_periods > 0.0 && !dead_zone && 4.0 * f64::from(n) > watch.watch_periods
 }
 
 /// What becomes of a motion's variations while it is watched, and longer where that leaves it open.

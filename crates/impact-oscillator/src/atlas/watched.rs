@@ -4,7 +4,7 @@
 use super::grid::MapSettings;
 use super::kernel::{Cell, Course, Feed, Outcome, Strike, run};
 use super::lyapunov::{Lyapunov, Variations};
-use super::settling::{CHAOTIC_PERIODS, MOST_ROUNDS, variations};
+use super::settling::{CHAOTIC_PERIODS, MOST_ROUNDS, is_hardly_seen, variations};
 use super::threads::{Shared, available, march_all, on_all_threads};
 use super::unit_mass::UnitMass;
 use crate::model::recurrence::{Return, observe, of_returns};
@@ -18,6 +18,8 @@ struct Watching<'a> {
     cells: Shared<'a>,
     machine: &'a Machine,
     watch: &'a Watch,
+    /// The watch by which the motion was taken for settled.
+    settled_by: &'a Watch,
     open: Vec<Open>,
     done: Vec<(usize, Seen)>,
 }
@@ -27,7 +29,7 @@ struct Watching<'a> {
 enum Seen {
     /// The motion.
     Motion(SettledMotion),
-    /// No recurrence, and it is open whether variations grow.
+    /// No recurrence, or one that was hardly seen, and it is open whether variations grow.
     Open,
     /// A mass rested, which the kernel's impacts do not tell, or variations decay.
     Inexact,
@@ -61,7 +63,11 @@ impl Watching<'_> {
         let returns = strikes.map(|strike| bounce(&cell.start, restitution, *strike));
         let returns: Vec<Return> = returns.collect();
         let motion = of_returns(&returns, self.machine, setting, interval, self.watch);
-        if motion != SettledMotion::Chaotic {
+        let is_late = is_hardly_seen(&motion, self.settled_by);
+        if is_late && self.watch.watch_periods < CHAOTIC_PERIODS {
+            return Seen::Open;
+        }
+        if motion != SettledMotion::Chaotic && !is_late {
             return Seen::Motion(motion);
         }
         let mut lyapunov = Lyapunov::new(self.machine, setting.frequency_ratio);
@@ -69,7 +75,8 @@ impl Watching<'_> {
             lyapunov.strike(strike.x, &strike.impact);
         }
         match lyapunov.variations() {
-            Variations::Grow => Seen::Motion(motion),
+            Variations::Grow => Seen::Motion(SettledMotion::Chaotic),
+            _ if is_late => Seen::Motion(motion),
             Variations::Decay => Seen::Inexact,
             Variations::Open => Seen::Open,
         }
@@ -139,7 +146,7 @@ pub(super) enum Follow {
     Decision,
 }
 
-/// Watch the outcomes without a recognised motion once more, in the kernel, where a mass comes to rest in the exact
+/// Watch the outcomes without a recognised motion, or with one that was hardly seen, once more, in the kernel, where a mass comes to rest in the exact
 /// simulator; up to a decision, longer where it stays open whether they are chaotic, and settling on where variations
 /// decay.
 pub(super) fn watch_again(
@@ -148,9 +155,10 @@ pub(super) fn watch_again(
     settings: &MapSettings,
     follow: Follow,
 ) {
-    let is_open = |o: &Outcome| o.motion == SettledMotion::Chaotic;
-    let mut open: Vec<&mut Outcome> = outcomes.iter_mut().filter(|o| is_open(o)).collect();
     let watch = settings.watch;
+    let is_open =
+        |o: &Outcome| o.motion == SettledMotion::Chaotic || is_hardly_seen(&o.motion, &watch);
+    let mut open: Vec<&mut Outcome> = outcomes.iter_mut().filter(|o| is_open(o)).collect();
     let mut inexact: Vec<&mut Outcome> = Vec::new();
     let rounds: &[f64] = match follow {
         Follow::Watch => &[0.0],
@@ -163,7 +171,7 @@ pub(super) fn watch_again(
             watch_periods,
             ..watch
         };
-        let found = watched(unit, &ends, &MapSettings { watch, ..*settings });
+        let found = watched(unit, &ends, &watch, settings);
         let seen = std::mem::take(&mut open).into_iter().zip(found);
         for (outcome, seen) in seen {
             match seen {
@@ -231,7 +239,7 @@ fn observe_exactly(
 }
 
 /// What the kernel's watch shows of cells.
-fn watched(unit: &UnitMass, ends: &[Cell], settings: &MapSettings) -> Vec<Seen> {
+fn watched(unit: &UnitMass, ends: &[Cell], watch: &Watch, settings: &MapSettings) -> Vec<Seen> {
     let machine = &unit.machine();
     if machine.restitution().constant() <= Some(0.0) {
         return vec![Seen::Inexact; ends.len()];
@@ -239,6 +247,7 @@ fn watched(unit: &UnitMass, ends: &[Cell], settings: &MapSettings) -> Vec<Seen> 
     let course = Course {
         leave_early: false,
         every_impact: true,
+        watch_periods: watch.watch_periods,
         ..unit.course(settings)
     };
     let kernel = available(settings.kernel);
@@ -246,7 +255,8 @@ fn watched(unit: &UnitMass, ends: &[Cell], settings: &MapSettings) -> Vec<Seen> 
         let mut watching = Watching {
             cells,
             machine,
-            watch: &settings.watch,
+            watch,
+            settled_by: &settings.watch,
             open: Vec::new(),
             done: Vec::new(),
         };
@@ -255,8 +265,8 @@ fn watched(unit: &UnitMass, ends: &[Cell], settings: &MapSettings) -> Vec<Seen> 
     })
 }
 
-/// The motion from a cell's end on, in the exact simulator: without recurrence it has not settled, or is chaos where
-/// that is judged and variations grow.
+/// The motion from a cell's end on, in the exact simulator: without recurrence, or with one that was hardly seen, it has
+/// not settled, or is chaos where that is judged and variations grow.
 fn observed(machine: &Machine, end: &Cell, watch: &Watch, may_be_chaos: bool) -> SettledMotion {
     let setting = Setting::new(end.eta, end.rho).at_phase(end.phase);
     let start = Initial {
@@ -268,11 +278,20 @@ fn observed(machine: &Machine, end: &Cell, watch: &Watch, may_be_chaos: bool) ->
         return SettledMotion::NotSettled;
     };
     let motion = observe(&mut begin.clone(), setting, watch).0;
-    let grows = || variations(machine, begin, setting, watch) == Variations::Grow;
-    if motion == SettledMotion::Chaotic && !(may_be_chaos && grows()) {
+    let is_late = is_hardly_seen(&motion, watch);
+    if motion != SettledMotion::Chaotic && !is_late {
+        return motion;
+    }
+    if !may_be_chaos {
         return SettledMotion::NotSettled;
     }
-    motion
+    if variations(machine, begin, setting, watch) == Variations::Grow {
+        SettledMotion::Chaotic
+    } else if is_late {
+        motion
+    } else {
+        SettledMotion::NotSettled
+    }
 }
 
 #[cfg(test)]
@@ -280,6 +299,7 @@ mod tests {
     use super::*;
     use crate::atlas::map::{Kernel, MapGrid, Start};
     use crate::atlas::settling::settle_on;
+    use crate::atlas::{BasinGrid, Starts, basins};
 
     /// The motion from a cell's end on, by the exact simulator alone.
     fn settled(machine: &Machine, end: &Cell, watch: &Watch) -> SettledMotion {
@@ -290,10 +310,11 @@ mod tests {
             ..Initial::rest()
         };
         let mut simulator = Simulator::new(machine, setting, start).expect("a simulator");
-        match observe(&mut simulator, setting, watch).0 {
-            SettledMotion::Chaotic => settle_on(machine, &mut simulator, setting, watch).motion,
-            motion => motion,
+        let motion = observe(&mut simulator, setting, watch).0;
+        if motion == SettledMotion::Chaotic || is_hardly_seen(&motion, watch) {
+            return settle_on(machine, &mut simulator, setting, watch).motion;
         }
+        motion
     }
 
     /// Where cells of a map end, taken for unrecognised whatever they are.
@@ -347,6 +368,25 @@ mod tests {
             }
             assert!(kinds[0] > 30 && kinds[1] > 30, "{kinds:?}");
         }
+    }
+
+    /// Weak chaos comes as near to itself once in the watch as a motion of a long period does.
+    #[test]
+    fn chaos_of_one_mass_is_no_period_that_is_hardly_seen() {
+        let grid = BasinGrid {
+            x: (-4.0, 0.1, 24),
+            vx: (-4.0, 4.0, 24),
+            starts: Starts::BothMasses,
+        };
+        let (setting, settings) = (Setting::new(2.86, 0.1), MapSettings::default());
+        let machine = Machine::symmetric(0.07, 0.9);
+        let found = basins(&machine, setting, &grid, &settings).expect("basins");
+        let motions: Vec<SettledMotion> = found.cells.into_iter().flatten().collect();
+        let chaotic = motions.iter().filter(|m| **m == SettledMotion::Chaotic);
+        assert!(
+            motions.len() > 500 && chaotic.count() == motions.len(),
+            "{motions:?}"
+        );
     }
 
     #[test]
