@@ -167,3 +167,23 @@ fn a_request_that_is_not_finished_is_closed_within_seconds() {
     }
     assert_eq!(explorer.page().hello().kind(), "hello");
 }
+
+/// A page of a computer that sleeps answers no ping; one that only reads does.
+#[test]
+fn a_page_that_answers_nothing_is_closed_and_one_that_reads_stays() {
+    let explorer = Explorer::theory();
+    let mut reader = explorer.page();
+    reader.hello();
+    let mut silent = explorer.page();
+    silent.hello();
+    let reads = std::thread::spawn(move || {
+        reader.pings(5);
+        reader.hello()
+    });
+    let stream = silent.stream();
+    let wait = Some(Duration::from_secs(90));
+    stream.set_read_timeout(wait).expect("a limit");
+    // the server closes: the end comes, not the limit
+    stream.read_to_end(&mut Vec::new()).expect("the end");
+    assert_eq!(reads.join().expect("it reads").kind(), "hello");
+}

@@ -215,6 +215,23 @@ impl Page {
         }
     }
 
+    /// Read, and so answer, until so many pings have come.
+    pub(crate) fn pings(&mut self, count: u32) {
+        let mut seen = 0;
+        while seen < count {
+            let message = self.socket.read().expect("the page is open");
+            seen += u32::from(message.is_ping());
+        }
+    }
+
+    /// Its stream, on which nothing is answered.
+    pub(crate) fn stream(&mut self) -> &mut TcpStream {
+        match self.socket.get_mut() {
+            MaybeTlsStream::Plain(stream) => stream,
+            _ => unreachable!("no page is encrypted"),
+        }
+    }
+
     /// What the page starts from.
     pub(crate) fn hello(&mut self) -> Frame {
         self.answer(&json!({"kind": "hello"}), &Value::Null)

@@ -9,18 +9,21 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
+use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
 use axum::extract::{Request, State as Shared};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use futures_util::stream::SplitSink;
 use futures_util::{SinkExt, StreamExt};
 use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use tokio::net::TcpStream;
 use tokio::sync::{Semaphore, mpsc};
+use tokio::time::{Instant, timeout, timeout_at};
 
 use super::answer::campaign_now;
 use super::frame::Frame;
@@ -44,6 +47,10 @@ const TOKEN_PREFIX: &str = "token.";
 const TOKEN_HEADER: &str = "x-token";
 /// Longest time until a connection has sent a request.
 const PATIENCE: Duration = Duration::from_secs(5);
+/// Time between two pings, which a browser answers by itself.
+const PING: Duration = Duration::from_secs(10);
+/// Time after which a page that answers nothing, as one of a computer that sleeps, is gone.
+const SILENCE: Duration = Duration::from_secs(30);
 
 /// What the page may do: scripts, styles, fonts and the WebSocket of this server, nothing else.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; font-src 'self'; \
@@ -296,22 +303,12 @@ fn same(a: &str, b: &str) -> bool {
 
 /// Serve a page until it goes away.
 async fn page(socket: WebSocket, session: Arc<Session>) {
-    let (mut sink, mut stream) = socket.split();
-    let (outbox, mut frames) = mpsc::channel::<Frame>(OUTBOX);
-    let writer = tokio::spawn(async move {
-        while let Some(frame) = frames.recv().await {
-            if sink
-                .send(Message::Binary(frame.bytes().into()))
-                .await
-                .is_err()
-            {
-                break;
-            }
-        }
-    });
+    let (sink, mut stream) = socket.split();
+    let (outbox, frames) = mpsc::channel::<Frame>(OUTBOX);
+    let writer = tokio::spawn(write(sink, frames));
     let news = tokio::spawn(tell_changes(Arc::clone(&session), outbox.clone()));
     let jobs = Jobs::start(&session, &outbox);
-    while let Some(Ok(message)) = stream.next().await {
+    while let Ok(Some(Ok(message))) = timeout(SILENCE, stream.next()).await {
         let request = match &message {
             Message::Text(text) => wire::read(text.as_str()),
             Message::Binary(_) => {
@@ -333,6 +330,26 @@ async fn page(socket: WebSocket, session: Arc<Session>) {
     }
     news.abort();
     writer.abort();
+}
+
+/// Send frames as they come, and pings between them.
+async fn write(mut sink: SplitSink<WebSocket, Message>, mut frames: mpsc::Receiver<Frame>) {
+    let mut due = Instant::now() + PING;
+    loop {
+        let message = if Instant::now() >= due {
+            due = Instant::now() + PING;
+            Message::Ping(Bytes::new())
+        } else {
+            match timeout_at(due, frames.recv()).await {
+                Ok(Some(frame)) => Message::Binary(frame.bytes().into()),
+                Ok(None) => return,
+                Err(_) => continue,
+            }
+        };
+        if sink.send(message).await.is_err() {
+            return;
+        }
+    }
 }
 
 /// Send the campaign whenever it is replaced.

@@ -72,7 +72,7 @@ export class Dialogs {
     const start = (name, key) => [name, "start", () => c().start[key], (v) => app.start({ ...c().start, [key]: v })];
     const rows = [start("X(0)", "x"), start("X′(0)", "vx"), start("Y(0)", "y"), start("Y′(0)", "vy"), ["phase φ, rad", "phase", () => turned(c().phase), (v) => app.start(c().start, v)]];
     const map = ["X′ = Y′ of the map's start", "start", () => app.state.map_start.vx, (v) => { app.mapFrom(v); }];
-    this.fields("Initial conditions (A)", [...rows, map], "The motion is shown from this start, not settled. Q starts it from rest.");
+    this.fields("Initial conditions (A)", [...rows, map], "The motion is shown from this start, not settled; a start beyond the contact is moved back to it. Q starts it from rest.");
   }
 
   system() {

@@ -117,9 +117,9 @@ export const named = ({ label }) => (/^\d/.test(label) ? `z = ${label}` : label)
 export const FONT = '"Libertinus Serif", Georgia, serif';
 
 /** Room of the title beside the numbers of an axis, px. */
-const TITLE = 20;
-/** About how many numbers an axis of a height has. */
-const rows = (height) => Math.max(2.4, height / 42);
+const TITLE = 26;
+/** About how many numbers an axis of a length has. */
+const rows = (height) => Math.max(2.4, height / 42), columns = (width) => Math.max(2.4, width / 75);
 
 /** A frame with axes; maps values to pixels. */
 export class Frame {
@@ -127,10 +127,11 @@ export class Frame {
     const { context, width, height } = fit(canvas);
     const m = { left: 46, right: 10, top: 8, bottom: 36, ...margin };
     Object.assign(this, { context, width, height, x, y, titles });
-    // the numbers beside the box leave room for its title
+    // the numbers beside the box leave room for its title, and those below it have room themselves
     context.font = `13px ${FONT}`;
-    const { all, text } = ticks(...y, rows(height - m.top - m.bottom));
-    m.left = Math.max(m.left, TITLE + Math.max(0, ...all.map((v) => context.measureText(text(v)).width)));
+    const widest = ({ all, text }) => Math.max(0, ...all.map((v) => context.measureText(text(v)).width));
+    m.left = Math.max(m.left, TITLE + widest(ticks(...y, rows(height - m.top - m.bottom))));
+    m.right = Math.max(m.right, widest(ticks(...x, columns(width - m.left - m.right))) / 2);
     this.box = { left: m.left, top: m.top, width: Math.max(10, width - m.left - m.right), height: Math.max(10, height - m.top - m.bottom) };
   }
   px(v) { return this.box.left + this.box.width * (v - this.x[0]) / (this.x[1] - this.x[0]); }
@@ -148,7 +149,7 @@ export class Frame {
     c.strokeRect(b.left + 0.5, b.top + 0.5, b.width, b.height);
     c.font = `13px ${FONT}`; c.textAlign = "center"; c.textBaseline = "top";
     c.beginPath();
-    const tx = ticks(...this.x, Math.max(2.4, b.width / 75)), ty = ticks(...this.y, rows(b.height));
+    const tx = ticks(...this.x, columns(b.width)), ty = ticks(...this.y, rows(b.height));
     for (const v of tx.all) {
       const p = Math.round(this.px(v)) + 0.5;
       c.moveTo(p, b.top + b.height); c.lineTo(p, b.top + b.height - 4);

@@ -183,6 +183,7 @@ class App {
 
   refreshPanel() {
     const { panel } = this.state;
+    if (!this.motion.coexisting) this.coexisting();
     if (panel === "line" && this.state.line) { this.wire.ask("line", { kind: "line" }, this.state); this.line.fetchInsets(); }
     if (panel === "basins") this.wire.ask("basins", { kind: "basins" }, this.state);
     if (panel === "record" && this.campaign && this.state.record) this.wire.askAfter("record", () => [{ kind: "record" }, this.state]);
@@ -212,7 +213,7 @@ class App {
     else if (frame.kind === "motion") { this.carriedTo(frame); this.motion.show(frame); time("motion", 0); this.coexisting(); }
     else if (frame.kind === "run") { this.carriedTo(frame); this.motion.run(frame); this.runOn(); }
     else if (frame.kind === "coexisting") this.motion.others(frame);
-    else if (frame.kind === "line") { this.line.add(frame); }
+    else if (frame.kind === "line") this.line.add(frame, asked.line);
     else if (frame.kind === "basins") { this.basins.add(frame); if (frame.level === 1 && this.basins.tile.filled === frame.size[1]) time("basins", 1); }
     else if (frame.kind === "record") { this.campaign.show(frame); time("record", 0); }
     else if (frame.kind === "residuals") { this.campaign.residuals(frame); time("residuals", 0); }
@@ -244,8 +245,8 @@ class App {
     if (z) bold.style.color = markColour(z);
     const rig = this.scale();
     const hz = rig ? ` = ${number(cursor.eta * rig.natural_frequency_hz, 5)} Hz` : "", mm = rig ? ` = ${number(1e3 * cursor.rho * rig.static_deflection_m, 4)} mm` : "";
-    const r = typeof restitution === "number" ? number(restitution, 4) : formulaOf(restitution) ?? "R(v)";
-    box.replaceChildren(bold, ` at η = ${number(cursor.eta, 5)}${hz}, ρ = ${number(cursor.rho, 5)}${mm}; R = ${r}, β = ${number(damping_ratio, 4)}`);
+    const law = formulaOf(restitution), r = typeof restitution === "number" ? ` = ${number(restitution, 4)}` : law ? `(v) = ${law}` : `(v): ${Object.keys(restitution)[0].replace("_", " ")}`;
+    box.replaceChildren(bold, ` at η = ${number(cursor.eta, 5)}${hz}, ρ = ${number(cursor.rho, 5)}${mm}; R${r}, β = ${number(damping_ratio, 4)}`);
   }
 
   progress(tile) {

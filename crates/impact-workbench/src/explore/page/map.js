@@ -186,14 +186,19 @@ export class MapView {
     for (const name of Object.keys(this.curves)) {
       if (!(name in frame.column) || frame.column[name].length === 0) this.curves[name].stale = true;
     }
-    const kinds = this.kinds().map((k) => k.text).join();
-    if (this.listed !== kinds) { this.listed = kinds; this.app.legend(this.app.legendStyles ?? []); }
-    this.redraw("lines");
+    this.listKinds();
   }
 
   /** One boundary with where it exists. */
   boundary(frame) {
     this.curves[frame.name] = { eta: frame.column.eta, rho: frame.column.rho, exists: frame.column.exists, bare: false };
+    this.listKinds();
+  }
+
+  /** Draw the boundaries, and list their kinds where others are in view. */
+  listKinds() {
+    const kinds = this.kinds().map((k) => k.text).join();
+    if (this.listed !== kinds) { this.listed = kinds; this.app.legend(this.app.legendStyles ?? []); }
     this.redraw("lines");
   }
 

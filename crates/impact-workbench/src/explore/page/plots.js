@@ -51,7 +51,7 @@ export class MotionPanel extends Panel {
     if (!this.coexisting) return "…";
     const { motions, counts } = this.coexisting, all = counts.reduce((sum, n) => sum + n, 0);
     const sorted = motions.map((m, i) => [m.label, counts[i]]).sort((a, b) => b[1] - a[1]);
-    const most = sorted.slice(0, 5).map(([label, n]) => `${named({ label })}: ${Math.round(100 * n / all)} %`);
+    const most = sorted.slice(0, 5).map(([label, n]) => `${named({ label })}: ${n < 0.005 * all ? "< 1" : Math.round(100 * n / all)} %`);
     return most.join(", ") + (sorted.length > 5 ? ", …" : "");
   }
 
@@ -215,10 +215,10 @@ export class LinePanel extends Panel {
     this.clear(0);
   }
 
-  clear(id) { this.id = id; this.ways = {}; this.all = 0; }
+  clear(id, line) { this.id = id; this.of = JSON.stringify(line); this.ways = {}; this.all = 0; }
 
-  add(frame) {
-    if (frame.id !== this.id) this.clear(frame.id);
+  add(frame, line) {
+    if (frame.id !== this.id) this.clear(frame.id, line);
     this.all = frame.all;
     const way = this.ways[frame.way] ??= {};
     for (const [key, values] of Object.entries(frame.column)) (way[key] ??= []).push(...values);
@@ -283,6 +283,7 @@ export class LinePanel extends Panel {
     const byEta = share(line.eta, view.eta) >= share(line.rho, view.rho);
     const key = byEta ? "eta" : "rho", range = [...line[key]].sort((a, b) => a - b);
     const title = byEta ? "frequency ratio *η*" : "clearance ratio *ρ*";
+    if (this.of !== JSON.stringify(line)) this.clear(0, line); // what is there is of another line
     const ways = Object.entries(this.ways);
     const paint = { up: colour("blue"), down: colour("vermilion") };
     const panel = (id, values, name, draw, above = 8) => {
