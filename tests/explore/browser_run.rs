@@ -92,3 +92,37 @@ fn browser_basins_follow_the_cursor_while_the_motion_runs() {
         json!(true)
     );
 }
+
+/// What is asked for in the place of the next stretch, several times before it is answered, does not end the run.
+#[test]
+#[ignore = "needs chromium"]
+fn browser_a_run_goes_on_from_every_new_start() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.key("g", 0);
+    for _ in 0..5 {
+        browser.until("impactid.motion.live?.end > 0.3");
+        browser.evaluate(
+            "window.before = impactid.motion.live; impactid.strobe(); \
+             for (let v = 0; v < 6; v++) impactid.start({ x: 0, vx: v, y: 0, vy: v }, 0)",
+        );
+        browser.until("impactid.motion.live !== before");
+    }
+    browser.until("impactid.motion.live?.end > 0.3");
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+/// What starts settle on is looked for once its panel is open, also where the cursor moved before.
+#[test]
+#[ignore = "needs chromium"]
+fn browser_shares_of_starts_come_with_their_panel() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.key("s", 0);
+    browser.key("ArrowRight", 0);
+    browser.until(QUIET);
+    browser.key("m", 0);
+    browser.until("/\\d %/.test(document.querySelectorAll('#numbers dd')[1].textContent)");
+}

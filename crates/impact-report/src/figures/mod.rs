@@ -8,7 +8,7 @@ pub(super) mod decays;
 pub(super) mod estimates;
 pub(super) mod impacts;
 pub(super) mod map;
-pub(super) mod plane;
+pub mod plane;
 pub(super) mod profiles;
 pub mod regions;
 pub(super) mod residuals;

@@ -150,7 +150,7 @@ impl Plane {
 }
 
 /// Whether a motion is one that the map is drawn for: one with impacts.
-fn busy(motion: &Motion) -> bool {
+pub fn busy(motion: &Motion) -> bool {
     !matches!(motion, Motion::Impactless | Motion::Undetermined { .. })
 }
 
@@ -159,8 +159,8 @@ pub(crate) fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 5e-3 * a.abs().max(b.abs())
 }
 
-/// The clearances, ascending, far above all impacts; none if they are many.
-fn strips(all: &[f64], busy: Range) -> Vec<f64> {
+/// The clearances, ascending, far above all impacts, which are within a range; none if they are many.
+pub fn strips(all: &[f64], busy: Option<(f64, f64)>) -> Vec<f64> {
     /// More strips than this make a plane of their own.
     const MOST: usize = 3;
     /// Over the highest busy clearance; nearer ones stay in the plane.

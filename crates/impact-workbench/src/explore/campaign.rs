@@ -5,6 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::ExploreError;
+use super::first_view::{FirstView, Place};
 use super::limits::{DEFLECTION, ETA, FREQUENCY, RHO};
 use super::state::{Cursor, Panel, RigScale, State, Window};
 use crate::theory::plan::RestitutionLaw;
@@ -26,6 +27,7 @@ use impact_records::message::typed;
 use impact_records::motion::Observation;
 use impact_records::record::Record;
 use impact_records::signal::robust;
+use impact_report::figures::plane::busy;
 use impact_report::style::MotionStyle;
 
 /// Files that a note names.
@@ -234,7 +236,7 @@ impl OpenCampaign {
         let damping = damping
             .or(value(&joint.damping_ratio))
             .or(stated.damping_ratio);
-        let view = self.view(scale, &first);
+        let view = self.first_view(scale).window;
         State {
             restitution: RestitutionLaw::Constant(restitution.unwrap_or(0.9).clamp(0.0, 1.0)),
             damping_ratio: damping.unwrap_or(0.05).clamp(0.0, 0.9),
@@ -279,25 +281,21 @@ impl OpenCampaign {
         }
     }
 
-    fn view(&self, scale: RigScale, first: &State) -> Window {
-        let places = self.observed.observations.iter().filter_map(|o| {
-            let rho = o.setting.clearance_m? / scale.static_deflection_m;
-            Some((o.frequency_hz()? / scale.natural_frequency_hz, rho))
+    fn first_view(&self, scale: RigScale) -> FirstView {
+        let rho = |clearance_m: f64, drive: f64| clearance_m / (scale.static_deflection_m * drive);
+        let observed = &self.observed;
+        let rows = observed.observations.iter().zip(&self.placed.records);
+        let places = rows.filter_map(|(o, row)| {
+            Some(Place {
+                eta: o.frequency_hz()? / scale.natural_frequency_hz,
+                rho: rho(o.setting.clearance_m?, o.setting.drive_amplitude),
+                strikes: busy(&row.motion),
+            })
         });
-        let places: Vec<(f64, f64)> = places.collect();
-        let range = |of: fn(&(f64, f64)) -> f64| {
-            let (low, high) = robust::range(places.iter().map(of))?;
-            let margin = 0.08 * (high - low).max(0.2);
-            Some((low - margin, high + margin))
-        };
-        let (Some(eta), Some(rho)) = (range(|p| p.0), range(|p| p.1)) else {
-            return first.view;
-        };
-        let high = (eta.1.clamp(0.2, ETA.high), rho.1.clamp(0.2, 20.0));
-        Window {
-            eta: (eta.0.clamp(0.05, high.0 - 0.1), high.0),
-            rho: (rho.0.clamp(0.0, high.1 - 0.1), high.1),
-        }
+        let places: Vec<Place> = places.collect();
+        let brackets = observed.brackets.iter();
+        let brackets = brackets.map(|b| rho(b.clearance_m, b.drive_amplitude));
+        FirstView::of(&places, brackets.collect())
     }
 
     /// Everything about the campaign that does not depend on the sliders.
@@ -342,6 +340,9 @@ impl OpenCampaign {
         let curves = self.placed.curves.iter().map(|c| {
             json!({"kind": c.kind.name(), "n": c.periods_n, "points": c.points, "band": c.band95})
         });
+        let scale = self.scale();
+        let strips = self.first_view(scale).strips;
+        let strips = strips.iter().map(|rho| rho * scale.static_deflection_m);
         let sentences = &self.identification.verdict.sentences;
         json!({
             "name": self.resolved.about.name,
@@ -353,6 +354,7 @@ impl OpenCampaign {
             "records": records,
             "brackets": brackets,
             "curves": curves.collect::<Vec<_>>(),
+            "strips_m": strips.collect::<Vec<_>>(),
         })
     }
 }

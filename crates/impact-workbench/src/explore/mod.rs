@@ -14,6 +14,7 @@ mod error;
 mod evidence;
 mod export;
 mod first_tiles;
+mod first_view;
 mod frame;
 mod job;
 mod jobs;

@@ -1,10 +1,15 @@
 // A campaign on the map: records, brackets, proposals; a record beside its simulation; residuals.
 import { Frame, around, colour, mark, named, number, FONT } from "./draw.js";
 import { button, element, make } from "./fields.js";
+import { STRIP } from "./map.js";
 import { facts, sampled } from "./plots.js";
 
 /** Records of sweeps up and down lie apart, as in the report, px. */
 const APART = { up: -4, down: 4 };
+/** Clearances that differ by less than this share are one. */
+const SAME = 5e-3;
+/** The middle of a strip, px. */
+const middleOf = (f, strip) => f.box.top - STRIP * (strip + 0.5);
 
 const SYMBOLS = { "displacement x": "*x*", "displacement y": "*y*", "velocity x": "*x*′", "velocity y": "*y*′", "frame x": "frame *x*", "frame y": "frame *y*" };
 
@@ -48,8 +53,24 @@ export class CampaignView {
 
   placed(f) {
     return this.facts.records.filter((r) => r.frequency_hz !== null && r.clearance_m !== null).map((r) => {
-      const [eta, rho] = this.at(r.frequency_hz, r);
-      return { r, x: f.px(eta), y: f.py(rho) + (APART[r.sweep] ?? 0) };
+      const [eta, rho] = this.at(r.frequency_hz, r), far = rho > f.y[1] ? r.clearance_m / r.drive_amplitude : NaN;
+      const strip = this.facts.strips_m.findIndex((s) => Math.abs(s - far) <= SAME * s);
+      return { r, strip, x: f.px(eta), y: (strip < 0 ? f.py(rho) : middleOf(f, strip)) + (APART[r.sweep] ?? 0) };
+    });
+  }
+
+  /** Clearances far above all impacts, each in a strip above the map unless it is in view. */
+  strips(f) {
+    const { context: c, box } = f, { static_deflection_m: x } = this.app.scale() ?? {}, text = (v) => v.toFixed(1);
+    this.facts.strips_m.forEach((s, i) => {
+      const y = middleOf(f, i), bounds = [box.left + 0.5, Math.round(y - STRIP / 2) + 2.5, box.width, STRIP - 4];
+      c.strokeStyle = colour("frame"); c.lineWidth = 1; c.strokeRect(...bounds);
+      c.save(); c.beginPath(); c.rect(...bounds); c.clip();
+      this.marks(c, this.placed(f).filter((p) => p.strip === i));
+      c.restore();
+      c.fillStyle = colour("ink"); c.font = `13px ${FONT}`; c.textBaseline = "middle";
+      c.textAlign = "right"; c.fillText(text(s / x), box.left - 5, y);
+      c.textAlign = "left"; c.fillText(text(1e3 * s), box.left + box.width + 4, y);
     });
   }
 
@@ -71,20 +92,24 @@ export class CampaignView {
 
   near(f, p, q) {
     let best = null, least = 9;
-    for (const { r, x, y } of this.placed(f)) {
-      const d = Math.hypot(x - p, y - q);
+    for (const { r, strip, x, y } of this.placed(f)) {
+      const d = strip < 0 && !f.holds(x, y) ? Infinity : Math.hypot(x - p, y - q);
       if (d < least) { best = r; least = d; }
     }
     return best;
   }
 
-  draw(f, c) {
+  marks(c, placed) {
     const chosen = this.app.state.record, many = this.facts.records.length;
     const radius = many > 1500 ? 2.6 : many > 400 ? 3.6 : 4.6;
-    for (const { r, x, y } of this.placed(f)) {
+    for (const { r, x, y } of placed) {
       mark(c, x, y, radius, r.motion, r.out !== null);
       if (r.id === chosen) { c.beginPath(); c.arc(x, y, radius + 5, 0, 7); c.lineWidth = 2.2; c.strokeStyle = colour("bad"); c.stroke(); }
     }
+  }
+
+  draw(f, c) {
+    this.marks(c, this.placed(f));
     for (const { b, x0, x1, y, past } of this.brackets(f)) {
       drawBracket(c, [x0, x1], y, past, b.out !== null);
     }

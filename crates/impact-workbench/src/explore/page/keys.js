@@ -38,6 +38,9 @@ export const KEYS = [
   ["Esc", "stop what runs; close", (app) => app.stop()],
 ];
 
+/** What a key does, with the key. */
+export const titleOf = (key) => `${KEYS.find(([k]) => k === key)[1]} (${key.toUpperCase()})`;
+
 /** Keys by another name than in the list. */
 const ALIASES = { "=": "+", "−": "-", Escape: "Esc" };
 

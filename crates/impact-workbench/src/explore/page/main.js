@@ -4,7 +4,7 @@ import { MapView } from "./map.js";
 import { BasinsPanel, CHARACTERISTICS, LinePanel, MotionPanel, swatch } from "./plots.js";
 import { CampaignView } from "./campaign.js";
 import { Dialogs } from "./dialogs.js";
-import { listen, press } from "./keys.js";
+import { listen, press, titleOf } from "./keys.js";
 import { enter, lost } from "./door.js";
 import { Demos } from "./demos.js";
 import { Sliders, button, element, hasLength, kept, make, sentence } from "./fields.js";
@@ -135,6 +135,7 @@ class App {
     this.message(frame.message, frame.remedy);
     this.refusal = true;
     if (frame.taken === false && this.good) this.become(structuredClone(this.good), EVERYTHING);
+    else if (this.run && frame.id === this.wire.newest.motion) this.running();
   }
 
   save() {
@@ -210,7 +211,7 @@ class App {
       if (tile.complete) time("map", frame.level);
     } else if (frame.kind === "boundaries") { this.map.bare(frame); time("boundaries", 0); }
     else if (frame.kind === "boundary") { this.map.boundary(frame); if (frame.last) time("boundaries", 1); }
-    else if (frame.kind === "motion") { this.carriedTo(frame); this.motion.show(frame); time("motion", 0); this.coexisting(); }
+    else if (frame.kind === "motion") { this.carriedTo(frame); this.motion.show(frame); time("motion", 0); this.coexisting(); this.runOn(); }
     else if (frame.kind === "run") { this.carriedTo(frame); this.motion.run(frame); this.runOn(); }
     else if (frame.kind === "coexisting") this.motion.others(frame);
     else if (frame.kind === "line") this.line.add(frame, asked.line);
@@ -402,15 +403,22 @@ class App {
     if (this.run) { this.motion.live = null; this.last = performance.now(); this.lookedAt = 0; this.runOn(); } else this.refresh(["carried"]);
   }
 
+  /** Ask for the next stretch with the screen's next picture, unless it is asked for already. */
   runOn() {
-    requestAnimationFrame((now) => {
-      if (!this.run) return;
-      const facts = now - this.lookedAt > LOOK;
-      if (facts) this.lookedAt = now;
-      const periods = Math.min(2, Math.max(0.02, 2.2 * (now - this.last) / 1000));
-      this.last = now;
-      this.wire.askAfter("motion", () => [{ kind: "run", periods, facts }, this.state]);
+    if (!this.run || this.goesOn || this.wire.waiting.motion) return;
+    this.goesOn = true;
+    requestAnimationFrame(() => {
+      this.goesOn = false;
+      if (this.run) this.wire.askAfter("motion", () => this.stretch());
     });
+  }
+
+  stretch() {
+    const now = performance.now(), facts = now - this.lookedAt > LOOK;
+    if (facts) this.lookedAt = now;
+    const periods = Math.min(2, Math.max(0.02, 2.2 * (now - this.last) / 1000));
+    this.last = now;
+    return [{ kind: "run", periods, facts }, this.state];
   }
 
   stop() {
@@ -530,7 +538,10 @@ class App {
 
   // ---- buttons ---------------------------------------------------------------------
   buttons() {
-    for (const b of document.querySelectorAll("button[data-key]")) b.addEventListener("click", () => press(this, b.dataset.key));
+    for (const b of document.querySelectorAll("button[data-key]")) {
+      b.title = titleOf(b.dataset.key);
+      b.addEventListener("click", () => press(this, b.dataset.key));
+    }
     element("inset").addEventListener("click", () => this.inset());
     element("characteristic").append(...Object.entries(CHARACTERISTICS).map(([value, c]) => new Option(c.text, value)));
     element("characteristic").addEventListener("change", (e) => this.otherCharacteristic(e.target.value));

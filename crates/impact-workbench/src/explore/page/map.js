@@ -19,6 +19,8 @@ const EMPTY = 0xffffffff;
 const FINGER = 6;
 /** Distance of the stripes where motions coexist, px. */
 const STRIPES = 7;
+/** Height of a strip above the map, with its gap, px. */
+export const STRIP = 22;
 /** Names of boundaries on the map. */
 const NAMES = { s2: "s₂", s1: "s₁", grazing: "ρ′", sticking: "ρₚ" };
 /** How far beside a boundary its name is where it has no place on it, px. */
@@ -216,7 +218,8 @@ export class MapView {
   frameOf(canvas) {
     const { state } = this.app, scale = this.app.scale();
     const titles = ["frequency ratio *η* = *ω*/*Ω*", "clearance ratio *ρ* = *r*/*x*ₛₜ"];
-    const margin = { left: 50, right: scale ? 50 : 10, top: scale ? 40 : 8 };
+    const strips = STRIP * (this.app.campaign?.facts.strips_m.length ?? 0);
+    const margin = { left: 50, right: scale ? 50 : 10, top: (scale ? 40 : 8) + strips };
     return new Frame(canvas, state.view.eta, state.view.rho, titles, margin);
   }
 
@@ -247,6 +250,7 @@ export class MapView {
       this.writeNames(f, c);
     });
     f.axes();
+    app.campaign?.strips(f);
     if (scale) this.rigAxes(f, scale);
   }
 
@@ -351,11 +355,12 @@ export class MapView {
     const across = ticks(...f.x.map((v) => v * hz), b.width / 80), up = ticks(...f.y.map((v) => v * mm), b.height / 45);
     c.fillStyle = colour("ink"); c.strokeStyle = colour("frame"); c.font = `13px ${FONT}`;
     c.textAlign = "center"; c.textBaseline = "alphabetic"; c.beginPath(); c.lineWidth = 1;
-    for (const v of across.all) { const p = Math.round(f.px(v / hz)) + 0.5; c.moveTo(p, b.top); c.lineTo(p, b.top + 4); c.fillText(across.text(v), p, b.top - 4); }
+    const top = b.top - STRIP * (this.app.campaign?.facts.strips_m.length ?? 0);
+    for (const v of across.all) { const p = Math.round(f.px(v / hz)) + 0.5; c.moveTo(p, top); c.lineTo(p, top + 4); c.fillText(across.text(v), p, top - 4); }
     c.textAlign = "left"; c.textBaseline = "middle";
     for (const v of up.all) { const p = Math.round(f.py(v / mm)) + 0.5; c.moveTo(b.left + b.width, p); c.lineTo(b.left + b.width - 4, p); c.fillText(up.text(v), b.left + b.width + 4, p); }
     c.stroke(); c.textAlign = "center"; c.textBaseline = "alphabetic"; c.font = `14px ${FONT}`;
-    rich(c, "drive frequency, Hz", b.left + b.width / 2, b.top - 22);
+    rich(c, "drive frequency, Hz", b.left + b.width / 2, top - 22);
     c.save(); c.translate(f.width - 6, b.top + b.height / 2); c.rotate(-Math.PI / 2); rich(c, "clearance *r*, mm", 0, 0); c.restore();
   }
 
@@ -369,10 +374,10 @@ export class MapView {
       if (!event.isPrimary) mode = null;
       if (!this.frame || !event.isPrimary) return;
       const { offsetX: p, offsetY: q } = event;
-      if (!this.frame.holds(p, q)) return;
+      const record = app.campaign?.near(this.frame, p, q);
+      if (!record && !this.frame.holds(p, q)) return;
       canvas.focus(); canvas.setPointerCapture(event.pointerId);
       from = [p, q]; view = app.state.view;
-      const record = app.campaign?.near(this.frame, p, q);
       if (this.drawing) mode = "line";
       else if (event.button === 2 || event.button === 1 || event.shiftKey) mode = "pan";
       else if (record) { mode = null; app.choose(record); return; }
