@@ -22,6 +22,8 @@ pub(super) struct FirstView {
 
 /// Room about the records, over what they span.
 const MARGIN: f64 = 0.08;
+/// Share of the greatest ρ below which the map begins at 0.
+const NEAR_ZERO: f64 = 0.25;
 /// Greatest ρ that is shown first.
 const HIGHEST: f64 = 20.0;
 
@@ -39,9 +41,14 @@ impl FirstView {
             return Self { window, strips };
         };
         let high = (eta.1.clamp(0.2, ETA.high), rho.1.clamp(0.2, HIGHEST));
+        let low = if rho.0 < NEAR_ZERO * high.1 {
+            0.0
+        } else {
+            rho.0.min(high.1 - 0.1)
+        };
         let window = Window {
             eta: (eta.0.clamp(0.05, high.0 - 0.1), high.0),
-            rho: (rho.0.clamp(0.0, high.1 - 0.1), high.1),
+            rho: (low, high.1),
         };
         let strips = strips.into_iter().filter(|s| *s > high.1).collect();
         Self { window, strips }
@@ -70,7 +77,8 @@ mod tests {
         let all: Vec<Place> = near.into_iter().chain(far).collect();
         let view = FirstView::of(&all, vec![5.0]);
         assert_eq!(view.strips, [9.0, 40.0]);
-        assert!((5.0..6.0).contains(&view.window.rho.1), "{:?}", view.window);
+        let (low, high) = view.window.rho;
+        assert!(low == 0.0 && (5.0..6.0).contains(&high), "{low} {high}");
         // without impacts there is no far
         let quiet: Vec<Place> = [0.6, 9.0].map(|rho| place(rho, false)).into();
         let view = FirstView::of(&quiet, Vec::new());
