@@ -2,6 +2,7 @@
 
 use serde_json::json;
 
+use super::browser_sizes::CUT;
 use super::chromium::{Chromium, SIZE};
 use super::server::{Explorer, QUIET, SAMPLE};
 
@@ -86,6 +87,13 @@ fn browser_ticks_and_phases_have_no_dust() {
            return t.all.some((v) => f.box.left - 5 - f.context.measureText(t.text(v)).width < 20); }); \
          impactid.motion.draw(); return [few, narrow]; })()";
     assert_eq!(browser.evaluate(scales), json!([[], []]));
+    // none is cut, however many digits it has and wherever it lies
+    browser.evaluate(CUT);
+    for view in ["[0.02, 0.03], [0, 1]", "[1, 1.00000001], [1, 1.00000001]"] {
+        browser.evaluate(&format!("impactid.look({view})"));
+        browser.until(QUIET);
+    }
+    assert_eq!(browser.evaluate("[...cut]"), json!([]));
     let numbers = "document.getElementById('numbers').textContent";
     for phase in ["8.5265e-14", "2 * Math.PI - 1e-13"] {
         browser.evaluate(&format!(

@@ -74,7 +74,6 @@ fn browser_every_study_opens_under_its_title_with_every_cell_right() {
             .trim_matches('"');
         let explorer = Explorer::start(&[&name], &std::env::temp_dir());
         let mut browser = Chromium::open(&explorer.url(), SIZE);
-        browser.until("impactid.ready === true");
         browser.evaluate(NOTED);
         browser.evaluate("impactid.refresh(['map'])");
         let shown = "document.getElementById('title').textContent + document.title";

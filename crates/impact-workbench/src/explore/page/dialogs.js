@@ -122,19 +122,20 @@ export class Dialogs {
     const { app } = this, r = app.state.restitution;
     const made = formulaOf(r), kind = made ? "formula" : typeof r === "number" ? "constant" : Object.keys(r)[0];
     const select = make("select"), text = make("textarea"), note = make("p", "", "note"), kindOf = make("span");
+    // of each form: an example, what it says, and the text of the law that there is
     const forms = {
-      constant: ["0.9", "R at every speed."],
-      table: ["0 0.95\n6 0.85", "One pair a line: approach speed, R; linear between, constant beyond. Speeds rise."],
-      formula: ["0.95 - 0.05*v^0.4", "R as a formula in the approach speed v: + − * / ^ ( ) exp log sqrt abs min max tanh. It is computed at 121 speeds up to 30, linear between."],
-      power_law: ["0.05 0.4 0", "coefficient, exponent, floor: R = max(floor, 1 − coefficient·v^exponent)."],
-      exponential: ["0.95 0.8 3", "slow, fast, speed: R = fast + (slow − fast)·exp(−v/speed)."],
+      constant: ["0.9", "R at every speed.", () => String(r)],
+      table: ["0 0.95\n6 0.85", "One pair a line: approach speed, R; linear between, constant beyond. Speeds rise.", () => r.table.map((p) => p.join(" ")).join("\n")],
+      formula: ["0.95 - 0.05*v^0.4", "R as a formula in the approach speed v: + − * / ^ ( ) exp log sqrt abs min max tanh. It is computed at 121 speeds up to 30, linear between.", () => made],
+      power_law: ["0.05 0.4 0", "coefficient, exponent, floor: R = max(floor, 1 − coefficient·v^exponent).", () => numbers("coefficient", "exponent", "floor")],
+      exponential: ["0.95 0.8 3", "slow, fast, speed: R = fast + (slow − fast)·exp(−v/speed).", () => numbers("slow", "fast", "speed")],
     };
+    const numbers = (...names) => names.map((name) => r[kind][name]).join(" ");
     select.append(...Object.keys(forms).map((name) => new Option(name.replace("_", " "), name)));
     note.id = "law-note"; note.setAttribute("role", "status"); text.setAttribute("aria-errormessage", note.id);
     const say = (of, why) => { note.textContent = (why ? `${why}. ` : "") + forms[of][1]; note.className = why ? "fault" : "note"; text.setAttribute("aria-invalid", String(Boolean(why))); };
     const fill = (name) => {
-      const now = name === kind ? { constant: () => String(r), formula: () => made, table: () => r.table.map((p) => p.join(" ")).join("\n"), power_law: () => [r.power_law.coefficient, r.power_law.exponent, r.power_law.floor].join(" "), exponential: () => [r.exponential.slow, r.exponential.fast, r.exponential.speed].join(" ") }[name]() : forms[name][0];
-      text.value = now; say(name);
+      text.value = name === kind ? forms[name][2]() : forms[name][0]; say(name);
       kindOf.textContent = name === "formula" ? "Formula" : "Numbers";
     };
     select.value = kind; fill(kind);
