@@ -212,7 +212,7 @@ fn browser_restitution_is_a_formula() {
     // it is seen, and stays a formula when it is opened again and in the address
     let law = "max(0.5, 0.95 - 0.05*v^(1/2))";
     browser.until(&format!(
-        "document.getElementById('readout').textContent.includes('R = {law}')"
+        "document.getElementById('readout').textContent.includes('R(v) = {law}')"
     ));
     let kept = "document.querySelector('#dialog-body select').value + ' ' + document.querySelector('#dialog-body textarea').value";
     let address = browser.evaluate("location.origin + '/#' + impactid.address()");
