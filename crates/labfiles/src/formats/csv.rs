@@ -3,6 +3,7 @@
 //! Opening reads the first and the last lines and counts the rows; reading goes through the
 //! file block by block and keeps only the columns that are asked for.
 
+mod clock_columns;
 mod columns;
 mod commas;
 mod dialect;
@@ -10,7 +11,9 @@ mod front;
 pub(crate) mod header;
 pub(crate) mod parts;
 mod rewritten;
+mod summary;
 mod time_axis;
+mod turned;
 
 use std::path::Path;
 
@@ -68,16 +71,24 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
 /// # Errors
 /// As [`open`].
 pub(crate) fn open_text(text: TextFile, name: &str) -> Result<OpenedTable, ReadError> {
-    let head = text.head(HEAD_BYTES)?;
+    let mut head = text.head(HEAD_BYTES)?;
     let quotes = memchr::memchr(b'"', &head).is_some();
+    let mut notes = Vec::new();
+    let end = summary::begins(&text)?;
+    if let Some(found) = &end {
+        head.truncate(to_usize(found.at.saturating_sub(text.start())));
+        notes.push(found.note());
+    }
     let front = Front::read(&text, &head, quotes)?;
     let rows = front.rows(&head, quotes);
     let mut layout = front.layout(&text, &rows, quotes);
+    layout.end = end.map_or(layout.end, |found| found.at);
     refuse_ambiguous(&text, &layout, &rows, &front.header)?;
-    let (count, last) = table::count_rows(&text, &layout)?;
+    let counted = table::count_rows(&text, &layout)?;
+    let count = counted.rows;
     table::refuse_ragged(&text, count, layout.kinds.len(), text.length())?;
-    let mut notes = Vec::new();
-    let last_row = last_row(&text, &layout, last, &mut notes)?;
+    notes.extend(headings_again(counted.headings));
+    let last_row = last_row(&text, &layout, counted.last, &mut notes)?;
     layout.names.clone_from(&front.header.names);
     let own = front.is_own();
     if !own {
@@ -139,6 +150,16 @@ pub(crate) fn open_text(text: TextFile, name: &str) -> Result<OpenedTable, ReadE
             parts,
         },
     })
+}
+
+/// A note on lines among the rows that head the table once more.
+fn headings_again(lines: u64) -> Option<String> {
+    let again = "the table's heading again, and left out: its rows are read as those of one table";
+    match lines {
+        0 => None,
+        1 => Some(format!("a line among the rows is {again}")),
+        lines => Some(format!("{lines} lines among the rows are {again}")),
+    }
 }
 
 /// Refuse a table in which a mark may be that of decimals or of thousands.

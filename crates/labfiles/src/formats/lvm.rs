@@ -222,6 +222,7 @@ fn layout(
         month_first: false,
         fraction: None,
         comments: b"",
+        headings: Vec::new(),
     }
 }
 

@@ -194,11 +194,31 @@ const MISSING: [&str; 14] = [
     "", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---", "?", "*", "1.#qnan", "1.#ind",
 ];
 
+/// Words by which instruments state that a value was beyond their range, lower case.
+const OVERLOADS: [&str; 16] = [
+    "ovld",
+    "ovl",
+    "ol",
+    "o.l",
+    "o.l.",
+    "over",
+    "overload",
+    "overrange",
+    "over range",
+    "overflow",
+    "ovf",
+    "ovrflw",
+    "clip",
+    "clipped",
+    "überlauf",
+    "übersteuert",
+];
+
 /// The sign of minus, which some programs write for a hyphen.
 const MINUS: &str = "\u{2212}";
 
 /// The longest word for a number, bytes.
-const LONGEST_WORD: usize = 10;
+const LONGEST_WORD: usize = 13;
 
 /// A whole cell as a number: a decimal number, an infinity, or NaN for a cell that states that
 /// there is none. `None`: the cell holds something else.
@@ -220,8 +240,8 @@ pub(crate) fn parse_cell(cell: &[u8], decimal: u8) -> Option<f64> {
     if cell.len() > LONGEST_WORD {
         return None;
     }
-    let text = std::str::from_utf8(cell).ok()?.to_ascii_lowercase();
-    if MISSING.contains(&text.as_str()) {
+    let text = crate::text::decode(cell).to_lowercase();
+    if MISSING.contains(&text.as_str()) || is_overload(&text) {
         return Some(f64::NAN);
     }
     match text.trim_start_matches('+') {
@@ -232,10 +252,35 @@ pub(crate) fn parse_cell(cell: &[u8], decimal: u8) -> Option<f64> {
     }
 }
 
+/// Whether a word, lower case, states that a value was beyond the range: with a sign or without, or as a spreadsheet shows a
+/// number that its column has no room for.
+fn is_overload(word: &str) -> bool {
+    let bare = word.trim_start_matches(['+', '-', '>', '<']).trim_start();
+    OVERLOADS.contains(&bare) || (word.len() > 2 && word.bytes().all(|b| b == b'#'))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn words_of_an_overload_are_no_number_and_no_error() {
+        for word in [
+            "OVLD",
+            "-OL",
+            "+OVER",
+            "Over Range",
+            "O.L",
+            "#####",
+            "Überlauf",
+        ] {
+            let read = parse_cell(word.as_bytes(), b'.');
+            assert!(read.is_some_and(f64::is_nan), "{word}");
+        }
+        assert!(parse_cell(b"\xDCberlauf", b',').is_some_and(f64::is_nan));
+        assert_eq!(parse_cell(b"oven", b'.'), None);
+    }
 
     #[test]
     fn thousands_are_separated_where_all_groups_are_whole() {

@@ -51,6 +51,16 @@ pub(crate) struct Layout {
     pub fraction: Option<Fraction>,
     /// Line prefixes that make a line a comment.
     pub comments: &'static [u8],
+    /// The lines that head the table, which may come again among its rows.
+    pub headings: Vec<Vec<u8>>,
+}
+
+impl Layout {
+    /// Whether a line heads the table once more, as where a logger was started again or a sheet is printed page by page.
+    fn heads_again(&self, line: &[u8]) -> bool {
+        let mut headings = self.headings.iter();
+        !self.headings.is_empty() && headings.any(|heading| heading == line.trim_ascii())
+    }
 }
 
 /// Columns being filled.
@@ -144,7 +154,7 @@ fn read_cells(
                 continue;
             }
             let (line, next) = line_at(block, at, layout.quotes);
-            if is_row(line, layout.comments) {
+            if is_row(line, layout.comments) && !layout.heads_again(line) {
                 read_row(line, layout, &mut columns[..last], plain.done)
                     .map_err(|fault| fault.error(text, layout, read, offset + at as u64))?;
                 read += 1;
@@ -417,16 +427,23 @@ fn mixed_line_ends(text: &TextFile, row: u64, at: u64) -> ReadError {
     .at(at)
 }
 
-/// Count the rows of a table and find where the last begins.
+/// The rows of a table.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Counted {
+    /// How many.
+    pub rows: u64,
+    /// Where the last begins.
+    pub last: Option<u64>,
+    /// How many lines among them head the table once more.
+    pub headings: u64,
+}
+
+/// Count the rows of a table.
 ///
 /// # Errors
 /// If the file cannot be read, or a line ends by a carriage return alone.
-pub(crate) fn count_rows(
-    text: &TextFile,
-    layout: &Layout,
-) -> Result<(u64, Option<u64>), ReadError> {
-    let mut rows = 0;
-    let mut last = None;
+pub(crate) fn count_rows(text: &TextFile, layout: &Layout) -> Result<Counted, ReadError> {
+    let mut counted = Counted::default();
     text.blocks(layout.start, layout.quotes, |offset, block| {
         for (at, line) in Lines::new(block, layout.quotes) {
             let position = offset + at as u64;
@@ -434,14 +451,16 @@ pub(crate) fn count_rows(
                 break;
             }
             if let Some(at) = lone_return(line).filter(|_| !layout.quotes) {
-                return Err(mixed_line_ends(text, rows, position + at as u64));
+                return Err(mixed_line_ends(text, counted.rows, position + at as u64));
             }
-            if is_row(line, layout.comments) {
-                rows += 1;
-                last = Some(position);
+            if layout.heads_again(line) {
+                counted.headings += 1;
+            } else if is_row(line, layout.comments) {
+                counted.rows += 1;
+                counted.last = Some(position);
             }
         }
         Ok(())
     })?;
-    Ok((rows, last))
+    Ok(counted)
 }

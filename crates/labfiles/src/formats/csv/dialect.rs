@@ -218,12 +218,46 @@ pub(crate) fn is_time(cell: &[u8]) -> bool {
     cell.len() <= LONGEST_TIME && clock::parse_cell(&decode(cell), false).is_some()
 }
 
+/// Lines below a row that may be one of a preamble among which a heading shows that it is.
+const HEADING_LINES: usize = 4;
+
 /// The number of the first line that is a row of the table: a row of values, or one that has
-/// values wherever the last lines have values alone, as rows of few numbers among texts do.
+/// values wherever the last lines have values alone, as rows of few numbers among texts do. Numbers in a preamble, with less
+/// cells than the table or more, are none: a heading follows them.
 pub(crate) fn first_row(lines: &[&[u8]], dialect: &Dialect) -> Option<usize> {
+    let mut from = 0;
+    loop {
+        let first = from + row_at(lines, from, dialect)?;
+        match heading_below(lines, first, dialect) {
+            Some(heading) => from = heading + 1,
+            None => return Some(first),
+        }
+    }
+}
+
+/// The heading of the table some lines below a row of another width; a heading that was there before comes again among rows.
+fn heading_below(lines: &[&[u8]], row: usize, dialect: &Dialect) -> Option<usize> {
+    let cells = |line: &[u8]| -> Vec<Vec<u8>> {
+        let cells = Cells::new(line, dialect.separator);
+        cells.map(<[u8]>::to_vec).collect()
+    };
+    if cells(lines[row]).len() == dialect.columns {
+        return None;
+    }
+    let words = |cells: &[Vec<u8>]| {
+        let word = |c: &Vec<u8>| !c.is_empty() && !is_value(c, dialect.notation);
+        cells.len() == dialect.columns && cells.iter().all(word)
+    };
+    let below = (row + 1..lines.len()).take(HEADING_LINES);
+    let mut headings = below.filter(|i| words(&cells(lines[*i])));
+    headings.find(|i| !lines[..row].contains(&lines[*i]))
+}
+
+/// How many lines after one the first is that looks like a row of the table.
+fn row_at(lines: &[&[u8]], from: usize, dialect: &Dialect) -> Option<usize> {
     let values = columns_of_values(judged(lines), dialect);
     let begins_empty = begins_empty(judged(lines), &values, dialect);
-    lines.iter().position(|line| {
+    lines[from..].iter().position(|line| {
         let cells: Vec<&[u8]> = Cells::new(line, dialect.separator).collect();
         let near = cells.len().abs_diff(dialect.columns) <= dialect.columns / 2;
         let row = is_value_row(&cells, dialect) || agrees(&cells, &values, dialect);

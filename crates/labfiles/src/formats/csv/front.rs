@@ -18,6 +18,8 @@ pub(super) struct Front {
     offset: usize,
     /// The columns of texts, counted from 1, if the file states them.
     texts: Option<Vec<usize>>,
+    /// The lines with letters before the table.
+    headings: Vec<Vec<u8>>,
 }
 
 impl Front {
@@ -55,7 +57,8 @@ impl Front {
         let first = first.and_then(|i| places.get(i));
         let first = *first.ok_or_else(|| no_table(text, "no row of numbers"))?;
         let offset = offsets[first];
-        let rows = head_rows(&head[offset..], quotes, dialect.separator);
+        let headings = headings(&lines[..first]);
+        let rows = head_rows(&head[offset..], quotes, dialect.separator, &headings);
         let filled = match texts {
             Some(_) => 0..dialect.columns,
             None => columns::filled(&rows),
@@ -67,6 +70,7 @@ impl Front {
             dialect: Dialect { columns, ..dialect },
             offset,
             texts,
+            headings,
         })
     }
 
@@ -77,7 +81,8 @@ impl Front {
 
     /// The rows of the head.
     pub(super) fn rows<'a>(&self, head: &'a [u8], quotes: bool) -> HeadRows<'a> {
-        head_rows(&head[self.offset..], quotes, self.dialect.separator)
+        let table = &head[self.offset..];
+        head_rows(table, quotes, self.dialect.separator, &self.headings)
     }
 
     /// How the table is written; its columns have no names yet.
@@ -97,8 +102,17 @@ impl Front {
             fraction: None,
             kinds,
             comments: dialect::COMMENTS,
+            headings: self.headings.clone(),
         }
     }
+}
+
+/// The lines among some before a table that may come again among its rows: those with a letter, no comments.
+fn headings(before: &[&[u8]]) -> Vec<Vec<u8>> {
+    let letter = |line: &&&[u8]| line.iter().any(u8::is_ascii_alphabetic);
+    let plain = before.iter().filter(letter);
+    let plain = plain.filter(|line| is_row(line, dialect::COMMENTS));
+    plain.map(|line| line.trim_ascii().to_vec()).collect()
 }
 
 /// Rows at the front of a table by which its decimal marks are judged.
@@ -126,10 +140,16 @@ fn refuse_decimal_commas(text: &TextFile, lines: &[&[u8]], at: usize) -> Result<
     ))
 }
 
-/// The rows at the front of a table.
-fn head_rows(table: &[u8], quotes: bool, separator: Separator) -> HeadRows<'_> {
+/// The rows at the front of a table, without headings that come again.
+fn head_rows<'a>(
+    table: &'a [u8],
+    quotes: bool,
+    separator: Separator,
+    headings: &[Vec<u8>],
+) -> HeadRows<'a> {
     let lines = Lines::new(table, quotes);
-    let rows = lines.filter(|(_, l)| is_row(l, dialect::COMMENTS));
+    let again = |line: &[u8]| headings.iter().any(|h| h == line.trim_ascii());
+    let rows = lines.filter(|(_, l)| is_row(l, dialect::COMMENTS) && !again(l));
     HeadRows {
         lines: rows.map(|(_, l)| l).collect(),
         separator,

@@ -93,10 +93,11 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: Range<usize>) -> 
                 header.attributes.insert(key.clone(), markers.join("\t"));
             }
             // Sampling rate; 2500; Hz
-            [key, number, unit] if number::parse_cell(number.as_bytes(), b'.').is_some() => {
+            [key, number, unit] if is_number(number) => {
                 remark(&format!("{key}={number} {unit}"), &mut header.attributes);
             }
             [key, value] => remark(&format!("{key}={value}"), &mut header.attributes),
+            [line] => remark(&keyed_alone(line), &mut header.attributes),
             _ => remark(&row.join(" "), &mut header.attributes),
         }
     }
@@ -110,6 +111,26 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: Range<usize>) -> 
     name_columns(&mut header, &units.unwrap_or_default(), dialect.columns);
     of_motion_capture(&mut header);
     (header, columns)
+}
+
+/// Whether a text is a number with either decimal mark.
+fn is_number(text: &str) -> bool {
+    let number = |mark| number::parse_cell(text.as_bytes(), mark).is_some_and(f64::is_finite);
+    number(b'.') || number(b',')
+}
+
+/// A line above one column of numbers, whose cells nothing separates, as `key=number unit` where it is a key, a number and a
+/// unit between separators: `Abtastintervall;0,5;ms`.
+fn keyed_alone(line: &str) -> String {
+    let parted = [';', '\t', ','].into_iter().find_map(|separator| {
+        let cells: Vec<&str> = line.split(separator).map(str::trim).collect();
+        match cells[..] {
+            [key, number, unit] if is_number(number) => Some(format!("{key}={number} {unit}")),
+            [key, number] if is_number(number) => Some(format!("{key}={number}")),
+            _ => None,
+        }
+    });
+    parted.unwrap_or_else(|| line.to_owned())
 }
 
 /// Fewest lines of a key and its value that are a preamble.

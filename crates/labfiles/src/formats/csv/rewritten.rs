@@ -1,8 +1,9 @@
-//! Texts that are no tables of cells and become one: what a microcontroller prints with a label before each number, and
-//! the blocks of a NI `SignalExpress` export.
+//! Texts that become a table of cells with one column for each quantity: what a microcontroller prints with a label before
+//! each number, the blocks of a NI `SignalExpress` export, tables on their side, and clocks in several columns.
 
 use std::fmt::Write as _;
 
+use super::{clock_columns, turned};
 use crate::bytes::to_usize;
 use crate::source::ReadError;
 use crate::text::{TextFile, clock, decode, number};
@@ -25,10 +26,18 @@ pub(super) fn plain(text: TextFile) -> Result<TextFile, ReadError> {
     let lines: Vec<&str> = front.lines().filter(|l| !l.trim().is_empty()).collect();
     let express = lines.first().is_some_and(|l| heads(l, SIGNAL_EXPRESS[0]));
     let labels = labels(&lines);
-    if !express && labels.is_none() {
-        return Ok(text);
+    let of_clock = clock_columns::are_there(&lines);
+    if !express && labels.is_none() && !of_clock {
+        let short = text.length() <= turned::MOST_BYTES as u64;
+        return Ok(match turned::upright(&front).filter(|_| short) {
+            Some(table) => TextFile::of_bytes(text.path(), table.into_bytes()),
+            None => text,
+        });
     }
     let whole = text.range(text.start(), to_usize(text.length()))?;
+    if of_clock && let Some(table) = clock_columns::joined(&whole) {
+        return Ok(TextFile::of_bytes(text.path(), table.into_bytes()));
+    }
     let whole = decode(&whole);
     let table = match labels {
         Some(labels) if !express => of_labels(&whole, &labels),

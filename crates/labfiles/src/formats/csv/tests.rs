@@ -635,3 +635,80 @@ fn a_file_that_is_not_there_asks_for_its_path() {
     let error = crate::open(std::path::Path::new("nope.csv")).err().unwrap();
     assert_eq!(error.remedy, "check the path and its spelling");
 }
+
+#[test]
+fn numbers_in_a_preamble_are_no_row_and_no_name() {
+    let rows = "0.00\t0.1\n0.01\t0.2\n0.02\t0.3\n0.03\t0.4\n0.04\t0.5\n0.05\t0.6\n";
+    for preamble in ["5000\n", "Samples\t5000\n5000\n", "; Channels\n\t1\t2\n"] {
+        let s = source(format!("{preamble}Time (s)\tPosition (m)\n{rows}").as_bytes());
+        let set = &s.datasets()[0];
+        let names: Vec<&str> = set.channels.iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(names, ["Time", "Position"], "{preamble}");
+        assert_eq!(real(&*s, 1).len(), 6, "{preamble}");
+    }
+}
+
+#[test]
+fn headings_that_come_again_are_left_out_with_a_note() {
+    let part = "t [s],x [mm]\n0.0,1\n0.1,2\n0.2,3\n";
+    let again = "t [s],x [mm]\r\n0.3,4\n0.4,5\nt [s],x [mm]\n0.5,6\n";
+    let s = source(format!("{part}{again}").as_bytes());
+    assert_eq!(real(&*s, 1), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    assert!(
+        s.notes().iter().any(|n| n.starts_with("2 lines")),
+        "{:?}",
+        s.notes()
+    );
+}
+
+#[test]
+fn rows_that_sum_a_table_up_are_left_out_with_a_note() {
+    let s = source(b"Trial,h0 (cm),h1 (cm)\n1,100,61\n2,100,60\nAverage,100,60.5\nSD,0,0.7\n");
+    assert_eq!(real(&*s, 2), [61.0, 60.0]);
+    assert!(s.notes()[0].contains("Average, SD"), "{:?}", s.notes());
+}
+
+#[test]
+fn overloads_are_gaps_where_most_rows_at_the_front_have_them() {
+    let mut text = String::from("Time (s),Position (m)\n");
+    for i in 0..200 {
+        let cell = if i < 50 {
+            "OVLD".to_owned()
+        } else {
+            format!("{}", i % 7)
+        };
+        text += &format!("{:.2},{cell}\n", f64::from(i) * 0.01);
+    }
+    let s = source(text.as_bytes());
+    assert_eq!(s.datasets()[0].channels[1].stored, StoredType::Float(64));
+    assert_eq!(real(&*s, 1).iter().filter(|v| v.is_nan()).count(), 50);
+}
+
+#[test]
+fn a_step_of_time_in_cells_above_one_column_is_the_rate() {
+    let rate = |text: &str| source(text.as_bytes()).datasets()[0].sample_rate_hz();
+    let german = "Ger\u{e4}t;7\r\nAbtastintervall;0,5;ms\r\nWeg (mm)\r\n1,5\r\n2,5\r\n3,5\r\n";
+    assert!(rate(german).is_some_and(|r| (r - 2000.0).abs() < 1e-6));
+    let english = "Sampling interval,0.5,ms\nPosition (mm)\n1.5\n2.5\n3.5\n";
+    assert!(rate(english).is_some_and(|r| (r - 2000.0).abs() < 1e-6));
+}
+
+#[test]
+fn hours_minutes_and_seconds_in_columns_are_one_time() {
+    // from 9:59:59 on, a tenth of a second each
+    let row = |i: i32| {
+        let tenths = 359_990 + i;
+        let seconds = f64::from(tenths % 600) / 10.0;
+        format!(
+            "{},{},{seconds:.1},{i}\n",
+            tenths / 36_000,
+            tenths / 600 % 60
+        )
+    };
+    let rows: String = (0..20).map(row).collect();
+    let s = source(format!("Hour,Minute,Second,x (mm)\n{rows}").as_bytes());
+    let set = &s.datasets()[0];
+    assert_eq!((set.time_axis, set.channels.len()), (Some(0), 2));
+    let times = real(&*s, 0);
+    assert!((times[19] - 1.9).abs() < 1e-9, "{times:?}");
+}

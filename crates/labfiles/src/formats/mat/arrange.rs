@@ -229,6 +229,24 @@ const STEPS: [&str; 15] = [
     "tstep",
 ];
 
+/// Names of cell arrays of texts that name the columns of a matrix.
+const COLUMN_NAMES: [&str; 14] = [
+    "channels",
+    "Channels",
+    "channelNames",
+    "channel_names",
+    "ChannelNames",
+    "names",
+    "Names",
+    "labels",
+    "Labels",
+    "header",
+    "headers",
+    "columns",
+    "signals",
+    "varnames",
+];
+
 /// Names of scalars that give the time of the first sample, lower case.
 const STARTS: [&str; 11] = [
     "t0",
@@ -416,8 +434,16 @@ impl<'t> Builder<'t> {
             .find_map(|(name, value)| stated_rate(name, value));
         let (mut channels, mut origins) = (Vec::new(), Vec::new());
         for (leaf, name) in leaves {
-            for (suffix, samples, slice) in self.slices(*leaf, lengths) {
-                channels.push(self.channel(*leaf, format!("{name}{suffix}"), samples, rate));
+            let slices = self.slices(*leaf, lengths);
+            let count = slices.len();
+            for (suffix, samples, slice) in slices {
+                let mut channel = self.channel(*leaf, format!("{name}{suffix}"), samples, rate);
+                if let Some(text) = self.column_label(*leaf, slice, count) {
+                    let (label, unit) = name_and_unit(&text);
+                    channel.unit = channel.unit.or(unit);
+                    channel.properties.insert("label".to_owned(), label);
+                }
+                channels.push(channel);
                 origins.push(Origin { leaf: *leaf, slice });
             }
         }
@@ -518,6 +544,27 @@ impl<'t> Builder<'t> {
         let parent = name.strip_suffix(".values")?;
         let label = self.texts.get(format!("{parent}.label").as_str())?;
         Some(label.trim().to_owned()).filter(|label| !label.is_empty())
+    }
+
+    /// What a cell array of texts beside a matrix, or in the file, calls one of its columns: it has as many texts as the matrix has
+    /// columns.
+    fn column_label(&self, leaf: usize, slice: Slice, count: usize) -> Option<String> {
+        let (Slice::Column(place) | Slice::Row(place)) = slice else {
+            return None;
+        };
+        let name = &self.tree.leaves[leaf].name;
+        let parent = name.rsplit_once('.').map(|(parent, _)| parent);
+        let lists = parent
+            .into_iter()
+            .flat_map(|parent| COLUMN_NAMES.map(|list| format!("{parent}.{list}")));
+        let mut lists = lists.chain(COLUMN_NAMES.map(str::to_owned));
+        let text = |list: &str, number: usize| {
+            let text = self.texts.get(format!("{list}{{{number}}}").as_str())?;
+            Some(text.trim()).filter(|text| !text.is_empty())
+        };
+        let whole = |list: &String| text(list, count).is_some() && text(list, count + 1).is_none();
+        let list = lists.find(whole).filter(|_| count > 1)?;
+        text(&list, to_usize(place) + 1).map(str::to_owned)
     }
 
     /// The unit of an array, where a text beside it states one: `x_unit`, `x_units`, the field `x` of a struct `Units`
