@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use super::cut::Cut;
 use super::patterns::expanded;
 use super::read_log::ReadLog;
 use super::{Exit, Failure, Verbosity, interrupt};
 use impact_records::message::counted;
-use labfiles::ReadError;
+use labfiles::{ReadError, Source};
 use labfiles_write::convert::{self, ConvertError, Options, Target};
 
 /// Arguments of `impactid convert`.
@@ -31,6 +32,9 @@ pub(super) struct Convert {
     /// Attribute for every record, with the unit in its name: `clearance_m=0.0005`
     #[arg(long, value_name = "NAME=VALUE", value_parser = name_and_value)]
     set: Vec<(String, String)>,
+    /// Cut each record where the frequency of this channel changes: that of the drive, in a file of many settings
+    #[arg(long, value_name = "CHANNEL")]
+    cut: Option<String>,
     /// Overwrite existing files, but never one that is read
     #[arg(long)]
     force: bool,
@@ -56,6 +60,7 @@ Example:
   impactid convert runs/*.tdms --out campaign.h5 --set clearance_m=0.0005
   impactid convert campaign.h5 --out records.parquet
   impactid convert campaign.h5 --out records.uff
+  impactid convert sweep.csv --cut generator --set clearance_m=0.0005 --out cut.csv
 
 The layout of the HDF5 file is described in docs/formats.md.
 Files that are there are overwritten with --force only.
@@ -104,6 +109,7 @@ impl Convert {
             .map(|p| log.open(p))
             .collect::<Result<Vec<_>, ReadError>>()?;
         log.print();
+        let sources = cut(sources, self.cut.as_deref(), verbosity)?;
         let options = Options {
             single_precision: self.single,
             attributes: self.set.into_iter().collect(),
@@ -127,6 +133,23 @@ impl Convert {
         verbosity.info(&format!("{records} written to {}", written.display()));
         Ok(Exit::Done)
     }
+}
+
+/// The sources, each cut by a channel if one is named.
+fn cut(
+    sources: Vec<Box<dyn Source>>,
+    channel: Option<&str>,
+    verbosity: Verbosity,
+) -> Result<Vec<Box<dyn Source>>, Failure> {
+    let Some(channel) = channel else {
+        return Ok(sources);
+    };
+    let of = |source| -> Result<Box<dyn Source>, Failure> {
+        let cut = Cut::by(channel, source)?;
+        verbosity.info(&cut.said());
+        Ok(Box::new(cut))
+    };
+    sources.into_iter().map(of).collect()
 }
 
 /// Refuse to write over a file that is read.

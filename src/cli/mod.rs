@@ -9,6 +9,7 @@ mod compare;
 mod completions;
 mod convert;
 mod coverage;
+mod cut;
 mod details;
 mod estimate_text;
 mod exit;

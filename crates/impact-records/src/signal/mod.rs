@@ -15,6 +15,7 @@ pub mod robust;
 pub(crate) mod smoothing;
 pub mod spacing;
 mod spectrum;
+pub mod steps;
 pub mod thinning;
 pub mod tone;
 pub(crate) mod turns;
