@@ -7,7 +7,9 @@ mod heights;
 mod labview;
 mod loggers;
 mod matlab;
+mod odd_tables;
 mod rig;
+mod stepped;
 mod trials;
 mod workbook;
 

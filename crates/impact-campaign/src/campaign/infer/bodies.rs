@@ -113,6 +113,7 @@ pub(super) fn ask_of_driven(found: &mut FolderContents) {
         .chain(roles::alike_without_role(&found.channels))
         .collect();
     if free.is_empty() {
+        found.notes.extend(one_of_a_driven_rig(&found.channels));
         return;
     }
     let names: Vec<&str> = free
@@ -125,6 +126,17 @@ pub(super) fn ask_of_driven(found: &mut FolderContents) {
          channels its role; if it is one mass against a stop, machine = \"single\"",
         names.join(", ")
     ));
+}
+
+/// That the motion of one mass of a driven rig is recorded, which may strike a second one.
+fn one_of_a_driven_rig(channels: &[InferredChannel]) -> Option<String> {
+    let has = |is: &dyn Fn(Role) -> bool| channels.iter().any(|c| c.role.is_some_and(is));
+    let recorded = has(&|role| role == Role::Drive) && has(&Role::is_motion);
+    recorded.then(|| {
+        "the motion of one mass is recorded: taken for one mass against a stop that does not move; if it strikes a second \
+         mass, write machine = \"double\""
+            .to_owned()
+    })
 }
 
 /// Channels without a role that move and show a quantity of motion that the first mass has, with that of the second.

@@ -249,7 +249,7 @@ fn are_intervals(name: &str, values: &[f64]) -> bool {
 
 /// Whether numbers that all fall are times of bounces of which the last is first: they fall by more and more, and flights,
 /// which follow a geometric row themselves, by less and less.
-fn are_reversed(values: &[f64]) -> bool {
+pub(super) fn are_reversed(values: &[f64]) -> bool {
     let steps: Vec<f64> = values.windows(2).map(|w| w[0] - w[1]).collect();
     let grow = steps.windows(2).filter(|w| w[1] > w[0]).count();
     steps.iter().all(|step| *step > 0.0)
@@ -257,9 +257,33 @@ fn are_reversed(values: &[f64]) -> bool {
         && grow > 0
 }
 
+/// Part of the longest interval by which printed sums may differ from it.
+const SUM_ROUNDED: f64 = 0.05;
+
+/// Whether numbers are what others differ by from row to row, as the laps beside the total time of a stopwatch; laps that are
+/// written as times of day are counted from the first of them.
+fn are_differences(laps: &[f64], totals: &[f64]) -> bool {
+    let steps: Vec<f64> = totals.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+    let longest = steps.iter().copied().fold(0.0, f64::max);
+    let alike = |laps: &[f64]| {
+        let over = laps.iter().zip(&steps).map(|(lap, step)| lap - step);
+        robust::range(over).is_some_and(|(low, high)| high - low <= SUM_ROUNDED * longest)
+    };
+    // with the first row last, a lap stands beside the total time that it leads to
+    let (Some(later), Some(before)) = (laps.get(1..), laps.get(..steps.len())) else {
+        return false;
+    };
+    steps.len() > 1 && laps.len() == totals.len() && (alike(later) || alike(before))
+}
+
 /// The column of a list of events that states the impacts, among those that contain times.
 fn events(place: Place<'_>, listed: &[usize], channels: &mut [InferredChannel]) -> ContactContent {
-    let interval = |i: &usize| are_intervals(&channels[*i].name, &place.numbers(*i));
+    let values: Vec<Vec<f64>> = listed.iter().map(|i| place.numbers(*i)).collect();
+    let lap = |own: &Vec<f64>| values.iter().any(|of| are_differences(own, of));
+    let interval = |i: &usize| {
+        let own = place.numbers(*i);
+        lap(&own) || are_intervals(&channels[*i].name, &own)
+    };
     let (at, content) = match listed.iter().find(|i| !interval(i)) {
         Some(at) => (Some(*at), ContactContent::Times),
         None => (listed.first().copied(), ContactContent::Intervals),

@@ -82,8 +82,10 @@ pub(super) fn of(place: Place<'_>) -> Option<Heights> {
     let rows = channels.iter().map(|c| c.samples).max().unwrap_or(0);
     let counts =
         |c: &ChannelInfo| c.stored == StoredType::Text || c.unit.is_none() && numbers_rows(&c.name);
+    let computed =
+        |c: &ChannelInfo| is_computed(c) || channels.iter().any(|of| is_uncertainty_of(c, of));
     let numbers: Vec<usize> = (0..channels.len())
-        .filter(|i| !counts(&channels[*i]) && !is_computed(&channels[*i]))
+        .filter(|i| !counts(&channels[*i]) && !computed(&channels[*i]))
         .collect();
     let (used, others): (Vec<usize>, Vec<usize>) =
         numbers.iter().partition(|i| may_be_height(&channels[**i]));
@@ -131,6 +133,29 @@ pub(super) fn is_computed(channel: &ChannelInfo) -> bool {
             .any(|w| COMPUTED_WORDS.contains(&&**w))
 }
 
+/// Letters before the name of a quantity whose uncertainty a column states: `dh0`, `u(h0)`, `σ_h0`; lower case.
+const UNCERTAINTIES: [&str; 7] = ["d", "u", "s", "σ", "sd", "err", "unc"];
+
+/// Whether a column is called as the uncertainty of another.
+fn is_uncertainty_of(channel: &ChannelInfo, of: &ChannelInfo) -> bool {
+    let plain = |name: &str| -> String {
+        let letters = name.chars().filter(|c| c.is_alphanumeric());
+        letters.flat_map(char::to_lowercase).collect()
+    };
+    let (own, other) = (plain(&channel.name), plain(&of.name));
+    let before = own.strip_suffix(other.as_str());
+    !other.is_empty() && before.is_some_and(|letters| UNCERTAINTIES.contains(&letters))
+}
+
+/// Whether a name is the letter of a height with a number or without: `h`, `h0`, `h_1`, `H 2`.
+fn is_letter_of_height(name: &str) -> bool {
+    let number = name.trim().strip_prefix(['h', 'H']);
+    number.is_some_and(|n| {
+        n.chars()
+            .all(|c| c.is_ascii_digit() || matches!(c, '_' | ' '))
+    })
+}
+
 /// Whether each of some names has a number in it, as where they count the tops of a throw; names without are those of
 /// bodies or floors.
 fn numbered<'a>(mut channels: impl Iterator<Item = &'a ChannelInfo>) -> bool {
@@ -151,7 +176,8 @@ fn may_be_time(channel: &ChannelInfo) -> bool {
 /// Whether a column is one of heights by its name: of a height, or of what falls and rises in a unit of length.
 fn names_height(channel: &ChannelInfo) -> bool {
     let in_length = units::unit_of(channel.unit.as_deref(), &channel.name).is_some();
-    called(channel, &HEIGHTS) || in_length && called(channel, &MOTIONS)
+    let moves = called(channel, &MOTIONS) || is_letter_of_height(&channel.name);
+    called(channel, &HEIGHTS) || in_length && moves
 }
 
 /// The numbers of columns, m; a column without a unit has that of the first one with one.
@@ -181,8 +207,8 @@ fn may_be_height(channel: &ChannelInfo) -> bool {
         Some(unit) => unit.dimension == Dimension::Length,
         None => {
             let run = without_run(&channel.name);
-            channel.unit.is_none()
-                && (called(channel, &HEIGHTS) || run.is_some_and(|(bare, _)| bare.is_empty()))
+            let named = called(channel, &HEIGHTS) || is_letter_of_height(&channel.name);
+            channel.unit.is_none() && (named || run.is_some_and(|(bare, _)| bare.is_empty()))
         }
     }
 }
@@ -245,6 +271,10 @@ mod tests {
         assert_eq!(of_text(lost), Some((vec![0, 1], Heights)));
         let warm = "Temperature (°C),Drop (m),Bounce (cm)\n20,1.0,64\n30,0.8,51\n40,0.6,38\n";
         assert_eq!(of_text(warm), Some((vec![1, 2], Heights)));
+        let uncertain = "trial,h0 (cm),Δh0 (cm),h1 (cm),dh1 (cm)\n1,40,0.2,24.4,0.5\n2,52,0.2,31.7,0.5\n3,64,0.2,39.0,0.5\n";
+        assert_eq!(of_text(uncertain), Some((vec![1, 3], Heights)));
+        let turned = "Drop height (cm),40,60,80,100\nRebound height (cm),24.4,36.5,48.6,60.8\n";
+        assert_eq!(of_text(turned), Some((vec![0, 1], Heights)));
         let column = "bounce,height (cm)\n0,100\n1,64.2\n2,40.9\n3,26.0\n";
         assert_eq!(of_text(column), Some((vec![1], Heights)));
     }

@@ -1,5 +1,6 @@
 //! Lists of times: which tables are such, and which of their columns contain the times.
 
+use super::experiment::are_reversed;
 use super::heights::{is_computed, numbers_rows};
 use super::place::Place;
 use impact_records::record::{ContactContent, changes};
@@ -32,13 +33,28 @@ pub(super) fn of_times(place: Place<'_>) -> Vec<usize> {
     found
 }
 
-/// The columns of a list that contain times or intervals; none where the dataset is no list.
+/// The columns of a list that contain times or intervals; none where the dataset is no list. Clocks are read from their first
+/// row on, so that intervals that are written as times of day alone are none.
+fn listed(place: Place<'_>) -> Vec<usize> {
+    let found = of_columns(place);
+    let clock = |i: &usize| place.set().channels[*i].stored == StoredType::Time;
+    let goes_on = |i: &usize| {
+        let values = place.numbers(*i);
+        !intervals(&values).is_empty() || are_reversed(&values)
+    };
+    if found.iter().all(clock) && !found.iter().any(goes_on) {
+        return Vec::new();
+    }
+    found
+}
+
+/// The columns that contain times or intervals by their names, units and numbers.
 ///
 /// A table of few rows is one if all its columns are in units of time, or those of times contain a throw along each row.
 /// Beside remarks, as in a track of labels or beside the state of a line, its times must be uneven. Beside other numbers,
 /// and where neither a name nor a unit states that a column contains times, they must be those of a mass that bounces:
 /// each interval shorter than the one before.
-fn listed(place: Place<'_>) -> Vec<usize> {
+fn of_columns(place: Place<'_>) -> Vec<usize> {
     let set = place.set();
     let rows = set.channels.iter().map(|c| c.samples).max().unwrap_or(0);
     if !(FEWEST_EVENTS..=MOST_EVENTS).contains(&rows) {
@@ -47,7 +63,7 @@ fn listed(place: Place<'_>) -> Vec<usize> {
     if let Some(time) = changes_at(place) {
         return vec![time];
     }
-    let numbers = numbers(set);
+    let numbers = numbers(place);
     let (of_time, others): (Vec<usize>, Vec<usize>) =
         numbers.iter().partition(|i| is_of_time(&set.channels[**i]));
     let text = |c: &ChannelInfo| c.stored == StoredType::Text;
@@ -106,12 +122,22 @@ pub(super) fn along_rows(place: Place<'_>, columns: &[usize]) -> Option<ContactC
 }
 
 /// The columns of numbers, without those that count the rows or are computed from others.
-fn numbers(set: &DatasetInfo) -> Vec<usize> {
-    let counts = |c: &ChannelInfo| c.unit.is_none() && numbers_rows(&c.name);
-    let columns = set.channels.iter().enumerate();
+fn numbers(place: Place<'_>) -> Vec<usize> {
+    let counts = |i: usize, c: &ChannelInfo| {
+        let stated = c.unit.is_some() || c.stored == StoredType::Time;
+        !stated && (numbers_rows(&c.name) || counts_rows(&place.numbers(i)))
+    };
+    let columns = place.set().channels.iter().enumerate();
     let columns =
-        columns.filter(|(_, c)| c.stored != StoredType::Text && !counts(c) && !is_computed(c));
+        columns.filter(|(i, c)| c.stored != StoredType::Text && !is_computed(c) && !counts(*i, c));
     columns.map(|(i, _)| i).collect()
+}
+
+/// Whether numbers count rows, up or down, as a stopwatch counts its laps.
+fn counts_rows(values: &[f64]) -> bool {
+    let steps = |step: f64| values.windows(2).all(|w| w[1] - w[0] == step);
+    let first = values.first().is_some_and(|v| v.fract() == 0.0);
+    values.len() > 2 && first && (steps(1.0) || steps(-1.0))
 }
 
 /// Whether a name is that of a time, which may be one of several: `t`, `Time 2`, `t3`.
@@ -119,8 +145,11 @@ fn is_named_time(name: &str) -> bool {
     timing::is_time_name(name.trim_end_matches(|c: char| c.is_ascii_digit()))
 }
 
-/// Whether a column is in a unit of time.
+/// Whether a column is in a unit of time, or holds points in time.
 fn is_of_time(channel: &ChannelInfo) -> bool {
+    if channel.stored == StoredType::Time {
+        return true;
+    }
     let unit = units::unit_of(channel.unit.as_deref(), &channel.name);
     unit.is_some_and(|u| u.dimension == Dimension::Time)
 }
@@ -233,6 +262,18 @@ mod tests {
         let numbered =
             "bounce no.,Ball A (ms),Ball B (ms)\n1,0.1,0.2\n2,500.0,510.0\n3,900.0,930.0\n";
         assert_eq!(of(numbered), [1, 2]);
+    }
+
+    #[test]
+    fn laps_of_a_stopwatch_beside_their_sums_are_lists() {
+        let laps = "Lap,Lap Time,Total Time\n1,00:00.64,00:00.64\n2,00:00.51,00:01.15\n3,00:00.39,00:01.54\n4,00:00.31,00:01.85\n";
+        assert_eq!(of(laps), [1, 2]);
+        let in_s = "Lap,Lap (s),Total (s)\n1,0.64,0.64\n2,0.51,1.15\n3,0.39,1.54\n4,0.31,1.85\n";
+        assert_eq!(of(in_s), [1, 2]);
+        let newest_first = "Lap,Time,Total\n4,00:00.31,00:01.85\n3,00:00.39,00:01.54\n2,00:00.51,00:01.15\n1,00:00.64,00:00.64\n";
+        assert_eq!(of(newest_first), [1, 2]);
+        let clocks_alone = "Lap,Lap Time\n1,00:00.64\n2,00:00.51\n3,00:00.39\n4,00:00.31\n";
+        assert!(of(clocks_alone).is_empty());
     }
 
     #[test]

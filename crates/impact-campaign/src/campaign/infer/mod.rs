@@ -9,6 +9,7 @@ mod globs;
 mod heights;
 mod lists;
 mod look;
+mod names;
 mod place;
 mod roles;
 mod unlike;
@@ -112,7 +113,26 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
         roles::assign(&mut found.channels);
     }
     experiment::infer(&places, &mut found);
+    note_what_is_not_read(&places, &named, &mut found);
     found
+}
+
+/// Note what lists have beside their rows, and settings that only the names of driven records state.
+fn note_what_is_not_read(places: &[Place<'_>], names: &[&Path], found: &mut FolderContents) {
+    match found.experiment {
+        Experiment::Events(_) => {
+            let all = places.iter().flat_map(|place| place.source.notes());
+            for note in all {
+                if !found.notes.contains(note) {
+                    found.notes.push(note.clone());
+                }
+            }
+        }
+        Experiment::Driven if found.run_table.is_none() => {
+            found.notes.extend(names::note(names));
+        }
+        _ => {}
+    }
 }
 
 /// Take a workbook as the run table if one of its sheets is such; its name and that sheet's. One that cannot name its

@@ -366,10 +366,15 @@ impl Kind {
 /// Most changes of a trigger in a record: to its other level, and back.
 const OF_TRIGGER: usize = 2;
 
+/// Stems of the names of forces, whatever their unit: a plate in V.
+const FORCES: [&str; 5] = ["force", "kraft", "load", "plate", "platte"];
+
 /// Whether a channel is a contact, or a force that may be one's.
 pub(super) fn is_touched(channel: &InferredChannel) -> bool {
     let unit = units::unit_of(channel.unit.as_deref(), &channel.name);
-    let force = unit.is_some_and(|u| u.dimension == Dimension::Force);
+    let name = channel.name.to_lowercase();
+    let named = FORCES.iter().any(|word| name.contains(word));
+    let force = named || unit.is_some_and(|u| u.dimension == Dimension::Force);
     kind(channel) == Kind::Contact || (force && kind(channel) == Kind::Drive)
 }
 
