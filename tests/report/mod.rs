@@ -384,6 +384,10 @@ fn checked_pdf(path: &Path) {
     for wanted in ["R = 0.", "± ", "f0 = 12.", "β = 0.0", "The methods agree"] {
         assert!(words.contains(wanted), "'{wanted}' is not in the text");
     }
+    // a line or two after the definitions stays with them
+    let mut each = words.split('\u{c}');
+    let conventions = each.find(|page| page.contains("Intervals are at 95"));
+    assert!(conventions.is_some_and(|page| page.contains("of each mass between impacts")));
     let fonts = said("pdffonts", &[&pdf]).unwrap_or_default();
     for font in fonts.lines().skip(2) {
         let fields: Vec<&str> = font.split_whitespace().rev().collect();

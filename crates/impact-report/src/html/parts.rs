@@ -261,9 +261,23 @@ fn table(table: &Table) -> String {
         text.push_str(&format!("<tr>{cells}</tr>\n"));
     }
     text.push_str("</tbody>\n</table>\n");
-    if rows.len() > MOST_ROWS {
-        format!("<div class=\"scroll\">\n{text}</div>\n")
+    let class = if rows.len() > MOST_ROWS {
+        "scroll"
     } else {
-        text
+        "across"
+    };
+    format!("<div class=\"{class}\">\n{text}</div>\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_wider_than_the_page_scrolls_by_itself() {
+        let of = |rows: usize| table(&Table::of(vec![vec![Rich::verbatim("a".into())]; rows]));
+        assert!(of(3).starts_with("<div class=\"across\">"));
+        assert!(of(MOST_ROWS + 1).starts_with("<div class=\"scroll\">"));
+        assert!(super::super::STYLE.contains(".across { overflow-x: auto; }"));
     }
 }

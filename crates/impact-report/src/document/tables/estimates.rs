@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::column::{Column, table};
+use super::fitted::fitted;
 use crate::content::ReportContent;
 use crate::differences::p_value;
 use crate::document::model::{Rich, Table};
@@ -58,7 +59,11 @@ pub(crate) fn specimen_methods(content: &ReportContent, locale: Locale<'_>) -> O
     });
     let mut columns = vec![Column::left(Phrase::Specimen)];
     columns.extend(method_columns());
-    table(Phrase::TableMethods, columns, rows.collect(), locale).map(|t| Table { size: SIZE, ..t })
+    let table = table(Phrase::TableMethods, columns, rows.collect(), locale)?;
+    Some(fitted(Table {
+        size: SIZE,
+        ..table
+    }))
 }
 
 /// The answer for each specimen of a campaign that holds several.
@@ -77,7 +82,7 @@ pub(crate) fn specimens(content: &ReportContent, locale: Locale<'_>) -> Option<T
     let mut columns = vec![Column::left(Phrase::Specimen)];
     columns.extend(estimate_columns());
     columns.push(Column::wide(Phrase::Verdict, 2));
-    table("", columns, rows.collect(), locale)
+    table("", columns, rows.collect(), locale).map(fitted)
 }
 
 /// A cell for each of the four parameters.

@@ -5,6 +5,7 @@ mod budget;
 mod campaigns;
 mod column;
 mod estimates;
+mod fitted;
 mod records;
 
 use std::collections::BTreeMap;

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::column::{Column, arrow, table};
+use super::fitted::fitted;
 use crate::content::ReportContent;
 use crate::document::model::{Rich, Table};
 use crate::kit::fonts::{self, Face};
@@ -68,7 +69,7 @@ pub(crate) fn records(content: &ReportContent, locale: Locale<'_>) -> Option<Tab
     Some(if many {
         crowded(table)
     } else {
-        Table { size: 7.5, ..table }
+        fitted(Table { size: 7.5, ..table })
     })
 }
 
@@ -130,7 +131,7 @@ fn crowded(table: Table) -> Table {
 }
 
 /// A name cut at its front if it is wider than its column: a wrapped line would shift the rows.
-fn shortened(name: &Rich, room: f64, size: f64) -> Rich {
+pub(super) fn shortened(name: &Rich, room: f64, size: f64) -> Rich {
     let plain = name.plain();
     let wide = |text: &str| fonts::width(text, Face::Bold, size) > room;
     if !wide(&plain) {
