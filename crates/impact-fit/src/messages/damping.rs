@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::statistics::quantile::NORMAL_975;
 use impact_records::message::{Message, Value};
 use impact_records::signal::decay::PartOfDecay;
+use impact_records::signal::digits::decimals_for;
 
 /// The damping ratio of a part of a decay.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -40,9 +41,10 @@ impl Message for DampingPoint {
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        let decimals = decimals_for(self.half_width);
         vec![
-            ("value", Value::Number(self.damping_ratio, 4)),
-            ("half", Value::Number(self.half_width, 4)),
+            ("value", Value::Number(self.damping_ratio, decimals)),
+            ("half", Value::Number(self.half_width, decimals)),
             ("share", Value::Percent(self.amplitude_ratio, 0)),
         ]
     }

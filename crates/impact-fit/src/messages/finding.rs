@@ -394,6 +394,8 @@ pub enum Finding {
         /// The verdict.
         verdict: Vec<Sentence>,
     },
+    /// What the only mass strikes may be a second one that moves.
+    StopMayMove,
     /// A record is filed under the wrong specimen.
     MisfiledRecord {
         /// The record's name.

@@ -8,6 +8,7 @@ use crate::messages::cause::Cause;
 use crate::method::Method;
 use impact_records::message::{Message, Value};
 use impact_records::signal::decay::DampingLaw;
+use impact_records::signal::digits::decimals_for;
 use impact_records::{message_table, messages};
 
 /// R at one approach speed.
@@ -40,9 +41,10 @@ impl Message for GroupPoint {
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        let decimals = decimals_for(self.half_width);
         vec![
-            ("value", Value::Number(self.restitution, 3)),
-            ("half", Value::Number(self.half_width, 3)),
+            ("value", Value::Number(self.restitution, decimals)),
+            ("half", Value::Number(self.half_width, decimals)),
             ("group", Value::Name(&self.group)),
         ]
     }
@@ -424,8 +426,8 @@ message_table! { "remark": Remark, key = template_key;
         count = Value::Count(*periodic);
     Self::StatesDeviate { ratio } => ratio = Value::Number(*ratio, 1);
     Self::BracketMidpoints { restitution, half_width } =>
-        value = Value::Number(*restitution, 3),
-        half = Value::Number(*half_width, 3);
+        value = Value::Number(*restitution, decimals_for(*half_width)),
+        half = Value::Number(*half_width, decimals_for(*half_width));
     Self::EarlyJumps { distance } => share = Value::Percent(*distance, 1);
     Self::WhichRestitution { at_impact, of_bodies, method } =>
         impact = Value::Number(*at_impact, 4),
@@ -458,12 +460,12 @@ message_table! { "remark": Remark, key = template_key;
     Self::RestitutionByBounce { points } => points = named(points);
     Self::RecordsDiffer { points } => points = named(points);
     Self::MassRatio { ratio, half_width } =>
-        value = Value::Number(*ratio, 3),
-        half = Value::Number(*half_width, 3);
+        value = Value::Number(*ratio, decimals_for(*half_width)),
+        half = Value::Number(*half_width, decimals_for(*half_width));
     Self::TimesScatter { error_s } => error = Value::Number(1e3 * error_s, 2);
-    Self::FlightTimesOpen { half_width } => half = Value::Number(*half_width, 4);
+    Self::FlightTimesOpen { half_width } | Self::HeightsOpen { half_width } =>
+        half = Value::Number(*half_width, decimals_for(*half_width));
     Self::HeightsScatter { error_m } => error = Value::Number(1e3 * error_m, 1);
-    Self::HeightsOpen { half_width } => half = Value::Number(*half_width, 4);
     Self::RestitutionByHeight { low, high, cause } =>
         low = Value::Number(*low, 3),
         high = Value::Number(*high, 3),

@@ -40,7 +40,7 @@ use impact_fit::messages::cause::Cause;
 use impact_fit::messages::{Finding, Item, LeftOut, Reason};
 use impact_fit::method::Method;
 use impact_fit::method_fit::MethodFit;
-use impact_fit::methods::answer::{Allowed, JointFit, MethodResult};
+use impact_fit::methods::answer::{Allowed, JointFit, MethodResult, VerdictKind};
 use impact_fit::methods::blocks::Blocks;
 use impact_fit::methods::boundaries::Boundaries;
 use impact_fit::methods::boundaries::posterior::Posterior;
@@ -56,6 +56,7 @@ use impact_fit::methods::trajectories::record::TrajectoryRecord;
 use impact_fit::parameters::effect::{Effect, EffectKind};
 use impact_fit::parameters::{Coordinate, Parameters};
 use impact_fit::solver::{Precision, Prior, Problem};
+use impact_records::event::RigKind;
 
 /// Identify from observations and brackets, as records of one specimen.
 ///
@@ -496,7 +497,7 @@ impl<'a> IdentificationRun<'a> {
             joint,
             further,
         } = results;
-        let verdict = verdict::verdict(&Basis {
+        let mut verdict = verdict::verdict(&Basis {
             cause,
             beyond: &beyond,
             joint: &joint,
@@ -504,6 +505,9 @@ impl<'a> IdentificationRun<'a> {
             agreement: &agreement,
             suspicions: &suspicions,
         });
+        if verdict.kind == VerdictKind::DoesNotFit && self.may_strike_a_mass() {
+            verdict.findings.push(Finding::StopMayMove);
+        }
         Identification {
             verdict,
             joint_fit: self.joint_fit(&joint.parameters),
@@ -517,6 +521,13 @@ impl<'a> IdentificationRun<'a> {
             methods,
             specimens: BTreeMap::new(),
         }
+    }
+
+    /// Whether the records are of one driven mass that strikes something: a stop is stated, and may be a mass that moves.
+    fn may_strike_a_mass(&self) -> bool {
+        let blocks = &self.selection.blocks;
+        let struck = blocks.typical_approach_m_s > 0.0;
+        blocks.resonance.rig == RigKind::Single && !blocks.resonance.points.is_empty() && struck
     }
 
     /// Whether no channel is late by more than a small share of half a sample.

@@ -169,6 +169,8 @@ fn is_to_be_mended(remark: &Remark) -> bool {
             | Remark::DecaysRubbedLater { .. }
             | Remark::DecaysBackground { .. }
             | Remark::DecaysSlowNoise { .. }
+            | Remark::FlightTimesOpen { .. }
+            | Remark::HeightsOpen { .. }
     )
 }
 
@@ -178,9 +180,7 @@ fn is_plain(remark: &Remark) -> bool {
         remark,
         Remark::TimesScatter { .. }
             | Remark::RestitutionScatters { .. }
-            | Remark::FlightTimesOpen { .. }
             | Remark::HeightsScatter { .. }
-            | Remark::HeightsOpen { .. }
             | Remark::MassRatio { .. }
             | Remark::FlightsLeftOut { .. }
     )
