@@ -56,6 +56,19 @@ impl Folder {
     /// The results' folder, locked for this run.
     fn take(&self) -> Result<(PathBuf, Lock), Failure> {
         let folder = self.out.as_ref().unwrap_or(&self.given);
+        let elsewhere = self.out.as_ref().filter(|out| **out != self.given);
+        if let Some(out) = elsewhere.filter(|_| read_resolved(&self.given).is_ok()) {
+            let given = self.given.display();
+            return Err(Failure::new(
+                format!(
+                    "{given} has the results, and {} is named beside it with --out",
+                    out.display()
+                ),
+                format!(
+                    "leave --out out: what is made goes into {given}, and can be copied from there"
+                ),
+            ));
+        }
         if !folder.is_dir() {
             return Err(Failure::new(
                 format!("{} is not a folder with results", folder.display()),

@@ -186,6 +186,10 @@ fn another_format_after_a_run_needs_no_new_run() {
         .filter_map(Result::ok)
         .filter(|f| f.path().extension().is_some_and(|e| e == "svg"));
     assert!(svg.count() > 0);
+    let beside = lab.run(&["report", "out", "--format", "svg", "--out", "elsewhere"]);
+    assert_eq!(beside.code, 2);
+    let said = "out has the results, and elsewhere is named beside it with --out";
+    assert!(beside.said.contains(said), "{}", beside.said);
 }
 
 #[test]
