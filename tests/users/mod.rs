@@ -8,6 +8,7 @@ mod labview;
 mod loggers;
 mod matlab;
 mod odd_tables;
+mod one_of_two;
 mod rig;
 mod stepped;
 mod trials;

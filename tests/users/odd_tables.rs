@@ -141,7 +141,7 @@ fn valid_a_force_plate_in_volts() {
     while speed > 0.4 {
         bounces.push((at, speed));
         speed *= R;
-        at += 2.0 * speed / 9.81;
+        at += 4e-3 + 2.0 * speed / 9.81;
     }
     let mut text = String::from("Time (s),Force [V]\n");
     for i in 0..11_000 {

@@ -539,3 +539,22 @@ message_table! { "remark": Remark, key = template_key;
         value = Value::Number(*damping_ratio, 4),
         share = Value::Percent(*deviation, 2);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_widths_keep_two_digits() {
+        let point = GroupPoint {
+            restitution: 0.81234,
+            half_width: 0.000_21,
+            group: "felt".to_owned(),
+        };
+        assert!(point.to_string().contains("0.81234 ± 0.00021"), "{point}");
+        let open = Remark::HeightsOpen {
+            half_width: 0.000_31,
+        };
+        assert!(open.to_string().contains("± 0.00031"), "{open}");
+    }
+}

@@ -293,6 +293,19 @@ mod tests {
     }
 
     #[test]
+    fn what_decides_an_interval_is_a_finding() {
+        let remark = Remark::HeightsOpen { half_width: 0.09 };
+        let drops = MethodResult {
+            fits: Some(true),
+            remarks: vec![remark.clone()],
+            ..MethodResult::default()
+        };
+        let found = judged(&joint(0.001, 0.001), &[(Method::FlightTimes, drops)], true);
+        let method = Method::FlightTimes;
+        assert_eq!(found.findings, [Finding::Noticed { method, remark }]);
+    }
+
+    #[test]
     fn the_sentences_state_values_and_what_is_missing() {
         let found = judged(&joint(0.2, 0.001), &[], true);
         let unknown = vec![Coordinate::Restitution];
