@@ -11,7 +11,6 @@ use crate::methods::resonance::phases::{
     Cause, EXPLAINED, ONE, Phases, fastest_hz, with_responses,
 };
 use crate::methods::resonance::result::deviation;
-use crate::parameters::Parameters;
 use impact_records::motion::LateChannel;
 use impact_records::record::Role;
 use impact_records::signal::robust;

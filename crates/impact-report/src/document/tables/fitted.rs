@@ -73,7 +73,7 @@ mod tests {
         let rows = vec![row.map(|t| Rich::verbatim(t.to_owned())).to_vec(); 3];
         Table {
             heads: ["record", "specimen", "f (Hz)", "used by"]
-                .map(Rich::verbatim)
+                .map(|t| Rich::verbatim(t.to_owned()))
                 .to_vec(),
             align: vec![Align::Left, Align::Left, Align::Right, Align::Left],
             widths: vec![0, 0, 0, 1],
