@@ -8,6 +8,8 @@ use super::whole;
 const FEWEST_CYCLES: usize = 12;
 /// Cycles over which the frequency of one is the median.
 const MEDIAN_CYCLES: usize = 5;
+/// Cycles at each end of a part that are left out of it.
+const EDGE: usize = 1 + MEDIAN_CYCLES / 2;
 /// Least change of the frequency that is a step, relative; noise of the cycles' lengths raises it.
 const LEAST_STEP: f64 = 1e-3;
 /// Deviations of the noise of a cycle's length that are no step.
@@ -28,7 +30,7 @@ pub struct Step {
     pub frequency_hz: f64,
 }
 
-/// The parts of a signal in which its tone keeps a frequency, in their order; the cycle in which it changes is in none. None where
+/// The parts of a signal in which its tone keeps a frequency, in their order; the cycles about a change are in none. None where
 /// no frequency is kept for twelve cycles, as in a glide.
 ///
 /// ```
@@ -63,9 +65,9 @@ pub fn steps(values: &[f64], rate_hz: f64) -> Vec<Step> {
             first += 1;
             continue;
         }
-        // the first and the last cycle may be those in which the frequency changes
-        let (begin, end) = (crossings[first + 1], crossings[last - 1]);
-        let cycles = (last - first - 2) as f64;
+        // the running median hides a cycle in which frequency or phase jumps among those at the ends
+        let (begin, end) = (crossings[first + EDGE], crossings[last - EDGE]);
+        let cycles = (last - first - 2 * EDGE) as f64;
         found.push(Step {
             from: whole::index(begin.ceil()),
             to: whole::index(end.floor()),
@@ -131,11 +133,15 @@ mod tests {
         let count = whole::integer(seconds * 4000.0);
         let mut turns = 0.0;
         let each = frequencies.iter().flat_map(|f| (0..count).map(move |_| *f));
+        let every = frequencies.len().max(1);
+        let each = each.collect::<Vec<_>>();
+        let part = each.len() / every;
         let value = |(i, f): (usize, f64)| {
-            turns += f / 4000.0;
+            // the phase jumps where the frequency changes
+            turns += f / 4000.0 + if i > 0 && i % part == 0 { 0.3 } else { 0.0 };
             1.5 * (TAU * turns).cos() + noise * (i as f64 * 2.399_963).sin() * 2f64.sqrt()
         };
-        each.enumerate().map(value).collect()
+        each.into_iter().enumerate().map(value).collect()
     }
 
     #[test]
@@ -149,7 +155,7 @@ mod tests {
                 step.from >= 16_000 * k && step.to <= 16_000 * (k + 1),
                 "{step:?}"
             );
-            assert!(step.to - step.from > 13_000, "{step:?}");
+            assert!(step.to - step.from > 12_000, "{step:?}");
         }
     }
 

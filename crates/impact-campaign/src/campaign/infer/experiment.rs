@@ -306,7 +306,8 @@ fn other_lists(place: Place<'_>, listed: &[usize], channels: &[InferredChannel])
         let last = values.iter().rfind(|v| v.is_finite());
         let last = last.zip(own.iter().rfind(|v| v.is_finite()));
         let far = last.is_some_and(|(a, b)| (a / b - 1.0).abs() > UNLIKE_LISTS);
-        far && !are_intervals(&channels[**i].name, &values)
+        let lap = are_differences(&values, &own) || are_intervals(&channels[**i].name, &values);
+        far && !lap
     };
     let others = listed.iter().filter(|i| *i != used).filter(differs);
     let names: Vec<&str> = others.map(|i| channels[*i].name.as_str()).collect();

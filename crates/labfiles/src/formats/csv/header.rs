@@ -119,6 +119,16 @@ fn is_number(text: &str) -> bool {
     number(b'.') || number(b',')
 }
 
+/// Whether a row is a key, a number and its unit: `Abtastintervall;0,5;ms`.
+fn is_keyed_quantity(row: &[String]) -> bool {
+    match row {
+        [key, number, unit] => {
+            !key.is_empty() && !is_number(key) && is_number(number) && parse_unit(unit).is_some()
+        }
+        _ => false,
+    }
+}
+
 /// A line above one column of numbers, whose cells nothing separates, as `key=number unit` where it is a key, a number and a
 /// unit between separators: `Abtastintervall;0,5;ms`.
 fn keyed_alone(line: &str) -> String {
@@ -277,6 +287,9 @@ fn take_values(
         let (Some(names), Some(values)) = (above.last_mut(), below.first_mut()) else {
             continue;
         };
+        if is_keyed_quantity(values) {
+            continue;
+        }
         for (name, value) in names.iter_mut().zip(values).skip(filled) {
             if !name.is_empty() && !is_number(name) && !value.is_empty() && is_number(value) {
                 attributes.insert(std::mem::take(name), std::mem::take(value));

@@ -687,7 +687,8 @@ fn overloads_are_gaps_where_most_rows_at_the_front_have_them() {
 #[test]
 fn a_step_of_time_in_cells_above_one_column_is_the_rate() {
     let rate = |text: &str| source(text.as_bytes()).datasets()[0].sample_rate_hz();
-    let german = "Ger\u{e4}t;7\r\nAbtastintervall;0,5;ms\r\nWeg (mm)\r\n1,5\r\n2,5\r\n3,5\r\n";
+    let german =
+        "Ger\u{e4}t;Logger 7\r\nAbtastintervall;0,5;ms\r\nWeg (mm)\r\n1,5\r\n2,5\r\n3,5\r\n";
     assert!(rate(german).is_some_and(|r| (r - 2000.0).abs() < 1e-6));
     let english = "Sampling interval,0.5,ms\nPosition (mm)\n1.5\n2.5\n3.5\n";
     assert!(rate(english).is_some_and(|r| (r - 2000.0).abs() < 1e-6));
