@@ -244,17 +244,7 @@ fn are_intervals(name: &str, values: &[f64]) -> bool {
     let fall = values.windows(2).filter(|w| w[1] < w[0]).count();
     called(&INTERVALS)
         || (called(&FLIGHTS) && fall > 0)
-        || (2 * fall >= values.len().max(1) && !are_reversed(values))
-}
-
-/// Whether numbers that all fall are times of bounces of which the last is first: they fall by more and more, and flights,
-/// which follow a geometric row themselves, by less and less.
-pub(super) fn are_reversed(values: &[f64]) -> bool {
-    let steps: Vec<f64> = values.windows(2).map(|w| w[0] - w[1]).collect();
-    let grow = steps.windows(2).filter(|w| w[1] > w[0]).count();
-    steps.iter().all(|step| *step > 0.0)
-        && 3 * grow >= 2 * steps.len().saturating_sub(1)
-        && grow > 0
+        || (2 * fall >= values.len().max(1) && !lists::are_reversed(values))
 }
 
 /// Part of the longest interval by which printed sums may differ from it.

@@ -1,6 +1,5 @@
 //! Lists of times: which tables are such, and which of their columns contain the times.
 
-use super::experiment::are_reversed;
 use super::heights::{is_computed, numbers_rows};
 use super::place::Place;
 use impact_records::record::{ContactContent, changes};
@@ -200,6 +199,16 @@ fn changes_at(place: Place<'_>) -> Option<usize> {
     let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
     let (least, greatest) = columns::extremes(&steps);
     (found && greatest > 2.0 * least).then_some(time)
+}
+
+/// Whether numbers that all fall are times of bounces of which the last is first: they fall by more and more, and flights,
+/// which follow a geometric row themselves, by less and less.
+pub(super) fn are_reversed(values: &[f64]) -> bool {
+    let steps: Vec<f64> = values.windows(2).map(|w| w[0] - w[1]).collect();
+    let grow = steps.windows(2).filter(|w| w[1] > w[0]).count();
+    steps.iter().all(|step| *step > 0.0)
+        && 3 * grow >= 2 * steps.len().saturating_sub(1)
+        && grow > 0
 }
 
 #[cfg(test)]

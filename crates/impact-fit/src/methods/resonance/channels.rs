@@ -11,7 +11,7 @@ use crate::methods::resonance::drive_channel;
 use crate::methods::resonance::fit;
 use crate::methods::resonance::misfit::{least_of, left_by, misfit};
 use crate::methods::resonance::phases::{
-    Cause, EXPLAINED, ONE, Phases, fastest_hz, with_responses,
+    EXPLAINED, Misstated, ONE, Phases, fastest_hz, with_responses,
 };
 use crate::methods::resonance::unsteady;
 use impact_records::motion::{LateChannel, Observation};
@@ -43,7 +43,7 @@ pub fn misstated_channels(evidence: &Evidence<'_>) -> Vec<LateChannel> {
 }
 
 /// The causes that leave little of the misfit without them; `None` where the phases tell nothing.
-fn causes(evidence: &Evidence<'_>, blocks: &Blocks) -> Option<Vec<Cause>> {
+fn causes(evidence: &Evidence<'_>, blocks: &Blocks) -> Option<Vec<Misstated>> {
     if blocks.resonance.points.is_empty() || !blocks.resonance.has_phases() {
         return None;
     }
@@ -68,9 +68,9 @@ fn causes(evidence: &Evidence<'_>, blocks: &Blocks) -> Option<Vec<Cause>> {
         };
         pole.cause(at_once)
     });
-    let explains = |cause: &Cause| cause.left < LEFT * at_once;
+    let explains = |cause: &Misstated| cause.left < LEFT * at_once;
     let of_drive = drive_channel::causes(&phases);
-    let mut found: Vec<Cause> = of_drive.chain(filtered).filter(explains).collect();
+    let mut found: Vec<Misstated> = of_drive.chain(filtered).filter(explains).collect();
     if found.is_empty() && at_once > EXPLAINED {
         let candidates = may_be_unsteady(blocks, evidence.observations);
         found.extend(unsteady::channel(&phases, &candidates).filter(explains));
@@ -134,7 +134,7 @@ struct OnePole<'a> {
 
 impl OnePole<'_> {
     /// The pole with which the responses fit best, if the channels have passed one: better than with a delay.
-    fn cause(&self, at_once: f64) -> Option<Cause> {
+    fn cause(&self, at_once: f64) -> Option<Misstated> {
         let unit_s = 1.0 / (TAU * fastest_hz(self.blocks));
         let with_pole = |constant_s: f64| {
             let undone = || self.misfit(|rate| 1.0 + rate * constant_s);
@@ -162,7 +162,7 @@ impl OnePole<'_> {
             order_share: self.open(left, of_delay).min(1.0),
             ..LateChannel::by(known.role, -known.delay_s)
         };
-        Some(Cause {
+        Some(Misstated {
             channels: self.set.iter().map(passed).collect(),
             left,
         })

@@ -8,7 +8,7 @@ use crate::messages::ONE_DEGREE_OF_FREEDOM;
 use crate::methods::blocks::Blocks;
 use crate::methods::resonance::misfit::{least_of, misfit};
 use crate::methods::resonance::phases::{
-    Cause, EXPLAINED, ONE, Phases, fastest_hz, with_responses,
+    EXPLAINED, Misstated, ONE, Phases, fastest_hz, with_responses,
 };
 use crate::methods::resonance::result::deviation;
 use impact_records::motion::LateChannel;
@@ -26,13 +26,13 @@ const DECADES: f64 = 1.5;
 const STEP: f64 = 0.25;
 
 /// The causes by which the drive's channel may be other than stated in all records alike.
-pub(super) fn causes(phases: &Phases<'_>) -> impl Iterator<Item = Cause> {
-    let late = phases.lag().map(|(lag_s, left)| Cause {
+pub(super) fn causes(phases: &Phases<'_>) -> impl Iterator<Item = Misstated> {
+    let late = phases.lag().map(|(lag_s, left)| Misstated {
         channels: vec![LateChannel::by(Role::Drive, lag_s)],
         left,
     });
     let turned = with_responses(phases.blocks, |_, _| -ONE);
-    let turned = misfit(&turned, &phases.evidence.nominal).map(|left| Cause {
+    let turned = misfit(&turned, &phases.evidence.nominal).map(|left| Misstated {
         channels: vec![LateChannel::inverted(Role::Drive)],
         left,
     });
@@ -66,7 +66,7 @@ impl Phases<'_> {
     /// leads.
     ///
     /// A corner below those that channels of the motion are stated to have may as well be an error of these.
-    fn high_pass(&self) -> Option<Cause> {
+    fn high_pass(&self) -> Option<Misstated> {
         let slowest_hz = slowest_hz(self.blocks);
         let corner = |decades: f64| CORNER * slowest_hz * 10f64.powf(decades);
         let behind = |decades: f64| {
@@ -80,7 +80,7 @@ impl Phases<'_> {
         let stated = self.blocks.resonance.channels();
         let stated_hz = stated.filter_map(|(_, own_hz)| own_hz).fold(0.0, f64::max);
         (corner_hz > stated_hz).then_some(())?;
-        Some(Cause {
+        Some(Misstated {
             left: behind(decades)?,
             channels: vec![LateChannel::behind(Role::Drive, corner_hz)],
         })

@@ -15,7 +15,7 @@ pub(super) const EXPLAINED: f64 = 4.0;
 const SURE: f64 = 4.0;
 
 /// Channels that are not as stated, and the misfit that is left with them.
-pub(super) struct Cause {
+pub(super) struct Misstated {
     pub(super) channels: Vec<LateChannel>,
     pub(super) left: f64,
 }

@@ -8,26 +8,26 @@ use crate::methods::blocks::Blocks;
 use crate::methods::resonance::block::{ResonanceBlock, ResonancePoint};
 use crate::methods::resonance::fit;
 use crate::methods::resonance::misfit::left_by;
-use crate::methods::resonance::phases::{Cause, Phases};
+use crate::methods::resonance::phases::{Misstated, Phases};
 use crate::parameters::Parameters;
 use impact_records::motion::{LateChannel, Response};
 use impact_records::record::Role;
 use impact_records::signal::robust;
 
 /// The channel, one of the motion or the drive's, without whose phases the others fit best, if its own scatter.
-pub(super) fn channel(phases: &Phases<'_>, candidates: &[Role]) -> Option<Cause> {
+pub(super) fn channel(phases: &Phases<'_>, candidates: &[Role]) -> Option<Misstated> {
     let found = candidates.iter().filter_map(|role| without(phases, *role));
     found.min_by(|a, b| a.left.total_cmp(&b.left))
 }
 
 /// What is left without the phases of one channel, if they scatter.
-fn without(phases: &Phases<'_>, role: Role) -> Option<Cause> {
+fn without(phases: &Phases<'_>, role: Role) -> Option<Misstated> {
     let others = without_phases(phases.blocks, role);
     let curve = fit::start(&others, &phases.evidence.nominal)?;
     let left = left_by(&others, &curve)?;
     let of_role = |r: &&Response| role == Role::Drive || r.role == role;
     let scatter_s = scatter_s(&phases.blocks.resonance, &curve, &of_role)?;
-    (scatter_s > phases.unnoticed_s()).then(|| Cause {
+    (scatter_s > phases.unnoticed_s()).then(|| Misstated {
         channels: vec![LateChannel::unsteady(role, scatter_s)],
         left,
     })

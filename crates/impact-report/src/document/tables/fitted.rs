@@ -1,6 +1,5 @@
 //! Tables with names too long for the page: what the other columns leave is shared among the names.
 
-use super::records::shortened;
 use crate::document::model::{Align, Rich, Table};
 use crate::kit::fonts::{self, Face};
 use crate::kit::look;
@@ -56,6 +55,20 @@ pub(super) fn fitted(table: Table) -> Table {
         rows,
         ..table
     }
+}
+
+/// A name cut at its front if it is wider than its column: a wrapped line would shift the rows.
+pub(super) fn shortened(name: &Rich, room: f64, size: f64) -> Rich {
+    let plain = name.plain();
+    let wide = |text: &str| fonts::width(text, Face::Bold, size) > room;
+    if !wide(&plain) {
+        return name.clone();
+    }
+    let starts = plain.char_indices().map(|(i, _)| i).skip(1);
+    let fitting = starts
+        .map(|i| format!("…{}", &plain[i..]))
+        .find(|text| !wide(text));
+    Rich::verbatim(fitting.unwrap_or_else(|| "…".into()))
 }
 
 #[cfg(test)]

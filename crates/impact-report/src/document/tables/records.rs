@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::column::{Column, arrow, table};
-use super::fitted::fitted;
+use super::fitted::{fitted, shortened};
 use crate::content::ReportContent;
 use crate::document::model::{Rich, Table};
 use crate::kit::fonts::{self, Face};
@@ -128,20 +128,6 @@ fn crowded(table: Table) -> Table {
         ..table
     }
     .densely()
-}
-
-/// A name cut at its front if it is wider than its column: a wrapped line would shift the rows.
-pub(super) fn shortened(name: &Rich, room: f64, size: f64) -> Rich {
-    let plain = name.plain();
-    let wide = |text: &str| fonts::width(text, Face::Bold, size) > room;
-    if !wide(&plain) {
-        return name.clone();
-    }
-    let starts = plain.char_indices().map(|(i, _)| i).skip(1);
-    let fitting = starts
-        .map(|i| format!("…{}", &plain[i..]))
-        .find(|text| !wide(text));
-    Rich::verbatim(fitting.unwrap_or_else(|| "…".into()))
 }
 
 fn record_row(r: &RecordRow, planar: bool, many: bool, locale: Locale<'_>) -> Vec<Rich> {
