@@ -15,7 +15,7 @@ use tungstenite::{Message, WebSocket};
 pub(crate) const SIZE: (u32, u32) = (1280, 800);
 
 /// Longest wait for anything in the browser.
-const LONGEST: Duration = Duration::from_secs(90);
+const LONGEST: Duration = Duration::from_secs(300);
 
 /// A browser with one tab.
 pub(crate) struct Chromium {
@@ -163,7 +163,10 @@ impl Chromium {
             if answer["result"]["result"]["value"] == json!(true) {
                 return;
             }
-            assert!(begin.elapsed() < LONGEST, "not within 90 s: {expression}");
+            assert!(
+                begin.elapsed() < LONGEST,
+                "not within {LONGEST:?}: {expression}"
+            );
             std::thread::sleep(Duration::from_millis(20));
         }
     }
