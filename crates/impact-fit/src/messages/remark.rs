@@ -543,6 +543,7 @@ message_table! { "remark": Remark, key = template_key;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impact_records::message::plain;
 
     #[test]
     fn half_widths_keep_two_digits() {
@@ -551,10 +552,12 @@ mod tests {
             half_width: 0.000_21,
             group: "felt".to_owned(),
         };
-        assert!(point.to_string().contains("0.81234 ± 0.00021"), "{point}");
+        let text = plain(&point);
+        assert!(text.contains("0.81234 ± 0.00021"), "{text}");
         let open = Remark::HeightsOpen {
             half_width: 0.000_31,
         };
-        assert!(open.to_string().contains("± 0.00031"), "{open}");
+        let text = plain(&open);
+        assert!(text.contains("± 0.00031"), "{text}");
     }
 }
