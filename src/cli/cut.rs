@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::Failure;
 use impact_records::message::counted;
-use impact_records::signal::steps::{Step, steps};
+use impact_records::signal::steps::{DriveStep, steps};
 use labfiles::timing::AxisUnit;
 use labfiles::{Clock, DatasetInfo, ReadError, Samples, Source};
 
@@ -73,7 +73,7 @@ impl Cut {
 }
 
 /// The parts of a dataset in which a channel keeps a frequency.
-fn steps_of(source: &dyn Source, number: usize, channel: &str) -> Result<Vec<Step>, Failure> {
+fn steps_of(source: &dyn Source, number: usize, channel: &str) -> Result<Vec<DriveStep>, Failure> {
     let set = &source.datasets()[number];
     let path = source.path().display();
     let index = set.channel_index(channel).ok_or_else(|| {
@@ -139,7 +139,7 @@ fn numbers(source: &dyn Source, number: usize, channel: usize) -> Result<Vec<f64
 }
 
 /// From which side a frequency is reached; the first one as the second.
-fn sweep(steps: &[Step], k: usize) -> Option<&'static str> {
+fn sweep(steps: &[DriveStep], k: usize) -> Option<&'static str> {
     let pair = if k == 0 {
         steps.get(..2)
     } else {
@@ -153,7 +153,7 @@ fn sweep(steps: &[Step], k: usize) -> Option<&'static str> {
     })
 }
 
-fn part_of(set: &DatasetInfo, name: String, step: &Step, sweep: Option<&str>) -> DatasetInfo {
+fn part_of(set: &DatasetInfo, name: String, step: &DriveStep, sweep: Option<&str>) -> DatasetInfo {
     let mut part = DatasetInfo {
         name,
         ..set.clone()

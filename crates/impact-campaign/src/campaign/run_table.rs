@@ -518,7 +518,10 @@ fn expected(column: usize, texts: &[String]) -> (String, &'static str) {
         7 => of(Excitation::VARIANTS),
         _ => {
             let what = if one { "a number" } else { "numbers" };
-            let by_point = |text: &String| text.replace(',', ".").trim().parse::<f64>().is_ok();
+            let by_point = |text: &String| {
+                let bare = text.trim_matches('\'').replace(',', ".");
+                bare.trim().parse::<f64>().is_ok()
+            };
             let remedy = if texts.iter().any(by_point) {
                 "write a decimal point"
             } else {

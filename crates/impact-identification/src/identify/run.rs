@@ -10,7 +10,9 @@ use crate::identify::diagnostics::change::{Change, Fitted, Search};
 use crate::identify::diagnostics::clock;
 use crate::identify::diagnostics::common_scale::{self, CommonScale, common_scale};
 use crate::identify::diagnostics::common_zero;
-use crate::identify::diagnostics::contradicting_gap::{Contradicting, Contradiction, exchanged};
+use crate::identify::diagnostics::contradicting_gap::{
+    self, Contradicting, Contradiction, exchanged,
+};
 use crate::identify::diagnostics::doubt::{self, Doubt, Suspicion};
 use crate::identify::diagnostics::drives::drives;
 use crate::identify::diagnostics::faint_channel::faint_channels;
@@ -318,11 +320,12 @@ impl<'a> IdentificationRun<'a> {
     /// Leave out, one by one, gaps that are not as stated; nothing where two have each other's clearances, which are returned.
     fn without_odd_gaps(&mut self) -> Option<[f64; 2]> {
         while self.odd_gaps.len() < MOST_ODD_GAPS {
-            let odd = match self.odd_gap()? {
-                Contradicting::One(odd) => odd,
-                Contradicting::Exchanged(pair_m) => {
+            let odd = match self.odd_gap() {
+                Some(Contradicting::One(odd)) => odd,
+                Some(Contradicting::Exchanged(pair_m)) => {
                     return Some(pair_m).filter(|_| self.odd_gaps.is_empty());
                 }
+                None => break,
             };
             if self.odd_gaps.is_empty()
                 && let Some(zero) = self.common_zero()
@@ -341,7 +344,8 @@ impl<'a> IdentificationRun<'a> {
                 break;
             }
         }
-        None
+        let found = self.odd_gaps.iter().map(|odd| &odd.finding);
+        contradicting_gap::exchanged_of(&found.collect::<Vec<_>>())
     }
 
     /// That all clearances are counted from another zero, where one of them seems to be off.

@@ -21,7 +21,7 @@ const GLIDE: f64 = 0.5;
 
 /// A part of a signal with one frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
+pub struct DriveStep {
     /// The first sample.
     pub from: usize,
     /// The sample after the last.
@@ -44,7 +44,7 @@ pub struct Step {
 /// let found: Vec<f64> = steps(&drive, 1000.0).iter().map(|s| s.frequency_hz).collect();
 /// assert!(found.len() == 2 && (found[0] - 10.0).abs() < 1e-3 && (found[1] - 10.5).abs() < 1e-3);
 /// ```
-pub fn steps(values: &[f64], rate_hz: f64) -> Vec<Step> {
+pub fn steps(values: &[f64], rate_hz: f64) -> Vec<DriveStep> {
     let crossings = crossings(values);
     let lengths: Vec<f64> = crossings.windows(2).map(|w| w[1] - w[0]).collect();
     if lengths.len() < FEWEST_CYCLES {
@@ -68,7 +68,7 @@ pub fn steps(values: &[f64], rate_hz: f64) -> Vec<Step> {
         // the running median hides a cycle in which frequency or phase jumps among those at the ends
         let (begin, end) = (crossings[first + EDGE], crossings[last - EDGE]);
         let cycles = (last - first - 2 * EDGE) as f64;
-        found.push(Step {
+        found.push(DriveStep {
             from: whole::index(begin.ceil()),
             to: whole::index(end.floor()),
             frequency_hz: cycles * rate_hz / (end - begin),

@@ -4,6 +4,7 @@
 //! The first order about a fit, which finds smaller errors of a gap, may then accuse another gap.
 
 use crate::identify::diagnostics::suspicion::{OddGap, recover};
+use impact_fit::messages::Finding;
 use impact_fit::methods::blocks::Blocks;
 use impact_fit::methods::trajectories::record::TrajectoryRecord;
 use impact_fit::parameters::Parameters;
@@ -16,6 +17,8 @@ const MISFIT: f64 = 4.0;
 const REMAINS: f64 = 0.25;
 /// Waveforms of each gap that are looked at.
 const FEW: usize = 8;
+/// Relative difference within which two gaps fit with each other's clearances: half of what one is looked for in.
+const ABOUT: f64 = 0.17;
 /// Fewest gaps that can outvote one.
 const FEWEST_GAPS: usize = 3;
 
@@ -135,6 +138,24 @@ pub fn exchanged(own_m: f64, [one_m, other_m]: [f64; 2]) -> f64 {
     }
 }
 
+/// Two gaps that were found off one after the other and fit with about each other's clearances: of two the second one bends
+/// what the first is found to be.
+pub fn exchanged_of(odd: &[&Finding]) -> Option<[f64; 2]> {
+    let of = |finding: &Finding| match finding {
+        Finding::WrongClearance {
+            stated_m,
+            fitting_m,
+            ..
+        } => Some([*stated_m, *fitting_m]),
+        _ => None,
+    };
+    let [one, other] = odd else { return None };
+    let ([one_m, fits_one_m], [other_m, fits_other_m]) = (of(one)?, of(other)?);
+    let near = |fits: f64, stated: f64| (fits / stated - 1.0).abs() < ABOUT;
+    let exchanged = near(fits_one_m, other_m) && near(fits_other_m, one_m);
+    exchanged.then(|| [one_m.min(other_m), one_m.max(other_m)])
+}
+
 /// A few records of each gap, spread over them, in the order of the gaps.
 fn of_each_gap(mut records: Vec<&TrajectoryRecord>) -> Vec<TrajectoryRecord> {
     records.sort_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m));
@@ -153,7 +174,6 @@ mod tests {
     use impact_fit::VerdictKind;
     use impact_fit::estimate::Status;
     use impact_fit::fixture::{evidence, observed, recorded};
-    use impact_fit::messages::Finding;
 
     #[test]
     fn valid_two_gaps_with_each_other_s_clearances_are_named_and_taken_as_they_are() {
