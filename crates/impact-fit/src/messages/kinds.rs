@@ -24,6 +24,46 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
             speed_m_s: 0.0,
         })
     });
+    // and R that rises with the speed
+    let faster = SpeedPoint {
+        restitution: 1.0,
+        ..SpeedPoint::default()
+    };
+    let rising = [
+        Remark::RestitutionChanges {
+            slower: SpeedPoint::default(),
+            faster,
+        },
+        Remark::LongContact {
+            slower: SpeedPoint::default(),
+            faster,
+            samples: 3.0,
+        },
+    ];
+    let findings = Finding::iter().filter(|f| !matches!(f, Finding::BeyondModel { .. }));
+    boxed(Method::iter())
+        .chain(boxed(Note::iter()))
+        .chain(boxed(Remark::iter()))
+        .chain(boxed(rising.into_iter()))
+        .chain(boxed(Reason::iter()))
+        .chain(boxed(findings))
+        .chain(boxed(with_own_texts()))
+        .chain(boxed(beyond))
+        .chain(boxed(Undetermined::iter()))
+        .chain(boxed(FlagCode::ALL.into_iter()))
+        .chain(boxed(Problem::iter()))
+        .chain(boxed(Problem::iter().map(Remedy)))
+        .chain(boxed(Sentence::iter()))
+        .chain(boxed([PairAgreement::default()].into_iter()))
+        .chain(boxed(Item::iter()))
+        .chain(boxed(HeightsCause::iter()))
+        .chain(boxed(BoundaryKind::iter()))
+        .chain(boxed(DampingLaw::iter()))
+        .collect()
+}
+
+/// Findings of one kind whose text goes with what they contain.
+fn with_own_texts() -> impl Iterator<Item = Finding> {
     // an early channel has a text of its own, and so has the drive
     let late = [
         (Role::VelocityX, 1.0),
@@ -65,45 +105,8 @@ pub fn kinds() -> Vec<Box<dyn Message>> {
         one_pole_hz: 0.5,
         order: Some(order),
     });
-    // and R that rises with the speed
-    let faster = SpeedPoint {
-        restitution: 1.0,
-        ..SpeedPoint::default()
-    };
-    let rising = [
-        Remark::RestitutionChanges {
-            slower: SpeedPoint::default(),
-            faster,
-        },
-        Remark::LongContact {
-            slower: SpeedPoint::default(),
-            faster,
-            samples: 3.0,
-        },
-    ];
-    let findings = Finding::iter().filter(|f| !matches!(f, Finding::BeyondModel { .. }));
-    boxed(Method::iter())
-        .chain(boxed(Note::iter()))
-        .chain(boxed(Remark::iter()))
-        .chain(boxed(rising.into_iter()))
-        .chain(boxed(Reason::iter()))
-        .chain(boxed(findings))
-        .chain(boxed(late.into_iter()))
-        .chain(boxed(fallen.into_iter()))
-        .chain(boxed(filters.into_iter()))
-        .chain(boxed([unsteady].into_iter()))
-        .chain(boxed(beyond))
-        .chain(boxed(Undetermined::iter()))
-        .chain(boxed(FlagCode::ALL.into_iter()))
-        .chain(boxed(Problem::iter()))
-        .chain(boxed(Problem::iter().map(Remedy)))
-        .chain(boxed(Sentence::iter()))
-        .chain(boxed([PairAgreement::default()].into_iter()))
-        .chain(boxed(Item::iter()))
-        .chain(boxed(HeightsCause::iter()))
-        .chain(boxed(BoundaryKind::iter()))
-        .chain(boxed(DampingLaw::iter()))
-        .collect()
+    let all = late.into_iter().chain(fallen).chain(filters);
+    all.chain([unsteady])
 }
 
 /// One message of each name that a figure, a table or another message prints: effects and kinds of effects, channels,
