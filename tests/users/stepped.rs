@@ -79,7 +79,7 @@ fn valid_sweeps_in_one_file_each_are_cut_and_identified() {
 }
 
 #[test]
-fn a_record_of_many_settings_names_the_way_to_cut_it() {
+fn a_channel_to_cut_by_that_is_not_there_is_refused_with_those_that_are() {
     let lab = Lab::new();
     let takes = takes(
         &lab,
@@ -96,12 +96,6 @@ fn a_record_of_many_settings_names_the_way_to_cut_it() {
     );
     let all = saved(&takes.iter().collect::<Vec<_>>());
     fs::write(lab.path("day/all.csv"), all).expect("room");
-    done(&lab, &["init", "day"]);
-    let said = lab.run(&["check", "day/campaign.toml"]).said;
-    assert!(
-        said.contains("impactid convert FILE --cut CHANNEL"),
-        "{said}"
-    );
     let refused = lab.run(&[
         "convert",
         "day/all.csv",
