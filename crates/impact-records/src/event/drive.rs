@@ -6,7 +6,7 @@ use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use crate::record::consistency::{ComparedChannels, mistaken};
-use crate::record::{Channel, Flag, Problem, Record, Role};
+use crate::record::{Channel, Flag, Problem, Record, Role, before_high_pass};
 use crate::signal::tone;
 
 /// The drive as measured from its channel: amplitude · cos(2π f t + phase).
@@ -52,9 +52,9 @@ const NOT_HARMONIC: f64 = 0.5;
 
 /// Measure the drive of a record from its drive channel.
 ///
-/// Returns the tone, if the record has a drive channel that holds one, as it was before the channel's filters, and flags: a drive that is
-/// not a harmonic tone, and a measured frequency that differs from the stated one by more than
-/// `tolerance` (relative) and three standard errors.
+/// Returns the tone as it was before the channel's filters, if the record has a drive channel that holds one, and flags: a
+/// drive that is not a harmonic tone, and a measured frequency that differs from the stated one by more than `tolerance`
+/// (relative) and three standard errors.
 pub(super) fn measure(record: &Record, tolerance: f64) -> (Option<DriveTone>, Vec<Flag>) {
     let Some(channel) = record.channel(Role::Drive) else {
         return (None, Vec::new());
@@ -82,9 +82,8 @@ pub(super) fn measure(record: &Record, tolerance: f64) -> (Option<DriveTone>, Ve
 
 /// What the filters stated of a channel make of a unit amplitude at a frequency.
 fn passed(channel: &Channel, frequency_hz: f64) -> Complex<f64> {
+    let high = before_high_pass(channel.high_pass_hz.unwrap_or(0.0), frequency_hz).inv();
     let rate = Complex::new(0.0, TAU * frequency_hz);
-    let corner = channel.high_pass_hz.map_or(0.0, |hz| TAU * hz);
-    let high = rate / (rate + corner);
     channel
         .low_pass
         .map_or(high, |low| high * low.transfer(rate))

@@ -158,16 +158,12 @@ fn of_each(lags: &[Lag], value: impl Fn(&Lag) -> f64) -> Vec<f64> {
     lags.iter().map(value).collect()
 }
 
-/// By how much lags differ from those of neighbours in frequency, s, the mean: a difference has √2 times the deviation of a
-/// lag.
+/// By how much lags differ from those of neighbours in frequency, s.
 fn neighbours_apart_s(lags: &mut [Lag]) -> Option<f64> {
     lags.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
     let between = lags.iter().zip(lags.iter().skip(1));
-    let apart_s: Vec<f64> = between
-        .map(|(a, b)| (b.behind_s - a.behind_s).abs())
-        .collect();
-    let mean_s = robust::mean(&apart_s);
-    (!apart_s.is_empty()).then_some(mean_s * std::f64::consts::FRAC_1_SQRT_2)
+    let between_s: Vec<f64> = between.map(|(a, b)| b.behind_s - a.behind_s).collect();
+    robust::apart_from_neighbours(&between_s)
 }
 
 /// The lag of the earliest channel.

@@ -5,7 +5,7 @@ use nalgebra::{Complex, Matrix4, Vector4};
 use serde::{Deserialize, Serialize};
 
 use crate::event::DriveTone;
-use crate::record::{LowPass, Record, Role};
+use crate::record::{LowPass, Record, Role, before_high_pass};
 use crate::signal::columns::{dot, subtract};
 use crate::signal::turns::Turns;
 
@@ -61,9 +61,8 @@ impl Response {
     /// The same measured values if the channel has passed another high-pass than was assumed.
     #[must_use]
     pub fn behind(&self, high_pass_hz: Option<f64>, frequency_hz: f64) -> Self {
-        // To divide by iω/(iω + ω_c) is to multiply by 1 − iω_c/ω.
         let undoing =
-            |corner_hz: Option<f64>| Complex::new(1.0, -corner_hz.unwrap_or(0.0) / frequency_hz);
+            |corner_hz: Option<f64>| before_high_pass(corner_hz.unwrap_or(0.0), frequency_hz);
         Self {
             high_pass_hz,
             ..self.times(undoing(high_pass_hz) / undoing(self.high_pass_hz))

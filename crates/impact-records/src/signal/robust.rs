@@ -58,6 +58,13 @@ pub fn median_absolute_deviation(values: &[f64]) -> Option<f64> {
     median_of_ranks(&mut ranks)
 }
 
+/// By how much values differ from their neighbours, the mean, by the differences between them: each has √2 times the deviation
+/// of a value, and what changes smoothly is no part of it. `None` without a difference.
+pub fn apart_from_neighbours(differences: &[f64]) -> Option<f64> {
+    let sizes: Vec<f64> = differences.iter().map(|d| d.abs()).collect();
+    (!sizes.is_empty()).then(|| mean(&sizes) * std::f64::consts::FRAC_1_SQRT_2)
+}
+
 /// Standard deviation of the white noise on a smooth signal with isolated jumps.
 ///
 /// From third differences, which cancel a local parabola and have variance 20 σ², with a robust

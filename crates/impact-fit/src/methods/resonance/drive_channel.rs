@@ -1,8 +1,6 @@
 //! A drive's channel that is not as stated, as impactless records show it by the phases of the motion behind it: later
 //! or earlier than the channels of the motion, of the other sign, or behind a high-pass.
 
-use nalgebra::Complex;
-
 use crate::evidence::{Evidence, Nominal};
 use crate::messages::ONE_DEGREE_OF_FREEDOM;
 use crate::methods::blocks::Blocks;
@@ -12,7 +10,7 @@ use crate::methods::resonance::phases::{
 };
 use crate::methods::resonance::result::deviation;
 use impact_records::motion::LateChannel;
-use impact_records::record::Role;
+use impact_records::record::{Role, before_high_pass};
 use impact_records::signal::robust;
 
 /// Greatest lag that is looked for, in periods of the fastest drive.
@@ -93,7 +91,7 @@ fn undone(evidence: &Evidence<'_>, corner_hz: f64) -> Blocks {
     let mut amplitudes = Vec::new();
     for o in &mut observations {
         let Some(drive) = &mut o.drive else { continue };
-        let passed = Complex::new(1.0, -corner_hz / drive.frequency_hz).inv();
+        let passed = before_high_pass(corner_hz, drive.frequency_hz).inv();
         drive.amplitude /= passed.norm();
         amplitudes.push(drive.amplitude);
         let turned = passed / passed.norm();

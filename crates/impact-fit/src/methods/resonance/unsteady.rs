@@ -2,7 +2,7 @@
 //! own differ from one frequency to the next.
 
 use nalgebra::Complex;
-use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+use std::f64::consts::TAU;
 
 use crate::methods::blocks::Blocks;
 use crate::methods::resonance::block::{ResonanceBlock, ResonancePoint};
@@ -69,7 +69,5 @@ fn scatter_s(
         let frequency_hz = f64::midpoint(a.frequency_hz, b.frequency_hz);
         (turn(b) * turn(a).conj()).arg() / (TAU * frequency_hz)
     });
-    let apart_s: Vec<f64> = between.map(f64::abs).collect();
-    // a difference of two has √2 times the deviation of one
-    (!apart_s.is_empty()).then(|| robust::mean(&apart_s) * FRAC_1_SQRT_2)
+    robust::apart_from_neighbours(&between.collect::<Vec<f64>>())
 }
