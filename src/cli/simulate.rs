@@ -128,6 +128,7 @@ Effects and the strengths they have if none is given (0 switches one off):
   gaps=0.003               each stated gap is off; standard deviation over x_st
   gap-offset=0.003         all gaps are off alike; standard deviation over x_st
   damping-asymmetry=0.05   difference of the damping ratios over their mean
+  drive-asymmetry=0.05     difference of the forces over their mean; 2: one mass is driven alone
   second-harmonic=0.005    of the drive force, over its fundamental
   third-harmonic=0.003     of the drive force, over its fundamental
   force-slope=0.01         relative change of the force per unit of eta, about eta = 1

@@ -206,6 +206,30 @@ fn valid_a_drive_that_was_not_recorded_is_named_and_r_holds() {
 }
 
 #[test]
+fn valid_a_mass_that_is_driven_alone_is_named_and_all_holds() {
+    let simulated = Simulated::of("exact,drive-asymmetry=2");
+    let found = simulated.found_with("campaign.toml", |toml| format!("{toml}\n"));
+    assert_eq!(first_suspicion(&found), "drives_unlike", "{found}");
+    assert_eq!(found["verdict"]["kind"], "identified");
+    assert_eq!(found["suspicions"].as_array().map(Vec::len), Some(1));
+    let truth = json(&simulated.path().join("rig/truth.json"));
+    for parameter in [
+        "restitution",
+        "natural_frequency_hz",
+        "damping_ratio",
+        "static_deflection_m",
+    ] {
+        let interval = &found["joint"][parameter]["interval95"];
+        let [low, high] = [0, 1].map(|i| interval[i].as_f64().expect("an interval"));
+        let value = truth[parameter].as_f64().expect("the truth");
+        assert!(
+            low < value && value < high,
+            "{parameter}: {low} {value} {high}"
+        );
+    }
+}
+
+#[test]
 fn valid_contacts_of_two_milliseconds_are_impacts_and_those_of_ten_give_no_r() {
     let as_is = |toml: &str| format!("{toml}\n");
     let short = Simulated::of("contact=2").found_with("campaign.toml", as_is);

@@ -20,6 +20,7 @@
 //! | `backlash` | share of x_st | gaps of upward sweeps are wider than those of downward ones; unknown to the fit |
 //! | `compression` | relative at x_st/(2β) | motion channels show less of large signals; unknown to the fit |
 //! | `restarts` | turns | the drive starts again at every setting, its phase off by up to this; unknown to the fit |
+//! | `drive-asymmetry` | (F_x − F_y)/F | unequal forces; 2: one mass is driven alone |
 //! | `contact` | ms | impacts last this long: a spring and a damper that only press |
 //! | `delays` | samples | each channel lags the drive by a delay within ± the strength |
 //! | `flicker` | V rms | 1/f noise on every channel beside the white one |
@@ -38,7 +39,7 @@ use thiserror::Error;
 use super::acquisition::RATE_HZ;
 use super::effects::{Harmonic, Restarts, RigEffects};
 use super::plan::Plan;
-use super::truth::Truth;
+use super::truth::{Differences, Truth};
 
 /// One effect beyond the model.
 #[derive(
@@ -104,6 +105,8 @@ pub enum Effect {
     Compression,
     /// A drive that starts again at every setting: its phase jumps.
     Restarts,
+    /// Unequal forces on the masses.
+    DriveAsymmetry,
 }
 
 impl Effect {
@@ -116,7 +119,7 @@ impl Effect {
     pub fn typical_strength(self) -> f64 {
         match self {
             Self::Gaps | Self::GapOffset | Self::ThirdHarmonic | Self::SpringAsymmetry => 0.003,
-            Self::DampingAsymmetry => 0.05,
+            Self::DampingAsymmetry | Self::DriveAsymmetry => 0.05,
             Self::SecondHarmonic
             | Self::ForceCurvature
             | Self::Friction
@@ -148,6 +151,7 @@ impl Effect {
         match self {
             Self::Contact => 10.0,
             Self::Delays => 20.0,
+            Self::DriveAsymmetry => 2.0,
             _ => 0.5,
         }
     }
@@ -216,6 +220,12 @@ impl Switch {
                 effects.shift_gaps(plan, || offset_m);
             }
             Effect::DampingAsymmetry => *truth = truth.with_damping_ratios_apart(sign * size),
+            Effect::DriveAsymmetry => {
+                *truth = truth.with_differences(&Differences {
+                    force: sign * size,
+                    ..Differences::default()
+                });
+            }
             Effect::SecondHarmonic => effects.second_harmonic = harmonic,
             Effect::ThirdHarmonic => effects.third_harmonic = harmonic,
             Effect::ForceSlope => effects.force_slope = sign * size,

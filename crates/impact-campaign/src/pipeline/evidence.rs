@@ -3,6 +3,7 @@
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::sections::rig::NominalValues;
 use impact_fit::evidence::options::UncertaintyOptions;
+use impact_fit::evidence::unlike_drives::unlike_drives;
 use impact_fit::evidence::{Evidence, Nominal};
 use impact_fit::parameters::effect::Effects;
 use impact_fit::parameters::gain_index;
@@ -13,6 +14,8 @@ use impact_records::signal::robust;
 
 /// What is stated, with what is left of the delays of channels whose whole samples were removed.
 fn nominal(campaign: &ResolvedCampaign, observations: &[Observation]) -> Nominal {
+    let mass_asymmetry = mass_asymmetry(&campaign.rig);
+    let heavier = mass_asymmetry.map_or(0.0, |[centre, _]| centre);
     Nominal {
         restitution: campaign.rig.restitution,
         natural_frequency_hz: campaign.rig.natural_frequency_hz,
@@ -22,7 +25,8 @@ fn nominal(campaign: &ResolvedCampaign, observations: &[Observation]) -> Nominal
         corner_uncertainty: campaign.rig.corner_uncertainty,
         clock_uncertainty: campaign.rig.clock_uncertainty,
         clearance_uncertainty_m: campaign.rig.clearance_uncertainty_m,
-        mass_asymmetry: mass_asymmetry(&campaign.rig),
+        mass_asymmetry,
+        drive_asymmetry: unlike_drives(campaign.about.machine, observations, heavier),
         effects: match &campaign.rig.effects {
             Some(kinds) => Effects::of(kinds),
             None => Effects::all(),

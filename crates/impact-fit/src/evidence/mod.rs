@@ -7,6 +7,7 @@ pub mod influence;
 pub mod options;
 pub mod pickup;
 pub mod shared_error;
+pub mod unlike_drives;
 pub mod waveform;
 
 use crate::evidence::options::UncertaintyOptions;
@@ -46,6 +47,9 @@ pub struct Nominal {
     pub delay_uncertainties_s: [Option<f64>; CHANNELS],
     /// ln(`m_x`/`m_y`) with its standard uncertainty; `None`: masses that were made alike.
     pub mass_asymmetry: Option<[f64; 2]>,
+    /// ln(`F_x`/`F_y`) per unit of mass with its standard uncertainty, where the records show that the drives are unlike;
+    /// `None`: drives that were made alike.
+    pub drive_asymmetry: Option<[f64; 2]>,
     /// Effects that the fit allows beyond the model.
     pub effects: Effects,
     /// What moves the masses between impacts.
@@ -53,10 +57,11 @@ pub struct Nominal {
 }
 
 impl Nominal {
-    /// Parameters with the stated delays and masses.
+    /// Parameters with the stated delays, masses and drives.
     pub fn applied(&self, parameters: Parameters) -> Parameters {
         Parameters {
             delays_s: self.delays_s,
+            drive_asymmetry: self.drive_asymmetry.map_or(0.0, |[centre, _]| centre),
             mass_asymmetry: self.mass_asymmetry.map_or(0.0, |[centre, _]| centre),
             ..parameters
         }

@@ -308,6 +308,11 @@ pub enum Finding {
         /// What it shows of the other one, in the median of these records.
         share: f64,
     },
+    /// One mass is driven far less than the other, or not at all.
+    DrivesUnlike {
+        /// ln(`F_x`/`F_y`), forces per unit of mass.
+        drive_asymmetry: f64,
+    },
     /// Many records begin before their motion has settled.
     RecordsNotSettled {
         /// How many.
@@ -598,6 +603,10 @@ message_table! { "finding": Finding, key = template_key;
         records = Value::Count(*records),
         of = Value::Count(*of),
         times = Value::Shortest(two_digits(share.recip()));
+    Self::DrivesUnlike { drive_asymmetry } =>
+        mass = Value::Name(if *drive_asymmetry > 0.0 { "y" } else { "x" }),
+        other = Value::Name(if *drive_asymmetry > 0.0 { "x" } else { "y" }),
+        share = Value::Shortest(two_digits(100.0 * (-drive_asymmetry.abs()).exp()));
     Self::RecordsNotSettled { records, of, wait_s } =>
         records = Value::Count(*records),
         of = Value::Count(*of),

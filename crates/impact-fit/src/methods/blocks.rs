@@ -101,6 +101,8 @@ impl Blocks {
         let (mut impact, impact_outliers) = impacts(rig, observations, impact_scatter);
         // records of springs whose drive was not recorded have no free flights
         impact.free &= evidence.nominal.flight == FlightKind::ConstantForce;
+        let open_gains = evidence.nominal.open_gains;
+        impact.assumed_gains = open_gains.map(|gain| gain.map_or(1.0, f64::exp));
         let mut blocks = Self {
             resonance: ResonanceBlock::new(rig, observations, relative_error),
             trajectory: TrajectoryBlock::new(rig, observations, relative_error),
@@ -322,8 +324,9 @@ impl Blocks {
     pub fn asymmetries(&self, nominal: &Nominal) -> impl Iterator<Item = Prior> {
         let [centre, deviation] = nominal.mass_asymmetry.unwrap_or([0.0, MASS_ASYMMETRY]);
         let others = ASYMMETRY.hypot(centre);
+        let [drives, of_drives] = nominal.drive_asymmetry.unwrap_or([0.0, others]);
         let all = [
-            Prior::new(Coordinate::DriveAsymmetry, 0.0, others),
+            Prior::new(Coordinate::DriveAsymmetry, drives, of_drives),
             Prior::new(Coordinate::StiffnessAsymmetry, 0.0, others),
             Prior::new(Coordinate::DampingAsymmetry, 0.0, others),
             Prior::new(Coordinate::MassAsymmetry, centre, deviation),

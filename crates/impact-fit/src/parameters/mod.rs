@@ -19,6 +19,10 @@ use impact_oscillator::model::params::{
 use impact_records::event::{CornerShift, RigKind};
 use impact_records::record::Role;
 
+/// Logarithm of the ratio of both drives beyond which the lesser is none: what it moves is less than any converter resolves
+/// (e^−16 is 2^−23).
+pub const MOST_UNLIKE_DRIVES: f64 = 16.0;
+
 /// Parameters of rig and instruments.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Parameters {
@@ -241,7 +245,7 @@ impl Parameters {
     pub fn in_range(&self) -> bool {
         (0.0..=1.0).contains(&self.restitution)
             && self.damping_ratio < 0.95
-            && self.drive_asymmetry.abs() < 1.0
+            && self.drive_asymmetry.abs() < MOST_UNLIKE_DRIVES
             && self.stiffness_asymmetry.abs() < 1.0
             && self.damping_asymmetry.abs() < 1.0
             && self.mass_asymmetry.abs() < 1.0

@@ -602,8 +602,7 @@ impl<'a> IdentificationRun<'a> {
         suspicions.extend(settling::not_settled(observations, &joint.parameters));
         suspicions.extend(undetermined_motions(observations));
         suspicions.extend(uncertain_speeds(observations, methods));
-        let lighter = self.evidence.nominal.mass_asymmetry.map(|[ratio, _]| ratio);
-        suspicions.extend(faint_channels(self.evidence.rig, observations, lighter));
+        suspicions.extend(self.one_side_moves_less());
         let changes = self.changes(cause::leading(suspicions, methods));
         let Changes {
             of_gain,
@@ -625,6 +624,16 @@ impl<'a> IdentificationRun<'a> {
         cause::doubt_without_one_degree_of_freedom(joint, methods);
         suspicions.retain(|finding| !leading.is_some_and(|c| cause::explains(c, finding)));
         (leading, replaced)
+    }
+
+    /// Drives that are unlike or, where they are alike, channels that show less of one mass than of the other.
+    fn one_side_moves_less(&self) -> Vec<Finding> {
+        let nominal = &self.evidence.nominal;
+        if let Some([drive_asymmetry, _]) = nominal.drive_asymmetry {
+            return vec![Finding::DrivesUnlike { drive_asymmetry }];
+        }
+        let lighter = nominal.mass_asymmetry.map(|[ratio, _]| ratio);
+        faint_channels(self.evidence.rig, self.evidence.observations, lighter).collect()
     }
 
     /// What changes in the course of the campaign, and which part of it is of another rig, if one is: from some record on

@@ -6,10 +6,19 @@ use crate::parameters::own::log_speed;
 use crate::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
 use crate::solver::Block;
 use impact_records::event::{
-    CornerShift, DetectionSource, Impact, Lag, RigKind, extrapolation_error,
+    CornerShift, DetectionSource, Impact, Lag, MassSpeeds, RigKind, extrapolation_error,
 };
 use impact_records::motion::Observation;
 use impact_records::record::Role;
+
+/// The speeds of one mass at an impact, as its channel reads them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OwnSpeeds {
+    /// Index of the channel's gain.
+    pub gain: usize,
+    /// Toward the other mass before and after the impact, m/s.
+    pub toward_m_s: [f64; 2],
+}
 
 /// One impact's speeds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -26,6 +35,9 @@ pub struct SpeedPair {
     pub errors_m_s: [f64; 2],
     /// What a standard error of the impact's time changes of the approach speed before and after, m/s.
     pub by_time_m_s: [f64; 2],
+    /// The speeds of both masses between which a drive acts; `None` of a mass that is not measured, or flies freely. Where
+    /// one mass moves otherwise than the other, gains change the ratio.
+    pub of_masses: [Option<OwnSpeeds>; 2],
     /// What the channels' corners would change of the speeds, toward each other.
     pub corner_shifts: [Option<CornerShift>; 2],
     /// What delays of the channels would change of them.
@@ -52,6 +64,7 @@ impl SpeedPair {
             after_m_s,
             errors_m_s: [error_m_s; 2],
             by_time_m_s: [0.0; 2],
+            of_masses: [None, None],
             corner_shifts: [None, None],
             lags: [None, None],
             picked_up_m_s: [0.0; 2],
@@ -86,6 +99,19 @@ impl SpeedPair {
         self.by_time_m_s[1] + restitution * self.by_time_m_s[0]
     }
 
+    /// The closing speed before and the parting speed after, m/s, with corners, pick-up and gains over those that they were
+    /// read by.
+    fn read(&self, parameters: &Parameters, assumed_gains: &[f64; CHANNELS]) -> [f64; 2] {
+        let shift = self.shift(parameters);
+        let [mut before, mut after] = [self.before_m_s + shift, self.after_m_s - shift];
+        for own in self.of_masses.iter().flatten() {
+            let off = assumed_gains[own.gain] / parameters.gains[own.gain] - 1.0;
+            before += off * own.toward_m_s[0];
+            after -= off * own.toward_m_s[1];
+        }
+        [before, after]
+    }
+
     /// Change of the closing speed, m/s, by corners other than the stated ones.
     fn shift(&self, parameters: &Parameters) -> f64 {
         let shifts = self.corner_shifts.iter().flatten();
@@ -93,6 +119,21 @@ impl SpeedPair {
         let picked_up = PICKUPS.iter().zip(self.picked_up_m_s);
         let picked_up = picked_up.map(|(effect, unit)| parameters.effect(*effect) * unit);
         by_corners - picked_up.sum::<f64>()
+    }
+}
+
+/// The speeds of both masses at an impact of a driven record; none unless both are measured.
+fn of_masses(o: &Observation, impact: &Impact) -> [Option<OwnSpeeds>; 2] {
+    let own = |(speeds, of_y): (Option<MassSpeeds>, bool)| {
+        let speeds = speeds.filter(|_| o.drive.is_some())?;
+        Some(OwnSpeeds {
+            gain: gain_index(o.speed_from(of_y)?)?,
+            toward_m_s: [speeds.before_m_s, speeds.after_m_s],
+        })
+    };
+    match [(impact.x, false), (impact.y, true)].map(own) {
+        [Some(x), Some(y)] => [Some(x), Some(y)],
+        _ => [None, None],
     }
 }
 
@@ -206,6 +247,8 @@ pub struct ImpactBlock {
     pub relative_error: f64,
     /// The median approach speed, m/s, at which R is the campaign's; 0 without impacts.
     pub typical_approach_m_s: f64,
+    /// The gains over the stated ones by which the speeds were read.
+    pub assumed_gains: [f64; CHANNELS],
     /// On which corners the speeds depend, by their index.
     corners: [bool; CHANNELS],
     /// Whether the impacts are between free flights, of records without a drive.
@@ -248,6 +291,7 @@ impl ImpactBlock {
                         - impact.external_push_m_s.unwrap_or(0.0),
                     errors_m_s: impact.speed_errors_m_s?,
                     by_time_m_s: impact.speeds_by_time_m_s.unwrap_or_default(),
+                    of_masses: of_masses(&observations[i], impact),
                     corner_shifts: impact.corner_shifts,
                     lags: impact.lags,
                     picked_up_m_s: picked_up_m_s(&pickups, &observations[i], impact.time_s),
@@ -323,6 +367,7 @@ impl ImpactBlock {
             typical_approach_m_s: impact_records::signal::robust::median(&speeds).unwrap_or(0.0),
             pairs,
             relative_error,
+            assumed_gains: [1.0; CHANNELS],
             corners,
             free: false,
             first_value_only: None,
@@ -382,14 +427,13 @@ impl ImpactBlock {
         lags.any(|lag| lag.is_some())
     }
 
-    /// The speeds as they are with the corners that a fit found.
+    /// The speeds as they are with the corners and gains that a fit found.
     #[must_use]
     pub fn corrected(&self, parameters: &Parameters) -> Self {
         let mut block = self.clone();
         for pair in &mut block.pairs {
-            let shift = pair.shift(parameters);
-            pair.before_m_s += shift;
-            pair.after_m_s -= shift;
+            [pair.before_m_s, pair.after_m_s] = pair.read(parameters, &self.assumed_gains);
+            pair.of_masses = [None, None];
             pair.corner_shifts = [None, None];
             pair.picked_up_m_s = [0.0; 2];
         }
@@ -474,8 +518,7 @@ impl Block for ImpactBlock {
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let pair = &self.pairs[item];
         let r = parameters.restitution;
-        let shift = pair.shift(parameters);
-        let (before, after) = (pair.before_m_s + shift, pair.after_m_s - shift);
+        let [before, after] = pair.read(parameters, &self.assumed_gains);
         let over_speed = parameters.effect(Effect::RestitutionSpeed) * self.speed_log(pair, r);
         let in_time = parameters.effect(Effect::RestitutionDrift) * pair.place * before;
         Some(vec![
@@ -493,8 +536,16 @@ impl Block for ImpactBlock {
         let r = parameters.restitution;
         let residuals = self.residuals(item, parameters)?;
         let error = self.error(pair, r);
-        let before = pair.before_m_s + pair.shift(parameters);
+        let [before, _] = pair.read(parameters, &self.assumed_gains);
         let slope = |coordinate: &Coordinate| match coordinate {
+            Coordinate::Gain(index) => {
+                let own = pair.of_masses.iter().flatten();
+                let toward = own
+                    .filter(|own| own.gain == *index)
+                    .map(|own| own.toward_m_s);
+                let left: f64 = toward.map(|[b, a]| a + r * b).sum();
+                left * self.assumed_gains[*index] / parameters.gains[*index] / error
+            }
             Coordinate::Restitution => -before / error - residuals[0] * self.shared(pair, r),
             Coordinate::Corner(index) => {
                 let shifts = pair.corner_shifts.iter().flatten();
@@ -516,6 +567,10 @@ impl Block for ImpactBlock {
     fn touches(&self, coordinate: Coordinate) -> bool {
         match coordinate {
             Coordinate::Corner(index) => self.has_corner(index),
+            Coordinate::Gain(index) => {
+                let mut own = self.pairs.iter().flat_map(|p| p.of_masses);
+                own.any(|own| own.is_some_and(|own| own.gain == index))
+            }
             Coordinate::Effect(Effect::RestitutionSpeed | Effect::RestitutionDrift) => !self.free,
             Coordinate::Effect(effect) => self.picks_up(effect),
             _ => coordinate == Coordinate::Restitution,
@@ -579,8 +634,10 @@ mod tests {
     #[test]
     fn valid_slopes_are_those_of_finite_differences() {
         let shift = |role, speed_m_s| Some(CornerShift { role, speed_m_s });
+        let own = |gain, toward_m_s| Some(OwnSpeeds { gain, toward_m_s });
         let pair = SpeedPair {
             by_time_m_s: [4e-3, 1e-3],
+            of_masses: [own(0, [0.1, -0.3]), own(1, [0.4, -0.07])],
             corner_shifts: [shift(Role::VelocityX, 3e-3), shift(Role::VelocityY, -2e-3)],
             picked_up_m_s: [0.3, -0.1],
             place: 0.3,
@@ -589,6 +646,7 @@ mod tests {
         let mut block = ImpactBlock::of_pairs(vec![pair], 4e-3);
         let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
         parameters.corners = [1.1, 0.9, 1.0, 1.0, 1.0, 1.0];
+        parameters.gains = [1.02, 0.97, 1.0, 1.0, 1.0, 1.0];
         let parameters = parameters.with(Coordinate::Effect(Effect::PickupX), 2e-3);
         block.typical_approach_m_s = 0.3;
         let coordinates = [
@@ -597,6 +655,8 @@ mod tests {
             Coordinate::Restitution,
             Coordinate::Corner(0),
             Coordinate::Corner(1),
+            Coordinate::Gain(0),
+            Coordinate::Gain(1),
             Coordinate::Effect(Effect::PickupX),
             Coordinate::Effect(Effect::PickupY),
         ];
@@ -609,6 +669,35 @@ mod tests {
                 "{coordinate:?}: {apart}"
             );
         }
+    }
+
+    #[test]
+    fn valid_gains_move_the_ratio_only_where_one_mass_moves_otherwise() {
+        // closing at 0.5 m/s, parting at 0.4 m/s, x by half of it and y by the rest, or y running away at 1 m/s beside
+        let ratio = |away: f64| {
+            let of = |gain: usize, toward: [f64; 2]| {
+                Some(OwnSpeeds {
+                    gain,
+                    toward_m_s: toward,
+                })
+            };
+            let pair = SpeedPair {
+                of_masses: [
+                    of(0, [0.25 + away, -0.2 + away]),
+                    of(1, [0.25 - away, -0.2 - away]),
+                ],
+                ..SpeedPair::of_speeds(0.5, 0.4, 1e-3)
+            };
+            let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
+            parameters.gains[0] = 1.01;
+            let [before, after] = pair.read(&parameters, &[1.0; CHANNELS]);
+            after / before
+        };
+        assert!((ratio(0.0) - 0.8).abs() < 1e-12);
+        let off = 1.0 / 1.01 - 1.0;
+        let expected = (0.4 - off * (-0.2 + 1.0)) / (0.5 + off * (0.25 + 1.0));
+        assert!((ratio(1.0) - expected).abs() < 1e-12);
+        assert!((ratio(1.0) - 0.8).abs() > 0.02);
     }
 
     #[test]

@@ -73,7 +73,9 @@ fn starts(block: &ResonanceBlock, nominal: &Nominal) -> Vec<Parameters> {
         for (beta, per_mass) in each.flat_map(|beta| per_mass.iter().map(move |u| (beta, u))) {
             let beta = nominal.damping_ratio.unwrap_or(beta);
             let unit = Parameters {
-                drive_asymmetry: *per_mass,
+                drive_asymmetry: nominal
+                    .drive_asymmetry
+                    .map_or(*per_mass, |[centre, _]| centre),
                 stiffness_asymmetry: *per_mass,
                 damping_asymmetry: *per_mass,
                 ..nominal.applied(Parameters::symmetric(0.8, f0, beta, 1.0))

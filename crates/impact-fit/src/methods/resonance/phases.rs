@@ -11,8 +11,8 @@ use impact_records::record::Role;
 
 /// Misfit, a mean square in units of the errors, up to which nothing is left to explain.
 pub(super) const EXPLAINED: f64 = 4.0;
-/// Times the stated uncertainty of delays from which a lag counts.
-const SURE: f64 = 4.0;
+/// Times the stated uncertainty of delays from which a lag counts, and the error of a response from which it is seen.
+pub(super) const SURE: f64 = 4.0;
 
 /// Channels that are not as stated, and the misfit that is left with them.
 pub(super) struct Misstated {

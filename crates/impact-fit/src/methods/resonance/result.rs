@@ -4,10 +4,12 @@ use crate::messages::{ONE_DEGREE_OF_FREEDOM, Remark};
 use crate::methods::answer::MethodResult;
 use crate::methods::blocks::Blocks;
 use crate::methods::fit::{self, FitResult};
-use crate::methods::resonance::block::ResonanceBlock;
+use crate::methods::resonance::block::{ResonanceBlock, ResonancePoint};
 use crate::methods::resonance::fit::TELLS;
 use crate::parameters::Parameters;
+use impact_records::motion::Response;
 use impact_records::signal::robust;
+use nalgebra::Complex;
 
 /// f0, β and `x_st` from the impactless records.
 pub(super) fn result(blocks: &Blocks, fitted: &FitResult) -> MethodResult {
@@ -20,19 +22,31 @@ pub(super) fn result(blocks: &Blocks, fitted: &FitResult) -> MethodResult {
     result
 }
 
-/// By how much the responses deviate from a curve, as a share of the greater of both: root mean square.
+/// By how much the responses deviate from a curve, as a share of the greatest response of their quantity, measured or of the
+/// curve, in their record: root mean square. What a mass that is driven less shows of the other is small beside that.
 pub(super) fn deviation(block: &ResonanceBlock, fitted: &Parameters) -> f64 {
-    let mut deviations = Vec::new();
-    for point in &block.points {
-        for r in &point.responses {
-            let model = block.response(fitted, point, r.role);
-            let apart = match point.phase_error_rad {
-                Some(_) => (r.real - model.re).hypot(r.imaginary - model.im),
-                None => (r.amplitude() - model.norm()).abs(),
-            };
-            deviations.push(apart / model.norm().max(r.amplitude()));
-        }
-    }
+    let of_point = |point: &ResonancePoint| -> Vec<f64> {
+        let each: Vec<(&Response, Complex<f64>)> = point
+            .responses
+            .iter()
+            .map(|r| (r, block.response(fitted, point, r.role)))
+            .collect();
+        let greatest = |quantity: Option<u8>| {
+            let alike = each.iter().filter(|(r, _)| r.role.derivative() == quantity);
+            alike.fold(0.0, |most: f64, (r, model)| {
+                most.max(r.amplitude()).max(model.norm())
+            })
+        };
+        let apart = |(r, model): &(&Response, Complex<f64>)| match point.phase_error_rad {
+            Some(_) => (r.real - model.re).hypot(r.imaginary - model.im),
+            None => (r.amplitude() - model.norm()).abs(),
+        };
+        let shares = each
+            .iter()
+            .map(|own| apart(own) / greatest(own.0.role.derivative()));
+        shares.collect()
+    };
+    let deviations: Vec<f64> = block.points.iter().flat_map(of_point).collect();
     robust::rms(&deviations)
 }
 

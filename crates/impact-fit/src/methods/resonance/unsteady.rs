@@ -8,7 +8,7 @@ use crate::methods::blocks::Blocks;
 use crate::methods::resonance::block::{ResonanceBlock, ResonancePoint};
 use crate::methods::resonance::fit;
 use crate::methods::resonance::misfit::left_by;
-use crate::methods::resonance::phases::{Misstated, Phases};
+use crate::methods::resonance::phases::{Misstated, Phases, SURE};
 use crate::parameters::Parameters;
 use impact_records::motion::{LateChannel, Response};
 use impact_records::record::Role;
@@ -25,7 +25,9 @@ fn without(phases: &Phases<'_>, role: Role) -> Option<Misstated> {
     let others = without_phases(phases.blocks, role);
     let curve = fit::start(&others, &phases.evidence.nominal)?;
     let left = left_by(&others, &curve)?;
-    let of_role = |r: &&Response| role == Role::Drive || r.role == role;
+    // noise has any phase
+    let seen = |r: &Response| r.amplitude() > SURE * r.error;
+    let of_role = |r: &&Response| (role == Role::Drive || r.role == role) && seen(r);
     let scatter_s = scatter_s(&phases.blocks.resonance, &curve, &of_role)?;
     (scatter_s > phases.unnoticed_s()).then(|| Misstated {
         channels: vec![LateChannel::unsteady(role, scatter_s)],
@@ -63,7 +65,8 @@ fn scatter_s(
         });
         turns.sum()
     };
-    let mut points: Vec<&ResonancePoint> = block.points.iter().collect();
+    let seen = |p: &&ResonancePoint| p.responses.iter().any(|r| channels(&r));
+    let mut points: Vec<&ResonancePoint> = block.points.iter().filter(seen).collect();
     points.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
     let between = points.iter().zip(points.iter().skip(1)).map(|(a, b)| {
         let frequency_hz = f64::midpoint(a.frequency_hz, b.frequency_hz);
