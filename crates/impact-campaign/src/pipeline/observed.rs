@@ -10,11 +10,12 @@ use super::observe;
 use crate::campaign::resolved::ResolvedCampaign;
 use impact_fit::evidence::Evidence;
 use impact_fit::methods::resonance::channels::misstated_channels;
+use impact_fit::methods::resonance::drive_amplitudes::follow_stated;
 use impact_fit::methods::resonance::force_law::force_law;
 use impact_identification::identify::identify_campaign;
 use impact_records::motion::{
     Bracket, ForceLaw, LateChannel, Observation, brackets, follow_force_law, inverted_channels,
-    late_channels, scale_drives, turned_channels,
+    late_channels, scale_drives, state_drives, turned_channels,
 };
 use impact_records::record::{Flag, FlagCode, Problem};
 use labfiles_write::output::OutputError;
@@ -160,7 +161,7 @@ fn aligned_in_all(
     let mut observations = corrected(campaign, observations, found, progress)?;
     // of a drive of the other sign the delay is told once its sign is right
     for _ in 0..2 {
-        scale_drives(&mut observations);
+        scale(campaign, &mut observations);
         let found = misstated_channels(&evidence::evidence(campaign, &observations, &[]));
         let again = found.iter().any(|channel| channel.inverted);
         observations = corrected(campaign, observations, found, progress)?;
@@ -168,10 +169,32 @@ fn aligned_in_all(
             break;
         }
     }
-    scale_drives(&mut observations);
+    scale(campaign, &mut observations);
     follow_the_force(campaign, &mut observations);
     Ok(observations)
 }
+
+/// Set the drive amplitudes to what was measured of them, or leave what is stated where that contradicts it and the motion
+/// follows it.
+fn scale(campaign: &ResolvedCampaign, observations: &mut [Observation]) {
+    scale_drives(observations);
+    let contradicts = |o: &&Observation| o.has_flag(FlagCode::DriveAmplitudeContradicts);
+    if observations.iter().filter(contradicts).count() < FEWEST_CONTRADICTING {
+        return;
+    }
+    let impactless = observations.iter().filter(|o| !o.response.is_empty());
+    let measured: Vec<Observation> = impactless.cloned().collect();
+    let mut stated = measured.clone();
+    state_drives(&mut stated);
+    let [stated, measured] = [&stated, &measured].map(|of| evidence::evidence(campaign, of, &[]));
+    if follow_stated(&stated, &measured) {
+        state_drives(observations);
+    }
+}
+
+/// Records whose measured drives contradict the stated ones from which these may be those of the motion: of fewer a row of the
+/// run table is wrong.
+const FEWEST_CONTRADICTING: usize = 3;
 
 /// Let the drive amplitudes follow the law of the force that the resonance curve shows, if it shows one, about the f0
 /// that all records tell: they tell it better than the curve, which the power bends.

@@ -28,10 +28,13 @@ pub fn unlike_drives(rig: RigKind, observations: &[Observation], heavier: f64) -
     // gains of both channels over each other, as an impact changes the speeds by the inverse of the masses
     let gains = robust::median(&changes)? + heavier;
     let unlike = robust::median(&responses)? - gains;
+    // a channel that is dead in a part of the records is no drive
+    let alike = responses.iter().filter(|own| (*own - gains).abs() < UNLIKE);
+    let consistent = 4 * alike.count() < responses.len();
     // a fit moves from there
     let most = 0.9 * MOST_UNLIKE_DRIVES;
     let bounded = unlike.clamp(-most, most);
-    (unlike.abs() > UNLIKE).then_some([bounded, bounded.abs()])
+    (consistent && unlike.abs() > UNLIKE).then_some([bounded, bounded.abs()])
 }
 
 /// Logarithm of the ratio of the displacements' amplitudes, x over y, of a record in which both masses are measured.
@@ -110,6 +113,13 @@ mod tests {
         // a gain changes both alike
         assert_eq!(found([0.5, 0.5], [1.0, 0.1]), None);
         assert_eq!(found([0.5, 0.45], [1.0; 2]), None);
+    }
+
+    #[test]
+    fn a_channel_that_is_dead_in_half_of_the_records_is_no_drive() {
+        let mut half = observed([0.5, 0.0], [1.0; 2]);
+        half.extend(observed([0.5, 0.5], [1.0; 2]));
+        assert_eq!(unlike_drives(RigKind::Double, &half, 0.0), None);
     }
 
     #[test]

@@ -10,6 +10,7 @@ use crate::parameters::Coordinate;
 use crate::parameters::effect::Effect;
 use impact_records::message::{Message, Value};
 use impact_records::record::Role;
+use impact_records::signal::digits::decimals_for;
 use impact_records::{message_table, messages};
 
 /// Something that the data give away. Deviations are relative (0.01 is 1 %); a z-score is a deviation
@@ -308,6 +309,13 @@ pub enum Finding {
         /// What it shows of the other one, in the median of these records.
         share: f64,
     },
+    /// The recorded drive has other amplitudes than stated, and the motion follows the stated ones.
+    DriveNotOfTheForce {
+        /// In how many records.
+        records: usize,
+        /// Of how many.
+        of: usize,
+    },
     /// One mass is driven far less than the other, or not at all.
     DrivesUnlike {
         /// ln(`F_x`/`F_y`), forces per unit of mass.
@@ -603,6 +611,9 @@ message_table! { "finding": Finding, key = template_key;
         records = Value::Count(*records),
         of = Value::Count(*of),
         times = Value::Shortest(two_digits(share.recip()));
+    Self::DriveNotOfTheForce { records, of } =>
+        records = Value::Count(*records),
+        of = Value::Count(*of);
     Self::DrivesUnlike { drive_asymmetry } =>
         mass = Value::Name(if *drive_asymmetry > 0.0 { "y" } else { "x" }),
         other = Value::Name(if *drive_asymmetry > 0.0 { "x" } else { "y" }),
@@ -623,9 +634,16 @@ message_table! { "finding": Finding, key = template_key;
     Self::MomentumNotConserved { measured, stated, .. } =>
         measured = Value::Number(*measured, 3),
         stated = Value::Number(*stated, 3);
-    Self::BeyondModel { effect, strength, standard_error, .. } =>
-        strength = Value::Number(effect.unit().factor() * strength.abs(), 3),
-        error = Value::Number(1.96 * effect.unit().factor() * standard_error, 3);
+    Self::BeyondModel { effect, strength, standard_error, speed_m_s, .. } =>
+        strength = Value::Number(
+            effect.unit().factor() * strength.abs(),
+            decimals_for(half_width(*effect, *standard_error)),
+        ),
+        error = Value::Number(
+            half_width(*effect, *standard_error),
+            decimals_for(half_width(*effect, *standard_error)),
+        ),
+        speed = Value::Number(*speed_m_s, 3);
     Self::Misfit { method, remark } | Self::Noticed { method, remark } =>
         method = Value::Message(method),
         remark = Value::Message(remark);
@@ -682,6 +700,11 @@ fn template_key(finding: &Finding) -> String {
 
 fn millimetres(metres: f64) -> Value<'static> {
     Value::Number(1e3 * metres, 3)
+}
+
+/// Half width of the 95 % interval of an effect's strength, in its unit.
+fn half_width(effect: Effect, standard_error: f64) -> f64 {
+    1.96 * effect.unit().factor() * standard_error
 }
 
 /// Rounded to two significant digits.

@@ -1,6 +1,6 @@
 //! A finished fit, and why one could not be made.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use super::normal::inverse;
@@ -38,6 +38,13 @@ impl Fit {
     pub fn error(&self, coordinate: Coordinate) -> Option<f64> {
         let i = self.free.iter().position(|c| *c == coordinate)?;
         Some(self.covariance[(i, i)].max(0.0).sqrt())
+    }
+
+    /// By how much the squares rise from here to other parameters, to second order; `None` where that is not determined.
+    pub fn rise(&self, other: &Parameters) -> Option<f64> {
+        let apart = |c: &Coordinate| other.coordinate(*c) - self.parameters.coordinate(*c);
+        let apart = DVector::from_iterator(self.free.len(), self.free.iter().map(apart));
+        Some(apart.dot(&(inverse(&self.covariance)? * &apart)))
     }
 
     /// Variance of a coordinate if all others are known; `None` if it was not free.

@@ -90,6 +90,8 @@ impl Precision {
 const FAR: f64 = 3.0;
 /// Share of its deviation to which such a prior is narrowed then.
 const NARROW: f64 = 0.1;
+/// Share of the rise of the squares by which it may differ from that of a parabola: it has turned where a second minimum is.
+const PARABOLA: f64 = 0.25;
 /// Deviation of a prior that says next to nothing: of a logarithm a factor of e, of a clearance a millimetre.
 const OPEN: f64 = 1.0;
 /// Least orthogonal share of a column of slopes: differences do not resolve less.
@@ -160,13 +162,24 @@ impl<'a> Problem<'a> {
         let first = self.fit(start)?;
         let drawn = self.drawn(&first.parameters);
         let second = drawn.and_then(|problem| {
-            let near = problem.fit(first.parameters).ok()?;
-            self.fit(near.parameters).ok()
+            let start = problem.with_precision(Precision::Start);
+            let near = start.fit(first.parameters).ok()?.parameters;
+            let one_valley = self.is_parabola(&first, &near);
+            (!one_valley).then(|| self.fit(near).ok()).flatten()
         });
         Ok(match second {
             Some(second) if second.cost < first.cost => second,
             _ => first,
         })
+    }
+
+    /// Whether the least squares rise from a fit to other parameters as its covariance has it: no other minimum is beside it
+    /// there.
+    fn is_parabola(&self, fit: &Fit, other: &Parameters) -> bool {
+        let rise = self.cost(other).map(|cost| cost - fit.cost);
+        let expected = fit.rise(other);
+        let agree = |(rise, expected): (f64, f64)| (rise - expected).abs() < PARABOLA * expected;
+        rise.zip(expected).is_some_and(agree)
     }
 
     /// The same with narrow priors of the nuisances that are far from where they are expected; `None` where

@@ -626,14 +626,18 @@ impl<'a> IdentificationRun<'a> {
         (leading, replaced)
     }
 
-    /// Drives that are unlike or, where they are alike, channels that show less of one mass than of the other.
+    /// Channels that show less of one mass than of the other or, where few do, drives that are unlike.
     fn one_side_moves_less(&self) -> Vec<Finding> {
         let nominal = &self.evidence.nominal;
-        if let Some([drive_asymmetry, _]) = nominal.drive_asymmetry {
-            return vec![Finding::DrivesUnlike { drive_asymmetry }];
-        }
         let lighter = nominal.mass_asymmetry.map(|[ratio, _]| ratio);
-        faint_channels(self.evidence.rig, self.evidence.observations, lighter).collect()
+        let faint = faint_channels(self.evidence.rig, self.evidence.observations, lighter);
+        let faint: Vec<Finding> = faint.collect();
+        match nominal.drive_asymmetry {
+            Some([drive_asymmetry, _]) if faint.iter().all(|f| f.cause().is_none()) => {
+                vec![Finding::DrivesUnlike { drive_asymmetry }]
+            }
+            _ => faint,
+        }
     }
 
     /// What changes in the course of the campaign, and which part of it is of another rig, if one is: from some record on
@@ -649,20 +653,32 @@ impl<'a> IdentificationRun<'a> {
         };
         let weights = &self.found.weights;
         let start = self.found.start();
-        let problem = joint::problem(blocks, start, weights, &constant, self.of_brackets())?;
+        let problem_with =
+            |nominal: &Nominal| joint::problem(blocks, start, weights, nominal, self.of_brackets());
         let present = joint::present(blocks, &self.found.weights);
-        let over_speed = Coordinate::Effect(Effect::RestitutionSpeed);
-        let fitted = Fitted {
-            selection: &self.selection,
-            problem: &problem,
-            present: &present,
-            at: &joint.fit.parameters.with(over_speed, 0.0),
-            factor: joint.factor,
+        let search_in = |problem, at| {
+            let fitted = Fitted {
+                selection: &self.selection,
+                problem,
+                present: &present,
+                at,
+                factor: joint.factor,
+            };
+            Search::new(self.evidence, fitted)
         };
-        let search = Search::new(self.evidence, fitted);
+        let problem = problem_with(&constant)?;
+        let over_speed = Coordinate::Effect(Effect::RestitutionSpeed);
+        let at = joint.fit.parameters.with(over_speed, 0.0);
+        let search = search_in(&problem, &at);
+        // where no speeds at impacts tell R over the speed from groups of records, the fit has to
+        let beside_speed = problem_with(nominal).filter(|_| !blocks.impact.tells());
+        let of_groups = match &beside_speed {
+            Some(problem) => &search_in(problem, &joint.fit.parameters),
+            None => &search,
+        };
         let groups = cause.is_none_or(|cause| cause == Cause::Contact);
-        let between_groups = || groups.then(|| search.between_groups()).flatten();
-        let in_no_order = || groups.then(|| search.in_no_order()).flatten();
+        let between_groups = || groups.then(|| of_groups.between_groups()).flatten();
+        let in_no_order = || groups.then(|| of_groups.in_no_order()).flatten();
         let of_gain = search.gain_in_time();
         let in_time = || of_gain.is_none().then(|| search.in_time()).flatten();
         Some(Changes {

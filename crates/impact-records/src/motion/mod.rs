@@ -25,6 +25,8 @@ pub use inverted::{inverted_channels, turned_channels};
 pub use kind::Motion;
 pub use late::{late_channels, one_pole_hz};
 pub use late_channel::LateChannel;
-pub use observation::{Amplitude, Observation, follow_force_law, observe, scale_drives};
+pub use observation::{
+    Amplitude, Observation, follow_force_law, observe, scale_drives, state_drives,
+};
 pub use response::Response;
 pub use undetermined::Undetermined;

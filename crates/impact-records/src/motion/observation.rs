@@ -186,6 +186,21 @@ impl Observation {
         self.setting.drive_amplitude / self.force_factor()
     }
 
+    /// The measured drive amplitude with the stated one that it contradicts, if it does.
+    fn contradicted_drive(&self) -> Option<(f64, f64)> {
+        self.flags.iter().find_map(|flag| match flag.problem {
+            Problem::AmplitudeUnlikeStated { measured, stated } => Some((measured, stated)),
+            _ => None,
+        })
+    }
+
+    /// Whether its drive amplitude is the stated one though the measured one contradicts it.
+    pub fn drives_as_stated(&self) -> bool {
+        let used = self.stated_drive();
+        self.contradicted_drive()
+            .is_some_and(|(measured, stated)| (used - stated).abs() < (used - measured).abs())
+    }
+
     /// The free decay that determines f0 best.
     pub fn best_decay(&self) -> Option<&Decay> {
         decay::best(&self.decays)
@@ -457,13 +472,23 @@ pub fn scale_drives(observations: &mut [Observation]) {
             let Some(drive) = o.drive else { continue };
             let (measured, stated) = (drive.amplitude / nominal, o.stated_drive());
             let apart = (measured / stated - 1.0).abs();
-            if is_stated && apart > DRIVE_CONTRADICTS {
+            let known = o.has_flag(FlagCode::DriveAmplitudeContradicts);
+            if is_stated && apart > DRIVE_CONTRADICTS && !known {
                 let problem = Problem::AmplitudeUnlikeStated { measured, stated };
                 o.flags.push(Flag::new(None, problem).excluding(false));
             }
             if apart > DRIVE_CHANGES {
                 o.setting.drive_amplitude = measured * o.force_factor();
             }
+        }
+    }
+}
+
+/// Set the drive amplitudes that measured ones contradict to the stated ones.
+pub fn state_drives(observations: &mut [Observation]) {
+    for o in observations {
+        if let Some((_, stated)) = o.contradicted_drive() {
+            o.setting.drive_amplitude = stated * o.force_factor();
         }
     }
 }
@@ -708,6 +733,33 @@ mod tests {
         scale_drives(&mut all);
         let amplitudes = all.map(|o| o.setting.drive_amplitude);
         assert!((amplitudes[0] - 1.0).abs() < 1e-12 && (amplitudes[1] - 4.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn drives_are_set_to_what_is_stated_where_what_is_measured_contradicts_it() {
+        let stated = |stated: f64| {
+            let mut o = Observation::of("r", 12.0, Motion::Impactless);
+            o.setting.drive_amplitude = stated;
+            o.drive = Some(DriveTone::at(12.0, 2.0));
+            o
+        };
+        let mut all = [1.0, 0.6, 1.5].map(stated);
+        let amplitudes = |all: &[Observation]| -> Vec<f64> {
+            all.iter().map(|o| o.setting.drive_amplitude).collect()
+        };
+        for _ in 0..2 {
+            scale_drives(&mut all);
+            assert_eq!(amplitudes(&all), [1.0; 3]);
+            assert!(all.iter().all(|o| !o.drives_as_stated()));
+            state_drives(&mut all);
+            assert_eq!(amplitudes(&all), [1.0, 0.6, 1.5]);
+            assert_eq!(
+                all.each_ref().map(Observation::drives_as_stated),
+                [false, true, true]
+            );
+        }
+        // a contradiction is told once
+        assert!(all.iter().all(|o| o.flags.len() <= 1));
     }
 
     #[test]

@@ -329,6 +329,11 @@ impl ImpactBlock {
         }
     }
 
+    /// Whether speeds at impacts tell R.
+    pub fn tells(&self) -> bool {
+        !self.pairs.is_empty() && self.first_value_only.is_none()
+    }
+
     /// The typical ratio of the speed after to that before.
     pub fn typical_ratio(&self) -> Option<f64> {
         let ratios: Vec<f64> = self

@@ -2,6 +2,7 @@
 
 pub mod block;
 pub mod channels;
+pub mod drive_amplitudes;
 mod drive_channel;
 pub mod fit;
 pub mod force_law;

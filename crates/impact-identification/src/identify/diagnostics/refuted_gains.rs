@@ -10,7 +10,7 @@ use impact_fit::messages::Finding;
 use impact_fit::method_fit::MethodFit;
 use impact_fit::methods::blocks::Blocks;
 use impact_fit::parameters::{Coordinate, GAIN_ROLES, Parameters, gain_index};
-use impact_fit::solver::{Precision, Problem};
+use impact_fit::solver::{Fit, Precision, Prior, Problem};
 use impact_records::motion::Observation;
 use impact_records::record::Role;
 
@@ -22,6 +22,26 @@ const TOLD: f64 = 9.0;
 /// Difference of the responses of both sides, as a logarithm, that is none of sides that were made alike: four times the
 /// 5 % that their drives may differ by.
 const UNLIKE: f64 = 0.2;
+
+/// Part of the fall that refutes a statement from which it is tried without it: to first order it falls by that.
+const TRIED: f64 = 0.25;
+
+/// By how much the least squares fall without a prior, to first order about a fit with it: z² with z = d/√(σ² − s²), d how far
+/// the fit is from it, σ its deviation and s the standard error of the fit.
+fn fall(fit: &Fit, prior: &Prior) -> f64 {
+    let off = fit.parameters.coordinate(prior.coordinate) - prior.centre;
+    let error = fit.error(prior.coordinate).unwrap_or(0.0);
+    // what the data do not tell cannot be wrong
+    let told = prior.deviation.powi(2) - error.powi(2);
+    if told > UNTOLD * prior.deviation.powi(2) {
+        off * off / told
+    } else {
+        0.0
+    }
+}
+
+/// Share of a prior's variance that a fit must take away to tell of it.
+const UNTOLD: f64 = 1e-6;
 
 /// A fit without one of the statements.
 struct Without {
@@ -39,11 +59,14 @@ pub fn refuted(problem: Problem<'_>, found: &MethodFit) -> Option<OpenGains> {
         return None;
     }
     let problem = problem.with_precision(Precision::Start);
-    let with_all = problem.fit(at).ok()?.cost;
-    let stated = problem.priors.iter().map(|p| p.coordinate);
-    let mut each: Vec<Without> = stated
-        .filter(|coordinate| coordinate.is_stated())
-        .filter_map(|coordinate| {
+    let with_all = problem.fit(at).ok()?;
+    let variance = found.factor.max(1.0);
+    let priors = problem.priors.iter();
+    let stated = priors.filter(|prior| prior.coordinate.is_stated());
+    let may_be_wrong = stated.filter(|prior| fall(&with_all, prior) > TRIED * REFUTED * variance);
+    let mut each: Vec<Without> = may_be_wrong
+        .filter_map(|prior| {
+            let coordinate = prior.coordinate;
             let fit = problem.without(coordinate).fit(at).ok()?;
             Some(Without {
                 coordinate,
@@ -54,8 +77,7 @@ pub fn refuted(problem: Problem<'_>, found: &MethodFit) -> Option<OpenGains> {
         .collect();
     each.sort_by(|a, b| a.squares.total_cmp(&b.squares));
     let best = each.first()?.squares;
-    let variance = found.factor.max(1.0);
-    if with_all - best < REFUTED * variance {
+    if with_all.cost - best < REFUTED * variance {
         return None;
     }
     let mut open = OpenGains::default();
