@@ -42,7 +42,7 @@ use impact_fit::messages::cause::Cause;
 use impact_fit::messages::{Finding, Item, LeftOut, Reason};
 use impact_fit::method::Method;
 use impact_fit::method_fit::MethodFit;
-use impact_fit::methods::answer::{Allowed, JointFit, MethodResult, VerdictKind};
+use impact_fit::methods::answer::{Allowed, JointFit, MethodResult};
 use impact_fit::methods::blocks::Blocks;
 use impact_fit::methods::boundaries::Boundaries;
 use impact_fit::methods::boundaries::posterior::Posterior;
@@ -501,7 +501,8 @@ impl<'a> IdentificationRun<'a> {
             joint,
             further,
         } = results;
-        let mut verdict = verdict::verdict(&Basis {
+        let verdict = verdict::verdict(&Basis {
+            strikes_a_stop: self.strikes_a_stop(),
             cause,
             beyond: &beyond,
             joint: &joint,
@@ -509,9 +510,6 @@ impl<'a> IdentificationRun<'a> {
             agreement: &agreement,
             suspicions: &suspicions,
         });
-        if verdict.kind == VerdictKind::DoesNotFit && self.may_strike_a_mass() {
-            verdict.findings.push(Finding::StopMayMove);
-        }
         Identification {
             verdict,
             joint_fit: self.joint_fit(&joint.parameters),
@@ -528,7 +526,7 @@ impl<'a> IdentificationRun<'a> {
     }
 
     /// Whether the records are of one driven mass that strikes something: a stop is stated, and may be a mass that moves.
-    fn may_strike_a_mass(&self) -> bool {
+    fn strikes_a_stop(&self) -> bool {
         let blocks = &self.selection.blocks;
         let struck = blocks.typical_approach_m_s > 0.0;
         blocks.resonance.rig == RigKind::Single && !blocks.resonance.points.is_empty() && struck

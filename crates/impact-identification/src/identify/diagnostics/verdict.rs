@@ -48,6 +48,8 @@ pub struct Basis<'a> {
     pub suspicions: &'a [Finding],
     /// The cause that explains other findings.
     pub cause: Option<Cause>,
+    /// Whether one driven mass strikes something that is stated to be a stop.
+    pub strikes_a_stop: bool,
 }
 
 /// The verdict: the model does not fit if it does not fit the data of any one method.
@@ -58,9 +60,7 @@ pub fn verdict(basis: &Basis<'_>) -> Verdict {
         .collect();
     let unknown = with_status(&estimates, Status::NotIdentifiable);
     let weak = with_status(&estimates, Status::Weak);
-    let misfit =
-        basis.methods.values().any(|m| m.fits == Some(false)) || basis.cause == Some(Cause::Change);
-    let kind = if misfit {
+    let kind = if misfits(basis) {
         VerdictKind::DoesNotFit
     } else if estimates.is_empty() || !unknown.is_empty() {
         VerdictKind::NotIdentifiable
@@ -134,7 +134,14 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
     if let Some(cause) = basis.cause {
         findings.retain(|finding| !explains(cause, finding));
     }
+    let may_move = basis.strikes_a_stop && misfits(basis);
+    findings.extend(may_move.then_some(Finding::StopMayMove));
     findings
+}
+
+/// Whether the model does not describe the data.
+fn misfits(basis: &Basis<'_>) -> bool {
+    basis.methods.values().any(|m| m.fits == Some(false)) || basis.cause == Some(Cause::Change)
 }
 
 /// Why an estimate is weak of which nothing else says it.
@@ -231,6 +238,7 @@ mod tests {
                 agreement: &Agreement::default(),
                 suspicions: &[],
                 cause: None,
+                strikes_a_stop: false,
             })
         };
         assert_eq!(
@@ -264,6 +272,7 @@ mod tests {
             },
             suspicions: &[],
             cause: None,
+            strikes_a_stop: true,
         })
     }
 
@@ -356,6 +365,7 @@ mod tests {
             }
         );
         assert!(matches!(found.findings[1], Finding::Disagreement { .. }));
-        assert_eq!(found.findings.len(), 2);
+        // the stop that the mass strikes may be a mass that moves
+        assert_eq!(found.findings[2..], [Finding::StopMayMove]);
     }
 }
