@@ -162,8 +162,7 @@ impl<'a> Problem<'a> {
         let first = self.fit(start)?;
         let drawn = self.drawn(&first.parameters);
         let second = drawn.and_then(|problem| {
-            let start = problem.with_precision(Precision::Start);
-            let near = start.fit(first.parameters).ok()?.parameters;
+            let near = problem.fit(first.parameters).ok()?.parameters;
             let one_valley = self.is_parabola(&first, &near);
             (!one_valley).then(|| self.fit(near).ok()).flatten()
         });
