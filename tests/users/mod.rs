@@ -24,24 +24,51 @@ fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Blocks of a language in a document, without their fences.
+/// The fenced blocks of a document, each with its language.
+fn blocks(document: &str) -> Vec<(&str, &str)> {
+    let fenced = document.split("```").skip(1).step_by(2);
+    fenced.filter_map(|block| block.split_once('\n')).collect()
+}
+
+/// The commands of a document that this system's shell runs: those of `sh`, and of one that stands there twice that of the
+/// system.
+fn scripts(document: &str) -> Vec<&str> {
+    let all = blocks(document);
+    let follows = |at: usize| all.get(at + 1).is_some_and(|b| b.0 == "powershell");
+    let is_ours = |at: &usize| match all[*at].0 {
+        "sh" => cfg!(unix) || !follows(*at),
+        language => cfg!(windows) && language == "powershell",
+    };
+    let ours = (0..all.len()).filter(is_ours);
+    ours.map(|at| all[at].1).collect()
+}
+
+/// A script for the shell that a user of this system types into; it ends at the first fault.
 #[cfg(unix)]
-fn blocks<'a>(document: &'a str, language: &str) -> Vec<&'a str> {
-    let fence = format!("```{language}\n");
-    let after = document.split(fence.as_str()).skip(1);
-    after.filter_map(|b| b.split("```").next()).collect()
+fn typed(script: &str) -> Command {
+    let mut shell = Command::new("sh");
+    shell.args(["-e", "-c", script]);
+    shell
+}
+
+/// A script for the shell that a user of this system types into; it ends at the first fault.
+#[cfg(windows)]
+fn typed(script: &str) -> Command {
+    let mut shell = Command::new("powershell");
+    let script = format!("$ErrorActionPreference = 'Stop'\n{script}\nexit $LASTEXITCODE");
+    shell.args(["-NoProfile", "-Command", &script]);
+    shell
 }
 
 /// Run a script in a folder with the program on the path; what it printed.
-#[cfg(unix)]
 fn shell(folder: &Path, script: &str) -> String {
     let program = Path::new(env!("CARGO_BIN_EXE_impactid"));
-    let here = program.parent().expect("a folder").to_string_lossy();
-    let path = std::env::var("PATH").unwrap_or_default();
-    let output = Command::new("sh")
-        .args(["-e", "-c", script])
+    let here = program.parent().expect("a folder").to_path_buf();
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::iter::once(here).chain(std::env::split_paths(&path));
+    let output = typed(script)
         .current_dir(folder)
-        .env("PATH", format!("{here}:{path}"))
+        .env("PATH", std::env::join_paths(path).expect("a path"))
         .output()
         .expect("a shell");
     let said = String::from_utf8_lossy(&output.stdout).into_owned()
@@ -51,7 +78,6 @@ fn shell(folder: &Path, script: &str) -> String {
 }
 
 /// A Python that has numpy and polars or pandas: `IMPACTID_PYTHON`, else the usual names.
-#[cfg(unix)]
 fn python() -> Option<String> {
     let named = std::env::var("IMPACTID_PYTHON").ok();
     let usual = ["python3", "python"].map(String::from);
@@ -65,16 +91,16 @@ fn python() -> Option<String> {
     })
 }
 
-#[cfg(unix)]
 #[test]
 fn the_tutorial_runs_as_written_and_its_results_are_read() {
     let tutorial = fs::read_to_string(root().join("docs/tutorial.md")).expect("the tutorial");
     let lab = tempfile::tempdir().expect("a temporary folder");
-    let campaign = blocks(&tutorial, "toml");
-    let [campaign] = &campaign[..] else {
+    let mut campaigns = blocks(&tutorial);
+    campaigns.retain(|block| block.0 == "toml");
+    let [(_, campaign)] = campaigns[..] else {
         panic!("one campaign.toml")
     };
-    for script in blocks(&tutorial, "sh") {
+    for script in scripts(&tutorial) {
         // the user fills campaign.toml in before it is checked
         if script.contains("impactid check") {
             fs::write(lab.path().join("day1/campaign.toml"), campaign).expect("room");
@@ -91,7 +117,6 @@ fn the_tutorial_runs_as_written_and_its_results_are_read() {
 }
 
 /// `python/examples/read_results.py` reads all that the run left.
-#[cfg(unix)]
 fn read_with_python(folder: &Path) {
     let Some(python) = python() else {
         println!("skipped: no Python with numpy and polars or pandas (IMPACTID_PYTHON names one)");
