@@ -33,7 +33,15 @@ impl Simulated {
         let after = change(&before);
         assert_ne!(before, after);
         fs::write(&file, after).expect("the changed file");
-        let run = ["-q", "run", "rig/campaign.toml", "--out", "out"];
+        let run = [
+            "-q",
+            "run",
+            "rig/campaign.toml",
+            "--out",
+            "out",
+            "--format",
+            "csv",
+        ];
         let ran = impactid(self.path(), &run);
         // 1 says that not all is identified
         assert!(ran.code <= 1, "{}", ran.said);

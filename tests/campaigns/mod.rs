@@ -62,7 +62,8 @@ fn rig() -> &'static Path {
             let stated = stated.replace("Synthetic double impact oscillator", name);
             fs::write(path.join(&file), stated).expect("campaign.toml");
         }
-        let run = ["-q", "run", "before/campaign.toml", "--out", "results"];
+        let run = "-q run before/campaign.toml --out results --format csv";
+        let run: Vec<&str> = run.split(' ').collect();
         assert_eq!(impactid(&path, &run).code, 0);
         (folder, path)
     });
@@ -242,7 +243,16 @@ fn valid_r_without_clearances_allows_for_contacts_and_delays() {
         without_column(&runs, "sweep");
         let bare = fs::read_to_string(&runs).expect("the run table");
         assert_eq!(bare.lines().next(), Some("file,dataset,drive_frequency_hz"));
-        let ran = impactid(path, &["-q", "run", "rig/campaign.toml", "--out", "out"]);
+        let run = [
+            "-q",
+            "run",
+            "rig/campaign.toml",
+            "--out",
+            "out",
+            "--format",
+            "csv",
+        ];
+        let ran = impactid(path, &run);
         assert_eq!(ran.code, 0, "{rig}: {}", ran.said);
         let found = json(&path.join("out/identification.json"));
         let interval = |i: usize| found["joint"]["restitution"]["interval95"][i].as_f64();

@@ -74,6 +74,8 @@ fn results_of_another_version_fail_their_campaign_alone() {
         "day3/campaign.toml",
         "--out",
         "out",
+        "--format",
+        "html",
     ]);
     assert_eq!(ran.code, 2, "{}", ran.said);
     assert!(
@@ -82,5 +84,5 @@ fn results_of_another_version_fail_their_campaign_alone() {
         ran.said
     );
     assert_eq!(lab.read("out/day1/identification.json"), old);
-    assert!(lab.path("out/day3/report.pdf").is_file());
+    assert!(lab.path("out/day3/report.html").is_file());
 }

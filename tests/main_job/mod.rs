@@ -51,8 +51,7 @@ impl Study {
         }
         arguments.extend(["--out", &out]);
         assert_eq!(impactid(&arguments), 0);
-        let file = text(&campaign.join("campaign.toml"));
-        assert_eq!(impactid(&["-q", "run", &file, "--out", &text(&results)]), 0);
+        assert_eq!(run(&campaign.join("campaign.toml"), &results, "csv"), 0);
         Self {
             _folder: folder,
             campaign,
@@ -67,6 +66,12 @@ impl Study {
     fn found(&self) -> Value {
         json(&self.results.join("identification.json"))
     }
+}
+
+/// Run a campaign into a folder, with a report in a format; the exit code.
+fn run(campaign: &Path, out: &Path, format: &str) -> i32 {
+    let (campaign, out) = (text(campaign), text(out));
+    impactid(&["-q", "run", &campaign, "--out", &out, "--format", format])
 }
 
 fn value(of: &Value, name: &str) -> f64 {
@@ -119,10 +124,7 @@ fn a_corner_stated_wrongly_is_named_and_r_is_right() {
     let wrong = format!("{head}{}", tail.replacen("0.5 Hz", "0.65 Hz", 1));
     std::fs::write(&file, wrong).expect("campaign.toml again");
     let out = study.campaign.join("again");
-    assert_eq!(
-        impactid(&["-q", "run", &text(&file), "--out", &text(&out)]),
-        0
-    );
+    assert_eq!(run(&file, &out, "csv"), 0);
     let found = json(&out.join("identification.json"));
     let named = found["suspicions"].as_array().expect("suspicions");
     assert_eq!(named.len(), 1, "{named:?}");
@@ -140,9 +142,11 @@ fn stages_alone_give_what_run_gives() {
         ("--natural-frequency-hz", "12"),
     ];
     let study = Study::new(5, truth, 60);
+    let description = study.campaign.join("campaign.toml");
+    assert_eq!(run(&description, &study.results, "pdf"), 0);
     let staged = study.campaign.join("staged");
     let folder = text(&staged);
-    let file = text(&study.campaign.join("campaign.toml"));
+    let file = text(&description);
     assert_eq!(impactid(&["-q", "ingest", &file, "--out", &folder]), 0);
     for stage in ["classify", "identify", "report"] {
         assert_eq!(impactid(&["-q", stage, &folder]), 0, "{stage}");
@@ -174,10 +178,9 @@ fn prop_the_same_campaign_gives_the_same_bytes_on_any_number_of_threads() {
     let study = Study::new(9, truth, 50);
     let again = study.campaign.join("again");
     let file = text(&study.campaign.join("campaign.toml"));
-    assert_eq!(
-        impactid(&["-q", "-j", "1", "run", &file, "--out", &text(&again)]),
-        0
-    );
+    let again_to = text(&again);
+    let on_one = ["-q", "-j", "1", "run", &file, "--out", &again_to];
+    assert_eq!(impactid(&[&on_one[..], &["--format", "csv"]].concat()), 0);
     for name in [
         "identification.json",
         "records.parquet",
@@ -193,11 +196,7 @@ fn prop_the_same_campaign_gives_the_same_bytes_on_any_number_of_threads() {
 fn valid_published_speeds_tell_the_damping_ratio() {
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("data-samples/published-speeds");
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let file = text(&sample.join("campaign.toml"));
-    assert_eq!(
-        impactid(&["-q", "run", &file, "--out", &text(folder.path())]),
-        0
-    );
+    assert_eq!(run(&sample.join("campaign.toml"), folder.path(), "csv"), 0);
     let found = json(&folder.path().join("identification.json"));
     let beta = value(&found["joint"], "damping_ratio");
     assert!((beta - 0.005).abs() < 5e-4, "{beta}");

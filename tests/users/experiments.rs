@@ -40,18 +40,22 @@ impl Folder {
         (said, output.status.code().unwrap_or(-1))
     }
 
-    /// From `init` to the report; the identification.
+    /// From `init` to the page of the report; the identification.
     pub(super) fn play(&self) -> Value {
+        self.play_to("html")
+    }
+
+    /// From `init` to the report in a format, of which PDF takes longest to set; the identification.
+    fn play_to(&self, format: &str) -> Value {
         let (said, code) = self.run(&["init", "day"]);
         assert_eq!(code, 0, "{said}");
         let (said, code) = self.run(&["check", "day/campaign.toml"]);
         assert_eq!(code, 0, "{said}");
-        let (said, code) = self.run(&["run", "day/campaign.toml", "--out", "results"]);
+        let run = ["run", "day/campaign.toml", "--out", "results"];
+        let (said, code) = self.run(&[&run[..], &["--format", format]].concat());
         assert!(code < 2, "{said}");
-        assert!(
-            self.lab.path().join("results/report.pdf").exists(),
-            "{said}"
-        );
+        let report = format!("results/report.{format}");
+        assert!(self.lab.path().join(report).exists(), "{said}");
         read(&self.lab.path().join("results"))
     }
 
@@ -126,7 +130,7 @@ fn carts(restitution: f64) -> Vec<(String, Vec<u8>)> {
 #[test]
 fn valid_two_carts_from_init_to_the_report() {
     let folder = Folder::of(&carts(0.9));
-    let found = folder.play();
+    let found = folder.play_to("pdf");
     let campaign = folder.campaign();
     assert!(campaign.contains("machine = \"double\""), "{campaign}");
     assert!(
@@ -160,7 +164,7 @@ fn bounces(restitution: f64) -> Vec<(String, Vec<u8>)> {
 #[test]
 fn valid_times_of_bounces_from_init_to_the_report() {
     let folder = Folder::of(&bounces(0.76));
-    let found = folder.play();
+    let found = folder.play_to("pdf");
     let campaign = folder.campaign();
     assert!(campaign.contains("content = \"times\""), "{campaign}");
     assert!(holds(&found, "restitution", 0.76), "{}", found["joint"]);
@@ -214,7 +218,7 @@ fn sound(restitution: f64) -> Vec<u8> {
 #[test]
 fn valid_the_sound_of_bounces_from_init_to_the_report() {
     let folder = Folder::of(&[("ball.wav".to_owned(), sound(0.8))]);
-    let found = folder.play();
+    let found = folder.play_to("pdf");
     let campaign = folder.campaign();
     assert!(campaign.contains("content = \"sound\""), "{campaign}");
     assert!(holds(&found, "restitution", 0.8), "{}", found["joint"]);
@@ -251,7 +255,7 @@ fn springs() -> Vec<(String, Vec<u8>)> {
 #[test]
 fn valid_springs_from_init_to_the_report() {
     let folder = Folder::of(&springs());
-    let found = folder.play();
+    let found = folder.play_to("pdf");
     assert!(folder.campaign().contains("excitation = \"free_decay\""));
     assert!(
         holds(&found, "natural_frequency_hz", 1.5),
@@ -294,7 +298,7 @@ fn phone() -> Vec<(String, Vec<u8>)> {
 #[test]
 fn valid_a_phone_on_a_spring_from_init_to_the_report() {
     let folder = Folder::of(&phone());
-    let found = folder.play();
+    let found = folder.play_to("pdf");
     let campaign = folder.campaign();
     assert!(
         campaign.contains("channel = \"Linear Acceleration z\""),
