@@ -25,7 +25,8 @@ pub(super) struct Init {
 
 const EXAMPLE: &str = "\
 Example:
-  impactid init records/      writes records/campaign.toml";
+  impactid init records/      writes records/campaign.toml, and records/runs.csv where the names of the
+                              files state frequencies and gaps";
 
 impl Init {
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
@@ -53,6 +54,10 @@ impl Init {
             let remedy = "allow writing into the folder, or copy the records into one that you may write into";
             Failure::new(error.to_string(), remedy)
         };
+        let table = found.run_table.as_ref().zip(found.table_of_names.as_ref());
+        if let Some((name, table)) = table {
+            output::write_bytes(&self.folder.join(name), table.as_bytes()).map_err(refused)?;
+        }
         output::write_bytes(&path, text.as_bytes()).map_err(refused)?;
         print_summary(&path, &found, verbosity);
         Ok(Exit::Done)
@@ -121,10 +126,9 @@ fn print_summary(path: &Path, found: &FolderContents, verbosity: Verbosity) {
         ));
     }
     if let Some(more) = found.others.len().checked_sub(NAMED).filter(|n| *n > 0) {
-        verbosity.info(&format!(
-            "{} are not used either",
-            counted(more, "more table")
-        ));
+        let are = if more == 1 { "is" } else { "are" };
+        let tables = counted(more, "more table");
+        verbosity.info(&format!("{tables} {are} not used either"));
     }
     for note in &found.notes {
         verbosity.info(note);

@@ -58,3 +58,32 @@ fn valid_labview_files_with_decimal_commas_from_init_to_the_report() {
     }
     assert_the_answer_is_true(&lab, 60);
 }
+
+/// No laboratory book: frequency, gap and direction are in the names of the files.
+#[test]
+fn valid_files_that_are_named_after_their_settings_have_a_run_table() {
+    let lab = Lab::new();
+    let takes = takes(&lab, &["--rig", "exact", "--seed", "51", "--records", "24"]);
+    for take in &takes {
+        let way = if take.upward { "auf" } else { "ab" };
+        let name = format!(
+            "f{}Hz_spalt{}mm_{way}",
+            take.frequency_hz, take.clearance_mm
+        );
+        let path = lab
+            .path("day")
+            .join(format!("{}.csv", name.replace('.', ",")));
+        assert!(!path.exists(), "{name}");
+        fs::write(path, saved(take)).expect("room");
+    }
+    let said = done(&lab, &["init", "day"]);
+    assert!(said.contains("runs.csv states the frequencies"), "{said}");
+    for channel in ["Geschw. y", "Weg x"] {
+        state(&lab, channel, "high_pass = \"0.5 Hz\"");
+    }
+    assert_the_answer_is_true(&lab, 24);
+    // a table that was corrected stays
+    lab.write("day/runs.csv", "file,clearance_mm\n");
+    done(&lab, &["init", "day", "--force"]);
+    assert_eq!(lab.read("day/runs.csv"), "file,clearance_mm\n");
+}

@@ -79,7 +79,7 @@ fn valid_sweeps_in_one_file_each_are_cut_and_identified() {
 }
 
 #[test]
-fn a_channel_to_cut_by_that_is_not_there_is_refused_with_those_that_are() {
+fn a_record_of_many_settings_names_the_way_to_cut_it() {
     let lab = Lab::new();
     let takes = takes(
         &lab,
@@ -96,6 +96,19 @@ fn a_channel_to_cut_by_that_is_not_there_is_refused_with_those_that_are() {
     );
     let all = saved(&takes.iter().collect::<Vec<_>>());
     fs::write(lab.path("day/all.csv"), all).expect("room");
+    let said = done(&lab, &["init", "day"]);
+    let words = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words.contains("impactid convert all.csv --cut 'Generator' --out"),
+        "{said}"
+    );
+    let checked = lab.run(&["check", "day/campaign.toml"]);
+    assert_eq!(checked.code, 2, "{}", checked.said);
+    assert!(
+        checked.said.contains("impactid convert FILE --cut CHANNEL"),
+        "{}",
+        checked.said
+    );
     let refused = lab.run(&[
         "convert",
         "day/all.csv",

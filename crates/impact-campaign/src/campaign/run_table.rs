@@ -863,6 +863,8 @@ mod tests {
         for (heading, whole) in [
             ("gap_2r_mm", true),
             ("Spalt 2r [mm]", true),
+            ("Spalt ges. [mm]", true),
+            ("gap total (mm)", true),
             ("Total gap (mm)", true),
             ("gap_mm", false),
         ] {

@@ -4,6 +4,7 @@ use super::found::InferredChannel;
 use super::place::Place;
 use super::roles;
 use impact_records::record::Role;
+use impact_records::signal::steps::{DriveStep, steps};
 use impact_records::signal::{robust, tone};
 
 /// Part of the greatest excursion within which a signal rests.
@@ -12,6 +13,8 @@ const RESTS: f64 = 0.1;
 const MOSTLY: f64 = 0.8;
 /// Residual over amplitude of a drive at most: beyond, the program refuses it as not harmonic.
 const HARMONIC: f64 = 0.5;
+/// Relative difference of two frequencies at which a drive waits.
+const OTHER: f64 = 0.01;
 /// Ratio of the last third of a drive to its first below which it fades.
 const FADES: f64 = 0.8;
 /// Residual over amplitude of a pure sine at most.
@@ -81,12 +84,43 @@ fn is_pulses(values: &[f64]) -> bool {
     resting.count() as f64 > MOSTLY * values.len() as f64
 }
 
-/// Whether a signal is a tone from the beginning of a record to its end.
+/// Whether a signal is a tone from the beginning of a record to its end, at one frequency or at one after the other.
 fn acts(values: &[f64]) -> bool {
+    if waits(values) > 1 {
+        return true;
+    }
     let third = values.len() / 3;
     let size = |part: &[f64]| robust::squares_about_mean(part).sqrt();
     let harmonic = tone::fit(values, 1.0).is_some_and(|t| t.residual_rms < HARMONIC * t.amplitude);
     harmonic && size(&values[values.len() - third..]) > FADES * size(&values[..third])
+}
+
+/// At how many frequencies a tone waits, where it does so for most of a record; 0 where all are one.
+fn waits(values: &[f64]) -> usize {
+    let found = steps(values, 1.0);
+    let Some(first) = found.first() else { return 0 };
+    let others = |s: &DriveStep| (s.frequency_hz / first.frequency_hz - 1.0).abs() > OTHER;
+    let kept: usize = found.iter().map(|s| s.to - s.from).sum();
+    if 2 * kept > values.len() && found.iter().any(others) {
+        found.len()
+    } else {
+        0
+    }
+}
+
+/// That the drive of records waits at one frequency after another, as the first of them shows: a record is one setting.
+pub(super) fn note_of_steps(some: &[Place<'_>], channels: &[InferredChannel]) -> Option<String> {
+    let drive = channels.iter().find(|c| c.role == Some(Role::Drive))?;
+    let (place, count) = some.iter().find_map(|place| {
+        let count = waits(&values(*place, drive)?);
+        (count > 1).then_some((place, count))
+    })?;
+    let file = place.source.path().file_name()?.to_string_lossy();
+    let name = &drive.name;
+    Some(format!(
+        "{file}: '{name}' goes through {count} frequencies, and a record is one setting: cut it with impactid convert {file} \
+         --cut '{name}' --out PATH, and begin with the records in PATH"
+    ))
 }
 
 /// A channel of unknown quantity that is a pure and steady sine in most records, at whose frequency the mass moves.
@@ -171,6 +205,16 @@ mod tests {
         assert!(!acts(&wave(|t| 0.3 + (-t).exp() * (60.0 * t).sin())));
         let idle = wave(|t| (1e5 * t * t).sin());
         assert!(!acts(&idle));
+    }
+
+    #[test]
+    fn valid_a_drive_that_waits_at_unlike_frequencies_acts() {
+        let tone = |hz: f64, t: f64| (std::f64::consts::TAU * hz * t).sin();
+        let stepped = wave(|t| tone(if t < 0.7 { 100.0 } else { 130.0 }, t));
+        assert_eq!(waits(&stepped), 2);
+        assert!(acts(&stepped));
+        assert_eq!(waits(&wave(|t| tone(100.0, t))), 0);
+        assert_eq!(waits(&wave(|t| tone(100.0 + 30.0 * t, t))), 0);
     }
 
     #[test]

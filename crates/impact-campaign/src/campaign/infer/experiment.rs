@@ -62,6 +62,9 @@ pub(super) fn infer(places: &[Place<'_>], found: &mut FolderContents) {
         of_motions(&some, found);
     }
     if found.experiment == Experiment::Driven {
+        found
+            .notes
+            .extend(drive::note_of_steps(&some, &found.channels));
         bodies::ask_of_driven(found);
     }
 }

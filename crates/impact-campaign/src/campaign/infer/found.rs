@@ -15,6 +15,8 @@ pub struct FolderContents {
     pub globs: Vec<String>,
     /// A table that names files, relative to the folder.
     pub run_table: Option<String>,
+    /// The text of that table where it is none of the folder's files, but what the names of the files state.
+    pub table_of_names: Option<String>,
     /// Number of record files.
     pub files: usize,
     /// Number of datasets in the first record file.

@@ -121,8 +121,13 @@ pub(super) fn of(place: Place<'_>) -> Option<Heights> {
 
 /// Whether a column numbers the rows, or the trials.
 pub(super) fn numbers_rows(name: &str) -> bool {
+    timing::numbers_rows(name) || is_trial(name)
+}
+
+/// Whether a name is a word of a trial alone: `Trial`, `Versuch`.
+pub(super) fn is_trial(name: &str) -> bool {
     let run = without_run(&format!("{} 1", name.trim()));
-    timing::numbers_rows(name) || run.is_some_and(|(bare, _)| bare.is_empty())
+    run.is_some_and(|(bare, _)| bare.is_empty())
 }
 
 /// Whether a column is computed from others by its name.

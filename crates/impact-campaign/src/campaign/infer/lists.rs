@@ -1,6 +1,6 @@
 //! Lists of times: which tables are such, and which of their columns contain the times.
 
-use super::heights::{is_computed, numbers_rows};
+use super::heights::{is_computed, is_trial, numbers_rows};
 use super::place::Place;
 use impact_records::record::{ContactContent, changes};
 use impact_records::signal::columns;
@@ -89,7 +89,7 @@ fn of_columns(place: Place<'_>) -> Vec<usize> {
 const MOSTLY: f64 = 0.9;
 
 /// What the rows of several columns of times are, where each is a throw of its own: times that rise along them, or flights that
-/// become shorter, and neither down the first column.
+/// become shorter, and neither down the first column unless another column numbers the trials.
 pub(super) fn along_rows(place: Place<'_>, columns: &[usize]) -> Option<ContactContent> {
     let values: Vec<Vec<f64>> = columns.iter().map(|i| place.numbers(*i)).collect();
     let first = values.first()?;
@@ -109,7 +109,7 @@ pub(super) fn along_rows(place: Place<'_>, columns: &[usize]) -> Option<ContactC
     };
     let shorter = first.windows(2).filter(|w| w[1] < w[0]).count() as f64;
     let steps = first.len().saturating_sub(1) as f64;
-    if goes(first, false) {
+    if goes(first, false) && !numbers_trials(place) {
         None
     } else if mostly(3, false) {
         Some(ContactContent::Times)
@@ -118,6 +118,12 @@ pub(super) fn along_rows(place: Place<'_>, columns: &[usize]) -> Option<ContactC
     } else {
         None
     }
+}
+
+/// Whether a column numbers the rows as trials: `Trial`, `Versuch`.
+fn numbers_trials(place: Place<'_>) -> bool {
+    let mut columns = place.set().channels.iter().enumerate();
+    columns.any(|(i, c)| is_trial(&c.name) && counts_rows(&place.numbers(i)))
 }
 
 /// The columns of numbers, without those that count the rows or are computed from others.
@@ -240,6 +246,9 @@ mod tests {
         let times =
             "trial,b1 (s),b2 (s),b3 (s)\n1,0.3,0.91,1.41\n2,0.3,0.94,1.47\n3,0.3,0.90,1.39\n";
         assert_eq!(along(times), Some(ContactContent::Times));
+        // from greater heights each time
+        let rising = "Versuch;Zeit 1 (s);Zeit 2 (s);Zeit 3 (s)\n1;0,53;0,44;0,37\n2;0,58;0,48;0,40\n3;0,62;0,52;0,43\n";
+        assert_eq!(along(rising), Some(ContactContent::Intervals));
         // remarks, means and heights beside them
         let beside = "trial,drop (cm),t1 (s),t2 (s),t3 (s),mean (s),surface\n1,50,0.61,0.50,0.42,0.51,oak\n2,55,0.64,0.53,0.43,0.53,oak\n3,50,0.60,0.49,0.41,0.50,oak\n4,55,0.65,0.54,0.45,0.55,oak\n";
         assert_eq!(of(beside), [2, 3, 4]);

@@ -113,12 +113,39 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
         roles::assign(&mut found.channels);
     }
     experiment::infer(&places, &mut found);
-    note_what_is_not_read(&places, &named, &mut found);
+    note_what_is_not_read(folder, &places, &named, &mut found);
     found
 }
 
+/// Name of a run table that is made of the names of the files.
+const RUN_TABLE: &str = "runs.csv";
+
+/// Take the settings of driven records from the names of their files: into a run table where each states its own and nothing
+/// else does, else as a note.
+fn of_names(folder: &Path, names: &[&Path], found: &mut FolderContents) {
+    let is_clearance = |name: &String| run_table::column_name(name) == Some("clearance");
+    let one_each = found.records == found.files && !folder.join(RUN_TABLE).exists();
+    let stated = found.attributes.keys().any(is_clearance);
+    match names::table(names).filter(|_| one_each && !stated) {
+        Some(table) => {
+            found.notes.push(format!(
+                "{RUN_TABLE} states the frequencies, lengths and directions that are in the names of the files: correct it where the \
+                 lengths are no clearances, as the whole gap between two masses is twice their clearance"
+            ));
+            found.run_table = Some(RUN_TABLE.to_owned());
+            found.table_of_names = Some(table);
+        }
+        None => found.notes.extend(names::note(names)),
+    }
+}
+
 /// Note what lists have beside their rows, and settings that only the names of driven records state.
-fn note_what_is_not_read(places: &[Place<'_>], names: &[&Path], found: &mut FolderContents) {
+fn note_what_is_not_read(
+    folder: &Path,
+    places: &[Place<'_>],
+    names: &[&Path],
+    found: &mut FolderContents,
+) {
     match found.experiment {
         Experiment::Events(_) => {
             let all = places.iter().flat_map(|place| place.source.notes());
@@ -128,9 +155,7 @@ fn note_what_is_not_read(places: &[Place<'_>], names: &[&Path], found: &mut Fold
                 }
             }
         }
-        Experiment::Driven if found.run_table.is_none() => {
-            found.notes.extend(names::note(names));
-        }
+        Experiment::Driven if found.run_table.is_none() => of_names(folder, names, found),
         _ => {}
     }
 }
