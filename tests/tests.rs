@@ -46,7 +46,6 @@ mod report;
 mod theory;
 
 /// Campaigns whose records are still arriving.
-#[cfg(unix)]
 mod watch;
 
 /// The tutorial as it stands, the script that reads the results, manual pages, completions.

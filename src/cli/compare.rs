@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::failure::wrapped;
 use super::load::load_campaign;
 use super::out_folder::Work;
 use super::patterns::expanded;
 use super::progress::Progress;
-use super::report_args::{each_once, language_parser, paper_parser, quoted};
+use super::report_args::{each_once, held_by_another, language_parser, paper_parser, quoted};
 use super::speech::{Output, plain, said};
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity, out_folder};
@@ -108,7 +109,7 @@ impl Compare {
         };
         let comparison = &content.comparison;
         let files = campaigns::files(&content, &each_once(&self.format), &self.options())?;
-        pipeline::report::write(&files, &self.out)?;
+        let beside = pipeline::report::write(&files, &self.out)?;
         if self.json {
             print_json(comparison)?;
         } else if !verbosity.is_quiet() {
@@ -117,6 +118,10 @@ impl Compare {
         for (name, _) in files.iter().filter(|(name, _)| !name.contains('/')) {
             let path = self.out.join(name).display().to_string();
             verbosity.info(&said(&Output::Written(path), self.options().locale()));
+        }
+        for held in &beside {
+            let words = said(&held_by_another(held), self.options().locale());
+            verbosity.info(&wrapped(&words));
         }
         Ok(Exit::Done)
     }

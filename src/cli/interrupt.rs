@@ -88,7 +88,24 @@ fn flag_of_signals() -> Option<Arc<AtomicBool>> {
     for signal in ENDS {
         signal_hook::flag::register(signal, Arc::clone(&flag)).ok()?;
     }
+    #[cfg(windows)]
+    when_the_console_is_closed(&flag)?;
     Some(flag)
+}
+
+/// Windows ends a program whose console was closed when its handler returns, or after 5 s: until then it has ended by itself.
+/// The runtime makes the signal of Ctrl-Break of it.
+#[cfg(windows)]
+fn when_the_console_is_closed(flag: &Arc<AtomicBool>) -> Option<()> {
+    const SIGBREAK: i32 = 21;
+    let flag = Arc::clone(flag);
+    let set = move || {
+        flag.store(true, Ordering::SeqCst);
+        std::thread::sleep(Duration::from_secs(5));
+    };
+    // SAFETY: on Windows a handler runs on a thread of its own, which may do what every thread may
+    let registered = unsafe { signal_hook::low_level::register(SIGBREAK, set) };
+    registered.ok().map(drop)
 }
 
 fn wait_for(flag: &AtomicBool) {

@@ -8,6 +8,7 @@ use std::time::SystemTime;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Args, Command};
 
+use super::failure::wrapped;
 use super::speech::{Output, Speech};
 use super::{Failure, Verbosity};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
@@ -17,6 +18,7 @@ use impact_campaign::pipeline;
 use impact_records::language::Language;
 use impact_report::Format;
 use impact_report::Paper;
+use labfiles_write::output::Beside;
 
 /// Options of the report.
 #[derive(Debug, Clone, Default, Args)]
@@ -246,6 +248,7 @@ pub(super) fn refuse_formats(campaigns: &[std::path::PathBuf]) -> Result<(), Fai
 pub(super) fn print_report_paths(
     campaign: &ResolvedCampaign,
     out: &Path,
+    beside: &[Beside],
     speech: &Speech,
     verbosity: Verbosity,
 ) {
@@ -256,9 +259,21 @@ pub(super) fn print_report_paths(
             Format::Svg | Format::Png | Format::FigurePdf | Format::Csv => "figures/",
             Format::Tex => "tables/",
         };
-        let path = out.join(name).display().to_string();
+        let path = out.join(name);
+        let held = beside.iter().find(|file| file.wanted == path);
+        let path = held.map_or(path, |file| file.written.clone());
+        let path = path.display().to_string();
         verbosity.info(&speech.say(&Output::Report(format.name(), path)));
     }
+    for held in beside {
+        verbosity.info(&wrapped(&speech.say(&held_by_another(held))));
+    }
+}
+
+/// What is said of a file that is beside one that another program holds.
+pub(super) fn held_by_another(file: &Beside) -> Output {
+    let [held, path] = [&file.wanted, &file.written].map(|path| path.display().to_string());
+    Output::Beside(held, path)
 }
 
 /// A path quoted for a shell.

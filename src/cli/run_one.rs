@@ -65,7 +65,7 @@ impl RunOptions<'_> {
         let done = done?;
         print_premises(&resolved, &done.observations, &speech, verbosity);
         print_completed(&done, &speech, verbosity);
-        print_report_paths(&resolved, out, &speech, verbosity);
+        print_report_paths(&resolved, out, &done.beside, &speech, verbosity);
         Ok(done)
     }
 }

@@ -7,6 +7,12 @@ use super::speech::Speech;
 use super::{Failure, Verbosity};
 use impact_campaign::campaign::diagnostic::Diagnostics;
 
+/// Whether a terminal obeys the sequences that move its cursor; on Windows they are switched on, which consoles before
+/// Windows 10 cannot.
+fn moves_the_cursor() -> bool {
+    anstyle_query::windows::enable_ansi_colors().unwrap_or(true)
+}
+
 /// The part at the end of the standard error stream that is drawn again.
 #[derive(Debug)]
 pub(super) struct Screen {
@@ -19,11 +25,11 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    /// Nothing is drawn.
+    /// Nothing is drawn. A console that draws nothing again is as a pipe.
     pub(super) fn new(verbosity: Verbosity) -> Self {
         Self {
             verbosity,
-            is_terminal: std::io::stderr().is_terminal(),
+            is_terminal: std::io::stderr().is_terminal() && moves_the_cursor(),
             drawn: String::new(),
             is_busy: false,
         }

@@ -101,6 +101,8 @@ pub(super) enum Output {
     Written(String),
     /// A report: its format and its path.
     Report(&'static str, String),
+    /// A file that another program holds, and that beside it which is the new one.
+    Beside(String, String),
     /// A record that is left out: of how many, why, and what to do.
     OneLeftOut(LeftOutRecords),
     /// Several records.
@@ -139,6 +141,7 @@ pub(super) struct LeftOutRecords {
 message_table! { "output": Output;
     Self::Written(path) => path = Value::Name(path);
     Self::Report(format, path) => format = Value::Name(format), path = Value::Name(path);
+    Self::Beside(held, path) => held = Value::Name(held), path = Value::Name(path);
     Self::OneLeftOut(left) | Self::SomeLeftOut(left) | Self::Contradicting(left) =>
         count = Value::Count(left.count),
         of = Value::Count(left.of),

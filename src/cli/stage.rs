@@ -239,10 +239,10 @@ impl Report {
                 pipeline::report::files(&campaign, &observed, &found, &command)?
             }
         };
-        pipeline::report::write(&report, &folder)?;
+        let beside = pipeline::report::write(&report, &folder)?;
         drop(bar);
         let speech = Speech::of(&campaign.report)?;
-        print_report_paths(&campaign, &folder, &speech, verbosity);
+        print_report_paths(&campaign, &folder, &beside, &speech, verbosity);
         Ok(Exit::Done)
     }
 }

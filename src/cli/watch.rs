@@ -192,7 +192,7 @@ impl Watch {
         let speech = Speech::of(&campaign.report)?;
         print_premises(&campaign, &done.observations, &speech, verbosity);
         print_completed(&done, &speech, verbosity);
-        print_report_paths(&campaign, &self.out, &speech, verbosity);
+        print_report_paths(&campaign, &self.out, &done.beside, &speech, verbosity);
         let page = self.out.join("report.html").display().to_string();
         verbosity.info(&speech.words().print(&LiveText::Page(page)));
         Ok(done)

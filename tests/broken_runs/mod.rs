@@ -3,6 +3,7 @@
 
 mod changing_inputs;
 mod disk;
+mod everywhere;
 mod kills;
 mod signals;
 mod threads;

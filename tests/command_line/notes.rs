@@ -139,3 +139,33 @@ fn stages_go_on_from_another_directory() {
     assert_eq!(code, 2);
     assert!(said.contains("out/ingested.h5: it is not there"), "{said}");
 }
+
+/// A folder whose name is no Unicode: its records are found from elsewhere too.
+#[cfg(target_os = "linux")]
+#[test]
+fn records_in_a_folder_whose_name_is_no_unicode_are_found() {
+    use std::os::unix::ffi::OsStrExt;
+    let lab = Lab::new();
+    let folder = lab.folder().join(std::ffi::OsStr::from_bytes(b"day\xff"));
+    std::fs::create_dir_all(folder.join("sub")).expect("room");
+    for name in ["campaign.toml", "runs.csv", "r1.csv", "r2.csv", "r3.csv"] {
+        let below = if name.starts_with('r') && name != "runs.csv" {
+            "sub"
+        } else {
+            ""
+        };
+        std::fs::copy(lab.path(name), folder.join(below).join(name)).expect("room");
+    }
+    let description = folder.join("campaign.toml");
+    let text = std::fs::read_to_string(&description).expect("text");
+    let text = text.replace("run_table = \"runs.csv\"", "files = \"s*/r*.csv\"");
+    std::fs::write(&description, text).expect("room");
+    let checked = std::process::Command::new(env!("CARGO_BIN_EXE_impactid"))
+        .arg("check")
+        .arg(&description)
+        .output()
+        .expect("it starts");
+    let said = [checked.stdout, checked.stderr].concat();
+    let said = String::from_utf8_lossy(&said);
+    assert!(said.contains("3 of 3 records can be used"), "{said}");
+}

@@ -59,6 +59,31 @@ paper = "a4"
 pub(crate) const RUNS: &str = "file,drive_frequency_hz,clearance_mm,sweep\n\
     r1.csv,11,1.0,up\nr2.csv,12,1.0,up\nr3.csv,13,1.0,down\n";
 
+/// A command whose program a test may interrupt: on Windows alone in its group, which is what Ctrl-Break reaches.
+pub(crate) fn interruptible(command: &mut Command) -> &mut Command {
+    #[cfg(windows)]
+    {
+        const CREATE_NEW_PROCESS_GROUP: u32 = 0x200;
+        std::os::windows::process::CommandExt::creation_flags(command, CREATE_NEW_PROCESS_GROUP);
+    }
+    command
+}
+
+/// Ctrl-C to a program.
+#[cfg(unix)]
+pub(crate) fn interrupt(program: &std::process::Child) {
+    send(program, rustix::process::Signal::INT);
+}
+
+/// Ctrl-Break to a program that is alone in its group; Ctrl-C would reach all of the console.
+#[cfg(windows)]
+pub(crate) fn interrupt(program: &std::process::Child) {
+    use windows_sys::Win32::System::Console::{CTRL_BREAK_EVENT, GenerateConsoleCtrlEvent};
+    // SAFETY: the call takes two numbers and keeps nothing
+    let sent = unsafe { GenerateConsoleCtrlEvent(CTRL_BREAK_EVENT, program.id()) };
+    assert!(sent != 0, "the event is sent");
+}
+
 /// Send a program a signal.
 #[cfg(unix)]
 pub(crate) fn send(program: &std::process::Child, signal: rustix::process::Signal) {

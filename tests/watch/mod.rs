@@ -1,7 +1,5 @@
 //! `impactid watch` and `explore --watch`: records that arrive one by one, in every way in which they do.
 
-#![cfg(unix)]
-
 mod library;
 
 use std::collections::BTreeMap;
@@ -11,7 +9,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::explore::server::Explorer;
-use crate::support::{Lab, files, send};
+use crate::support::{Lab, files, interrupt, interruptible};
 
 const WATCH: &[&str] = &[
     "watch",
@@ -23,6 +21,9 @@ const WATCH: &[&str] = &[
     "--settle",
     "0.2",
 ];
+
+/// The page alone, where a test asks for nothing else of the report.
+const PAGE: &[&str] = &["--format", "html"];
 
 /// Records that are waiting to arrive: a campaign of single files, none of which is there yet.
 struct Arriving {
@@ -77,14 +78,16 @@ impl Arriving {
     }
 
     fn start(&self, options: &[&str]) -> Child {
-        Command::new(env!("CARGO_BIN_EXE_impactid"))
-            .args(WATCH)
-            .args(options)
-            .current_dir(self.lab.folder())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the program starts")
+        watching(&self.lab, options)
     }
+}
+
+/// A watch of a folder's campaign.
+fn watching(lab: &Lab, options: &[&str]) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_impactid"));
+    command.args(WATCH).args(options).current_dir(lab.folder());
+    let started = interruptible(&mut command).stderr(Stdio::piped()).spawn();
+    started.expect("the program starts")
 }
 
 fn wait_until(what: &str, is_so: impl Fn() -> bool) {
@@ -97,7 +100,7 @@ fn wait_until(what: &str, is_so: impl Fn() -> bool) {
 
 /// Ctrl-C; the exit code and what was said.
 fn end(mut watch: Child) -> (Option<i32>, String) {
-    send(&watch, rustix::process::Signal::INT);
+    interrupt(&watch);
     let mut said = String::new();
     let words = watch.stderr.as_mut().expect("its words");
     words.read_to_string(&mut said).expect("text");
@@ -135,13 +138,12 @@ fn a_late_channel_is_moved_back_while_records_arrive_as_by_a_run() {
     assert_ne!(late, text);
     lab.write("campaign.toml", &late);
     (0..12).for_each(|record| arriving.arrive(record));
-    let formats = ["--format", "html"];
-    let watch = arriving.start(&formats);
+    let watch = arriving.start(PAGE);
     let identified = lab.path("out/identification.json");
     wait_until("a fit is written", || identified.exists());
     let live = lab.read("out/identification.json");
     assert!(live.contains("\"late_channel\""), "{live}");
-    end_as_a_run(lab, watch, &formats);
+    end_as_a_run(lab, watch, PAGE);
     let completed = lab.read("out/identification.json");
     assert!(completed.contains("\"late_channel\""), "{completed}");
 }
@@ -192,12 +194,7 @@ fn a_file_that_grows_is_taken_again_and_what_happens_to_files_is_named() {
         "runs.csv",
         "file,drive_frequency_hz,clearance_mm,sweep\ngrows.h5,11,1.0,up\nr2.csv,12,1.0,up\nr3.csv,13,1.0,down\n",
     );
-    let mut watch = Command::new(env!("CARGO_BIN_EXE_impactid"))
-        .args(WATCH)
-        .current_dir(lab.folder())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
+    let mut watch = watching(&lab, PAGE);
     let written = || fs::read_to_string(lab.path("out/report.live.js")).unwrap_or_default();
     wait_until("a first page", || !written().is_empty());
     let before = written();
@@ -225,17 +222,12 @@ fn a_file_that_grows_is_taken_again_and_what_happens_to_files_is_named() {
 fn faults_of_the_description_are_told_and_waited_for() {
     let lab = Lab::new();
     lab.edit("channel = \"vx\"", "channel = \"laser\"");
-    let watch = Command::new(env!("CARGO_BIN_EXE_impactid"))
-        .args(WATCH)
-        .current_dir(lab.folder())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
+    let watch = watching(&lab, PAGE);
     std::thread::sleep(Duration::from_millis(1500));
     lab.edit("channel = \"laser\"", "channel = \"vx\"");
     wait_until("a page", || lab.path("out/report.live.js").exists());
     let (code, said) = end(watch);
-    assert_eq!(code, Some(run_instead(&lab, &[]).0), "{said}");
+    assert_eq!(code, Some(run_instead(&lab, PAGE).0), "{said}");
     assert!(
         said.contains("laser") && said.contains("[channels.velocity_x]"),
         "{said}"

@@ -10,6 +10,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
+use same_file::Handle;
 
 use labfiles::said;
 
@@ -137,6 +138,52 @@ impl Part {
         self.placed = true;
         Ok(())
     }
+
+    /// Put the file in place, or where another program holds the one that is there, beside it.
+    fn rename_or_beside(mut self, target: &Path) -> io::Result<Option<Beside>> {
+        match fs::rename(&self.path, target) {
+            Err(error) if is_held(&error, target) => {
+                let written = new_name(target);
+                fs::rename(&self.path, &written).map_err(|_| error)?;
+                self.placed = true;
+                let wanted = target.to_path_buf();
+                Ok(Some(Beside { wanted, written }))
+            }
+            Err(error) => Err(error),
+            Ok(()) => {
+                self.placed = true;
+                Ok(None)
+            }
+        }
+    }
+}
+
+/// A file that was written under another name, because another program holds the one of its own name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Beside {
+    /// Its own name; what was there stays.
+    pub wanted: PathBuf,
+    /// The name it has.
+    pub written: PathBuf,
+}
+
+/// `ERROR_SHARING_VIOLATION` of Windows.
+const SHARING_VIOLATION: i32 = 32;
+
+/// Whether a file is not replaced because another program holds it, as Windows does not replace what is open and no system
+/// what is mounted. The folder takes files: the new one is in it already.
+fn is_held(error: &io::Error, target: &Path) -> bool {
+    let held = [io::ErrorKind::PermissionDenied, io::ErrorKind::ResourceBusy];
+    let shared = cfg!(windows) && error.raw_os_error() == Some(SHARING_VIOLATION);
+    (shared || held.contains(&error.kind())) && target.is_file()
+}
+
+/// `report.new.pdf` of `report.pdf`.
+fn new_name(target: &Path) -> PathBuf {
+    let part = |of: Option<&std::ffi::OsStr>| of.map(|s| s.to_string_lossy().into_owned());
+    let stem = part(target.file_stem()).unwrap_or_default();
+    let ending = part(target.extension()).map_or_else(String::new, |e| format!(".{e}"));
+    target.with_file_name(format!("{stem}.new{ending}"))
 }
 
 /// Flush the rename itself to the disk.
@@ -274,6 +321,27 @@ pub fn write_together<N: AsRef<Path>, B: AsRef<[u8]>>(
     folder: &Path,
     files: &[(N, B)],
 ) -> Result<(), OutputError> {
+    together(folder, files, |part, path| part.rename(path).map(|()| None)).map(drop)
+}
+
+/// As [`write_together`]; a file whose name is that of one that another program holds gets the name `NAME.new.ENDING`
+/// beside it. Gives those.
+///
+/// # Errors
+/// [`OutputError`] with the system's error.
+pub fn write_together_or_beside<N: AsRef<Path>, B: AsRef<[u8]>>(
+    folder: &Path,
+    files: &[(N, B)],
+) -> Result<Vec<Beside>, OutputError> {
+    together(folder, files, Part::rename_or_beside)
+}
+
+/// Write files together, each put in place by `place`.
+fn together<N: AsRef<Path>, B: AsRef<[u8]>>(
+    folder: &Path,
+    files: &[(N, B)],
+    place: impl Fn(Part, &Path) -> io::Result<Option<Beside>>,
+) -> Result<Vec<Beside>, OutputError> {
     let failed = |path: &Path| {
         let path = path.to_path_buf();
         |source| OutputError::File { path, source }
@@ -286,11 +354,14 @@ pub fn write_together<N: AsRef<Path>, B: AsRef<[u8]>>(
     folders.iter().try_for_each(|folder| make_folder(folder))?;
     let part = |(path, bytes): &(PathBuf, &[u8])| Part::holding(bytes, path).map_err(failed(path));
     let parts: Vec<Part> = files.par_iter().map(part).collect::<Result<_, _>>()?;
+    let mut beside = Vec::new();
     for (part, (path, _)) in parts.into_iter().zip(&files) {
-        part.rename(path).map_err(failed(path))?;
+        beside.extend(place(part, path).map_err(failed(path))?);
     }
-    let mut folders = folders.into_iter();
-    folders.try_for_each(|folder| sync_folder(folder).map_err(failed(folder)))
+    for folder in folders {
+        sync_folder(folder).map_err(failed(folder))?;
+    }
+    Ok(beside)
 }
 
 /// Write a value as JSON on one line, as [`write_whole`] does.
@@ -376,18 +447,12 @@ impl Drop for Lock {
 }
 
 /// Whether the locked file is still the one under the lock's name.
-#[cfg(unix)]
 fn is_still(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    match (file.metadata(), fs::metadata(path)) {
-        (Ok(held), Ok(named)) => held.ino() == named.ino() && held.dev() == named.dev(),
+    let held = file.try_clone().and_then(Handle::from_file);
+    match (held, Handle::from_path(path)) {
+        (Ok(held), Ok(named)) => held == named,
         _ => false,
     }
-}
-
-#[cfg(not(unix))]
-fn is_still(_: &File, path: &Path) -> bool {
-    path.exists()
 }
 
 /// Remove what interrupted runs left in a folder under temporary names.
@@ -470,6 +535,26 @@ mod tests {
         drop(held);
         assert_eq!(fs::read_dir(&out).unwrap().count(), 0);
         Lock::take(&out).unwrap();
+    }
+
+    #[test]
+    fn a_lock_whose_file_another_run_has_removed_is_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(LOCK_NAME);
+        let first = File::create(&path).unwrap();
+        assert!(is_still(&first, &path));
+        fs::remove_file(&path).unwrap();
+        assert!(!is_still(&first, &path));
+        // the next run has made one of its own
+        let _second = File::create(&path).unwrap();
+        assert!(!is_still(&first, &path));
+    }
+
+    #[test]
+    fn new_names_keep_the_ending() {
+        let of = |name: &str| new_name(Path::new(name));
+        assert_eq!(of("out/report.pdf"), Path::new("out/report.new.pdf"));
+        assert_eq!(of("report"), Path::new("report.new"));
     }
 
     #[test]

@@ -4,7 +4,9 @@
 //! is used before the file is known to hold it.
 
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use memmap2::Mmap;
@@ -32,25 +34,57 @@ impl ByteOrder {
 
 const DAMAGED: &str = "the file is damaged or was cut short: copy or export it again";
 
-/// A file mapped into memory for reading.
+thread_local! {
+    /// Whether this thread reads files into memory instead of mapping them.
+    static READS: Cell<bool> = const { Cell::new(false) };
+}
+
+/// The greatest file that is read into memory, bytes: a greater one is mapped, as it may have no room there.
+const MOST_READ: u64 = 1 << 30;
+
+/// Do what opens files; they are read into memory instead of mapped. A map keeps other programs from replacing a file on
+/// Windows, and one that they cut short ends the program that has it mapped.
+pub(crate) fn reading<T>(open: impl FnOnce() -> T) -> T {
+    /// Ends the reading, after a panic too.
+    struct Before(bool);
+    impl Drop for Before {
+        fn drop(&mut self) {
+            READS.set(self.0);
+        }
+    }
+    let _before = Before(READS.replace(true));
+    open()
+}
+
+/// A file mapped into memory for reading, or read into it.
 #[derive(Debug)]
 pub(crate) struct FileBytes {
     path: PathBuf,
     file: File,
     map: Option<Mmap>,
-    /// What its text says as bytes, instead of the file's own.
+    /// Bytes in memory: what its text says instead of the file's own, or those of a file that is read.
     held: Option<Vec<u8>>,
 }
 
 impl FileBytes {
-    /// Map a file. An empty file is a valid, empty sequence of bytes.
+    /// Map a file, or read it where [`reading`] asks for that. An empty file is a valid, empty sequence of bytes.
     ///
     /// # Errors
     /// If the system does not open or map it.
     pub(crate) fn open(path: &Path) -> Result<Self, ReadError> {
         let fault = |error: std::io::Error| ReadError::io(path, &error);
-        let file = File::open(path).map_err(fault)?;
+        let mut file = File::open(path).map_err(fault)?;
         let length = file.metadata().map_err(fault)?.len();
+        if READS.get() && length <= MOST_READ {
+            let mut bytes = Vec::with_capacity(to_usize(length));
+            file.read_to_end(&mut bytes).map_err(fault)?;
+            return Ok(Self {
+                path: path.to_path_buf(),
+                file,
+                map: None,
+                held: Some(bytes),
+            });
+        }
         let map = match length {
             0 => None,
             // SAFETY: the map is only read, and readers ask `still_whole` before they do: a file
@@ -317,6 +351,17 @@ mod tests {
         assert_eq!(error.byte, Some(8));
         assert!(error.to_string().contains("2 bytes of a length"), "{error}");
         assert!(bytes.slice(u64::MAX, 2, "data").is_err());
+    }
+
+    #[test]
+    fn a_file_that_is_read_stays_as_it_was() {
+        let (temp, mapped) = file(b"abc");
+        let read = reading(|| FileBytes::open(temp.path())).unwrap();
+        assert!(mapped.map.is_some() && read.map.is_none());
+        std::fs::write(temp.path(), b"x").unwrap();
+        assert_eq!(read.all(), b"abc");
+        assert!(read.still_whole().is_ok() && mapped.still_whole().is_err());
+        assert!(FileBytes::open(temp.path()).unwrap().map.is_some());
     }
 
     #[test]

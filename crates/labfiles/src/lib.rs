@@ -65,7 +65,7 @@ pub use formats::csv::parts::without_run;
 pub use formats::documents::document;
 pub use formats::excel::workbook_tables;
 pub use formats::parquet::guard::is_caught as panic_is_caught;
-pub use formats::{format_titles, open};
+pub use formats::{format_titles, open, open_growing};
 pub use plain::read_text;
 pub use source::{ChannelInfo, Clock, DatasetInfo, ReadError, Samples, Source, StoredType};
 pub use system::said;

@@ -103,20 +103,65 @@ pub(super) fn list_files(
 /// The files that a glob matches, links that lead nowhere among them, so that they are named; folders and hidden files
 /// are left out, as `init` does.
 pub(super) fn expand(folder: &Path, pattern: &str) -> Vec<PathBuf> {
-    let whole = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
-    let mut found = matching(&whole.to_string_lossy());
+    let mut found = match folder.to_str() {
+        Some(text) => {
+            let whole = Path::new(&glob::Pattern::escape(text)).join(pattern);
+            matching(&whole.to_string_lossy())
+        }
+        None => matching_below(folder, pattern),
+    };
     found.retain(|p| p.is_file() || (p.is_symlink() && !p.exists()));
     found
 }
 
+/// What is hidden is matched by no wildcard, and a name by none across folders.
+const VISIBLE: glob::MatchOptions = glob::MatchOptions {
+    case_sensitive: true,
+    require_literal_separator: true,
+    require_literal_leading_dot: true,
+};
+
 /// All that a glob matches but what is hidden, as in a shell; nothing where it is no glob.
 pub fn matching(pattern: &str) -> Vec<PathBuf> {
     let visible = glob::MatchOptions {
-        require_literal_leading_dot: true,
-        ..glob::MatchOptions::new()
+        require_literal_separator: false,
+        ..VISIBLE
     };
     let paths = glob::glob_with(pattern, visible).into_iter().flatten();
     paths.filter_map(Result::ok).collect()
+}
+
+/// Folders below each other that `**` may pass.
+const MOST_DEPTH: usize = 16;
+
+/// All that a glob matches below a folder whose name is no Unicode, which no glob can state.
+fn matching_below(folder: &Path, pattern: &str) -> Vec<PathBuf> {
+    let Ok(wanted) = glob::Pattern::new(pattern) else {
+        return Vec::new();
+    };
+    let depth = match pattern.contains("**") {
+        true => MOST_DEPTH,
+        false => pattern.split('/').count(),
+    };
+    let mut all = Vec::new();
+    collect_below(folder, depth, &mut all);
+    let is_wanted = |path: &PathBuf| {
+        let below = path.strip_prefix(folder).ok();
+        below.is_some_and(|below| wanted.matches_with(&slashes::text(below), VISIBLE))
+    };
+    all.retain(is_wanted);
+    all.sort();
+    all
+}
+
+fn collect_below(folder: &Path, depth: usize, into: &mut Vec<PathBuf>) {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    for path in entries.map(|entry| entry.path()) {
+        if depth > 1 && path.is_dir() {
+            collect_below(&path, depth - 1, into);
+        }
+        into.push(path);
+    }
 }
 
 /// The records of a file, and a note on its datasets that are none.

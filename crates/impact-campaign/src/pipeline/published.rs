@@ -14,8 +14,10 @@ use impact_identification::replay::Compared;
 use impact_report::{CampaignFacts, DataTable, ReportContent, Subject};
 use impact_report::{Phrase, Text};
 use labfiles::ReadError;
+use labfiles_write::output::Beside;
 
-/// Identify from published speeds and write identification.json and report.pdf.
+/// Identify from published speeds and write identification.json and report.pdf; with the parameters, the files of the report
+/// that are beside one that another program holds.
 ///
 /// # Errors
 /// Where the table cannot be read or an output cannot be written.
@@ -24,7 +26,7 @@ pub fn run(
     published: &Published,
     out: &Path,
     command_line: &str,
-) -> Result<Identification, PipelineError> {
+) -> Result<(Identification, Vec<Beside>), PipelineError> {
     let speeds = read(&campaign.folder().join(&published.speeds))?;
     let found = IdentificationFile {
         identification: identify(&speeds, &published.damping_ratio_hypotheses),
@@ -34,8 +36,8 @@ pub fn run(
     let report = report::render(&content, campaign, None)?;
     store::write_resolved(campaign, out)?;
     super::identify::write(&found, out)?;
-    report::write(&report, out)?;
-    Ok(found.identification)
+    let beside = report::write(&report, out)?;
+    Ok((found.identification, beside))
 }
 
 /// The files of a report of what was identified from published speeds.

@@ -19,7 +19,7 @@ use impact_report::{
     CampaignFacts, Format, LivePage, Logo, NominalValue, Report, ReportContent, ReportOptions,
     Subject,
 };
-use labfiles_write::output::write_together;
+use labfiles_write::output::{Beside, write_together_or_beside};
 
 /// Name of the report's file.
 pub const FILE: &str = "report.pdf";
@@ -105,12 +105,13 @@ pub(super) fn page(
     Ok(Report::new(content, &options).html()?)
 }
 
-/// Write the report's files into the results' folder: all appear, or none.
+/// Write the report's files into the results' folder: all appear, or none. Gives those that are beside one of their name
+/// that another program holds, as a viewer does on Windows.
 ///
 /// # Errors
 /// If one cannot be written.
-pub fn write(files: &[ReportFile], out: &Path) -> Result<(), PipelineError> {
-    Ok(write_together(out, files)?)
+pub fn write(files: &[ReportFile], out: &Path) -> Result<Vec<Beside>, PipelineError> {
+    Ok(write_together_or_beside(out, files)?)
 }
 
 /// What the report shows, as plain data.

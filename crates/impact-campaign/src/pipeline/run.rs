@@ -11,6 +11,7 @@ use impact_fit::solver::FitProgress;
 use impact_identification::identify::Identification;
 use impact_records::motion::Observation;
 use impact_report::Format;
+use labfiles_write::output::Beside;
 
 /// Where a run's results go.
 #[derive(Debug, Clone, Copy)]
@@ -37,6 +38,8 @@ pub struct Completed {
     pub observations: Vec<Observation>,
     /// The parameters.
     pub identification: Identification,
+    /// Files of the report that are beside one of their name that another program holds.
+    pub beside: Vec<Beside>,
 }
 
 /// Run everything: campaign to report, all results into a folder.
@@ -53,9 +56,11 @@ pub fn run(
         out, command_line, ..
     } = *destination;
     if let Some(published) = &campaign.published {
+        let (identification, beside) = published::run(campaign, published, out, command_line)?;
         return Ok(Completed {
             observations: Vec::new(),
-            identification: published::run(campaign, published, out, command_line)?,
+            identification,
+            beside,
         });
     }
     let observed = if campaign.records.len() < destination.keep_from {
@@ -101,17 +106,21 @@ pub(super) fn complete(
         .and_then(|()| tables::write(&tables, out))
         .and_then(|()| identify::write(&found, out))
         .and_then(|()| report::write(&report, out))
-        .and_then(|()| store::keep(&observed, &found, out));
-    if let Err(error) = written {
-        return Err(PipelineError::AnswerUnwritten {
-            answer: Box::new(found.identification),
-            source: Box::new(error),
-        });
-    }
+        .and_then(|beside| store::keep(&observed, &found, out).map(|()| beside));
+    let beside = match written {
+        Ok(beside) => beside,
+        Err(error) => {
+            return Err(PipelineError::AnswerUnwritten {
+                answer: Box::new(found.identification),
+                source: Box::new(error),
+            });
+        }
+    };
     checkpoint::remove(out);
     report::remove_live_state(out);
     Ok(Completed {
         observations: observed.observations,
         identification: found.identification,
+        beside,
     })
 }

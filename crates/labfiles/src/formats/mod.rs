@@ -14,7 +14,7 @@ pub(crate) mod wav;
 use std::fs::File;
 use std::path::Path;
 
-use crate::bytes::{read_exact_at, to_usize};
+use crate::bytes::{read_exact_at, reading, to_usize};
 use crate::formats::documents::Document;
 use crate::source::{ReadError, Source};
 
@@ -80,6 +80,15 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         Some(format) => (format.open)(path),
         None => Err(unknown(path, &front)),
     }
+}
+
+/// As [`open`], for a file that another program may be writing: it is not mapped, so that it may be replaced or cut short
+/// meanwhile.
+///
+/// # Errors
+/// Those of [`open`].
+pub fn open_growing(path: &Path) -> Result<Box<dyn Source>, ReadError> {
+    reading(|| open(path))
 }
 
 /// Titles of the formats that [`open`] reads.

@@ -24,7 +24,7 @@ impl Listings {
     /// # Errors
     /// Where it cannot be opened, or holds nothing yet.
     pub(super) fn take(&mut self, path: &Path) -> Result<(), ReadError> {
-        let source = labfiles::open(path)?;
+        let source = labfiles::open_growing(path)?;
         if source.datasets().is_empty() {
             return Err(ReadError::new(
                 path,
@@ -50,7 +50,7 @@ impl Listings {
     pub(super) fn open(&self, path: &Path) -> Result<Box<dyn Source>, ReadError> {
         match self.0.get(path) {
             Some(listed) => Ok(Box::new(Handle(Arc::clone(listed)))),
-            None => labfiles::open(path),
+            None => labfiles::open_growing(path),
         }
     }
 
@@ -81,6 +81,6 @@ impl Source for Handle {
     }
 
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
-        labfiles::open(&self.0.path)?.read(dataset, channels)
+        labfiles::open_growing(&self.0.path)?.read(dataset, channels)
     }
 }
