@@ -1,5 +1,6 @@
 //! Ctrl-C: a clear message, no partial file, exit code 130.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -59,7 +60,7 @@ pub(super) fn asked(folder: PathBuf) -> Arc<AtomicBool> {
             wait_for(&flag);
             asked.store(true, Ordering::SeqCst);
             flag.store(false, Ordering::SeqCst);
-            eprintln!("\nimpactid: the results are being completed; Ctrl-C again ends at once.");
+            say("the results are being completed; Ctrl-C again ends at once.");
             wait_for(&flag);
             end();
         });
@@ -108,6 +109,11 @@ fn when_the_console_is_closed(flag: &Arc<AtomicBool>) -> Option<()> {
     registered.ok().map(drop)
 }
 
+/// Say something where anybody reads it: a terminal that is gone does not keep the program from ending.
+fn say(text: &str) {
+    let _ = writeln!(std::io::stderr(), "\nimpactid: {text}");
+}
+
 fn wait_for(flag: &AtomicBool) {
     while !flag.load(Ordering::SeqCst) {
         std::thread::sleep(Duration::from_millis(20));
@@ -122,11 +128,11 @@ fn end() {
         labfiles_write::output::clear_own_parts(folder);
     }
     let first = folders.first().map(PathBuf::as_path);
-    eprintln!(
-        "\nimpactid: interrupted. Outputs in {} are complete or absent; run the same command again \
+    say(&format!(
+        "interrupted. Outputs in {} are complete or absent; run the same command again \
          (with --resume, if it has that option, it continues).",
         first.unwrap_or(Path::new(".")).display()
-    );
+    ));
     #[expect(
         clippy::exit,
         reason = "the working threads need not be waited for: outputs are whole"

@@ -18,7 +18,7 @@ use impact_campaign::pipeline;
 use impact_records::language::Language;
 use impact_report::Format;
 use impact_report::Paper;
-use labfiles_write::output::Beside;
+use labfiles_write::output::WrittenBeside;
 
 /// Options of the report.
 #[derive(Debug, Clone, Default, Args)]
@@ -248,7 +248,7 @@ pub(super) fn refuse_formats(campaigns: &[std::path::PathBuf]) -> Result<(), Fai
 pub(super) fn print_report_paths(
     campaign: &ResolvedCampaign,
     out: &Path,
-    beside: &[Beside],
+    beside: &[WrittenBeside],
     speech: &Speech,
     verbosity: Verbosity,
 ) {
@@ -271,7 +271,7 @@ pub(super) fn print_report_paths(
 }
 
 /// What is said of a file that is beside one that another program holds.
-pub(super) fn held_by_another(file: &Beside) -> Output {
+pub(super) fn held_by_another(file: &WrittenBeside) -> Output {
     let [held, path] = [&file.wanted, &file.written].map(|path| path.display().to_string());
     Output::Beside(held, path)
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::PathBuf;
-use std::process::Stdio;
+use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
 use labfiles_write::output::Lock;
@@ -29,21 +29,17 @@ fn a_folder_whose_lock_another_holds_is_refused_until_it_is_let_go() {
     assert!(hidden(&lab.path("out")).is_empty());
 }
 
-/// Start a run, and interrupt it when it has its folder; the exit code, and what was said.
-fn interrupted(lab: &Lab) -> (Option<i32>, String) {
+/// A run with its messages in a pipe, as soon as it has its folder.
+fn begun(lab: &Lab) -> Child {
     let mut command = program(lab, &["run", "campaign.toml", "--out", "out"]);
     let command = interruptible(&mut command).stderr(Stdio::piped());
-    let mut run = command.spawn().expect("the program starts");
+    let run = command.spawn().expect("the program starts");
     let begin = Instant::now();
     while !lab.path("out/.impactid.lock").exists() {
         assert!(begin.elapsed() < Duration::from_secs(300), "it never began");
         std::thread::sleep(Duration::from_millis(5));
     }
-    interrupt(&run);
-    let mut said = String::new();
-    let words = run.stderr.as_mut().expect("its words");
-    std::io::Read::read_to_string(words, &mut said).expect("text");
-    (run.wait().expect("it ends").code(), said)
+    run
 }
 
 #[test]
@@ -51,7 +47,12 @@ fn a_run_that_is_interrupted_says_so_and_leaves_nothing_half_written() {
     let lab = campaign(66);
     fs::create_dir(lab.path("out")).expect("a folder");
     lab.write("out/report.pdf", "the report of yesterday");
-    let (code, said) = interrupted(&lab);
+    let mut run = begun(&lab);
+    interrupt(&run);
+    let mut said = String::new();
+    let words = run.stderr.as_mut().expect("its words");
+    std::io::Read::read_to_string(words, &mut said).expect("text");
+    let code = run.wait().expect("it ends").code();
     assert_eq!(code, Some(130), "{said}");
     assert!(said.contains("interrupted"), "{said}");
     assert_eq!(lab.read("out/report.pdf"), "the report of yesterday");
@@ -59,6 +60,26 @@ fn a_run_that_is_interrupted_says_so_and_leaves_nothing_half_written() {
     assert_eq!(left.keys().collect::<Vec<_>>(), ["report.pdf"]);
     let parts = hidden(&lab.path("out"));
     assert!(parts.iter().all(|p| !p.contains("part")), "{parts:?}");
+}
+
+#[test]
+fn a_run_whose_terminal_is_gone_ends_all_the_same() {
+    let lab = campaign(66);
+    let mut run = begun(&lab);
+    drop(run.stderr.take());
+    interrupt(&run);
+    let begin = Instant::now();
+    let code = loop {
+        if let Some(status) = run.try_wait().expect("its state") {
+            break status.code();
+        }
+        if begin.elapsed() > Duration::from_secs(300) {
+            run.kill().expect("it is killed");
+            panic!("it never ended");
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    assert_eq!(code, Some(130));
 }
 
 /// A file that cannot be replaced.

@@ -140,14 +140,14 @@ impl Part {
     }
 
     /// Put the file in place, or where another program holds the one that is there, beside it.
-    fn rename_or_beside(mut self, target: &Path) -> io::Result<Option<Beside>> {
+    fn rename_or_beside(mut self, target: &Path) -> io::Result<Option<WrittenBeside>> {
         match fs::rename(&self.path, target) {
             Err(error) if is_held(&error, target) => {
                 let written = new_name(target);
                 fs::rename(&self.path, &written).map_err(|_| error)?;
                 self.placed = true;
                 let wanted = target.to_path_buf();
-                Ok(Some(Beside { wanted, written }))
+                Ok(Some(WrittenBeside { wanted, written }))
             }
             Err(error) => Err(error),
             Ok(()) => {
@@ -160,7 +160,7 @@ impl Part {
 
 /// A file that was written under another name, because another program holds the one of its own name.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Beside {
+pub struct WrittenBeside {
     /// Its own name; what was there stays.
     pub wanted: PathBuf,
     /// The name it has.
@@ -332,7 +332,7 @@ pub fn write_together<N: AsRef<Path>, B: AsRef<[u8]>>(
 pub fn write_together_or_beside<N: AsRef<Path>, B: AsRef<[u8]>>(
     folder: &Path,
     files: &[(N, B)],
-) -> Result<Vec<Beside>, OutputError> {
+) -> Result<Vec<WrittenBeside>, OutputError> {
     together(folder, files, Part::rename_or_beside)
 }
 
@@ -340,8 +340,8 @@ pub fn write_together_or_beside<N: AsRef<Path>, B: AsRef<[u8]>>(
 fn together<N: AsRef<Path>, B: AsRef<[u8]>>(
     folder: &Path,
     files: &[(N, B)],
-    place: impl Fn(Part, &Path) -> io::Result<Option<Beside>>,
-) -> Result<Vec<Beside>, OutputError> {
+    place: impl Fn(Part, &Path) -> io::Result<Option<WrittenBeside>>,
+) -> Result<Vec<WrittenBeside>, OutputError> {
     let failed = |path: &Path| {
         let path = path.to_path_buf();
         |source| OutputError::File { path, source }

@@ -139,9 +139,10 @@ fn matching_below(folder: &Path, pattern: &str) -> Vec<PathBuf> {
     let Ok(wanted) = glob::Pattern::new(pattern) else {
         return Vec::new();
     };
-    let depth = match pattern.contains("**") {
-        true => MOST_DEPTH,
-        false => pattern.split('/').count(),
+    let depth = if pattern.contains("**") {
+        MOST_DEPTH
+    } else {
+        pattern.split('/').count()
     };
     let mut all = Vec::new();
     collect_below(folder, depth, &mut all);

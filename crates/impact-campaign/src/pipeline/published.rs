@@ -14,7 +14,7 @@ use impact_identification::replay::Compared;
 use impact_report::{CampaignFacts, DataTable, ReportContent, Subject};
 use impact_report::{Phrase, Text};
 use labfiles::ReadError;
-use labfiles_write::output::Beside;
+use labfiles_write::output::WrittenBeside;
 
 /// Identify from published speeds and write identification.json and report.pdf; with the parameters, the files of the report
 /// that are beside one that another program holds.
@@ -26,7 +26,7 @@ pub fn run(
     published: &Published,
     out: &Path,
     command_line: &str,
-) -> Result<(Identification, Vec<Beside>), PipelineError> {
+) -> Result<(Identification, Vec<WrittenBeside>), PipelineError> {
     let speeds = read(&campaign.folder().join(&published.speeds))?;
     let found = IdentificationFile {
         identification: identify(&speeds, &published.damping_ratio_hypotheses),

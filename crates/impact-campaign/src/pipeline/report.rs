@@ -19,7 +19,7 @@ use impact_report::{
     CampaignFacts, Format, LivePage, Logo, NominalValue, Report, ReportContent, ReportOptions,
     Subject,
 };
-use labfiles_write::output::{Beside, write_together_or_beside};
+use labfiles_write::output::{WrittenBeside, write_together_or_beside};
 
 /// Name of the report's file.
 pub const FILE: &str = "report.pdf";
@@ -110,7 +110,7 @@ pub(super) fn page(
 ///
 /// # Errors
 /// If one cannot be written.
-pub fn write(files: &[ReportFile], out: &Path) -> Result<Vec<Beside>, PipelineError> {
+pub fn write(files: &[ReportFile], out: &Path) -> Result<Vec<WrittenBeside>, PipelineError> {
     Ok(write_together_or_beside(out, files)?)
 }
 

@@ -11,7 +11,7 @@ use impact_fit::solver::FitProgress;
 use impact_identification::identify::Identification;
 use impact_records::motion::Observation;
 use impact_report::Format;
-use labfiles_write::output::Beside;
+use labfiles_write::output::WrittenBeside;
 
 /// Where a run's results go.
 #[derive(Debug, Clone, Copy)]
@@ -39,7 +39,7 @@ pub struct Completed {
     /// The parameters.
     pub identification: Identification,
     /// Files of the report that are beside one of their name that another program holds.
-    pub beside: Vec<Beside>,
+    pub beside: Vec<WrittenBeside>,
 }
 
 /// Run everything: campaign to report, all results into a folder.

@@ -18,8 +18,8 @@ const FEWEST: usize = 4;
 /// That the names of files state lengths, which may be their clearances; none where few do, or all state one.
 pub(super) fn note(files: &[&Path]) -> Option<String> {
     let stated = files.iter().filter_map(|file| {
-        let (number, unit, _) = quantity(&lower(file), &LENGTHS)?;
-        Some(format!("{number} {unit}"))
+        let length = quantity(&lower(file), &LENGTHS)?;
+        Some(format!("{} {}", length.number, length.unit))
     });
     let stated: Vec<String> = stated.collect();
     let mut distinct = stated.clone();
@@ -43,8 +43,8 @@ pub(super) fn table(files: &[&Path]) -> Option<String> {
     let mut text = String::from("file,drive_frequency_hz,clearance_mm,sweep\n");
     for file in files {
         let name = lower(file);
-        let (_, _, clearance_mm) = quantity(&name, &LENGTHS)?;
-        let (_, _, frequency_hz) = quantity(&name, &FREQUENCIES)?;
+        let clearance_mm = quantity(&name, &LENGTHS)?.value;
+        let frequency_hz = quantity(&name, &FREQUENCIES)?.value;
         let path = slashed(file).replace('"', "\"\"");
         let sweep = sweep(&name).unwrap_or_default();
         let _ = writeln!(text, "\"{path}\",{frequency_hz},{clearance_mm},{sweep}");
@@ -64,8 +64,17 @@ fn sweep(name: &str) -> Option<String> {
     words.find(|word| ["up", "down"].contains(&word.as_str()))
 }
 
-/// The first number in a name with one of the units behind it: as written, its unit, and its value in the first of them.
-fn quantity<'a>(name: &str, units: &[(&'a str, f64)]) -> Option<(String, &'a str, f64)> {
+/// A quantity that a name states.
+struct Named<'a> {
+    /// As written.
+    number: String,
+    unit: &'a str,
+    /// In the first of the units that were looked for.
+    value: f64,
+}
+
+/// The first number in a name with one of the units behind it.
+fn quantity<'a>(name: &str, units: &[(&'a str, f64)]) -> Option<Named<'a>> {
     units.iter().find_map(|(unit, factor)| {
         name.match_indices(unit).find_map(|(at, _)| {
             let ends = !name[at + unit.len()..].starts_with(char::is_alphabetic);
@@ -74,7 +83,11 @@ fn quantity<'a>(name: &str, units: &[(&'a str, f64)]) -> Option<(String, &'a str
             let number = &before[before.trim_end_matches(digit).len()..];
             let number = number.trim_start_matches(['.', ',', 'p']);
             let value: f64 = number.replace([',', 'p'], ".").parse().ok()?;
-            ends.then(|| (number.to_owned(), *unit, factor * value))
+            ends.then(|| Named {
+                number: number.to_owned(),
+                unit,
+                value: factor * value,
+            })
         })
     })
 }
@@ -101,8 +114,9 @@ mod tests {
         ];
         let told = of(&named).expect("a note");
         assert!(told.contains("1.65 mm, 3.3 mm"), "{told}");
-        let (number, unit, value) = quantity("spalt_2p4mm_ab", &LENGTHS).expect("a length");
-        assert_eq!((number.as_str(), unit, value), ("2p4", "mm", 2.4));
+        let length = quantity("spalt_2p4mm_ab", &LENGTHS).expect("a length");
+        let found = (length.number.as_str(), length.unit, length.value);
+        assert_eq!(found, ("2p4", "mm", 2.4));
         assert_eq!(of(&["r1.csv", "r2.csv", "r3.csv", "r4.csv"]), None);
         assert_eq!(of(&["x_5mm_1", "x_5mm_2", "x_5mm_3", "x_5mm_4"]), None);
         assert_eq!(of(&["hammer1", "hammer2", "commute 3", "3 mmol"]), None);
