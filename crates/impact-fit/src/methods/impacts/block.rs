@@ -79,6 +79,12 @@ impl SpeedPair {
         self.errors_m_s[0].max(self.errors_m_s[1])
     }
 
+    /// Of masses that move alike: gains cancel from the ratio of their speeds, and what noise leaves of them would carry the
+    /// errors of the law of contact into the gains.
+    pub fn of_masses_alike(&mut self) {
+        self.of_masses = [None, None];
+    }
+
     /// Read the speeds with the delays of the channels that waveforms tell.
     fn delay(&mut self, parameters: &Parameters) {
         let lags = self.lags.iter().flatten();
