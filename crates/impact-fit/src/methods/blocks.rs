@@ -118,6 +118,9 @@ impl Blocks {
             half_sample_s: half_sample_s(observations),
             progress: evidence.progress.cloned().unwrap_or_default(),
         };
+        if let Some([asymmetry, _]) = evidence.nominal.drive_asymmetry {
+            blocks.resonance.without_undriven(asymmetry);
+        }
         blocks.place(&places(observations), &groups::groups(observations));
         blocks.give_gaps_errors(evidence.nominal.clearance_uncertainty_m);
         let reach_m = reach_m(observations);

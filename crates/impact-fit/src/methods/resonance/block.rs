@@ -130,6 +130,10 @@ pub struct ResonanceBlock {
     pub pickups: Pickups,
 }
 
+/// Logarithm of the ratio of both drives from which friction may hold the lesser: a fiftieth, twice the strongest friction that
+/// is described.
+const HELD: f64 = 4.0;
+
 impl ResonanceBlock {
     /// Collect the impactless records that may be used.
     pub fn new(rig: RigKind, observations: &[Observation], relative_error: f64) -> Self {
@@ -198,6 +202,20 @@ impl ResonanceBlock {
             point.shared = self.whitening(point);
         }
         self.points = points;
+    }
+
+    /// Leave out the responses of a mass that is driven by less than what dry friction may hold, by ln(`F_x`/`F_y`): the friction
+    /// is described as a small part of the drive.
+    pub fn without_undriven(&mut self, drive_asymmetry: f64) {
+        if drive_asymmetry.abs() < HELD {
+            return;
+        }
+        for point in &mut self.points {
+            let driven = |r: &Response| r.role.is_of_y() != (drive_asymmetry > 0.0);
+            point.responses.retain(driven);
+        }
+        self.points.retain(|point| !point.responses.is_empty());
+        self.allow(self.relative_error);
     }
 
     /// Find at good parameters what the frequency of the drive changes in every record.
