@@ -634,16 +634,13 @@ message_table! { "finding": Finding, key = template_key;
     Self::MomentumNotConserved { measured, stated, .. } =>
         measured = Value::Number(*measured, 3),
         stated = Value::Number(*stated, 3);
-    Self::BeyondModel { effect, strength, standard_error, speed_m_s, .. } =>
-        strength = Value::Number(
-            effect.unit().factor() * strength.abs(),
-            decimals_for(half_width(*effect, *standard_error)),
-        ),
-        error = Value::Number(
-            half_width(*effect, *standard_error),
-            decimals_for(half_width(*effect, *standard_error)),
-        ),
+    Self::BeyondModel { effect: Effect::RestitutionSpeed, strength, standard_error, speed_m_s, .. } =>
+        strength = of_effect(Effect::RestitutionSpeed, strength.abs(), *standard_error),
+        error = of_effect(Effect::RestitutionSpeed, 1.96 * standard_error, *standard_error),
         speed = Value::Number(*speed_m_s, 3);
+    Self::BeyondModel { effect, strength, standard_error, .. } =>
+        strength = of_effect(*effect, strength.abs(), *standard_error),
+        error = of_effect(*effect, 1.96 * standard_error, *standard_error);
     Self::Misfit { method, remark } | Self::Noticed { method, remark } =>
         method = Value::Message(method),
         remark = Value::Message(remark);
@@ -702,9 +699,13 @@ fn millimetres(metres: f64) -> Value<'static> {
     Value::Number(1e3 * metres, 3)
 }
 
-/// Half width of the 95 % interval of an effect's strength, in its unit.
-fn half_width(effect: Effect, standard_error: f64) -> f64 {
-    1.96 * effect.unit().factor() * standard_error
+/// A strength of an effect in its unit, with decimals by which the half width of its 95 % interval has two digits.
+fn of_effect(effect: Effect, strength: f64, standard_error: f64) -> Value<'static> {
+    let factor = effect.unit().factor();
+    Value::Number(
+        factor * strength,
+        decimals_for(1.96 * factor * standard_error),
+    )
 }
 
 /// Rounded to two significant digits.

@@ -86,7 +86,11 @@ pub(super) fn is_whole_gap(bare: &str) -> bool {
 /// Whether an attribute's name says so, with its unit or without and behind the structs that hold it.
 pub(in super::super) fn states_whole_gaps(name: &str) -> bool {
     let field = name.rsplit('.').next().unwrap_or(name);
-    is_whole_gap(units::split_unit(field).0)
+    // a full stop ends an abbreviation too
+    [name, field]
+        .map(|words| units::split_unit(words).0)
+        .into_iter()
+        .any(is_whole_gap)
 }
 
 /// The headings of which a row is the next one: it names columns that the rows above do not name, or their units, and
