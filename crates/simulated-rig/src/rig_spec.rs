@@ -137,12 +137,16 @@ impl Effect {
         }
     }
 
-    /// Whether the realistic rig has it. Of the others the fit knows the drift of the gaps; the rest break
-    /// its assumptions.
+    /// Whether the realistic rig has it. Of the others the fit knows the drift of the gaps, and unequal forces, of which every
+    /// rig has some; the rest break its assumptions.
     fn is_realistic(self) -> bool {
         !matches!(
             self,
-            Self::GapDrift | Self::Backlash | Self::Compression | Self::Restarts
+            Self::GapDrift
+                | Self::Backlash
+                | Self::Compression
+                | Self::Restarts
+                | Self::DriveAsymmetry
         )
     }
 
