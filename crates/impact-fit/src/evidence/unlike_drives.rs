@@ -42,7 +42,7 @@ fn response_ratio(o: &Observation) -> Option<f64> {
     let rate = TAU * o.frequency_hz()?;
     let amplitude = |of_y: bool| {
         let own = o.response.iter().find(|r| r.role.is_of_y() == of_y)?;
-        let derivative = i32::try_from(own.role.derivative()?).ok()?;
+        let derivative = i32::from(own.role.derivative()?);
         // what is not seen is not more than its error
         Some(own.amplitude().max(own.error) / rate.powi(derivative))
     };
