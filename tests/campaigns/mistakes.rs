@@ -5,7 +5,8 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{impactid, json};
+use super::{found_in, impactid, json};
+use crate::support::assert_holds_the_truth;
 
 /// A simulated campaign with R = 0.75 in the folder `rig`, and the text of one of its files.
 struct Simulated {
@@ -33,20 +34,9 @@ impl Simulated {
         let after = change(&before);
         assert_ne!(before, after);
         fs::write(&file, after).expect("the changed file");
-        let run = [
-            "-q",
-            "run",
-            "rig/campaign.toml",
-            "--out",
-            "out",
-            "--format",
-            "csv",
-        ];
-        let ran = impactid(self.path(), &run);
-        // 1 says that not all is identified
-        assert!(ran.code <= 1, "{}", ran.said);
+        let (_, found) = found_in(self.path(), "rig/campaign.toml");
         fs::write(&file, before).expect("the file as before");
-        json(&self.path().join("out/identification.json"))
+        found
     }
 }
 
@@ -133,18 +123,7 @@ fn valid_a_gap_that_is_far_off_is_named_with_its_true_value() {
     let wrong = runs.replace(",5,", ",7,");
     assert_ne!(runs, wrong);
     fs::write(folder.path().join("runs.csv"), wrong).expect("the run table");
-    let run = [
-        "-q",
-        "run",
-        "campaign.toml",
-        "--out",
-        "out",
-        "--format",
-        "csv",
-    ];
-    let ran = impactid(folder.path(), &run);
-    assert!(ran.code <= 1, "{}", ran.said);
-    let found = json(&folder.path().join("out/identification.json"));
+    let (_, found) = found_in(folder.path(), "campaign.toml");
     let mut named = found["suspicions"].as_array().expect("a list").iter();
     let gap = named
         .find(|s| s["kind"] == "wrong_clearance")
@@ -221,20 +200,7 @@ fn valid_a_mass_that_is_driven_alone_is_named_and_all_holds() {
     assert_eq!(found["verdict"]["kind"], "identified");
     assert_eq!(found["suspicions"].as_array().map(Vec::len), Some(1));
     let truth = json(&simulated.path().join("rig/truth.json"));
-    for parameter in [
-        "restitution",
-        "natural_frequency_hz",
-        "damping_ratio",
-        "static_deflection_m",
-    ] {
-        let interval = &found["joint"][parameter]["interval95"];
-        let [low, high] = [0, 1].map(|i| interval[i].as_f64().expect("an interval"));
-        let value = truth[parameter].as_f64().expect("the truth");
-        assert!(
-            low < value && value < high,
-            "{parameter}: {low} {value} {high}"
-        );
-    }
+    assert_holds_the_truth(&found, &truth);
 }
 
 #[test]

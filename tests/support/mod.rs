@@ -252,3 +252,21 @@ pub(crate) fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     }
     all
 }
+
+/// That the joint interval of each parameter of an identification holds the truth of a simulated campaign.
+pub(crate) fn assert_holds_the_truth(found: &serde_json::Value, truth: &serde_json::Value) {
+    for parameter in [
+        "restitution",
+        "natural_frequency_hz",
+        "damping_ratio",
+        "static_deflection_m",
+    ] {
+        let interval = &found["joint"][parameter]["interval95"];
+        let [low, high] = [0, 1].map(|i| interval[i].as_f64().expect("an interval"));
+        let value = truth[parameter].as_f64().expect("a number");
+        assert!(
+            low < value && value < high,
+            "{parameter}: {value} not in {interval}"
+        );
+    }
+}

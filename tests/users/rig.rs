@@ -5,7 +5,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::support::Lab;
+use crate::support::{Lab, assert_holds_the_truth};
 
 /// Samples a second of the simulated rig.
 pub(super) const RATE_HZ: f64 = 2000.0;
@@ -97,18 +97,5 @@ pub(super) fn assert_the_answer_is_true(lab: &Lab, records: usize) {
     assert!(lab.path("results/report.pdf").exists());
     let read = |name: &str| -> Value { serde_json::from_str(&lab.read(name)).expect("JSON") };
     let (found, truth) = (read("results/identification.json"), read("rig/truth.json"));
-    for parameter in [
-        "restitution",
-        "natural_frequency_hz",
-        "damping_ratio",
-        "static_deflection_m",
-    ] {
-        let interval = &found["joint"][parameter]["interval95"];
-        let [low, high] = [0, 1].map(|i| interval[i].as_f64().expect("an interval"));
-        let value = truth[parameter].as_f64().expect("a number");
-        assert!(
-            low <= value && value <= high,
-            "{parameter}: {value} not in {interval}"
-        );
-    }
+    assert_holds_the_truth(&found, &truth);
 }

@@ -124,7 +124,7 @@ impl Part {
     }
 
     /// Flush all that was written to the disk, then give the file its name.
-    fn place(self, writer: BufWriter<File>, target: &Path) -> io::Result<()> {
+    fn place(mut self, writer: BufWriter<File>, target: &Path) -> io::Result<()> {
         let file = writer
             .into_inner()
             .map_err(io::IntoInnerError::into_error)?;
@@ -133,7 +133,7 @@ impl Part {
         target.parent().map_or(Ok(()), sync_folder)
     }
 
-    fn rename(mut self, target: &Path) -> io::Result<()> {
+    fn rename(&mut self, target: &Path) -> io::Result<()> {
         fs::rename(&self.path, target)?;
         self.placed = true;
         Ok(())
@@ -141,19 +141,14 @@ impl Part {
 
     /// Put the file in place, or where another program holds the one that is there, beside it.
     fn rename_or_beside(mut self, target: &Path) -> io::Result<Option<WrittenBeside>> {
-        match fs::rename(&self.path, target) {
+        match self.rename(target) {
             Err(error) if is_held(&error, target) => {
                 let written = new_name(target);
-                fs::rename(&self.path, &written).map_err(|_| error)?;
-                self.placed = true;
+                self.rename(&written).map_err(|_| error)?;
                 let wanted = target.to_path_buf();
                 Ok(Some(WrittenBeside { wanted, written }))
             }
-            Err(error) => Err(error),
-            Ok(()) => {
-                self.placed = true;
-                Ok(None)
-            }
+            placed => placed.map(|()| None),
         }
     }
 }
@@ -321,7 +316,10 @@ pub fn write_together<N: AsRef<Path>, B: AsRef<[u8]>>(
     folder: &Path,
     files: &[(N, B)],
 ) -> Result<(), OutputError> {
-    together(folder, files, |part, path| part.rename(path).map(|()| None)).map(drop)
+    together(folder, files, |mut part, path| {
+        part.rename(path).map(|()| None)
+    })
+    .map(drop)
 }
 
 /// As [`write_together`]; a file whose name is that of one that another program holds gets the name `NAME.new.ENDING`

@@ -178,23 +178,10 @@ fn aligned_in_all(
 /// follows it.
 fn scale(campaign: &ResolvedCampaign, observations: &mut [Observation]) {
     scale_drives(observations);
-    let contradicts = |o: &&Observation| o.has_flag(FlagCode::DriveAmplitudeContradicts);
-    if observations.iter().filter(contradicts).count() < FEWEST_CONTRADICTING {
-        return;
-    }
-    let impactless = observations.iter().filter(|o| !o.response.is_empty());
-    let measured: Vec<Observation> = impactless.cloned().collect();
-    let mut stated = measured.clone();
-    state_drives(&mut stated);
-    let [stated, measured] = [&stated, &measured].map(|of| evidence::evidence(campaign, of, &[]));
-    if follow_stated(&stated, &measured) {
+    if follow_stated(&evidence::evidence(campaign, observations, &[])) {
         state_drives(observations);
     }
 }
-
-/// Records whose measured drives contradict the stated ones from which these may be those of the motion: of fewer a row of the
-/// run table is wrong.
-const FEWEST_CONTRADICTING: usize = 3;
 
 /// Let the drive amplitudes follow the law of the force that the resonance curve shows, if it shows one, about the f0
 /// that all records tell: they tell it better than the curve, which the power bends.

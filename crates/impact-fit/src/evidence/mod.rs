@@ -97,3 +97,23 @@ pub struct Evidence<'a> {
     /// What counts the iterations of the fits, if anything shows them.
     pub progress: Option<&'a FitProgress>,
 }
+
+impl<'a> Evidence<'a> {
+    /// The records without impacts.
+    pub(crate) fn impactless(&self) -> Vec<Observation> {
+        let all = self.observations.iter();
+        all.filter(|o| !o.response.is_empty()).cloned().collect()
+    }
+
+    /// The same of other records, without brackets.
+    pub(crate) fn of_records<'b>(&self, observations: &'b [Observation]) -> Evidence<'b>
+    where
+        'a: 'b,
+    {
+        Evidence {
+            observations,
+            brackets: &[],
+            ..*self
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! Drives of two masses that are unlike by far, down to one mass that is driven alone: by the responses of impactless records,
 //! whose channels the speeds at impacts compare, as these change both masses alike whatever drives them.
 
-use impact_records::event::{Impact, RigKind};
+use impact_records::event::{Impact, MassSpeeds, RigKind};
 use impact_records::motion::{Motion, Observation};
 use impact_records::signal::robust;
 use std::f64::consts::TAU;
@@ -52,14 +52,13 @@ fn response_ratio(o: &Observation) -> Option<f64> {
 
 /// Logarithm of the ratio by which an impact changes both speeds, x over y.
 fn change_ratio(impact: &Impact) -> Option<f64> {
-    let [x, y] = [impact.x?, impact.y?].map(|m| m.before_m_s - m.after_m_s);
+    let [x, y] = [impact.x?, impact.y?].map(MassSpeeds::jump_m_s);
     Some((x / y).ln()).filter(|ratio| ratio.is_finite())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impact_records::event::MassSpeeds;
     use impact_records::motion::Response;
     use impact_records::record::Role;
 

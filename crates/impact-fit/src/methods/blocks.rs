@@ -101,11 +101,9 @@ impl Blocks {
         let (mut impact, impact_outliers) = impacts(rig, observations, impact_scatter);
         // records of springs whose drive was not recorded have no free flights
         impact.free &= evidence.nominal.flight == FlightKind::ConstantForce;
-        if evidence.nominal.drive_asymmetry.is_none() {
-            impact.pairs.iter_mut().for_each(SpeedPair::of_masses_alike);
-        }
         let open_gains = evidence.nominal.open_gains;
-        impact.assumed_gains = open_gains.map(|gain| gain.map_or(1.0, f64::exp));
+        let unlike = evidence.nominal.drive_asymmetry;
+        impact.read_by = unlike.map(|_| open_gains.map(|gain| gain.map_or(1.0, f64::exp)));
         let mut blocks = Self {
             resonance: ResonanceBlock::new(rig, observations, relative_error),
             trajectory: TrajectoryBlock::new(rig, observations, relative_error),

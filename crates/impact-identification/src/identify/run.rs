@@ -651,8 +651,7 @@ impl<'a> IdentificationRun<'a> {
         };
         let weights = &self.found.weights;
         let start = self.found.start();
-        let problem_with =
-            |nominal: &Nominal| joint::problem(blocks, start, weights, nominal, self.of_brackets());
+        let problem = joint::problem(blocks, start, weights, &constant, self.of_brackets())?;
         let present = joint::present(blocks, &self.found.weights);
         let search_in = |problem, at| {
             let fitted = Fitted {
@@ -664,17 +663,17 @@ impl<'a> IdentificationRun<'a> {
             };
             Search::new(self.evidence, fitted)
         };
-        let problem = problem_with(&constant)?;
         let over_speed = Coordinate::Effect(Effect::RestitutionSpeed);
         let at = joint.fit.parameters.with(over_speed, 0.0);
         let search = search_in(&problem, &at);
+        let groups = cause.is_none_or(|cause| cause == Cause::Contact);
         // where no speeds at impacts tell R over the speed from groups of records, the fit has to
-        let beside_speed = problem_with(nominal).filter(|_| !blocks.impact.tells());
+        let by_fit = groups && !blocks.impact.tells();
+        let beside_speed = by_fit.then(|| self.problem(start)).flatten();
         let of_groups = match &beside_speed {
             Some(problem) => &search_in(problem, &joint.fit.parameters),
             None => &search,
         };
-        let groups = cause.is_none_or(|cause| cause == Cause::Contact);
         let between_groups = || groups.then(|| of_groups.between_groups()).flatten();
         let in_no_order = || groups.then(|| of_groups.in_no_order()).flatten();
         let of_gain = search.gain_in_time();

@@ -67,7 +67,7 @@ impl Drift {
             drift.slopes = true;
             for (i, by_shift) in drift.by_shift.iter_mut().enumerate() {
                 if let Some(s) = speeds(velocity, arcs, i, plain[i]) {
-                    *by_shift += per_sample * (s.before_m_s - s.after_m_s);
+                    *by_shift += per_sample * s.jump_m_s();
                 }
             }
         }

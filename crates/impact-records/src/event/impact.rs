@@ -116,6 +116,11 @@ pub struct Lag {
 }
 
 impl MassSpeeds {
+    /// By how much the impact changes the speed, m/s.
+    pub fn jump_m_s(self) -> f64 {
+        self.before_m_s - self.after_m_s
+    }
+
     fn over(self, gain: f64) -> Self {
         Self {
             before_m_s: self.before_m_s / gain,

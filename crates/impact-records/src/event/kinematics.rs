@@ -50,7 +50,7 @@ impl Series {
             return;
         };
         let left = shown_steps.floor();
-        let jump = speeds.before_m_s - speeds.after_m_s;
+        let jump = speeds.jump_m_s();
         let area = jump * (time_steps - left - 0.5) / rate_hz;
         let step = std::f64::consts::TAU * corner_hz * area;
         for value in self.values.iter_mut().skip(whole::index(left) + 1) {

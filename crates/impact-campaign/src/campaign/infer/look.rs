@@ -107,8 +107,7 @@ fn count_strikes(found: &Detection) -> usize {
         let before = impact.approach_speed_before_m_s.unwrap_or(0.0);
         let after = impact.approach_speed_after_m_s.unwrap_or(0.0);
         let error = impact.speed_error_m_s().unwrap_or(f64::INFINITY);
-        let pushed =
-            |mass: Option<MassSpeeds>| mass.is_some_and(|m| m.before_m_s - m.after_m_s > error);
+        let pushed = |mass: Option<MassSpeeds>| mass.is_some_and(|m| m.jump_m_s() > error);
         let turned = before > 0.0 && after < 0.0 && before - after > STRIKES * error;
         turned && pushed(impact.x) && pushed(impact.y)
     };

@@ -79,12 +79,6 @@ impl SpeedPair {
         self.errors_m_s[0].max(self.errors_m_s[1])
     }
 
-    /// Of masses that move alike: gains cancel from the ratio of their speeds, and what noise leaves of them would carry the
-    /// errors of the law of contact into the gains.
-    pub fn of_masses_alike(&mut self) {
-        self.of_masses = [None, None];
-    }
-
     /// Read the speeds with the delays of the channels that waveforms tell.
     fn delay(&mut self, parameters: &Parameters) {
         let lags = self.lags.iter().flatten();
@@ -105,17 +99,23 @@ impl SpeedPair {
         self.by_time_m_s[1] + restitution * self.by_time_m_s[0]
     }
 
-    /// The closing speed before and the parting speed after, m/s, with corners, pick-up and gains over those that they were
-    /// read by.
-    fn read(&self, parameters: &Parameters, assumed_gains: &[f64; CHANNELS]) -> [f64; 2] {
+    /// The closing speed before and the parting speed after, m/s, with corners, pick-up and, where they count, gains over those
+    /// that the speeds were read by.
+    fn read(&self, parameters: &Parameters, read_by: Option<&[f64; CHANNELS]>) -> [f64; 2] {
         let shift = self.shift(parameters);
         let [mut before, mut after] = [self.before_m_s + shift, self.after_m_s - shift];
-        for own in self.of_masses.iter().flatten() {
-            let off = assumed_gains[own.gain] / parameters.gains[own.gain] - 1.0;
+        for (gains, own) in read_by.into_iter().flat_map(|gains| self.each(gains)) {
+            let off = gains / parameters.gains[own.gain] - 1.0;
             before += off * own.toward_m_s[0];
             after -= off * own.toward_m_s[1];
         }
         [before, after]
+    }
+
+    /// The speeds of each mass with the gain that they were read by.
+    fn each(&self, read_by: &[f64; CHANNELS]) -> impl Iterator<Item = (f64, OwnSpeeds)> {
+        let own = self.of_masses.iter().flatten();
+        own.map(|own| (read_by[own.gain], *own))
     }
 
     /// Change of the closing speed, m/s, by corners other than the stated ones.
@@ -253,8 +253,10 @@ pub struct ImpactBlock {
     pub relative_error: f64,
     /// The median approach speed, m/s, at which R is the campaign's; 0 without impacts.
     pub typical_approach_m_s: f64,
-    /// The gains over the stated ones by which the speeds were read.
-    pub assumed_gains: [f64; CHANNELS],
+    /// The gains over the stated ones by which the speeds were read, where gains count; `None` of masses that move alike: gains
+    /// cancel from the ratio of their speeds, and what noise leaves of them would carry the errors of the law of contact into
+    /// the gains.
+    pub read_by: Option<[f64; CHANNELS]>,
     /// On which corners the speeds depend, by their index.
     corners: [bool; CHANNELS],
     /// Whether the impacts are between free flights, of records without a drive.
@@ -378,7 +380,7 @@ impl ImpactBlock {
             typical_approach_m_s: impact_records::signal::robust::median(&speeds).unwrap_or(0.0),
             pairs,
             relative_error,
-            assumed_gains: [1.0; CHANNELS],
+            read_by: None,
             corners,
             free: false,
             first_value_only: None,
@@ -441,10 +443,12 @@ impl ImpactBlock {
     /// The speeds as they are with the corners and gains that a fit found.
     #[must_use]
     pub fn corrected(&self, parameters: &Parameters) -> Self {
-        let mut block = self.clone();
+        let mut block = Self {
+            read_by: None,
+            ..self.clone()
+        };
         for pair in &mut block.pairs {
-            [pair.before_m_s, pair.after_m_s] = pair.read(parameters, &self.assumed_gains);
-            pair.of_masses = [None, None];
+            [pair.before_m_s, pair.after_m_s] = pair.read(parameters, self.read_by.as_ref());
             pair.corner_shifts = [None, None];
             pair.picked_up_m_s = [0.0; 2];
         }
@@ -529,7 +533,7 @@ impl Block for ImpactBlock {
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let pair = &self.pairs[item];
         let r = parameters.restitution;
-        let [before, after] = pair.read(parameters, &self.assumed_gains);
+        let [before, after] = pair.read(parameters, self.read_by.as_ref());
         let over_speed = parameters.effect(Effect::RestitutionSpeed) * self.speed_log(pair, r);
         let in_time = parameters.effect(Effect::RestitutionDrift) * pair.place * before;
         Some(vec![
@@ -547,15 +551,14 @@ impl Block for ImpactBlock {
         let r = parameters.restitution;
         let residuals = self.residuals(item, parameters)?;
         let error = self.error(pair, r);
-        let [before, _] = pair.read(parameters, &self.assumed_gains);
+        let [before, _] = pair.read(parameters, self.read_by.as_ref());
         let slope = |coordinate: &Coordinate| match coordinate {
             Coordinate::Gain(index) => {
-                let own = pair.of_masses.iter().flatten();
-                let toward = own
-                    .filter(|own| own.gain == *index)
-                    .map(|own| own.toward_m_s);
-                let left: f64 = toward.map(|[b, a]| a + r * b).sum();
-                left * self.assumed_gains[*index] / parameters.gains[*index] / error
+                let each = self.read_by.iter().flat_map(|gains| pair.each(gains));
+                let of_gain = each.filter(|(_, own)| own.gain == *index);
+                let left =
+                    of_gain.map(|(gain, own)| gain * (own.toward_m_s[1] + r * own.toward_m_s[0]));
+                left.sum::<f64>() / parameters.gains[*index] / error
             }
             Coordinate::Restitution => -before / error - residuals[0] * self.shared(pair, r),
             Coordinate::Corner(index) => {
@@ -579,8 +582,8 @@ impl Block for ImpactBlock {
         match coordinate {
             Coordinate::Corner(index) => self.has_corner(index),
             Coordinate::Gain(index) => {
-                let mut own = self.pairs.iter().flat_map(|p| p.of_masses);
-                own.any(|own| own.is_some_and(|own| own.gain == index))
+                let mut own = self.pairs.iter().flat_map(|p| p.of_masses).flatten();
+                self.read_by.is_some() && own.any(|own| own.gain == index)
             }
             Coordinate::Effect(Effect::RestitutionSpeed | Effect::RestitutionDrift) => !self.free,
             Coordinate::Effect(effect) => self.picks_up(effect),
@@ -660,6 +663,7 @@ mod tests {
         parameters.gains = [1.02, 0.97, 1.0, 1.0, 1.0, 1.0];
         let parameters = parameters.with(Coordinate::Effect(Effect::PickupX), 2e-3);
         block.typical_approach_m_s = 0.3;
+        block.read_by = Some([1.0; CHANNELS]);
         let coordinates = [
             Coordinate::Effect(Effect::RestitutionSpeed),
             Coordinate::Effect(Effect::RestitutionDrift),
@@ -701,7 +705,7 @@ mod tests {
             };
             let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
             parameters.gains[0] = 1.01;
-            let [before, after] = pair.read(&parameters, &[1.0; CHANNELS]);
+            let [before, after] = pair.read(&parameters, Some(&[1.0; CHANNELS]));
             after / before
         };
         assert!((ratio(0.0) - 0.8).abs() < 1e-12);

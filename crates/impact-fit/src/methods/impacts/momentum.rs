@@ -4,7 +4,7 @@ use crate::evidence::Evidence;
 use crate::messages::{Finding, Remark};
 use crate::methods::impacts::block::ImpactBlock;
 use crate::statistics::quantile::NORMAL_975;
-use impact_records::event::{Impact, RigKind};
+use impact_records::event::{Impact, MassSpeeds, RigKind};
 
 /// Standard errors by which the ratio must be off the stated one.
 const SIGNIFICANT: f64 = 4.0;
@@ -17,7 +17,7 @@ fn ratio(impacts: &[&Impact]) -> Option<(f64, f64)> {
         .iter()
         .filter_map(|impact| {
             let (x, y) = (impact.x?, impact.y?);
-            let change = [x, y].map(|m| m.before_m_s - m.after_m_s);
+            let change = [x, y].map(MassSpeeds::jump_m_s);
             // The error of the approach speed is that of both masses; each change has two speeds.
             let error = impact.speed_error_m_s()?;
             let relative = (error / change[0]).hypot(error / change[1]);
@@ -81,7 +81,6 @@ pub(super) fn momentum(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impact_records::event::MassSpeeds;
 
     #[test]
     fn valid_the_ratio_of_masses_follows_from_the_changes_of_speed() {

@@ -29,14 +29,8 @@ const POLE_STEP: f64 = 0.1;
 /// The channels that impactless records show not to be as stated, by the one cause that leaves least of the misfit; none
 /// where no cause leaves little of it.
 pub fn misstated_channels(evidence: &Evidence<'_>) -> Vec<LateChannel> {
-    let all = evidence.observations.iter();
-    let impactless = all.filter(|o| !o.response.is_empty()).cloned();
-    let impactless: Vec<Observation> = impactless.collect();
-    let of_impactless = Evidence {
-        observations: &impactless,
-        brackets: &[],
-        ..*evidence
-    };
+    let impactless = evidence.impactless();
+    let of_impactless = evidence.of_records(&impactless);
     let found = causes(&of_impactless, &Blocks::new(&of_impactless)).unwrap_or_default();
     let best = found.into_iter().min_by(|a, b| a.left.total_cmp(&b.left));
     best.map(|best| best.channels).unwrap_or_default()

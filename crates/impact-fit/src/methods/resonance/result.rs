@@ -25,29 +25,27 @@ pub(super) fn result(blocks: &Blocks, fitted: &FitResult) -> MethodResult {
 /// By how much the responses deviate from a curve, as a share of the greatest response of their quantity, measured or of the
 /// curve, in their record: root mean square. What a mass that is driven less shows of the other is small beside that.
 pub(super) fn deviation(block: &ResonanceBlock, fitted: &Parameters) -> f64 {
-    let of_point = |point: &ResonancePoint| -> Vec<f64> {
-        let each: Vec<(&Response, Complex<f64>)> = point
-            .responses
-            .iter()
-            .map(|r| (r, block.response(fitted, point, r.role)))
-            .collect();
-        let greatest = |quantity: Option<u8>| {
-            let alike = each.iter().filter(|(r, _)| r.role.derivative() == quantity);
-            alike.fold(0.0, |most: f64, (r, model)| {
-                most.max(r.amplitude()).max(model.norm())
-            })
-        };
-        let apart = |(r, model): &(&Response, Complex<f64>)| match point.phase_error_rad {
+    let of_point = |point| deviations(block, point, fitted);
+    robust::rms(&block.points.iter().flat_map(of_point).collect::<Vec<f64>>())
+}
+
+/// The deviations of the responses of a record.
+fn deviations(block: &ResonanceBlock, point: &ResonancePoint, fitted: &Parameters) -> Vec<f64> {
+    let of_model = |r: &Response| block.response(fitted, point, r.role);
+    let each: Vec<(&Response, Complex<f64>)> =
+        point.responses.iter().map(|r| (r, of_model(r))).collect();
+    let deviation = |(r, model): &(&Response, Complex<f64>)| {
+        let apart = match point.phase_error_rad {
             Some(_) => (r.real - model.re).hypot(r.imaginary - model.im),
             None => (r.amplitude() - model.norm()).abs(),
         };
-        let shares = each
+        let alike = each
             .iter()
-            .map(|own| apart(own) / greatest(own.0.role.derivative()));
-        shares.collect()
+            .filter(|(other, _)| other.role.derivative() == r.role.derivative());
+        let greatest = alike.map(|(r, model)| r.amplitude().max(model.norm()));
+        apart / greatest.fold(0.0, f64::max)
     };
-    let deviations: Vec<f64> = block.points.iter().flat_map(of_point).collect();
-    robust::rms(&deviations)
+    each.iter().map(deviation).collect()
 }
 
 /// Judge whether the impactless records are those of one degree of freedom for each mass.
