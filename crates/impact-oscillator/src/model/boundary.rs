@@ -197,15 +197,26 @@ pub fn rho_s1(machine: &Machine, eta: f64, n: u32) -> Option<BoundaryPoint> {
     }
 }
 
-/// Clearance and approach speed at s1 of one mass (or of equal ones) for constant R, where
-/// trace = −(1 + determinant), without a check of existence.
+/// Clearance and approach speed at s1 of one mass (or of equal ones) for constant R, without a check of existence.
 pub fn s1_of_branch(machine: &Machine, branch: &Branch, r: f64) -> Option<(f64, f64)> {
+    alternating_of_branch(machine, branch, r, 1.0)
+}
+
+/// Clearance and approach speed at which an alternation between impacts of z = 1/n keeps the share `kept` (above 0; 1 at
+/// s1) over a cycle, of one mass (or of equal ones) for constant R: the multiplier is −`kept` where
+/// trace = −(`kept` + determinant/`kept`). Without a check of existence.
+pub fn alternating_of_branch(
+    machine: &Machine,
+    branch: &Branch,
+    r: f64,
+    kept: f64,
+) -> Option<(f64, f64)> {
     let masses = machine.gap(1.0);
     let (o, eta) = (&machine.x, branch.eta);
     let lambda = exponent(o);
     let C64 { re: ec, im: es } = branch.returned;
     let determinant = r * r * branch.returned.norm_sqr();
-    let g = (2.0 * r * ec - (1.0 + determinant)) * lambda.im / es;
+    let g = (2.0 * r * ec - (kept + determinant / kept)) * lambda.im / es;
     let (f, p) = (branch.forced / masses, o.drive_per_mass());
     let (alpha, q) = (branch.alpha(r), branch.q(r) / eta);
     let f2 = f.norm_sqr();

@@ -452,3 +452,21 @@ fn valid_a_chatter_whose_restitution_tends_to_one_is_summed_up() {
     }
     assert!((rest.tau - tau).abs() < 1e-6, "{} {tau}", rest.tau);
 }
+
+#[test]
+fn valid_an_alternation_keeps_the_share_that_its_multiplier_says() {
+    use super::boundary::alternating_of_branch;
+    use super::orbit::{Branch, orbit_with_speed};
+    use super::variation::{free_flow, saltation};
+    let (eta, r) = (0.9, 0.8);
+    let machine = Machine::symmetric(0.06, r);
+    let branch = Branch::new(&machine, eta, 1);
+    for kept in [1.0, 0.95, 0.85, 0.7] {
+        let (rho, w) = alternating_of_branch(&machine, &branch, r, kept).expect("an orbit");
+        let orbit = orbit_with_speed(&machine, Setting::new(eta, rho), 1, w);
+        let map =
+            saltation(&machine, &orbit.before, &orbit.after) * free_flow(&machine, orbit.period());
+        let left = (map + nalgebra::Matrix4::identity() * kept).determinant();
+        assert!(left.abs() < 1e-9, "{kept}: {left}");
+    }
+}

@@ -178,7 +178,7 @@ impl Impact {
     }
 
     /// An impact of which nothing is known but its time and the standard error of that.
-    pub(super) fn timed(time_s: f64, time_error_s: f64) -> Self {
+    pub(crate) fn timed(time_s: f64, time_error_s: f64) -> Self {
         Self {
             time_s,
             time_error_s,

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::event::{Detection, Impact};
+use crate::motion::alternation;
 use crate::motion::aperiodic::Irregularity;
 use crate::motion::closure::{self, Count, ImpactClosure, WaveformClosure};
 use crate::motion::harmonics;
@@ -233,6 +234,9 @@ fn slack(closures: &[WaveformClosure]) -> f64 {
 /// Closings of the contact in a drive period from which they may be the impacts of a motion that noise hides: z = 1/5 has as many.
 const OF_IMPACTS: f64 = 0.2;
 
+/// Confidence in a motion beside what a longer period would have closed by: it is not certain to die away.
+const ALTERNATES: f64 = 0.8;
+
 /// One record under decision.
 struct Case<'a> {
     detection: &'a Detection,
@@ -248,24 +252,34 @@ impl Case<'_> {
         closures: &[WaveformClosure],
         mut evidence: MotionEvidence,
     ) -> Classification {
-        // The smallest n that closes about as well as any.
+        // The smallest n that closes about as well as any, or by what is not worth a name: a doubled motion whose
+        // parts differ by less lies closer to its doubling than settings are set.
         let slack = slack(closures);
-        let Some(chosen) = closures.iter().find(|c| c.ratio <= slack) else {
+        let close = |c: &&WaveformClosure| c.ratio <= slack.max(settling::LEAST);
+        let Some(chosen) = closures.iter().find(close) else {
             return undetermined(Undetermined::NotComparable, evidence);
         };
+        let closed = (2.5 * self.noise).max(self.settings.closed_ratio);
+        let half = closures
+            .iter()
+            .find(|c| 2 * c.periods_n == chosen.periods_n && self.has_two_impacts(chosen));
+        let dying = half.filter(|_| alternation::dies_away(&self.detection.impacts));
+        let growing = half.filter(|_| alternation::grows(&self.detection.impacts));
+        // an alternation that dies away leaves the motion of half the period
+        let chosen = dying.filter(|half| half.ratio <= closed).unwrap_or(chosen);
         evidence.waveform_closure = Some(chosen.ratio);
         evidence.shorter_closure = closures
             .iter()
             .filter(|c| c.periods_n < chosen.periods_n)
             .map(|c| c.ratio)
             .reduce(f64::min);
-        let closed = (2.5 * self.noise).max(self.settings.closed_ratio);
         let open = (5.0 * self.noise).max(self.settings.open_ratio);
         let impacts = &self.detection.impacts;
         let early = impacts.iter().all(|i| i.time_s < 0.5 * self.duration_s);
         let calm = early && !impacts.is_empty();
         evidence.settling =
-            settling::disturbance(closures, chosen, closed, evidence.periods_observed, calm);
+            settling::disturbance(closures, chosen, closed, evidence.periods_observed, calm)
+                .or(dying.map(|half| half.ratio).filter(|size| *size > closed));
         let reversed: Vec<WaveformClosure> =
             closures.iter().map(WaveformClosure::reversed).collect();
         evidence.growing = settling::disturbance(
@@ -274,7 +288,8 @@ impl Case<'_> {
             closed,
             evidence.periods_observed,
             false,
-        );
+        )
+        .or(growing.map(|half| half.ratio).filter(|size| *size > closed));
         if evidence.settling.is_some() && (chosen.periods_n > 1 || chosen.ratio > closed) {
             return undetermined(Undetermined::NotSettled, evidence);
         }
@@ -292,8 +307,16 @@ impl Case<'_> {
                 evidence,
             );
         }
-        let quality = 1.0 / (1.0 + (chosen.ratio / closed).powi(6));
+        let alternates = chosen.ratio > slack || dying.is_some();
+        let sure = if alternates { ALTERNATES } else { 1.0 };
+        let quality = sure / (1.0 + (chosen.ratio / closed).powi(6));
         self.periodic(chosen.periods_n, quality, evidence)
+    }
+
+    /// Whether two impacts fall into the period after which a waveform closes.
+    fn has_two_impacts(&self, closure: &WaveformClosure) -> bool {
+        let count = self.count(closure.periods_n);
+        count.is_some_and(|count| count.impacts_p == 2)
     }
 
     /// Without velocity: the smallest n for which the impact times close.

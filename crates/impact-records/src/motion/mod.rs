@@ -1,6 +1,7 @@
 //! Types of motion z = p/n (p impacts in n drive periods), each with its evidence. This module uses
 //! no parameter of the model.
 
+mod alternation;
 mod aperiodic;
 mod bracket;
 mod classify;

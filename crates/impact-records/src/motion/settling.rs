@@ -11,7 +11,7 @@ use crate::motion::closure::WaveformClosure;
 /// period n, looked at after fewer periods, differs by which of its n parts lie in which half.
 const DYING: f64 = 1.5;
 /// Least disturbance, over the waveform's root mean square, that is worth a name.
-const LEAST: f64 = 5e-3;
+pub(super) const LEAST: f64 = 5e-3;
 /// The same beside a motion of one drive period, which it does not hide.
 const LEAST_OF_ONE: f64 = 2e-2;
 /// Ratio from which a motion that does not close settles. Of an irregular one each half holds several

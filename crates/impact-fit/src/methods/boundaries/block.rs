@@ -1,14 +1,18 @@
 //! Brackets of boundaries against the closed-form s2, s1 and ρ'.
 
-use crate::methods::boundaries::jump::Jump;
+use crate::methods::boundaries::jump::{Early, Jump};
 use crate::parameters::effect::Effect;
 use crate::parameters::own::Circumstances;
 use crate::parameters::{Coordinate, Parameters};
 use crate::solver::Block;
-use impact_oscillator::model::boundary::{rho_grazing, s1_of_branch, s2_of_branch};
+use impact_oscillator::model::boundary::{alternating_of_branch, rho_grazing, s2_of_branch};
 use impact_oscillator::model::orbit::Branch;
 use impact_records::event::RigKind;
 use impact_records::motion::{BoundaryKind, Bracket};
+
+/// Share that an alternation between impacts keeps over a cycle up to which records may still show it as a motion: in the
+/// twelve cycles of a usual record half of it is left, from which it is hardly told to die away.
+const ALTERNATES: f64 = 0.95;
 
 /// Brackets that the fit uses, with the likelihood of each.
 #[derive(Debug, Clone)]
@@ -54,7 +58,7 @@ impl BoundaryBlock {
         let cost = |scale: f64| -> f64 {
             places
                 .iter()
-                .map(|(b, f)| -Jump::of(b, scale).probability(*f).ln())
+                .map(|(b, f)| -Jump::of(b, Early::all(scale)).probability(*f).ln())
                 .sum()
         };
         let scales = (0..24).map(|i| 1e-3 * 1.25f64.powi(i));
@@ -67,16 +71,24 @@ impl BoundaryBlock {
 /// Frequency of the boundary of a bracket according to the model, Hz: the crossing nearest to it.
 /// `None` where the boundary does not reach this clearance.
 pub fn predicted_hz(bracket: &Bracket, parameters: &Parameters, rig: RigKind) -> Option<f64> {
-    let place = BoundaryPlace::of(bracket, parameters, rig);
-    let natural_hz = parameters.natural_frequency_hz;
-    let excess = |eta: f64| place.excess(eta * natural_hz);
-    let middle = parameters.setting(
-        bracket.middle_hz(),
-        bracket.clearance_m,
-        bracket.drive_amplitude,
-    );
-    let eta = nearest_crossing(excess, middle.clearance, middle.frequency_ratio)?;
-    Some(eta * natural_hz)
+    BoundaryPlace::of(bracket, parameters, rig).nearest_hz(parameters)
+}
+
+/// How far above s1 (below where negative) records of z = 1/n may still alternate, Hz: up to where an alternation keeps
+/// `ALTERNATES` over a cycle. Zero of other boundaries, and where no such place is at the clearance.
+pub fn alternating_hz(bracket: &Bracket, parameters: &Parameters, rig: RigKind) -> f64 {
+    if bracket.kind != BoundaryKind::PeriodDoubling {
+        return 0.0;
+    }
+    let nearest = |kept: f64| {
+        let mut place = BoundaryPlace::of(bracket, parameters, rig);
+        place.kept = kept;
+        place.nearest_hz(parameters)
+    };
+    match (nearest(1.0), nearest(ALTERNATES)) {
+        (Some(end), Some(last)) => last - end,
+        _ => 0.0,
+    }
 }
 
 /// A boundary of the model beside a bracket's clearance, with all that acts on its records.
@@ -86,6 +98,8 @@ pub struct BoundaryPlace<'a> {
     rig: RigKind,
     /// What the bracket's clearance is taken to be off, m.
     pub clearance_error_m: f64,
+    /// Share that an alternation between impacts keeps over a cycle, where s1 is meant: 1 at s1.
+    kept: f64,
 }
 
 impl<'a> BoundaryPlace<'a> {
@@ -101,7 +115,22 @@ impl<'a> BoundaryPlace<'a> {
             parameters,
             rig,
             clearance_error_m: 0.0,
+            kept: 1.0,
         }
+    }
+
+    /// Its crossing of the clearance nearest to the bracket, Hz, by parameters in which f0 is this one.
+    fn nearest_hz(&self, parameters: &Parameters) -> Option<f64> {
+        let natural_hz = parameters.natural_frequency_hz;
+        let excess = |eta: f64| self.excess(eta * natural_hz);
+        let bracket = self.bracket;
+        let middle = parameters.setting(
+            bracket.middle_hz(),
+            bracket.clearance_m,
+            bracket.drive_amplitude,
+        );
+        let eta = nearest_crossing(excess, middle.clearance, middle.frequency_ratio)?;
+        Some(eta * natural_hz)
     }
 
     /// ρ of the boundary less that of the bracket's clearance at a drive frequency; not a number where there is
@@ -154,7 +183,7 @@ impl<'a> BoundaryPlace<'a> {
         let branch = Branch::new(&machine, eta, self.bracket.periods_n);
         let r = own.restitution;
         let (rho, w) = match self.bracket.kind {
-            BoundaryKind::PeriodDoubling => s1_of_branch(&machine, &branch, r)?,
+            BoundaryKind::PeriodDoubling => alternating_of_branch(&machine, &branch, r, self.kept)?,
             _ => {
                 let (gap, w) = s2_of_branch(&branch, r);
                 (gap / masses, w)
@@ -237,7 +266,7 @@ impl Block for BoundaryBlock {
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let bracket = &self.brackets[item];
         let frequency = predicted_hz(bracket, parameters, self.rig)?;
-        let jump = Jump::of(bracket, self.early_scale);
+        let jump = Jump::of(bracket, Early::all(self.early_scale));
         let (best, most) = jump.best();
         // The signed root of twice the loss of log-likelihood: least squares then maximise it.
         let loss = (most.ln() - jump.probability(frequency).ln()).max(0.0);

@@ -1,5 +1,6 @@
 //! Where a motion jumps as a sweep nears a boundary: disturbances make it jump early, by an exponentially
-//! distributed distance, never late but for a small error of the setting.
+//! distributed distance, never late but for a small error of the setting. A step of the setting is a disturbance too, by which
+//! a motion is thrown out from farther away, or not at all.
 
 use std::f64::consts::{PI, SQRT_2};
 
@@ -19,12 +20,35 @@ const SETTING_ERROR: f64 = 2e-4;
 /// Least probability of a bracket.
 const LEAST: f64 = 1e-280;
 
+/// How early jumps come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Early {
+    /// Mean distance from the boundary, relative to the frequency.
+    pub scale: f64,
+    /// Share of the jumps that are early, the others coming at the boundary.
+    pub share: f64,
+}
+
+impl Early {
+    /// All of them early.
+    pub const fn all(scale: f64) -> Self {
+        Self { scale, share: 1.0 }
+    }
+
+    /// Half of them early.
+    pub const fn half(scale: f64) -> Self {
+        Self { scale, share: 0.5 }
+    }
+}
+
 /// The jump that a bracket holds.
 #[derive(Debug, Clone, Copy)]
 pub struct Jump {
     low: f64,
     high: f64,
     early: f64,
+    /// Share of the jumps that are early.
+    thrown: f64,
     setting: f64,
     rising: bool,
     /// Probability that the bracket holds no such boundary at all, over its width.
@@ -61,8 +85,8 @@ impl Tilt {
 }
 
 impl Jump {
-    /// Of a bracket, with the scale of early jumps relative to the frequency.
-    pub fn of(bracket: &Bracket, early_scale: f64) -> Self {
+    /// Of a bracket.
+    pub fn of(bracket: &Bracket, early: Early) -> Self {
         let middle = bracket.middle_hz();
         let known = (SETTING_ERROR * middle).max(0.02 * bracket.width_hz());
         let (setting, stray) = match (bracket.kind, bracket.periods_n) {
@@ -73,10 +97,20 @@ impl Jump {
         Self {
             low: bracket.frequency_low_hz,
             high: bracket.frequency_high_hz,
-            early: early_scale * middle,
+            early: early.scale * middle,
+            thrown: early.share,
             setting,
             rising: bracket.sweep != Sweep::Down,
             stray,
+        }
+    }
+
+    /// The same of a boundary that may be seen anywhere within a range, Hz.
+    #[must_use]
+    pub fn seen_within(self, range_hz: f64) -> Self {
+        Self {
+            setting: self.setting.hypot(range_hz / 12f64.sqrt()),
+            ..self
         }
     }
 
@@ -111,7 +145,8 @@ impl Jump {
         };
         if near > 0.0 {
             let (tail, later) = (normal(near), s / e);
-            let log = tail.log + (later / (near / s + later)).ln();
+            let lasting = 1.0 - self.thrown + self.thrown * later / (near / s + later);
+            let log = tail.log + lasting.ln();
             return Tilt { log, ..tail };
         }
         if far / s + s / e > 0.0 {
@@ -119,7 +154,7 @@ impl Jump {
         }
         let inside = -(-(far - near) / e).exp_m1();
         Tilt {
-            log: far / e + 0.5 * (s / e).powi(2) + inside.ln(),
+            log: far / e + 0.5 * (s / e).powi(2) + (self.thrown * inside).ln(),
             slope: sign / e,
             curvature: 0.0,
         }
@@ -155,8 +190,8 @@ impl Jump {
         ]
     }
 
-    /// Distribution function of (jump − boundary) for a rising sweep, a normal error less an exponential one (or what
-    /// it lacks of 1), its density, and that one's slope.
+    /// Distribution function of (jump − boundary) for a rising sweep, a normal error less, of those that are early, an
+    /// exponential one (or what it lacks of 1), its density, and that one's slope.
     fn distribution(&self, x: f64, s: f64, lacking: bool) -> [f64; 3] {
         let e = self.early;
         let (score, later) = (x / s, x / s + s / e);
@@ -166,14 +201,15 @@ impl Jump {
             false => density(score) * mills_ratio(later),
         };
         let density = density(score) / s;
+        let (thrown, mixed) = (self.thrown, self.thrown * mixed);
         [
             if lacking {
                 normal(-score) - mixed
             } else {
                 normal(score) + mixed
             },
-            mixed / e,
-            (mixed / e - density) / e,
+            (1.0 - thrown) * density + mixed / e,
+            -(1.0 - thrown) * density * score / s + (mixed / e - thrown * density) / e,
         ]
     }
 
@@ -214,6 +250,7 @@ mod tests {
             low: 13.0,
             high: 13.2,
             early: 0.05,
+            thrown: 1.0,
             setting: 0.01,
             rising,
             stray,
@@ -222,8 +259,11 @@ mod tests {
 
     #[test]
     fn valid_derivatives_are_those_of_differences() {
-        for (rising, stray) in [(true, 0.0), (false, 0.3)] {
-            let jump = jump(rising, stray);
+        for (rising, stray, thrown) in [(true, 0.0, 1.0), (false, 0.3, 1.0), (true, 0.0, 0.5)] {
+            let jump = Jump {
+                thrown,
+                ..jump(rising, stray)
+            };
             for at in [12.97, 13.03, 13.19, 13.25] {
                 let of = |f: f64| jump.about(f, 4e-4);
                 let step = 1e-5;

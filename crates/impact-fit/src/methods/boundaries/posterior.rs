@@ -5,7 +5,7 @@
 //! posterior is therefore summed over a grid of R. At each R the boundaries are taken as linear in all else that acts
 //! on them (`surroundings`: f0, β and `x_st` as the resonance curve has them, the length of contacts, asymmetry, the
 //! force against frequency, drift, errors of clearances), and expectation propagation (`propagation`) gives the
-//! probability that every jump falls into its bracket, with the scales of early jumps summed out.
+//! probability that every jump falls into its bracket, with how early they come summed out.
 //!
 //! Early jumps and the length of contacts act to one side: both take the ends of motions down, and R that explains
 //! them up. A rig may have neither, and a few brackets do not show which. The 95 % interval therefore reaches to that
@@ -21,7 +21,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::methods::boundaries::block::{BoundaryBlock, predicted_hz};
-use crate::methods::boundaries::jump::{Jump, Tilt, density, mills_ratio, normal};
+use crate::methods::boundaries::jump::{Early, Jump, Tilt, density, mills_ratio, normal};
 use crate::methods::boundaries::over_restitution::BoundaryCurves;
 use crate::methods::boundaries::propagation::{Factors, Propagation};
 use crate::methods::boundaries::surroundings::{SimulatedBoundary, Surroundings};
@@ -61,43 +61,64 @@ impl Posterior {
     }
 }
 
-/// Scales of early jumps that are summed over, relative to the frequency; each as likely before.
-const EARLY_SCALES: [f64; 8] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2];
-/// A scale so long that no distance of an early jump is more likely than another.
-const ANY_DISTANCE: [f64; 1] = [1.0];
+/// How early jumps may come, each as likely before.
+const EARLY: [Early; 14] = [
+    Early::all(1e-4),
+    Early::all(2e-4),
+    Early::all(5e-4),
+    Early::all(1e-3),
+    Early::all(2e-3),
+    Early::all(5e-3),
+    Early::all(1e-2),
+    Early::all(2e-2),
+    Early::all(5e-2),
+    Early::half(5e-2),
+    Early::all(1e-1),
+    Early::half(1e-1),
+    Early::all(2e-1),
+    Early::half(2e-1),
+];
+/// Scale of early jumps that disturbances other than a step may have.
+const DISTURBED: f64 = 2e-2;
+/// Steps before the end of its motion from which a step, itself a disturbance, may make it jump.
+const STEPS_EARLY: f64 = 3.0;
+/// So early that no distance is more likely than another.
+const ANY_DISTANCE: [Early; 1] = [Early::all(1.0)];
 
-/// Scales of early jumps that are summed over: those of ends of motions, and those of grazing, before which a
-/// disturbance may lead to the motion that exists beside z = 0.
+/// How early jumps may come from the ends of motions, and before grazing, where a disturbance may lead to the motion that
+/// exists beside z = 0.
 #[derive(Debug, Clone, Copy)]
-struct Scales<'a> {
-    ends: &'a [f64],
-    grazing: &'a [f64],
+struct Choices<'a> {
+    ends: &'a [Early],
+    grazing: &'a [Early],
 }
 
-impl Scales<'_> {
+impl Choices<'_> {
     /// The same of all boundaries.
-    fn alike(scales: &[f64]) -> Scales<'_> {
-        Scales {
-            ends: scales,
-            grazing: scales,
+    fn alike(choices: &[Early]) -> Choices<'_> {
+        Choices {
+            ends: choices,
+            grazing: choices,
         }
     }
 
-    fn of(&self, bracket: &Bracket) -> &[f64] {
+    fn of(&self, bracket: &Bracket) -> &[Early] {
         match bracket.kind {
             BoundaryKind::Grazing => self.grazing,
             _ => self.ends,
         }
     }
 
-    /// The middle ones alone.
-    fn middle(&self) -> Self {
-        let middle = |scales: &[f64]| scales.len() / 2;
-        let (ends, grazing) = (middle(self.ends), middle(self.grazing));
-        Self {
-            ends: &self.ends[ends..=ends],
-            grazing: &self.grazing[grazing..=grazing],
-        }
+    /// The first, the middle and the last ones alone.
+    fn few(&self) -> [Self; 3] {
+        [0, 1, 2].map(|half| {
+            let one = |choices: &[Early]| choices.len().saturating_sub(1) * half / 2;
+            let (ends, grazing) = (one(self.ends), one(self.grazing));
+            Self {
+                ends: &self.ends[ends..=ends],
+                grazing: &self.grazing[grazing..=grazing],
+            }
+        })
     }
 }
 
@@ -120,9 +141,9 @@ pub fn of_brackets(
     if !block.determines_restitution() {
         return None;
     }
-    let all = Scales::alike(&EARLY_SCALES);
-    let at_their_ends = Scales {
-        ends: &EARLY_SCALES[..1],
+    let all = Choices::alike(early(block));
+    let at_their_ends = Choices {
+        ends: &EARLY[..1],
         ..all
     };
     let boundaries = BoundaryCurves::new(block, surroundings);
@@ -137,10 +158,20 @@ pub fn of_brackets(
     Some(early.unwrap_or(found))
 }
 
+/// How early jumps may come where steps are as long as the brackets.
+fn early(block: &BoundaryBlock) -> &'static [Early] {
+    let steps = block.brackets.iter().map(|b| b.width_hz() / b.middle_hz());
+    let longest = steps
+        .map(|step| STEPS_EARLY * step)
+        .fold(DISTURBED, f64::max);
+    let count = EARLY.iter().filter(|early| early.scale <= longest).count();
+    &EARLY[..count]
+}
+
 /// Posterior where a jump may come at any distance before its boundary; `None` where that does not
 /// explain what the brackets are off the waveforms.
 fn early_jumps(boundaries: &BoundaryCurves<'_>, waveforms: &Parameters) -> Option<Posterior> {
-    let found = over_grid(boundaries, Scales::alike(&ANY_DISTANCE));
+    let found = over_grid(boundaries, Choices::alike(&ANY_DISTANCE));
     let [low, high] = found.interval95;
     let early = mean_distance(boundaries.block, waveforms);
     (low..=high)
@@ -148,11 +179,15 @@ fn early_jumps(boundaries: &BoundaryCurves<'_>, waveforms: &Parameters) -> Optio
         .then_some(Posterior { early, ..found })
 }
 
-/// Posterior with jumps of these scales.
-fn over_grid(boundaries: &BoundaryCurves<'_>, scales: Scales<'_>) -> Posterior {
-    let at = |r: f64| likelihood(boundaries, r, scales);
-    // The middle scale alone tells where R may be.
-    let (low, high) = support(&|r| likelihood(boundaries, r, scales.middle()));
+/// Posterior with jumps so early.
+fn over_grid(boundaries: &BoundaryCurves<'_>, early: Choices<'_>) -> Posterior {
+    let at = |r: f64| likelihood(boundaries, r, early);
+    // A few choices tell where R may be.
+    let few = early.few();
+    let (low, high) = support(&|r| {
+        let logs = few.map(|early| likelihood(boundaries, r, early));
+        logs.into_iter().fold(f64::NEG_INFINITY, f64::max)
+    });
     let grid: Vec<f64> = (0..FINE)
         .map(|i| low + (high - low) * i as f64 / (FINE - 1) as f64)
         .collect();
@@ -220,7 +255,7 @@ fn support(at: &(dyn Fn(f64) -> f64 + Sync)) -> (f64, f64) {
     (low, high.max(low + 1e-6))
 }
 
-/// Brackets whose early jumps have one scale: the end of z = 1, that of longer motions, doublings, grazing.
+/// Brackets whose jumps come alike early: the end of z = 1, that of longer motions, doublings, grazing.
 type Family = (&'static str, bool);
 
 /// A bracket and where its boundary lies.
@@ -229,36 +264,37 @@ struct Held<'a> {
     boundary: &'a SimulatedBoundary,
 }
 
-/// Log-likelihood of all brackets at R. Each family of boundaries has its own scale of early jumps, which is
-/// summed out.
-fn likelihood(boundaries: &BoundaryCurves<'_>, restitution: f64, scales: Scales<'_>) -> f64 {
+/// Log-likelihood of all brackets at R. How early the jumps of each family of boundaries come is summed out.
+fn likelihood(boundaries: &BoundaryCurves<'_>, restitution: f64, early: Choices<'_>) -> f64 {
     let places = boundaries.at(restitution);
     let mut log = 0.0;
     let mut families: BTreeMap<Family, usize> = BTreeMap::new();
-    let mut of_families: Vec<&[f64]> = Vec::new();
+    let mut of_families: Vec<&[Early]> = Vec::new();
     let mut held: Vec<(Held<'_>, usize)> = Vec::new();
     for (bracket, place) in boundaries.block.brackets.iter().zip(&places) {
         let Some(boundary) = place else {
             // A boundary that does not reach the clearance is as one far away.
-            log += Jump::of(bracket, 1.0).probability(f64::INFINITY).ln();
+            log += Jump::of(bracket, Early::all(1.0))
+                .probability(f64::INFINITY)
+                .ln();
             continue;
         };
         let count = families.len();
         let family = (bracket.kind.name(), bracket.periods_n > 1);
         let index = *families.entry(family).or_insert(count);
         if index == of_families.len() {
-            of_families.push(scales.of(bracket));
+            of_families.push(early.of(bracket));
         }
         held.push((Held { bracket, boundary }, index));
     }
-    log + summed_over_scales(&held, &of_families, boundaries)
+    log + summed_over_early(&held, &of_families, boundaries)
 }
 
-/// Logarithm of the mean over the scales of all families, each as likely before: a family's sum is taken at the best scales
+/// Logarithm of the mean over the choices of all families, each as likely before: a family's sum is taken at the best choices
 /// of the others.
-fn summed_over_scales(
+fn summed_over_early(
     held: &[(Held<'_>, usize)],
-    families: &[&[f64]],
+    families: &[&[Early]],
     boundaries: &BoundaryCurves<'_>,
 ) -> f64 {
     let mut directions: Vec<_> = held
@@ -272,13 +308,16 @@ fn summed_over_scales(
     let directions = DMatrix::from_columns(&directions);
     let covariance = directions.tr_mul(&directions);
     let mut from: Option<Propagation> = None;
-    let mut of = |chosen: &[f64]| {
+    let mut of = |chosen: &[Early]| {
         let jumps: Vec<Jump> = held
             .iter()
-            .map(|(h, family)| Jump::of(h.bracket, chosen[*family]))
+            .map(|(h, family)| {
+                let jump = Jump::of(h.bracket, chosen[*family]);
+                jump.seen_within(h.boundary.alternating_hz)
+            })
             .collect();
         let tilt = |k: usize, mean: f64, variance: f64| match held.get(k) {
-            Some((h, _)) => jumps[k].about(h.boundary.frequency_hz + mean, variance),
+            Some((h, _)) => jumps[k].about(h.boundary.seen_hz() + mean, variance),
             None => positive(mean, variance),
         };
         let factors = Factors {
@@ -292,22 +331,22 @@ fn summed_over_scales(
         }
         log
     };
-    let middles = families.iter().map(|scales| scales[scales.len() / 2]);
-    let mut chosen: Vec<f64> = middles.collect();
+    let middles = families.iter().map(|choices| choices[choices.len() / 2]);
+    let mut chosen: Vec<Early> = middles.collect();
     let mut best = of(&chosen);
     let mut beyond = 0.0;
-    for (family, scales) in families.iter().enumerate() {
+    for (family, choices) in families.iter().enumerate() {
         let before = chosen[family];
-        let logs: Vec<f64> = scales
+        let logs: Vec<f64> = choices
             .iter()
-            .map(|scale| {
-                chosen[family] = *scale;
-                if *scale == before { best } else { of(&chosen) }
+            .map(|early| {
+                chosen[family] = *early;
+                if *early == before { best } else { of(&chosen) }
             })
             .collect();
         let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let at = logs.iter().position(|l| *l == most).unwrap_or(0);
-        chosen[family] = scales[at];
+        chosen[family] = choices[at];
         let mean = logs.iter().map(|l| (l - most).exp()).sum::<f64>() / logs.len() as f64;
         beyond += mean.ln();
         best = most;
@@ -353,6 +392,7 @@ fn mean_distance(block: &BoundaryBlock, parameters: &Parameters) -> Option<f64> 
 mod tests {
     use super::*;
     use crate::fixture::bracket;
+    use crate::methods::boundaries::block::alternating_hz;
     use crate::parameters::Coordinate;
     use crate::parameters::effect::Effect;
     use crate::solver::Prior;
@@ -475,8 +515,45 @@ mod tests {
         let [low, high] = of_brackets(&block, &surroundings, None).unwrap().interval95;
         assert!(low < 0.7 && 0.72 < high, "{low} {high}");
         let boundaries = BoundaryCurves::new(&block, &surroundings);
-        let alone = over_grid(&boundaries, Scales::alike(&EARLY_SCALES));
+        let alone = over_grid(&boundaries, Choices::alike(&EARLY[..8]));
         assert!(alone.interval95[0] > 0.7, "{alone:?}");
+    }
+
+    #[test]
+    fn valid_a_few_jumps_thrown_far_out_by_long_steps_leave_r_held() {
+        // of five ends in steps of 8 %, two come two steps early
+        for places in [[0.1, 0.5, 2.4, 0.3, 2.6], [0.6, 2.2, 0.4, 2.9, 0.2]] {
+            let p = Parameters::symmetric(0.7, 12.6, 0.05, 1e-3);
+            let etas = [1.1, 1.2, 1.3, 1.4, 1.5];
+            let brackets = etas.iter().zip(places).map(|(eta, steps)| {
+                let mut held = bracket(BoundaryKind::SaddleNode, *eta, &p, 0.0);
+                let (at, step) = (eta * p.natural_frequency_hz, 0.08 * p.natural_frequency_hz);
+                held.frequency_low_hz = at - steps * step;
+                held.frequency_high_hz = held.frequency_low_hz + step;
+                held
+            });
+            let block = BoundaryBlock::new(RigKind::Double, &brackets.collect::<Vec<_>>());
+            let [low, high] = of_brackets(&block, &ideal(&p), None).unwrap().interval95;
+            assert!(low < 0.7 && 0.7 < high && high - low < 0.4, "{low} {high}");
+        }
+    }
+
+    #[test]
+    fn valid_a_doubling_that_settles_slowly_is_held() {
+        // both sweeps show it where an alternation keeps 0.96 over a cycle
+        let p = Parameters::symmetric(0.7, 12.6, 0.05, 1e-3);
+        let doubling = bracket(BoundaryKind::PeriodDoubling, 0.93, &p, 0.0);
+        let range_hz = alternating_hz(&doubling, &p, RigKind::Double);
+        assert!(range_hz > 0.01 * doubling.middle_hz(), "{range_hz}");
+        let held = [-0.1, 0.1].map(|off| {
+            let mut held = doubling.clone();
+            let low = predicted_hz(&held, &p, RigKind::Double).unwrap() + (0.8 + off) * range_hz;
+            (held.frequency_low_hz, held.frequency_high_hz) = (low, 1.005 * low);
+            held
+        });
+        let block = BoundaryBlock::new(RigKind::Double, &held);
+        let [low, high] = of_brackets(&block, &ideal(&p), None).unwrap().interval95;
+        assert!(low < 0.7 && 0.7 < high, "{low} {high}");
     }
 
     #[test]

@@ -6,7 +6,9 @@ use nalgebra::{DMatrix, DVector};
 use crate::evidence::Nominal;
 use crate::method_fit::MethodFit;
 use crate::methods::blocks::Blocks;
-use crate::methods::boundaries::block::{BoundaryBlock, BoundaryPlace, predicted_hz};
+use crate::methods::boundaries::block::{
+    BoundaryBlock, BoundaryPlace, alternating_hz, predicted_hz,
+};
 use crate::parameters::effect::Effect;
 use crate::parameters::{Coordinate, Parameters};
 use crate::solver::{Block, Prior};
@@ -19,6 +21,15 @@ pub struct SimulatedBoundary {
     pub frequency_hz: f64,
     /// Hz per unit of each deviate.
     pub direction: DVector<f64>,
+    /// Up to how far from there records may still show the motion of the other side, Hz; negative below.
+    pub alternating_hz: f64,
+}
+
+impl SimulatedBoundary {
+    /// The middle of where records may show it, Hz.
+    pub fn seen_hz(&self) -> f64 {
+        self.frequency_hz + 0.5 * self.alternating_hz
+    }
 }
 
 /// One independent standard normal deviate.
@@ -145,17 +156,19 @@ impl Surroundings {
         restitution: f64,
         direction: DVector<f64>,
     ) -> Option<SimulatedBoundary> {
-        let frequency_hz = predicted_hz(bracket, &self.at(restitution), block.rig)?;
-        Some(self.without_length(frequency_hz, direction))
+        let about = &self.at(restitution);
+        let frequency_hz = predicted_hz(bracket, about, block.rig)?;
+        Some(SimulatedBoundary {
+            frequency_hz: self.without_length(frequency_hz, &direction),
+            direction,
+            alternating_hz: alternating_hz(bracket, about, block.rig),
+        })
     }
 
-    /// A boundary with all deviates zero, from where it lies with contacts of the mean length.
-    fn without_length(&self, frequency_hz: f64, direction: DVector<f64>) -> SimulatedBoundary {
+    /// Where a boundary lies with all deviates zero, from where it lies with contacts of the mean length, Hz.
+    fn without_length(&self, frequency_hz: f64, direction: &DVector<f64>) -> f64 {
         let at_mean = self.length.map_or(0.0, |i| direction[i] * MEAN_OF_POSITIVE);
-        SimulatedBoundary {
-            frequency_hz: frequency_hz - at_mean,
-            direction,
-        }
+        frequency_hz - at_mean
     }
 
     fn at(&self, restitution: f64) -> Parameters {
@@ -205,7 +218,11 @@ impl Surroundings {
         let direction =
             DVector::from_iterator(self.deviates.len(), self.deviates.iter().map(moved));
         let known = direction.iter().all(|d| d.is_finite());
-        known.then(|| self.without_length(frequency_hz, direction))
+        known.then(|| SimulatedBoundary {
+            frequency_hz: self.without_length(frequency_hz, &direction),
+            direction,
+            alternating_hz: alternating_hz(bracket, about, block.rig),
+        })
     }
 }
 

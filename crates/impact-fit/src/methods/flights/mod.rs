@@ -1,5 +1,6 @@
 //! Multiple shooting: all four parameters from records followed from impact to impact.
 
+mod belief;
 pub mod block;
 mod fit;
 mod result;

@@ -7,11 +7,14 @@
 //!
 //! c(Δ) = 1 − 6Δ(1 − Δ),
 //!
-//! so that the variance of the mean of n deviations of unit variance, of which a is independent and s depends on
-//! the place, is (a + s K)/n, K = Σc/n over all pairs, each with itself too: 0 where the places are spread evenly, n
-//! where they are one. a and s follow from the scatter within records and that of their means (analysis of
-//! variance), and a + s K is the factor on the variance of each impact. Means are taken about a parabola over the
-//! records' speeds, so that a restitution that changes with the speed does not pass for shared errors.
+//! and n of them add up as K = Σc/n over all pairs, each with itself too: 0 where the places are spread evenly, n
+//! where they are one. The impacts' times are found together, from the flights between them, and what is left open of
+//! all of them alike is shared wherever they fall.
+//!
+//! The variance of the mean of n deviations, of which a is independent, s depends on the place and c is common, is
+//! (a + s K + c n)/n. The three follow from the scatter within records and that of their means (analysis of
+//! variance), and a + s K + c n is the factor on the variance of each impact. Means are taken about a parabola over
+//! the records' speeds, so that a restitution that changes with the speed does not pass for shared errors.
 
 use std::collections::BTreeMap;
 
@@ -72,10 +75,10 @@ pub fn share(block: &mut ImpactBlock) {
         return;
     }
     let records = records(block);
-    let Some([independent, by_place]) = variances(&records) else {
+    let Some(variances) = Variances::of(&records) else {
         return;
     };
-    let factor = |r: &Deviations| (independent + by_place * r.alike()).max(1.0).sqrt();
+    let factor = |r: &Deviations| variances.of_mean(r).max(1.0).sqrt();
     let factors: BTreeMap<usize, f64> = records.iter().map(|(i, r)| (*i, factor(r))).collect();
     for pair in &mut block.pairs {
         pair.in_record = factors[&pair.observation];
@@ -99,33 +102,78 @@ fn records(block: &ImpactBlock) -> BTreeMap<usize, Deviations> {
     records
 }
 
-/// a and s: the variances of independent deviations and of those that depend on the place; `None` of too few
-/// records.
-fn variances(records: &BTreeMap<usize, Deviations>) -> Option<[f64; 2]> {
-    let records: Vec<&Deviations> = records.values().collect();
-    let count: f64 = records.iter().map(|r| r.count()).sum();
-    let known = records.len().checked_sub(TERMS).filter(|n| *n >= FEWEST)? as f64;
-    // of the records' means, some follow the law
-    let means = about_law(&records)? * records.len() as f64 / known;
-    let within: f64 = records.iter().map(|r| r.within()).sum();
-    let alike: f64 = records.iter().map(|r| r.alike()).sum();
-    // means = a k + s ΣK and within = a (N − k) + s (N − ΣK)
-    let k = records.len() as f64;
-    let determinant = k * (count - alike) - (count - k) * alike;
-    let independent = (means * (count - alike) - within * alike) / determinant;
-    let by_place = (k * within - (count - k) * means) / determinant;
-    let all = (means + within) / count;
-    let solved = independent.is_finite() && by_place.is_finite();
-    Some(match solved {
-        true if by_place <= 0.0 => [all, 0.0],
-        true if independent <= 0.0 => [0.0, all],
-        true => [independent, by_place],
-        false => [all, 0.0],
-    })
+/// The variances of a deviation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Variances {
+    independent: f64,
+    by_place: f64,
+    common: f64,
 }
 
-/// Sum of squares of the records' means about a parabola over their speeds, each times its impacts.
-fn about_law(records: &[&Deviations]) -> Option<f64> {
+impl Variances {
+    /// Those that explain best the scatter within the records and that of their means; `None` of too few records.
+    fn of(records: &BTreeMap<usize, Deviations>) -> Option<Self> {
+        let records: Vec<&Deviations> = records.values().collect();
+        let known = records.len().checked_sub(TERMS).filter(|n| *n >= FEWEST)? as f64;
+        // of the records' means, some follow the law
+        let lost = records.len() as f64 / known;
+        let means = about_law(&records)?.map(|square| square * lost);
+        let all = |of: &dyn Fn(&Deviations) -> f64| records.iter().map(|r| of(r)).sum::<f64>();
+        let of_means = |weight: &dyn Fn(&Deviations) -> f64| {
+            let terms = |r: &Deviations| [1.0, r.alike(), r.count()];
+            [0, 1, 2].map(|i| all(&|r| weight(r) * terms(r)[i]))
+        };
+        let within = [
+            all(&|r| r.count() - 1.0),
+            all(&|r| r.count() - r.alike()),
+            0.0,
+        ];
+        let weighted = |weight: &dyn Fn(&Deviations) -> f64| {
+            let own = records.iter().zip(means.iter());
+            (of_means(weight), own.map(|(r, m)| weight(r) * m).sum())
+        };
+        let equations = [
+            (within, all(&Deviations::within)),
+            weighted(&|_| 1.0),
+            weighted(&|r| r.alike()),
+        ];
+        let [independent, by_place, common] = positive_solution(&equations)?;
+        Some(Self {
+            independent,
+            by_place,
+            common,
+        })
+    }
+
+    /// Variance of the mean of a record's deviations, times their count.
+    fn of_mean(&self, record: &Deviations) -> f64 {
+        self.independent + self.by_place * record.alike() + self.common * record.count()
+    }
+}
+
+/// Three numbers, none negative, with the least sum of squares of the relative errors of the equations (coefficients and right
+/// side): of all choices of those that are not zero the best.
+fn positive_solution(equations: &[([f64; 3], f64); 3]) -> Option<[f64; 3]> {
+    let solution = |chosen: &[usize]| {
+        let design = DMatrix::from_fn(3, chosen.len(), |i, k| {
+            equations[i].0[chosen[k]] / equations[i].1
+        });
+        let found = inverse(&design.tr_mul(&design))? * design.row_sum().transpose();
+        let off = (&design * &found - DVector::repeat(3, 1.0)).norm();
+        let mut all = [0.0; 3];
+        for (place, value) in chosen.iter().zip(&found) {
+            all[*place] = *value;
+        }
+        (off.is_finite() && found.iter().all(|v| *v >= 0.0)).then_some((off, all))
+    };
+    let choices: [&[usize]; 7] = [&[0], &[1], &[2], &[0, 1], &[0, 2], &[1, 2], &[0, 1, 2]];
+    let found = choices.into_iter().filter_map(solution);
+    let best = found.min_by(|a, b| a.0.total_cmp(&b.0));
+    best.map(|(_, all)| all)
+}
+
+/// Squares of the records' means about a parabola over their speeds, each times its impacts.
+fn about_law(records: &[&Deviations]) -> Option<DVector<f64>> {
     let speeds: Vec<f64> = records
         .iter()
         .map(|r| robust::mean(&r.speeds_m_s))
@@ -147,7 +195,7 @@ fn about_law(records: &[&Deviations]) -> Option<f64> {
             &target - design.column(0) * mean
         }
     };
-    Some(left.norm_squared())
+    Some(left.component_mul(&left))
 }
 
 #[cfg(test)]
@@ -208,6 +256,27 @@ mod tests {
             // found once more, it is the same
             share(&mut block);
             assert_eq!(factors(&block), [alike, others]);
+        }
+    }
+
+    #[test]
+    fn valid_errors_that_all_impacts_of_a_record_have_in_common_count_once() {
+        let normal = |rng: &mut ChaCha8Rng| -> f64 { StandardNormal.sample(rng) };
+        for seed in 0..4 {
+            // beside those that are spread over the places, as much again: 1 + 12
+            let mut block = block(150.381_966, |_| 0.8, seed);
+            let mut rng = ChaCha8Rng::seed_from_u64(90 + seed);
+            for record in block
+                .pairs
+                .chunk_by_mut(|a, b| a.observation == b.observation)
+            {
+                let common = ERROR_M_S * 1f64.hypot(0.8) * normal(&mut rng);
+                record.iter_mut().for_each(|pair| pair.after_m_s += common);
+            }
+            share(&mut block);
+            for factor in factors(&block) {
+                assert!((factor / 12.8 - 1.0).abs() < 0.25, "{seed}: {factor}");
+            }
         }
     }
 
