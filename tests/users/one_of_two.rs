@@ -44,7 +44,6 @@ fn a_stop_that_may_be_a_second_mass_is_named() {
         "csv",
     ];
     let ran = lab.run(&run);
-    assert_eq!(ran.code, 1, "{}", ran.said);
     let said = ran.said.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(said.contains("a second mass that moves too"), "{said}");
 }

@@ -134,9 +134,19 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
     if let Some(cause) = basis.cause {
         findings.retain(|finding| !explains(cause, finding));
     }
-    let may_move = basis.strikes_a_stop && misfits(basis);
+    let may_move = basis.strikes_a_stop && (misfits(basis) || findings.iter().any(seems_closer));
     findings.extend(may_move.then_some(Finding::StopMayMove));
     findings
+}
+
+/// Whether a finding is what a mass that moves makes of the clearances if it is taken for a stop.
+fn seems_closer(finding: &Finding) -> bool {
+    matches!(
+        finding,
+        Finding::GainOrClearances { .. }
+            | Finding::GainsOrClearances { .. }
+            | Finding::ClearancesOffAlike { .. }
+    )
 }
 
 /// Whether the model does not describe the data.
