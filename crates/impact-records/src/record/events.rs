@@ -63,11 +63,7 @@ pub(super) fn settle(
             printed(),
         ),
         ContactContent::Intervals => (impacts(added_up(&channel.values), channel), printed()),
-        ContactContent::Sound => {
-            let found = onsets::find(&channel.values, rate_hz);
-            let times = found.iter().map(|i| i / rate_hz).collect();
-            (Ok(Found::alone(times)), rate_hz.recip())
-        }
+        ContactContent::Sound => (Ok(sounds(channel, rate_hz)), rate_hz.recip()),
     };
     let Found {
         times_s,
@@ -95,6 +91,21 @@ pub(super) fn settle(
     channel.threshold = None;
     record.flags.extend(note);
     record.channels.retain(|c| c.role == Role::Contact);
+}
+
+/// The impacts that are heard, without their echoes.
+fn sounds(channel: &Channel, rate_hz: f64) -> Found {
+    let heard = onsets::listen(&channel.values, rate_hz);
+    let problem = Problem::EchoesLeftOut {
+        count: heard.echoes,
+        impacts: heard.times.len(),
+        delay_ms: 1e3 * heard.delay / rate_hz,
+    };
+    let note = Flag::new(Some(&channel.name), problem).excluding(false);
+    Found {
+        note: (heard.echoes > 0).then_some(note),
+        ..Found::alone(heard.times.iter().map(|i| i / rate_hz).collect())
+    }
 }
 
 /// The times of throws that lie along the rows, one throw after the other with a rest between them. A row ends at the first
@@ -246,6 +257,39 @@ mod tests {
         assert!((times[3] - 1.22).abs() < 1e-12);
         assert!((list.sample_rate_hz - 3.0 / 1.22).abs() < 1e-12);
         assert!(list.flags.is_empty());
+    }
+
+    #[test]
+    fn valid_the_impacts_of_a_sound_are_heard_without_its_echoes() {
+        // a click of 2 kHz at each bounce with R = 0.75, and from a wall 45 ms later at 40 %
+        let at_s = |k: i32| 0.3 + 0.8 * (1.0 - 0.75_f64.powi(k)) / 0.25;
+        let click = |t: f64, size: f64| match t {
+            t if t < 0.0 => 0.0,
+            t => size * (-t / 4e-3).exp() * (1.3e4 * t).sin(),
+        };
+        let heard = |t: f64, echo: f64| {
+            let bounces = (0..8).map(|k| (t - at_s(k), 0.75_f64.powi(k)));
+            let both = bounces.map(|(t, size)| click(t, size) + echo * click(t - 0.045, size));
+            both.sum::<f64>() + 3e-4 * (2.399_963 * (t * 44_100.0).powi(2)).sin()
+        };
+        for echo in [0.0, 0.4] {
+            let values: Vec<f64> = (0..170_000)
+                .map(|i| heard(f64::from(i) / 44_100.0, echo))
+                .collect();
+            let mut sound = record(&values);
+            sound.sample_rate_hz = 44_100.0;
+            settle(&mut sound, ContactContent::Sound, 0.0, &[]);
+            let times = sound.values(Role::Contact).unwrap();
+            assert_eq!(times.len(), 8, "{echo}: {times:?}");
+            let off = |(k, t): (i32, &f64)| (t - at_s(k)).abs();
+            assert!((0..).zip(times).map(off).all(|off| off < 2e-3));
+            let said = sound.flags.iter().map(Flag::message);
+            let said: Vec<String> = said.collect();
+            assert_eq!(said.len(), usize::from(echo > 0.0), "{said:?}");
+            let start = "8 impacts are heard, and 8 echoes, 45 ms after";
+            assert!(said.iter().all(|s| s.starts_with(start)), "{said:?}");
+            assert!(!sound.excluded());
+        }
     }
 
     #[test]

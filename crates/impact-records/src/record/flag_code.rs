@@ -74,6 +74,8 @@ flag_codes! {
     ContactUnclear = "contact_unclear",
     /// Heights from which R follows.
     Heights = "heights",
+    /// Echoes of impacts were heard.
+    Echoes = "echoes",
     /// A camera's picture stood still, then jumped.
     FrozenFrames = "frozen_frames",
     /// Lone samples were far off those around them.

@@ -6,6 +6,7 @@ pub mod columns;
 pub mod decay;
 pub mod digits;
 pub mod drift;
+pub mod echoes;
 pub mod interpolation;
 pub mod kalman;
 pub mod local_fit;

@@ -1,5 +1,6 @@
 //! Onsets of sounds: where the envelope of a signal rises above what was heard before.
 
+use super::echoes::{self, Heard, Onset};
 use super::{robust, whole};
 
 /// Window of the envelope, s.
@@ -17,7 +18,7 @@ const OF_LOUDEST: f64 = 2e-3;
 /// Share of an onset's own peak at which it is timed.
 const OF_PEAK: f64 = 0.2;
 
-/// Times of all onsets in samples.
+/// Times of all onsets in samples, but of echoes.
 ///
 /// The envelope is the root mean square over a millisecond. An onset is a rise by a factor of four
 /// within 15 ms to well above the noise; it is timed where the envelope passes a fifth of its peak.
@@ -39,6 +40,16 @@ const OF_PEAK: f64 = 0.2;
 /// assert!((found[0] - 4410.0).abs() < 44.0 && (found[1] - 22_050.0).abs() < 44.0);
 /// ```
 pub fn find(samples: &[f64], rate_hz: f64) -> Vec<f64> {
+    listen(samples, rate_hz).times
+}
+
+/// The onsets, as [`find`] gives them, with the echoes that were left out.
+pub fn listen(samples: &[f64], rate_hz: f64) -> Heard {
+    echoes::without(all(samples, rate_hz), rate_hz)
+}
+
+/// All onsets, echoes too.
+fn all(samples: &[f64], rate_hz: f64) -> Vec<Onset> {
     let steps = |time_s: f64| whole::index((time_s * rate_hz).round()).max(1);
     let envelope = envelope(samples, steps(WINDOW_S));
     let (before, apart) = (steps(BEFORE_S), steps(APART_S));
@@ -47,7 +58,7 @@ pub fn find(samples: &[f64], rate_hz: f64) -> Vec<f64> {
         return Vec::new();
     };
     let least = (OVER_NOISE * quiet).max(OF_LOUDEST * loudest);
-    let mut found: Vec<f64> = Vec::new();
+    let mut found: Vec<Onset> = Vec::new();
     let mut i = before;
     while i < envelope.len() {
         let past = envelope[i - before];
@@ -56,7 +67,8 @@ pub fn find(samples: &[f64], rate_hz: f64) -> Vec<f64> {
             let peak = envelope[i..end].iter().copied().fold(0.0, f64::max);
             let from = i - before;
             let passed = (from..end).find(|k| envelope[*k] > (OF_PEAK * peak).max(past));
-            found.push(passed.unwrap_or(i) as f64);
+            let at = passed.unwrap_or(i) as f64;
+            found.push(Onset { at, peak });
             i += apart;
         } else {
             i += 1;

@@ -344,6 +344,15 @@ problems! {
         /// Those that are interpolated.
         interpolated: usize,
     };
+    /// Echoes of the impacts are heard.
+    Echoes: EchoesLeftOut {
+        /// How many.
+        count: usize,
+        /// Impacts without them.
+        impacts: usize,
+        /// How long the first of them takes, ms.
+        delay_ms: f64,
+    };
     /// Lone samples are far off those around them, and replaced.
     Spikes: LoneSpikes {
         /// The channel.

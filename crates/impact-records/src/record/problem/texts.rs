@@ -176,6 +176,10 @@ message_table! { "problem": Problem;
         samples = Value::Count(*samples),
         first = Value::Count(*first),
         interpolated = Value::Count(*interpolated);
+    Self::EchoesLeftOut { count, impacts, delay_ms } =>
+        count = Value::Count(*count),
+        impacts = Value::Count(*impacts),
+        delay = Value::Number(*delay_ms, 0);
     Self::LoneSpikes { channel, count, first } =>
         channel = Value::Name(channel),
         count = Value::Count(*count),
