@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::gaps::{self, AROUND, FEWEST_SAMPLES, runs};
+use super::held;
 use super::spikes::without_spikes;
 use super::{Channel, Excitation, Flag, Problem, Record, Role, time_axis};
 use crate::signal::{columns, interpolation, robust, whole};
@@ -165,6 +166,9 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
     let mut flags = Vec::new();
     if !driven {
         let excitation = record.setting.excitation;
+        if excitation == Excitation::FreeDecay {
+            flags.extend(record.channels.iter_mut().filter_map(held::without_held));
+        }
         let channels = record.channels.iter_mut();
         flags.extend(channels.filter_map(|channel| gaps::fill(channel, excitation)));
     }

@@ -18,6 +18,7 @@ mod flag;
 mod flag_code;
 mod gaps;
 mod heights;
+mod held;
 mod high_pass;
 pub mod late;
 mod low_pass;

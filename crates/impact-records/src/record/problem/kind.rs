@@ -344,6 +344,24 @@ problems! {
         /// Those that are interpolated.
         interpolated: usize,
     };
+    /// A sensor gives fewer values than the record has samples.
+    FrozenFrames: SlowerSensor {
+        /// The channel.
+        channel: String,
+        /// Samples of each value.
+        samples: f64,
+    };
+    /// A channel holds its value in the midst of a decay.
+    FrozenFrames: HeldLeftOut {
+        /// The channel.
+        channel: String,
+        /// How often.
+        count: usize,
+        /// Samples of all stretches.
+        samples: usize,
+        /// First sample of the first.
+        first: usize,
+    };
     /// Echoes of the impacts are heard.
     Echoes: EchoesLeftOut {
         /// How many.

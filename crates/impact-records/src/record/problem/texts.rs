@@ -176,6 +176,14 @@ message_table! { "problem": Problem;
         samples = Value::Count(*samples),
         first = Value::Count(*first),
         interpolated = Value::Count(*interpolated);
+    Self::SlowerSensor { channel, samples } =>
+        channel = Value::Name(channel),
+        samples = Value::Number(*samples, 0);
+    Self::HeldLeftOut { channel, count, samples, first } =>
+        channel = Value::Name(channel),
+        count = Value::Count(*count),
+        samples = Value::Count(*samples),
+        first = Value::Count(*first);
     Self::EchoesLeftOut { count, impacts, delay_ms } =>
         count = Value::Count(*count),
         impacts = Value::Count(*impacts),
