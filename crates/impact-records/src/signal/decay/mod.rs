@@ -13,6 +13,7 @@ mod creep;
 mod descent;
 mod fits;
 mod friction;
+mod held;
 mod hum;
 mod least_squares;
 mod modes;
@@ -195,7 +196,7 @@ const UNLIKE: f64 = 0.02;
 /// a motion of its own.
 const SURE_PERIODS: f64 = 10.0;
 const CLEAR_LEAVES: f64 = 0.1;
-/// Fewest periods of a decay that are told from what a curve leaves of creep.
+/// Fewest periods of a decay that are told from what a curve leaves of creep, or from a part of another motion.
 const CLEAR_PERIODS: f64 = 5.0;
 
 /// Fit the free decays that several channels of equal length show, one after each blow or release: those of
@@ -237,12 +238,9 @@ pub fn best(decays: &[Decay]) -> Option<&Decay> {
 /// are what a record in which the mass is first held has in common with an oscillation.
 const MORE_LEFT: f64 = 2.0;
 
-/// The decays of one channel, one after each blow; where a drift hides the motion, of what is left without it.
+/// The decays of one channel, one after each blow. Where none is found: of what follows the last place at which the mass was
+/// held, or of what is left without a drift.
 fn of_channel(channel: Watched<'_>, rate_hz: f64) -> Vec<Decay> {
-    let found = of_values(channel, rate_hz);
-    if !found.is_empty() {
-        return found;
-    }
     let without = |drift: &dyn Fn(&[f64]) -> Vec<f64>| {
         let level = drift(channel.values);
         let channel = Watched {
@@ -251,13 +249,37 @@ fn of_channel(channel: Watched<'_>, rate_hz: f64) -> Vec<Decay> {
         };
         of_values(channel, rate_hz)
     };
-    let found = without(&without_line);
-    if !found.is_empty() {
-        return found;
-    }
+    let found = of_values(channel, rate_hz);
+    let found = or_else(found, || lasting(let_go(channel, rate_hz)));
+    let found = or_else(found, || without(&without_line));
     // what the curve leaves of another one swings two or three times
-    let mut found = without(&without_curve);
+    or_else(found, || lasting(without(&without_curve)))
+}
+
+/// Decays, or others if there are none.
+fn or_else(found: Vec<Decay>, others: impl FnOnce() -> Vec<Decay>) -> Vec<Decay> {
+    if found.is_empty() { others() } else { found }
+}
+
+/// Decays of periods enough to be told from what a part of another motion shows.
+fn lasting(mut found: Vec<Decay>) -> Vec<Decay> {
     found.retain(|decay| decay.periods >= CLEAR_PERIODS);
+    found
+}
+
+/// The decays after the last place at which the mass was held; a velocity does not show where that is.
+fn let_go(channel: Watched<'_>, rate_hz: f64) -> Vec<Decay> {
+    let places = channel.quantity == MotionSignal::Displacement;
+    let Some(at) = places.then(|| held::let_go(channel.values)).flatten() else {
+        return Vec::new();
+    };
+    let from = channel.clear_from(0..channel.values.len()).max(at);
+    let later = Watched::new(&channel.values[from..], channel.quantity);
+    if later.values.is_empty() {
+        return Vec::new();
+    }
+    let mut found = of_values(later, rate_hz);
+    found.iter_mut().for_each(|d| d.shift(from, rate_hz));
     found
 }
 

@@ -809,3 +809,22 @@ fn valid_a_decay_on_creep_is_told_by_its_swings() {
     );
     assert!((found.damping_ratio / beta - 1.0).abs() < 0.1, "{found:?}");
 }
+
+/// A hand swings the mass, holds it and lets it go.
+#[test]
+fn valid_the_decay_after_a_hand_has_held_the_mass_is_found() {
+    let natural = std::f64::consts::TAU * 1.3;
+    let free = |t: f64| 40.0 * (-0.015 * natural * t).exp() * (natural * t).cos();
+    let value = |t: f64| match t {
+        t if t < 6.0 => 30.0 * (std::f64::consts::TAU * 0.9 * t).sin(),
+        t if t < 9.0 => 40.0 * (0.5 * (t - 6.0)).min(1.0),
+        t => free(t - 9.0),
+    };
+    let samples: Vec<f64> = (0..4000)
+        .map(|i| value(f64::from(i) / 100.0) + 0.1 * (2.399_963 * f64::from(i * i)).sin())
+        .collect();
+    let found = fit(&samples, 100.0).expect("a decay");
+    assert!((found.natural_frequency_hz - 1.3).abs() < 2e-3, "{found:?}");
+    assert!((found.damping_ratio - 0.015).abs() < 1e-3, "{found:?}");
+    assert!((890..930).contains(&found.first), "{found:?}");
+}
