@@ -13,6 +13,7 @@ mod inverted;
 mod kind;
 mod late;
 mod late_channel;
+mod no_decay;
 mod observation;
 mod response;
 mod settling;

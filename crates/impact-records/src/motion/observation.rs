@@ -15,6 +15,7 @@ use crate::motion::fold::{Folded, fold};
 use crate::motion::force_law::ForceLaw;
 use crate::motion::kind::Motion;
 use crate::motion::late_channel::LateChannel;
+use crate::motion::no_decay::cause;
 use crate::motion::response::{Response, responses};
 use crate::motion::undetermined::Undetermined;
 use crate::record::{Channel, Excitation, Flag, FlagCode, Problem, Record, Role, Setting};
@@ -381,13 +382,9 @@ fn observe_decay(record: &Record) -> Observation {
     let mut observation = undriven(record);
     observation.decays = free_decays(record);
     if observation.decays.is_empty() {
-        let mut masses = [false, true].into_iter();
-        let rests = masses.any(|y| watched(record, y).iter().any(decay::comes_to_rest));
-        let problem = if rests {
-            Problem::ComesToRest
-        } else {
-            Problem::NoDecayFound
-        };
+        let masses = [false, true].into_iter();
+        let shown: Vec<Watched<'_>> = masses.flat_map(|y| watched(record, y)).collect();
+        let problem = cause(&shown);
         observation.flags.push(Flag::new(None, problem));
     }
     observation.flags = without_what_follows(record, observation.flags);

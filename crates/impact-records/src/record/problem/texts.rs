@@ -184,6 +184,11 @@ message_table! { "problem": Problem;
         count = Value::Count(*count),
         samples = Value::Count(*samples),
         first = Value::Count(*first);
+    Self::SwingsListed { count } => count = Value::Count(*count);
+    Self::MotionGrows { times } => times = Value::Number(*times, 1);
+    Self::ReadingsWrap { count, sample } =>
+        count = Value::Count(*count),
+        sample = Value::Count(*sample);
     Self::EchoesLeftOut { count, impacts, delay_ms } =>
         count = Value::Count(*count),
         impacts = Value::Count(*impacts),

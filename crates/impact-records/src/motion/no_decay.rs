@@ -1,0 +1,130 @@
+//! Why a record shows no free decay.
+
+use crate::record::Problem;
+use crate::signal::decay::{self, Watched};
+use crate::signal::{columns, robust};
+
+/// Most numbers of a list of swings, which is written by hand.
+const MOST_LISTED: usize = 100;
+/// Share of their steps that fall.
+const FALL: f64 = 0.9;
+/// What is left of the first of them at the end, at most.
+const LEFT: f64 = 0.9;
+/// Size of an oscillation in the last third of a record over that in the first, from which it grows.
+const GROWS: f64 = 1.5;
+/// Turns of it, at least.
+const TURNS: f64 = 3.0;
+/// Share of the range by which readings jump that begin again at its other end, and by which they move at most from one sample to
+/// the next before and after.
+const JUMPS: f64 = 0.7;
+const MOVES: f64 = 0.2;
+
+/// Why channels of motion show no free decay.
+pub(super) fn cause(shown: &[Watched<'_>]) -> Problem {
+    if shown.iter().any(decay::comes_to_rest) {
+        return Problem::ComesToRest;
+    }
+    let values = || shown.iter().map(|channel| channel.values);
+    let listed = || values().find(|v| are_swings(v));
+    let listed = || listed().map(|all| Problem::SwingsListed { count: all.len() });
+    let found = values().find_map(wraps).or_else(listed);
+    let found = found.or_else(|| values().find_map(grows));
+    found.unwrap_or(Problem::NoDecayFound)
+}
+
+/// Whether numbers are the amplitudes of successive swings: their sizes fall from row to row, and all are of one sign, or of
+/// either in turn.
+fn are_swings(values: &[f64]) -> bool {
+    let steps = values.len().saturating_sub(1) as f64;
+    let share = |test: &dyn Fn(f64, f64) -> bool| {
+        let pairs = values.windows(2).filter(|w| test(w[0], w[1]));
+        pairs.count() as f64 > FALL * steps
+    };
+    let ends = values.first().zip(values.last());
+    let falls = ends.is_some_and(|(first, last)| last.abs() < LEFT * first.abs());
+    let in_turn = share(&|a, b| a * b < 0.0);
+    (3..=MOST_LISTED).contains(&values.len())
+        && falls
+        && share(&|a, b| b.abs() <= a.abs())
+        && (in_turn || values.iter().all(|v| *v > 0.0))
+}
+
+/// An oscillation that grows from third to third of a record.
+fn grows(values: &[f64]) -> Option<Problem> {
+    let third = values.len() / 3;
+    let sizes = values.chunks_exact(third.max(1)).take(3);
+    let sizes: Vec<f64> = sizes.map(robust::rms_about_mean).collect();
+    let [first, middle, last] = sizes[..] else {
+        return None;
+    };
+    let rest = robust::median(values)?;
+    let crosses = |w: &&[f64]| (w[0] - rest) * (w[1] - rest) < 0.0;
+    let crossings = values.windows(2).filter(crosses).count();
+    // noise crosses rest at every other sample
+    let turns = (TURNS..values.len() as f64 / 8.0).contains(&(0.5 * crossings as f64));
+    let grows = first < middle && middle < last && last > GROWS * first && turns;
+    let times = last / first;
+    grows.then_some(Problem::MotionGrows { times })
+}
+
+/// Readings that begin again at the other end of their range: they jump against the way that they go before and after.
+fn wraps(values: &[f64]) -> Option<Problem> {
+    let (low, high) = columns::extremes(values);
+    let range = high - low;
+    let jumps = |w: &[f64]| {
+        let [before, jump, after] = [w[1] - w[0], w[2] - w[1], w[3] - w[2]];
+        let moves = |way: f64| way * jump < 0.0 && way.abs() < MOVES * range;
+        jump.abs() > JUMPS * range && moves(before) && moves(after)
+    };
+    let sample = values.windows(4).position(jumps)? + 1;
+    let count = values.windows(4).filter(|w| jumps(w)).count();
+    Some(Problem::ReadingsWrap { count, sample })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cause_of(values: &[f64]) -> Problem {
+        assert!(decay::fit(values, 100.0).is_none());
+        cause(&[Watched::displacement(values)])
+    }
+
+    #[test]
+    fn amplitudes_of_swings_growth_and_wraps_are_named() {
+        let fall = |k: i32| 42.0 * 0.924_f64.powi(k);
+        let listed: Vec<f64> = (0..25).map(fall).collect();
+        let swings = cause_of(&listed);
+        assert!(matches!(swings, Problem::SwingsListed { count: 25 }));
+        let in_turn: Vec<f64> = (0..25)
+            .map(|k| fall(k) * f64::from(1 - 2 * (k % 2)))
+            .collect();
+        assert!(are_swings(&in_turn) && !are_swings(&[1.0, 2.0, 3.0, 4.0]));
+        let turn = |i: u32| std::f64::consts::TAU * 0.01 * f64::from(i);
+        let grows: Vec<f64> = (0..2000)
+            .map(|i| (0.01 * turn(i)).exp() * turn(i).cos())
+            .collect();
+        assert!(matches!(cause_of(&grows), Problem::MotionGrows { .. }));
+        let angle = |i: u32| 500.0 * (-0.03 * turn(i) / 8.0).exp() * (turn(i) / 8.0).cos();
+        let wrapped: Vec<f64> = (0..4000).map(|i| angle(i).rem_euclid(360.0)).collect();
+        assert!(matches!(
+            wraps(&wrapped),
+            Some(Problem::ReadingsWrap { .. })
+        ));
+    }
+
+    #[test]
+    fn noise_spikes_and_levels_are_neither_growth_nor_wraps() {
+        let noise: Vec<f64> = (0..500u32)
+            .map(|i| (2.399_963 * f64::from(i * i)).sin() * (1.0 + 0.004 * f64::from(i)))
+            .collect();
+        assert_eq!(grows(&noise), None);
+        let quiet = |i: usize| 0.01 * noise[i % 500];
+        let spike: Vec<f64> = (0..800)
+            .map(|i| if i % 300 == 200 { 5.0 } else { quiet(i) })
+            .collect();
+        assert_eq!(wraps(&spike), None);
+        let levels: Vec<f64> = (0..800).map(|i| f64::from(i / 100 % 2 * 5)).collect();
+        assert_eq!(wraps(&levels), None);
+    }
+}
