@@ -14,10 +14,11 @@ const LEFT: f64 = 0.9;
 const GROWS: f64 = 1.5;
 /// Turns of it, at least.
 const TURNS: f64 = 3.0;
-/// Share of the range by which readings jump that begin again at its other end, and by which they move at most from one sample to
-/// the next before and after.
+/// Share of the range by which readings jump that begin again at its other end, by which they move at most in some steps before and
+/// after, and how many those are: of a motion with few samples a period some are as far.
 const JUMPS: f64 = 0.7;
 const MOVES: f64 = 0.2;
+const BESIDE: usize = 3;
 
 /// Why channels of motion show no free decay.
 pub(super) fn cause(shown: &[Watched<'_>]) -> Problem {
@@ -71,13 +72,17 @@ fn grows(values: &[f64]) -> Option<Problem> {
 fn wraps(values: &[f64]) -> Option<Problem> {
     let (low, high) = columns::extremes(values);
     let range = high - low;
-    let jumps = |w: &[f64]| {
-        let [before, jump, after] = [w[1] - w[0], w[2] - w[1], w[3] - w[2]];
-        let moves = |way: f64| way * jump < 0.0 && way.abs() < MOVES * range;
-        jump.abs() > JUMPS * range && moves(before) && moves(after)
+    let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).collect();
+    let jumps = |steps: &&[f64]| {
+        let (before, after) = (&steps[..BESIDE], &steps[BESIDE + 1..]);
+        let jump = steps[BESIDE];
+        let slow = before.iter().chain(after).all(|s| s.abs() < MOVES * range);
+        let back = before[BESIDE - 1] * jump < 0.0 && after[0] * jump < 0.0;
+        jump.abs() > JUMPS * range && slow && back
     };
-    let sample = values.windows(4).position(jumps)? + 1;
-    let count = values.windows(4).filter(|w| jumps(w)).count();
+    let around = || steps.windows(2 * BESIDE + 1);
+    let sample = around().position(|w| jumps(&w))? + BESIDE;
+    let count = around().filter(jumps).count();
     Some(Problem::ReadingsWrap { count, sample })
 }
 
@@ -126,5 +131,13 @@ mod tests {
         assert_eq!(wraps(&spike), None);
         let levels: Vec<f64> = (0..800).map(|i| f64::from(i / 100 % 2 * 5)).collect();
         assert_eq!(wraps(&levels), None);
+        // from three to five samples a period
+        for k in 60..100 {
+            let fast = |i: usize| (std::f64::consts::TAU * i as f64 / (0.05 * f64::from(k))).cos();
+            let decay: Vec<f64> = (0..400)
+                .map(|i| fast(i) * (-0.01 * i as f64).exp())
+                .collect();
+            assert_eq!(wraps(&decay), None, "{k}");
+        }
     }
 }
