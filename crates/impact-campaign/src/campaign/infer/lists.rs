@@ -36,15 +36,27 @@ pub(super) fn of_times(place: Place<'_>) -> Vec<usize> {
 /// row on, so that intervals that are written as times of day alone are none.
 fn listed(place: Place<'_>) -> Vec<usize> {
     let found = of_columns(place);
+    if are_clocks_alone(place, &found) {
+        return Vec::new();
+    }
+    found
+}
+
+/// The first column of laps that are written as times of day alone.
+pub(super) fn laps_alone(place: Place<'_>) -> Option<usize> {
+    let found = of_columns(place);
+    let first = *found.first()?;
+    are_clocks_alone(place, &found).then_some(first)
+}
+
+/// Whether columns are times of day none of which goes on.
+fn are_clocks_alone(place: Place<'_>, columns: &[usize]) -> bool {
     let clock = |i: &usize| place.set().channels[*i].stored == StoredType::Time;
     let goes_on = |i: &usize| {
         let values = place.numbers(*i);
         !intervals(&values).is_empty() || are_reversed(&values)
     };
-    if found.iter().all(clock) && !found.iter().any(goes_on) {
-        return Vec::new();
-    }
-    found
+    columns.iter().all(clock) && !columns.iter().any(goes_on)
 }
 
 /// The columns that contain times or intervals by their names, units and numbers.
@@ -139,7 +151,7 @@ fn numbers(place: Place<'_>) -> Vec<usize> {
 }
 
 /// Whether numbers count rows, up or down, as a stopwatch counts its laps.
-fn counts_rows(values: &[f64]) -> bool {
+pub(super) fn counts_rows(values: &[f64]) -> bool {
     let steps = |step: f64| values.windows(2).all(|w| w[1] - w[0] == step);
     let first = values.first().is_some_and(|v| v.fract() == 0.0);
     values.len() > 2 && first && (steps(1.0) || steps(-1.0))

@@ -10,6 +10,7 @@ mod heights;
 mod lists;
 mod look;
 mod names;
+mod not_read;
 mod place;
 mod roles;
 mod unlike;
@@ -24,7 +25,7 @@ use super::resolved::RESOLVED;
 use super::run_table;
 use impact_records::record::time_axis;
 use impact_records::signal::robust;
-use labfiles::{ChannelInfo, Clock, DatasetInfo, Source};
+use labfiles::{ChannelInfo, Clock, DatasetInfo, ReadError, Source};
 
 use globs::slashed;
 use place::{Place, spread};
@@ -60,15 +61,8 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
         if found.run_table.is_none() && of_book {
             run_sheet = run_sheet_of(folder, &slashed(&relative), &mut found);
         }
-        match opened_path {
-            Ok(source) if holds_record(source.as_ref()) => opened.push((relative, source)),
-            Ok(_) => found.others.push(slashed(&relative)),
-            Err(error) => found.refused.push(RefusedFile {
-                file: slashed(&relative),
-                reason: error.found,
-                remedy: error.remedy,
-            }),
-        }
+        let source = record_of(opened_path, slashed(&relative), &mut found);
+        opened.extend(source.map(|source| (relative, source)));
     }
     let all = opened.iter().flat_map(|(_, s)| records_in(s.as_ref()));
     let mut places = without_notes(all.collect());
@@ -115,6 +109,31 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
     experiment::infer(&places, &mut found);
     note_what_is_not_read(folder, &places, &named, &mut found);
     found
+}
+
+/// The file that was opened, if it holds records; else why it does not is noted.
+fn record_of(
+    opened: Result<Box<dyn Source>, ReadError>,
+    file: String,
+    found: &mut FolderContents,
+) -> Option<Box<dyn Source>> {
+    let [reason, remedy] = match opened {
+        Ok(source) => match not_read::why(source.as_ref()) {
+            Some(why) => why,
+            None if holds_record(source.as_ref()) => return Some(source),
+            None => {
+                found.others.push(file);
+                return None;
+            }
+        },
+        Err(error) => [error.found, error.remedy],
+    };
+    found.refused.push(RefusedFile {
+        file,
+        reason,
+        remedy,
+    });
+    None
 }
 
 /// Name of a run table that is made of the names of the files.
