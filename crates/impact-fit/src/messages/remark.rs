@@ -331,6 +331,15 @@ pub enum Remark {
         /// Its amplitude over that of the decay.
         ratio: f64,
     },
+    /// A decay shows a multiple of its own frequency.
+    DecaysHarmonic {
+        /// Number of decays that do.
+        count: usize,
+        /// Which.
+        multiple: usize,
+        /// Its amplitude over that of the decay.
+        ratio: f64,
+    },
     /// Two modes of near frequencies beat, which one decay does not explain.
     DecaysBeat {
         /// Number of decays that do.
@@ -518,6 +527,10 @@ message_table! { "remark": Remark, key = template_key;
     Self::DecaysMode { count, frequency_hz, ratio } =>
         count = Value::Count(*count),
         frequency = Value::Number(*frequency_hz, 1),
+        share = Value::Percent(*ratio, 0);
+    Self::DecaysHarmonic { count, multiple, ratio } =>
+        count = Value::Count(*count),
+        multiple = Value::Count(*multiple),
         share = Value::Percent(*ratio, 0);
     Self::DecaysBeat { count, first_hz, second_hz, ratio } =>
         count = Value::Count(*count),

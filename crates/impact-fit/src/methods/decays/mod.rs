@@ -1,5 +1,6 @@
 //! Free decays: f0 and β of each, pooled, and records that are filed under the wrong name.
 
+mod beside;
 mod dry_friction;
 mod mains;
 
@@ -66,11 +67,6 @@ const DAMPING_MATTERS: f64 = 0.15;
 /// errors: of the furthest two of some, by chance one in a hundred thousand is.
 const UNLIKE_DAMPINGS: f64 = 0.2;
 const SURELY_UNLIKE: f64 = 6.0;
-/// Amplitude beside a decay, over its own, that is told: of a tone, and of a drift.
-const TELLING: [f64; 2] = [0.02, 0.1];
-/// Widening of an interval by slow noise that is told, which changes no number: nine tenths of its variance are that
-/// noise.
-const WIDENING: f64 = 3.0;
 
 /// All free decays of a campaign, pooled; `None` without any. Dry friction is possible if the effects that the rig may
 /// have hold it, or if the decays show it.
@@ -127,12 +123,15 @@ pub fn pooled(observations: &[Observation], effects: Effects) -> Option<MethodRe
     if are_most(&decays, &may_be_forced, &Decay::relative_error) {
         leave_weak(&mut result, Note::MayBeForced);
     }
+    if are_most(&decays, &beside::has_rival, &Decay::relative_error) {
+        leave_weak(&mut result, Note::NotOneOscillation);
+    }
     if let Some(mains_hz) = hums(&decays) {
         leave_weak(&mut result, Note::MayBeHum { mains_hz });
     }
     let fits = result.fits == Some(true);
     result.remarks.extend(stopped(&decays));
-    result.remarks.extend(beside(&decays, fits));
+    result.remarks.extend(beside::remarks(&decays, fits));
     Some(result)
 }
 
@@ -336,7 +335,7 @@ fn judge(result: &mut MethodResult, decays: &[&Decay], (spread, friction): (f64,
     if fits {
         return;
     }
-    let beats = beat(decays);
+    let beats = beside::beat(decays);
     if !told || beats.is_some() {
         let periods = median(&|d| d.periods);
         allow_for_another(result, structure, periods);
@@ -394,19 +393,6 @@ fn allow_for_another(result: &mut MethodResult, share: f64, periods: f64) {
     widen(frequency, NORMAL_975 * off * hz);
     widen(&mut parameters.damping_ratio, NORMAL_975 * off);
     leave_weak(result, Note::NotOneOscillation);
-}
-
-/// The two frequencies of decays that beat.
-fn beat(decays: &[&Decay]) -> Option<Remark> {
-    let beating: Vec<[f64; 3]> = decays.iter().filter_map(|d| d.beside.beat).collect();
-    let strongest = beating.iter().max_by(|a, b| a[2].total_cmp(&b[2]))?;
-    let [first_hz, second_hz, ratio] = *strongest;
-    Some(Remark::DecaysBeat {
-        count: beating.len(),
-        first_hz,
-        second_hz,
-        ratio,
-    })
 }
 
 /// Whether one damping ratio does not hold along most of the decays, beside dry friction where β is without it.
@@ -493,33 +479,6 @@ fn judge_frequency(result: &mut MethodResult, decays: &[&Decay]) -> bool {
         estimate.weaken(Note::Drifts);
     }
     most
-}
-
-/// What lies beside the decays, as far as it tells of the laboratory; noise of decays that fit.
-fn beside(decays: &[&Decay], fits: bool) -> Vec<Remark> {
-    let strongest = |of: &dyn Fn(&Decay) -> Option<[f64; 2]>, least: f64| {
-        let all = decays.iter().filter_map(|d| of(d));
-        let telling: Vec<[f64; 2]> = all.filter(|m| m[1] > least).collect();
-        let most = telling.iter().copied().max_by(|a, b| a[1].total_cmp(&b[1]));
-        most.map(|[frequency_hz, ratio]| (telling.len(), frequency_hz, ratio))
-    };
-    let hum = strongest(&|d| d.beside.hum, TELLING[0]);
-    let mode = strongest(&|d| d.beside.mode, TELLING[0]);
-    let drift = strongest(&|d| Some([0.0, d.beside.drift_ratio]), TELLING[1]);
-    let noise = strongest(&|d| Some([0.0, d.beside.slow_noise]), WIDENING).filter(|_| fits);
-    let hum = hum.map(|(count, frequency_hz, ratio)| Remark::DecaysHum {
-        count,
-        frequency_hz,
-        ratio,
-    });
-    let mode = mode.map(|(count, frequency_hz, ratio)| Remark::DecaysMode {
-        count,
-        frequency_hz,
-        ratio,
-    });
-    let drift = drift.map(|(count, _, ratio)| Remark::DecaysBackground { count, ratio });
-    let noise = noise.map(|(count, _, times)| Remark::DecaysSlowNoise { count, times });
-    [hum, mode, drift, noise].into_iter().flatten().collect()
 }
 
 /// Whether the frequency of a decay drifts significantly.

@@ -182,6 +182,7 @@ fn is_to_be_mended(remark: &Remark) -> bool {
             | Remark::TopsMissed { .. }
             | Remark::DecaysHum { .. }
             | Remark::DecaysMode { .. }
+            | Remark::DecaysHarmonic { .. }
             | Remark::DecaysStopped { .. }
             | Remark::DecaysRubbedLater { .. }
             | Remark::DecaysBackground { .. }

@@ -44,10 +44,12 @@ pub(super) const LIMITS: Limits = Limits {
 /// Two decays beside each other.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Beat {
-    /// Their frequencies, rad per sample of the series, the stronger first.
-    pub(super) frequencies: [f64; 2],
+    /// `ω_d` and σ of each, per value of the series, the stronger first.
+    pub(super) rates: [[f64; 2]; 2],
     /// Amplitude of the weaker over that of the stronger.
     pub(super) ratio: f64,
+    /// Squares that both leave beside the noise over those that one leaves.
+    pub(super) remains: f64,
 }
 
 /// Two decays by their rates: `ω_d` and σ of each.
@@ -96,29 +98,46 @@ fn told(pair: &Pair<'_>, left: &[f64], limits: &Limits) -> Option<Beat> {
     let (strong, weak) = (first.max(second), first.min(second));
     let apart = (pair.rates[0] - pair.rates[2]).abs() * count;
     let decay = pair.rates[1].min(pair.rates[3]) * count > -1.0;
-    let is_told = is_explained(pair, left, limits.explained)
+    // a fit may run off beyond the frequencies that samples tell apart
+    let told_apart = |omega: f64| omega > 0.0 && omega < std::f64::consts::PI;
+    let remains = (structured(&pair.rest) / structured(left)).powi(2);
+    let is_told = is_sure(pair, left)
+        && remains < limits.explained
         && apart > limits.apart
+        && told_apart(pair.rates[0])
+        && told_apart(pair.rates[2])
         && decay
         && strong < limits.cancels * greatest
         && weak > limits.telling * strong;
-    let frequencies = if first >= second {
-        [pair.rates[0], pair.rates[2]]
-    } else {
-        [pair.rates[2], pair.rates[0]]
-    };
+    let [own, own_sigma, other, other_sigma] = pair.rates;
+    let mut rates = [[own, own_sigma], [other, other_sigma]];
+    if first < second {
+        rates.reverse();
+    }
     is_told.then_some(Beat {
-        frequencies,
+        rates,
         ratio: weak / strong,
+        remains,
     })
 }
 
-/// Whether two decays explain what one leaves beside the noise, but for a share, and surely (Schwarz 1978).
-fn is_explained(pair: &Pair<'_>, left: &[f64], share: f64) -> bool {
+/// Whether two decays explain what one leaves surely (Schwarz 1978).
+fn is_sure(pair: &Pair<'_>, left: &[f64]) -> bool {
     let density = Noise::fitted(&pair.rest, &[]).density(pair.rates[0]);
     let independent = left.len() as f64 / density.max(1.0);
     let gain = independent * (dot(left, left) / pair.squares.max(f64::MIN_POSITIVE)).ln();
-    let remains = structured(&pair.rest).powi(2);
-    gain > TOLD + OF_ANOTHER * independent.ln() && remains < share * structured(left).powi(2)
+    gain > TOLD + OF_ANOTHER * independent.ln()
+}
+
+/// Take the weaker of two decays of given rates per sample, the stronger first, from samples; its amplitude.
+pub(super) fn take_weaker(samples: &mut [f64], [strong, weak]: [[f64; 2]; 2]) -> Option<f64> {
+    let series = Series::plain(samples.to_vec());
+    let pair = Pair::of(&series, [strong[0], strong[1], weak[0], weak[1]])?;
+    let both = series.oscillation(Shape::Viscous, &[weak[0], weak[1], 0.0, 0.0]);
+    for (column, factor) in both.iter().zip(pair.factors[1]) {
+        crate::signal::columns::subtract(samples, factor, column);
+    }
+    Some(pair.amplitudes()[1])
 }
 
 impl<'a> Pair<'a> {

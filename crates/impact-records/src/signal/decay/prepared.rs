@@ -1,12 +1,13 @@
 //! A decay made ready for its fit: where it begins and ends, what lies under it, the noise about it.
 
+use super::beat::{self, Beat};
+use super::blows;
 use super::fits::{factor, fitted, free, laws, means, peak, rough};
 use super::hum::Cleared;
 use super::least_squares::{Point, Series};
 use super::modes::{self, Mode, STEADY};
 use super::noise::{Noise, structured};
 use super::shape::{Rates, Shape};
-use super::{beat, blows};
 use crate::signal::{columns, robust, whole};
 
 /// Most means that are fitted.
@@ -38,6 +39,15 @@ const ANOTHER_MODE: f64 = 1.5;
 const SLOWER: f64 = 0.7;
 /// Share of the variance that a decay there explains.
 const EXPLAINS: f64 = 0.5;
+
+/// Amplitude of a decay that beats over that of the stronger one, from which it is open which of both is the rig's, and what
+/// both leave of the squares that one leaves, at most, where they are all that there is: a fifth of the amplitude. They beat
+/// once and a half, as a frequency that changes is no beat.
+const CLEARLY_WEAKER: f64 = 0.7;
+const NEARLY_ALL: f64 = 0.04;
+const BEATS: f64 = 1.5;
+/// Periods from which a weaker decay is fitted: in fewer of them dry friction and noise that is not white are as well two decays.
+const PARTED: f64 = 12.0;
 
 /// Fewest degrees of freedom of a fit.
 const LEAST_FREEDOM: usize = 8;
@@ -81,6 +91,8 @@ pub(super) struct Prepared {
     pub(super) free: Point,
     /// What was taken from the samples: frequency per sample, amplitude, and whether it is steady.
     beside: Vec<Mode>,
+    /// What beats with the decay and was not taken.
+    beat: Option<Beat>,
 }
 
 /// The fit at every sample.
@@ -95,10 +107,19 @@ pub(super) struct AtEverySample {
 }
 
 impl Prepared {
+    /// The decay of a part of a record with one blow or release, beside a weaker one that beats with it; else with the one that
+    /// beats with it.
+    pub(super) fn of(part: &Cleared<'_>) -> Option<Self> {
+        let alone = Self::alone(part)?;
+        let beat = beat::find(&alone.series, &alone.free);
+        let both = beat.and_then(|beat| alone.beside_partner(&beat));
+        Some(both.unwrap_or(Self { beat, ..alone }))
+    }
+
     /// The decay of a part of a record with one blow or release. Where its first motion and all of it have
     /// unlike frequencies, as after a hammer's blow that excites a higher mode too, the one that lasts, if it
     /// decays at all; of two modes at once the lower one, if it begins with the greater amplitude.
-    pub(super) fn of(part: &Cleared<'_>) -> Option<Self> {
+    pub(super) fn alone(part: &Cleared<'_>) -> Option<Self> {
         let begun = blows::begin(&part.cleared)?;
         let tail = &part.cleared[begun.1..];
         let first_motion = |part: &[f64]| rough(part, peak(part)?);
@@ -175,6 +196,44 @@ impl Prepared {
             series,
             free,
             beside,
+            beat: None,
+        })
+    }
+
+    /// The same less a weaker decay that beats with it, where both explain nearly all that one leaves.
+    fn beside_partner(&self, beat: &Beat) -> Option<Self> {
+        let turns =
+            |rate: f64| rate.abs() * self.series.values.len() as f64 / std::f64::consts::TAU;
+        let [[own, _], [other, _]] = beat.rates;
+        let parted = turns(own) > PARTED && turns(own - other) > BEATS;
+        if beat.ratio > CLEARLY_WEAKER || beat.remains > NEARLY_ALL || !parted {
+            return None;
+        }
+        let per_sample = |rates: [f64; 2]| rates.map(|r| r / self.factor as f64);
+        let rates = beat.rates.map(per_sample);
+        let mut samples = self.samples.clone();
+        let amplitude = beat::take_weaker(&mut samples, rates)?;
+        let mut beside = self.beside.clone();
+        beside.push(Mode {
+            rates: rates[1],
+            amplitude,
+            steady: false,
+        });
+        let mut series = Series {
+            quantity: self.series.quantity,
+            factor: self.factor,
+            ..Series::plain(means(&samples, self.factor))
+        };
+        let [omega, sigma] = beat.rates[0];
+        let start = free(&series, [omega, sigma, 0.0, 0.0])?;
+        series.taken = overlapping(&beside, start.rates, &series);
+        let free = settle(&mut series, &start)?;
+        Some(Self {
+            samples,
+            series,
+            free,
+            beside,
+            ..*self
         })
     }
 
@@ -213,9 +272,9 @@ impl Prepared {
                 ]
             })
         };
-        let beat = beat::find(&self.series, &self.free).map(|found| {
+        let beat = self.beat.map(|found| {
             let hz = rate_hz / self.factor as f64 / std::f64::consts::TAU;
-            let [strong, weak] = found.frequencies.map(|f| f * hz);
+            let [strong, weak] = found.rates.map(|[omega, _]| omega * hz);
             [strong, weak, found.ratio]
         });
         Beside {

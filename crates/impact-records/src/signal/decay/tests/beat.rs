@@ -36,7 +36,7 @@ fn two(rng: &mut ChaCha8Rng, ratio: f64) -> Vec<f64> {
 fn prepared(ratio: f64) -> Vec<Prepared> {
     let mut rng = ChaCha8Rng::seed_from_u64(20_261_127);
     let all = (0..8).map(|_| two(&mut rng, ratio));
-    all.filter_map(|samples| Prepared::of(&Cleared::plain(Watched::displacement(&samples))))
+    all.filter_map(|samples| Prepared::alone(&Cleared::plain(Watched::displacement(&samples))))
         .collect()
 }
 
@@ -180,12 +180,53 @@ fn valid_a_beat_is_told_beside_noise() {
                 decay(3.318, t) + ratio * decay(3.57, t) + 0.02 * shock
             })
             .collect();
-        let prepared = Prepared::of(&Cleared::plain(Watched::displacement(&samples)));
+        let prepared = Prepared::alone(&Cleared::plain(Watched::displacement(&samples)));
         let prepared = prepared.expect("a decay");
         find_within(&prepared.series, &prepared.free, &LIMITS)
     };
     for _ in 0..8 {
         assert!(tell(0.15, &mut rng).is_some());
         assert!(tell(0.0, &mut rng).is_none());
+    }
+}
+
+/// Two modes that beat are fitted beside each other: f0 and β are those of one of them, which a fit of one decay has off.
+#[test]
+fn valid_a_decay_has_its_own_f0_and_beta_beside_a_partner_that_beats_with_it() {
+    let mut rng = ChaCha8Rng::seed_from_u64(45);
+    for _ in 0..6 {
+        let ratio = rng.random_range(0.1..0.6);
+        let apart: f64 = rng.random_range(0.06..0.15);
+        let (own, other) = (
+            rng.random_range(0.003..0.008),
+            rng.random_range(0.003..0.008),
+        );
+        let decay = |hz: f64, beta: f64, t: f64| {
+            let natural = std::f64::consts::TAU * hz;
+            let damped = natural * (1.0 - beta * beta).sqrt();
+            (-beta * natural * t).exp() * (damped * t).cos()
+        };
+        let samples: Vec<f64> = (0..2400)
+            .map(|i| {
+                let t = f64::from(i) / 100.0;
+                let shock: f64 = StandardNormal.sample(&mut rng);
+                decay(5.0, own, t) + ratio * decay(5.0 * (1.0 + apart), other, t) + 3e-3 * shock
+            })
+            .collect();
+        let found = super::super::fit(&samples, 100.0).expect("a decay");
+        assert!(found.structured_ratio < 0.02, "{ratio} {apart}: {found:?}");
+        assert!(found.beside.mode.is_some(), "{ratio} {apart}: {found:?}");
+        // the one that lasts may be taken though it begins weaker, as a rival of the other
+        let partner_hz = 5.0 * (1.0 + apart);
+        let near_hz = |hz: f64| (found.natural_frequency_hz - hz).abs();
+        let (off_hz, beta) = if near_hz(5.0) < near_hz(partner_hz) {
+            (near_hz(5.0), own)
+        } else {
+            assert!(other < own, "{ratio} {apart}: {found:?}");
+            (near_hz(partner_hz), other)
+        };
+        assert!(off_hz < 5e-3, "{ratio} {apart}: {found:?}");
+        let off = (found.damping_ratio - beta).abs();
+        assert!(off < 0.05 * beta, "{ratio} {apart}: {beta} {found:?}");
     }
 }

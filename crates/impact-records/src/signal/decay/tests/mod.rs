@@ -392,10 +392,15 @@ fn valid_two_modes_that_beat_are_named_by_their_frequencies() {
         let mut samples = sampled(count, 500.0, |t| one(t) + ratio * other(t));
         white(&mut samples, 3e-3, 8);
         let found = fit(&samples, 500.0).unwrap();
-        let [strong, weak, share] = found
-            .beside
-            .beat
-            .unwrap_or_else(|| panic!("{second}: no beat, {:?}", found.beside));
+        // one that is clearly weaker, and beats once and a half, is fitted
+        let beats = f64::abs(second - 3.0) * seconds;
+        let fitted = found.beside.mode;
+        let fitted = fitted.map(|[hz, share]| [found.natural_frequency_hz, hz, share]);
+        let told = found.beside.beat.or(fitted);
+        let [strong, weak, share] =
+            told.unwrap_or_else(|| panic!("{second}: no beat, {:?}", found.beside));
+        let open = ratio > 0.7 || beats < 1.5;
+        assert_eq!(found.beside.beat.is_some(), open, "{found:?}");
         assert!((strong - 3.0).abs() < 0.01, "{second}: {strong}");
         assert!((weak - second).abs() < 0.01, "{second}: {weak}");
         assert!((share - ratio).abs() < 0.05, "{second}: {share}");
