@@ -317,7 +317,7 @@ fn judge(result: &mut MethodResult, decays: &[&Decay], (spread, friction): (f64,
         result.remarks.push(Remark::DecaysDiffer { spread });
     }
     let share = median(&|d| d.residual_ratio);
-    let structure = median(&|d| d.structured_ratio);
+    let structure = median(&beyond_chance);
     let fades = median(&|d| d.fading) > FADES;
     let plain = structure < if fades { FADING_STRUCTURE } else { STRUCTURE };
     let damping_changes = judge_damping(result, decays, friction);
@@ -393,6 +393,14 @@ fn allow_for_another(result: &mut MethodResult, share: f64, periods: f64) {
     widen(frequency, NORMAL_975 * off * hz);
     widen(&mut parameters.damping_ratio, NORMAL_975 * off);
     leave_weak(result, Note::NotOneOscillation);
+}
+
+/// What neighbouring samples share of a residual over the decay, if white noise does not show as much by chance: their mean
+/// product scatters by its variance over the root of the number of samples.
+fn beyond_chance(decay: &Decay) -> f64 {
+    let by_chance = (CHANGES / (decay.samples.max(1) as f64).sqrt()).sqrt();
+    let is_told = decay.structured_ratio > by_chance * decay.residual_ratio;
+    if is_told { decay.structured_ratio } else { 0.0 }
 }
 
 /// Whether one damping ratio does not hold along most of the decays, beside dry friction where β is without it.

@@ -336,3 +336,25 @@ fn valid_decays_of_unlike_damping_are_no_undamped_motion() {
     assert!(low < 0.005 && high > 0.059, "{damping:?}");
     assert_eq!(damping.note, Some(Note::DampingsDiffer));
 }
+
+/// White noise of the amplitude's own size: what neighbours share of it by chance is no structure.
+#[test]
+fn valid_noise_of_the_amplitudes_size_is_no_structure() {
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(20_261_130);
+    let natural = TAU * 9.0;
+    for _ in 0..12 {
+        let samples: Vec<f64> = (0..1200)
+            .map(|i| {
+                let t = f64::from(i) / 200.0;
+                let noise: f64 = StandardNormal.sample(&mut rng);
+                f64::exp(-0.002 * natural * t) * (natural * t).cos() + 0.45 * noise
+            })
+            .collect();
+        let decay = decay::fit(&samples, 200.0).unwrap();
+        let found = pooled(&[observation(vec![decay])], Effects::none()).unwrap();
+        assert_eq!(found.fits, Some(true), "{:?}", found.remarks);
+        let f0 = found.parameters.natural_frequency_hz.unwrap();
+        let [low, high] = f0.interval95.unwrap();
+        assert!(low < 9.01 && high > 8.99 && high - low < 0.1, "{f0:?}");
+    }
+}
