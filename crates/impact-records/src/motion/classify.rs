@@ -237,6 +237,17 @@ const OF_IMPACTS: f64 = 0.2;
 /// Confidence in a motion beside what a longer period would have closed by: it is not certain to die away.
 const ALTERNATES: f64 = 0.8;
 
+/// The closure that a motion is named by.
+struct Choice<'c> {
+    chosen: &'c WaveformClosure,
+    /// The alternation that dies away, and that grows, over the waveform's root mean square, where it does not close within half
+    /// the period.
+    dying: Option<f64>,
+    growing: Option<f64>,
+    /// Confidence as far as it rests on the choice.
+    sure: f64,
+}
+
 /// One record under decision.
 struct Case<'a> {
     detection: &'a Detection,
@@ -252,21 +263,11 @@ impl Case<'_> {
         closures: &[WaveformClosure],
         mut evidence: MotionEvidence,
     ) -> Classification {
-        // The smallest n that closes about as well as any, or by what is not worth a name: a doubled motion whose
-        // parts differ by less lies closer to its doubling than settings are set.
-        let slack = slack(closures);
-        let close = |c: &&WaveformClosure| c.ratio <= slack.max(settling::LEAST);
-        let Some(chosen) = closures.iter().find(close) else {
+        let closed = (2.5 * self.noise).max(self.settings.closed_ratio);
+        let Some(choice) = self.choice(closures, closed) else {
             return undetermined(Undetermined::NotComparable, evidence);
         };
-        let closed = (2.5 * self.noise).max(self.settings.closed_ratio);
-        let half = closures
-            .iter()
-            .find(|c| 2 * c.periods_n == chosen.periods_n && self.has_two_impacts(chosen));
-        let dying = half.filter(|_| alternation::dies_away(&self.detection.impacts));
-        let growing = half.filter(|_| alternation::grows(&self.detection.impacts));
-        // an alternation that dies away leaves the motion of half the period
-        let chosen = dying.filter(|half| half.ratio <= closed).unwrap_or(chosen);
+        let chosen = choice.chosen;
         evidence.waveform_closure = Some(chosen.ratio);
         evidence.shorter_closure = closures
             .iter()
@@ -279,7 +280,7 @@ impl Case<'_> {
         let calm = early && !impacts.is_empty();
         evidence.settling =
             settling::disturbance(closures, chosen, closed, evidence.periods_observed, calm)
-                .or(dying.map(|half| half.ratio).filter(|size| *size > closed));
+                .or(choice.dying);
         let reversed: Vec<WaveformClosure> =
             closures.iter().map(WaveformClosure::reversed).collect();
         evidence.growing = settling::disturbance(
@@ -289,7 +290,7 @@ impl Case<'_> {
             evidence.periods_observed,
             false,
         )
-        .or(growing.map(|half| half.ratio).filter(|size| *size > closed));
+        .or(choice.growing);
         if evidence.settling.is_some() && (chosen.periods_n > 1 || chosen.ratio > closed) {
             return undetermined(Undetermined::NotSettled, evidence);
         }
@@ -307,10 +308,32 @@ impl Case<'_> {
                 evidence,
             );
         }
-        let alternates = chosen.ratio > slack || dying.is_some();
-        let sure = if alternates { ALTERNATES } else { 1.0 };
-        let quality = sure / (1.0 + (chosen.ratio / closed).powi(6));
+        let quality = choice.sure / (1.0 + (chosen.ratio / closed).powi(6));
         self.periodic(chosen.periods_n, quality, evidence)
+    }
+
+    /// The closure that the motion is named by: of the smallest n that closes about as well as any, or by what is not worth a
+    /// name, as a doubled motion whose parts differ by less lies closer to its doubling than settings are set. Where it
+    /// alternates and that dies away, it is that of half the period, if the waveform closes there.
+    fn choice<'c>(&self, closures: &'c [WaveformClosure], closed: f64) -> Option<Choice<'c>> {
+        let slack = slack(closures);
+        let close = |c: &&WaveformClosure| c.ratio <= slack.max(settling::LEAST);
+        let best = closures.iter().find(close)?;
+        let half = closures
+            .iter()
+            .find(|c| 2 * c.periods_n == best.periods_n && self.has_two_impacts(best));
+        let impacts = &self.detection.impacts;
+        let dying = half.filter(|_| alternation::dies_away(impacts));
+        let growing = half.filter(|_| alternation::grows(impacts));
+        let chosen = dying.filter(|half| half.ratio <= closed).unwrap_or(best);
+        let alternates = chosen.ratio > slack || dying.is_some();
+        let open = |half: &WaveformClosure| Some(half.ratio).filter(|size| *size > closed);
+        Some(Choice {
+            chosen,
+            dying: dying.and_then(open),
+            growing: growing.and_then(open),
+            sure: if alternates { ALTERNATES } else { 1.0 },
+        })
     }
 
     /// Whether two impacts fall into the period after which a waveform closes.
