@@ -46,4 +46,5 @@ fn a_stop_that_may_be_a_second_mass_is_named() {
     let ran = lab.run(&run);
     let said = ran.said.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(said.contains("a second mass that moves too"), "{said}");
+    assert!(said.contains("R, x_st only weakly"), "{said}");
 }

@@ -18,18 +18,26 @@ const FEWEST: usize = 6;
 /// impacts do not by chance follow the line too well.
 const CHANGES: f64 = 4.0;
 
-/// Whether the alternation of the impacts' speeds dies away.
-pub(super) fn dies_away(impacts: &[Impact]) -> bool {
-    change(impacts).is_some_and(|change| change < -CHANGES)
+/// How an alternation of impacts changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Change {
+    /// It dies away.
+    Dies,
+    /// It grows.
+    Grows,
 }
 
-/// Whether it grows.
-pub(super) fn grows(impacts: &[Impact]) -> bool {
-    change(impacts).is_some_and(|change| change > CHANGES)
+/// How the alternation of the impacts' speeds changes; `None` where it stays, or they do not tell.
+pub(super) fn change(impacts: &[Impact]) -> Option<Change> {
+    match score(impacts)? {
+        score if score < -CHANGES => Some(Change::Dies),
+        score if score > CHANGES => Some(Change::Grows),
+        _ => None,
+    }
 }
 
 /// b over its standard error, with the sign of its growth; `None` of few impacts with speeds.
-fn change(impacts: &[Impact]) -> Option<f64> {
+fn score(impacts: &[Impact]) -> Option<f64> {
     let known = |(k, impact): (usize, &Impact)| {
         let speed = impact.approach_speed_before_m_s?;
         Some((k, speed, impact.speed_error_m_s()?))
@@ -85,14 +93,17 @@ mod tests {
     fn valid_an_alternation_that_dies_away_is_told_from_one_that_stays() {
         for seed in 0..20 {
             for size in [0.004, 0.02] {
-                assert!(dies_away(&impacts(size, 0.8, seed)), "{seed} {size}");
-                assert!(!dies_away(&impacts(size, 1.0, seed)), "{seed} {size}");
+                let dying = change(&impacts(size, 0.8, seed));
+                assert_eq!(dying, Some(Change::Dies), "{seed} {size}");
+                let staying = change(&impacts(size, 1.0, seed));
+                assert_ne!(staying, Some(Change::Dies), "{seed} {size}");
                 let mut reversed = impacts(size, 0.8, seed);
                 reversed.reverse();
-                assert!(grows(&reversed) && !dies_away(&reversed), "{seed} {size}");
+                assert_eq!(change(&reversed), Some(Change::Grows), "{seed} {size}");
             }
-            assert!(!dies_away(&impacts(0.0, 1.0, seed)), "{seed}");
+            let none = change(&impacts(0.0, 1.0, seed));
+            assert_ne!(none, Some(Change::Dies), "{seed}");
         }
-        assert!(!dies_away(&impacts(0.02, 0.8, 1)[..5]));
+        assert_eq!(change(&impacts(0.02, 0.8, 1)[..5]), None);
     }
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::event::{Detection, Impact};
-use crate::motion::alternation;
+use crate::motion::alternation::{self, Change};
 use crate::motion::aperiodic::Irregularity;
 use crate::motion::closure::{self, Count, ImpactClosure, WaveformClosure};
 use crate::motion::harmonics;
@@ -322,9 +322,9 @@ impl Case<'_> {
         let half = closures
             .iter()
             .find(|c| 2 * c.periods_n == best.periods_n && self.has_two_impacts(best));
-        let impacts = &self.detection.impacts;
-        let dying = half.filter(|_| alternation::dies_away(impacts));
-        let growing = half.filter(|_| alternation::grows(impacts));
+        let change = half.and_then(|_| alternation::change(&self.detection.impacts));
+        let dying = half.filter(|_| change == Some(Change::Dies));
+        let growing = half.filter(|_| change == Some(Change::Grows));
         let chosen = dying.filter(|half| half.ratio <= closed).unwrap_or(best);
         let alternates = chosen.ratio > slack || dying.is_some();
         let open = |half: &WaveformClosure| Some(half.ratio).filter(|size| *size > closed);

@@ -71,24 +71,25 @@ impl BoundaryBlock {
 /// Frequency of the boundary of a bracket according to the model, Hz: the crossing nearest to it.
 /// `None` where the boundary does not reach this clearance.
 pub fn predicted_hz(bracket: &Bracket, parameters: &Parameters, rig: RigKind) -> Option<f64> {
-    BoundaryPlace::of(bracket, parameters, rig).nearest_hz(parameters)
+    BoundaryPlace::of(bracket, parameters, rig).nearest_hz()
 }
 
-/// How far above s1 (below where negative) records of z = 1/n may still alternate, Hz: up to where an alternation keeps
-/// `ALTERNATES` over a cycle. Zero of other boundaries, and where no such place is at the clearance.
-pub fn alternating_hz(bracket: &Bracket, parameters: &Parameters, rig: RigKind) -> f64 {
+/// How far above s1 (below where negative), which [`predicted_hz`] gives, records of z = 1/n may still alternate, Hz: up to where
+/// an alternation keeps `ALTERNATES` over a cycle. Zero of other boundaries, and where no such place is at the clearance.
+pub fn alternating_hz(
+    bracket: &Bracket,
+    parameters: &Parameters,
+    rig: RigKind,
+    boundary_hz: f64,
+) -> f64 {
     if bracket.kind != BoundaryKind::PeriodDoubling {
         return 0.0;
     }
-    let nearest = |kept: f64| {
-        let mut place = BoundaryPlace::of(bracket, parameters, rig);
-        place.kept = kept;
-        place.nearest_hz(parameters)
+    let last = BoundaryPlace {
+        kept: ALTERNATES,
+        ..BoundaryPlace::of(bracket, parameters, rig)
     };
-    match (nearest(1.0), nearest(ALTERNATES)) {
-        (Some(end), Some(last)) => last - end,
-        _ => 0.0,
-    }
+    last.nearest_hz().map_or(0.0, |last| last - boundary_hz)
 }
 
 /// A boundary of the model beside a bracket's clearance, with all that acts on its records.
@@ -119,12 +120,12 @@ impl<'a> BoundaryPlace<'a> {
         }
     }
 
-    /// Its crossing of the clearance nearest to the bracket, Hz, by parameters in which f0 is this one.
-    fn nearest_hz(&self, parameters: &Parameters) -> Option<f64> {
-        let natural_hz = parameters.natural_frequency_hz;
+    /// Its crossing of the clearance nearest to the bracket, Hz.
+    fn nearest_hz(&self) -> Option<f64> {
+        let natural_hz = self.parameters.natural_frequency_hz;
         let excess = |eta: f64| self.excess(eta * natural_hz);
         let bracket = self.bracket;
-        let middle = parameters.setting(
+        let middle = self.parameters.setting(
             bracket.middle_hz(),
             bracket.clearance_m,
             bracket.drive_amplitude,

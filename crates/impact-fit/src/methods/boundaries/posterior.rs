@@ -543,11 +543,12 @@ mod tests {
         // both sweeps show it where an alternation keeps 0.96 over a cycle
         let p = Parameters::symmetric(0.7, 12.6, 0.05, 1e-3);
         let doubling = bracket(BoundaryKind::PeriodDoubling, 0.93, &p, 0.0);
-        let range_hz = alternating_hz(&doubling, &p, RigKind::Double);
+        let s1_hz = predicted_hz(&doubling, &p, RigKind::Double).unwrap();
+        let range_hz = alternating_hz(&doubling, &p, RigKind::Double, s1_hz);
         assert!(range_hz > 0.01 * doubling.middle_hz(), "{range_hz}");
         let held = [-0.1, 0.1].map(|off| {
             let mut held = doubling.clone();
-            let low = predicted_hz(&held, &p, RigKind::Double).unwrap() + (0.8 + off) * range_hz;
+            let low = s1_hz + (0.8 + off) * range_hz;
             (held.frequency_low_hz, held.frequency_high_hz) = (low, 1.005 * low);
             held
         });

@@ -158,17 +158,23 @@ impl Surroundings {
     ) -> Option<SimulatedBoundary> {
         let about = &self.at(restitution);
         let frequency_hz = predicted_hz(bracket, about, block.rig)?;
-        Some(SimulatedBoundary {
-            frequency_hz: self.without_length(frequency_hz, &direction),
-            direction,
-            alternating_hz: alternating_hz(bracket, about, block.rig),
-        })
+        let alternating_hz = alternating_hz(bracket, about, block.rig, frequency_hz);
+        Some(self.without_length(frequency_hz, direction, alternating_hz))
     }
 
-    /// Where a boundary lies with all deviates zero, from where it lies with contacts of the mean length, Hz.
-    fn without_length(&self, frequency_hz: f64, direction: &DVector<f64>) -> f64 {
+    /// A boundary with all deviates zero, from where it lies with contacts of the mean length.
+    fn without_length(
+        &self,
+        frequency_hz: f64,
+        direction: DVector<f64>,
+        alternating_hz: f64,
+    ) -> SimulatedBoundary {
         let at_mean = self.length.map_or(0.0, |i| direction[i] * MEAN_OF_POSITIVE);
-        frequency_hz - at_mean
+        SimulatedBoundary {
+            frequency_hz: frequency_hz - at_mean,
+            direction,
+            alternating_hz,
+        }
     }
 
     fn at(&self, restitution: f64) -> Parameters {
@@ -218,10 +224,9 @@ impl Surroundings {
         let direction =
             DVector::from_iterator(self.deviates.len(), self.deviates.iter().map(moved));
         let known = direction.iter().all(|d| d.is_finite());
-        known.then(|| SimulatedBoundary {
-            frequency_hz: self.without_length(frequency_hz, &direction),
-            direction,
-            alternating_hz: alternating_hz(bracket, about, block.rig),
+        known.then(|| {
+            let alternating_hz = alternating_hz(bracket, about, block.rig, frequency_hz);
+            self.without_length(frequency_hz, direction, alternating_hz)
         })
     }
 }
