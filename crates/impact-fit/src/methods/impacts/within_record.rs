@@ -36,6 +36,8 @@ struct Deviations {
     speeds_m_s: Vec<f64>,
     scores: Vec<f64>,
     places: Vec<Option<f64>>,
+    /// What a, s and c count in the variance of the mean, times the count: 1, K and n.
+    terms: [f64; 3],
 }
 
 impl Deviations {
@@ -99,6 +101,9 @@ fn records(block: &ImpactBlock) -> BTreeMap<usize, Deviations> {
         record.speeds_m_s.push(pair.before_m_s);
         record.places.push(pair.sample_place);
     }
+    for record in records.values_mut() {
+        record.terms = [1.0, record.alike(), record.count()];
+    }
     records
 }
 
@@ -119,23 +124,17 @@ impl Variances {
         let lost = records.len() as f64 / known;
         let means = about_law(&records)?.map(|square| square * lost);
         let all = |of: &dyn Fn(&Deviations) -> f64| records.iter().map(|r| of(r)).sum::<f64>();
-        let of_means = |weight: &dyn Fn(&Deviations) -> f64| {
-            let terms = |r: &Deviations| [1.0, r.alike(), r.count()];
-            [0, 1, 2].map(|i| all(&|r| weight(r) * terms(r)[i]))
-        };
-        let within = [
-            all(&|r| r.count() - 1.0),
-            all(&|r| r.count() - r.alike()),
-            0.0,
-        ];
-        let weighted = |weight: &dyn Fn(&Deviations) -> f64| {
+        let within = |i: usize| all(&|r| r.terms[2] - r.terms[i]);
+        let weighted = |weight: usize| {
+            let of_means = |i: usize| all(&|r| r.terms[weight] * r.terms[i]);
             let own = records.iter().zip(means.iter());
-            (of_means(weight), own.map(|(r, m)| weight(r) * m).sum())
+            let found = own.map(|(r, square)| r.terms[weight] * square).sum();
+            ([0, 1, 2].map(of_means), found)
         };
         let equations = [
-            (within, all(&Deviations::within)),
-            weighted(&|_| 1.0),
-            weighted(&|r| r.alike()),
+            ([0, 1, 2].map(within), all(&Deviations::within)),
+            weighted(0),
+            weighted(1),
         ];
         let [independent, by_place, common] = positive_solution(&equations)?;
         Some(Self {
@@ -147,7 +146,8 @@ impl Variances {
 
     /// Variance of the mean of a record's deviations, times their count.
     fn of_mean(&self, record: &Deviations) -> f64 {
-        self.independent + self.by_place * record.alike() + self.common * record.count()
+        let [own, alike, count] = record.terms;
+        self.independent * own + self.by_place * alike + self.common * count
     }
 }
 
