@@ -25,6 +25,8 @@ pub struct Selection<'a> {
     pub lost: Vec<TrajectoryRecord>,
     /// The typical mean square of the records that it kept.
     pub typical: f64,
+    /// The stated clearances of the gaps that were left out, m.
+    gone_m: Vec<f64>,
 }
 
 impl<'a> Selection<'a> {
@@ -37,6 +39,7 @@ impl<'a> Selection<'a> {
             unlike: Vec::new(),
             lost: Vec::new(),
             typical: 1.0,
+            gone_m: Vec::new(),
         }
     }
 
@@ -84,11 +87,19 @@ impl<'a> Selection<'a> {
             self.note(observation, Reason::GapNotAsStated);
         }
         self.lost.retain(|r| r.clearance_m != clearance_m);
+        self.gone_m.push(clearance_m);
         let brackets = &mut self.blocks.boundary.brackets;
         let gone = brackets.extract_if(.., |b| b.clearance_m == clearance_m);
         for bracket in gone.collect::<Vec<_>>() {
             self.note_bracket(&bracket, Reason::GapNotAsStated);
         }
         true
+    }
+
+    /// Whether an observation is of impacts across a gap that was left out.
+    pub fn is_of_a_gap_left_out(&self, observation: &Observation) -> bool {
+        let stated_m = observation.setting.clearance_m;
+        let gone = stated_m.is_some_and(|own_m| self.gone_m.contains(&own_m));
+        gone && !observation.impacts.is_empty()
     }
 }

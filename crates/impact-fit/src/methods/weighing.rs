@@ -21,12 +21,16 @@ impl Blocks {
     }
 
     /// Allow impactless and periodic records the least error beside the noise, with the changes by effects as they
-    /// are at parameters; periodic ones without an orbit there are left out.
+    /// are at parameters.
     pub fn allow_least(&mut self, at: &Parameters) {
         self.resonance.find_changes(at);
         self.trajectory.find_changes(at);
         self.resonance.allow(LEAST_ALLOWANCE);
         self.trajectory.allow(LEAST_ALLOWANCE);
+    }
+
+    /// Leave out periodic records without an orbit at parameters.
+    pub fn keep_those_with_an_orbit(&mut self, at: &Parameters) {
         let has_orbit = mean_squares(&self.trajectory, at);
         let mut has_orbit = has_orbit.iter().map(Option::is_some);
         let records = &mut self.trajectory.records;

@@ -1,12 +1,15 @@
 //! Response of an impactless record at the drive's frequency: complex amplitude of each motion
 //! channel relative to the drive's phase, the integrators' high-pass divided out.
+//!
+//! What is left of a free decay when the record begins is not told from the response where it decays slowly, but for how the
+//! response changes over the record: that counts as an error of the response where noise does not explain it.
 
-use nalgebra::{Complex, Matrix4, Vector4};
+use nalgebra::{Complex, SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
 use crate::event::DriveTone;
 use crate::record::{LowPass, Record, Role, before_high_pass};
-use crate::signal::columns::{dot, subtract};
+use crate::signal::columns::{dot, products, subtract};
 use crate::signal::turns::Turns;
 
 /// Complex amplitude of one channel: it moves as Re[(real + i·imaginary) e^{iθ}] while the drive
@@ -19,7 +22,7 @@ pub struct Response {
     pub real: f64,
     /// A quarter period ahead of the drive, SI.
     pub imaginary: f64,
-    /// Standard error of either part, SI.
+    /// Standard error of either part by noise and by what has not settled, SI.
     pub error: f64,
     /// Root mean square of the residual, SI.
     pub residual_rms: f64,
@@ -105,18 +108,29 @@ pub(super) fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
         .collect()
 }
 
-/// 1, t, cos θ, sin θ at the samples of a record, and the inverse of their normal equations.
+/// Terms of a record's waveform: 1, t, cos θ, sin θ, t cos θ and t sin θ, with t from −1 to 1.
+const TERMS: usize = 6;
+/// Standard errors from which a response changes over the record.
+const CHANGES: f64 = 3.0;
+/// What is left of a free decay in a response over the change that it makes of it from the record's middle to its end, of a
+/// record as long as it takes the decay to fall to half of itself: shorter ones hardly tell it at all.
+const SETTLING: f64 = 3.0;
+
+/// The terms at the samples of a record, and the inverse of their normal equations.
 struct Basis {
-    columns: [Vec<f64>; 4],
-    inverse: Matrix4<f64>,
+    columns: [Vec<f64>; TERMS],
+    inverse: SMatrix<f64, TERMS, TERMS>,
 }
 
 impl Basis {
     fn new(count: usize, rate_hz: f64, drive: &DriveTone) -> Option<Self> {
         let turns = Turns::new(drive.frequency_hz / rate_hz, drive.phase_rad, count);
         let times = (0..count).map(|i| 2.0 * i as f64 / count as f64 - 1.0);
-        let columns = [vec![1.0; count], times.collect(), turns.cos, turns.sin];
-        let normal = Matrix4::from_fn(|i, k| dot(&columns[i], &columns[k]));
+        let times: Vec<f64> = times.collect();
+        let changing = [&turns.cos, &turns.sin].map(|values| products(&times, values));
+        let [along, across] = changing;
+        let columns = [vec![1.0; count], times, turns.cos, turns.sin, along, across];
+        let normal = SMatrix::<f64, TERMS, TERMS>::from_fn(|i, k| dot(&columns[i], &columns[k]));
         Some(Self {
             inverse: normal.try_inverse()?,
             columns,
@@ -127,22 +141,29 @@ impl Basis {
     /// has gaps.
     fn fit(&self, values: &[f64]) -> Option<(f64, f64, f64, f64)> {
         let count = values.len();
-        if count < 8 || values.iter().any(|v| !v.is_finite()) {
+        if count < 2 * TERMS || values.iter().any(|v| !v.is_finite()) {
             return None;
         }
-        let right = Vector4::from_fn(|i, _| dot(&self.columns[i], values));
+        let right = SVector::<f64, TERMS>::from_fn(|i, _| dot(&self.columns[i], values));
         let solution = self.inverse * right;
         let mut residuals = values.to_vec();
         for (share, column) in solution.iter().zip(&self.columns) {
             subtract(&mut residuals, *share, column);
         }
         let squares = dot(&residuals, &residuals);
-        let deviation = (squares / (count - 4) as f64).sqrt();
-        let inverse = &self.inverse;
-        let error = deviation * (0.5 * (inverse[(2, 2)] + inverse[(3, 3)])).sqrt();
+        let deviation = (squares / (count - TERMS) as f64).sqrt();
+        let error = |i: usize, k: usize| {
+            deviation * (0.5 * (self.inverse[(i, i)] + self.inverse[(k, k)])).sqrt()
+        };
+        let change = solution[4].hypot(solution[5]);
+        let unsettled = if change > CHANGES * error(4, 5) {
+            SETTLING * change
+        } else {
+            0.0
+        };
         let rms = (squares / count as f64).sqrt();
         // a cos θ + b sin θ = Re[(a − i b) e^{iθ}].
-        Some((solution[2], -solution[3], error, rms))
+        Some((solution[2], -solution[3], error(2, 3).hypot(unsettled), rms))
     }
 }
 
@@ -189,5 +210,31 @@ mod tests {
         assert!((found.real - 1.0).abs() < 1e-9 && found.imaginary.abs() < 1e-9);
         let raw = found.behind(None, 12.6);
         assert!((raw.real - 0.5).abs() < 1e-9 && (raw.imaginary - 0.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn valid_what_is_left_of_a_free_decay_enters_the_error_and_noise_alone_does_not() {
+        use rand::SeedableRng;
+        use rand_distr::{Distribution, StandardNormal};
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(8);
+        let noise: Vec<f64> = (0..2000).map(|_| StandardNormal.sample(&mut rng)).collect();
+        let noisy = |left: f64| {
+            record(|theta, t| {
+                let decay = (-0.9 * t).exp() * (1.0 + 12.4 * std::f64::consts::TAU * t).cos();
+                theta.cos() + left * decay + 1e-3 * noise[(t * RATE_HZ).round() as usize]
+            })
+        };
+        let settled = responses(&noisy(0.0), &drive())[0];
+        // noise of 0.1 % on 2000 samples
+        assert!((settled.error / 3.2e-5 - 1.0).abs() < 0.1, "{settled:?}");
+        for left in [0.002, 0.01, 0.05] {
+            let found = responses(&noisy(left), &drive())[0];
+            let off = (found.real - 1.0).hypot(found.imaginary);
+            assert!(
+                off > 3.0 * settled.error && off < 2.0 * found.error,
+                "{left}: {off} {found:?}"
+            );
+            assert!(found.error < 3.0 * left, "{left}: {found:?}");
+        }
     }
 }

@@ -3,9 +3,10 @@
 //!
 //! The first order about a fit, which finds smaller errors of a gap, may then accuse another gap.
 
-use crate::identify::diagnostics::suspicion::{OddGap, recover};
+use crate::identify::diagnostics::suspicion::{OddGap, fitting_clearance, recover};
 use impact_fit::messages::Finding;
 use impact_fit::methods::blocks::Blocks;
+use impact_fit::methods::trajectories::block::TrajectoryBlock;
 use impact_fit::methods::trajectories::record::TrajectoryRecord;
 use impact_fit::parameters::Parameters;
 use impact_fit::solver::mean_squares;
@@ -39,7 +40,10 @@ pub enum Contradicting {
 
 /// A few records of each gap, which contradict each other.
 pub struct Contradiction<'a> {
+    /// With the records that have an orbit where fits start.
     few: Blocks,
+    /// All of them, those of a gap that is stated so far off that they have none among them.
+    records: Vec<TrajectoryRecord>,
     gaps_m: Vec<f64>,
     /// Mean square that a fit of all leaves.
     all: f64,
@@ -60,13 +64,15 @@ impl<'a> Contradiction<'a> {
         let records = of_each_gap(blocks.trajectory.records.iter().chain(lost).collect());
         let mut few = blocks.with_trajectory(blocks.trajectory.with_records(records));
         few.allow_least(start);
-        let records = few.trajectory.records.iter();
-        let mut gaps_m: Vec<f64> = records.map(|r| r.clearance_m).collect();
+        let records = few.trajectory.records.clone();
+        let mut gaps_m: Vec<f64> = records.iter().map(|r| r.clearance_m).collect();
         gaps_m.dedup();
-        let (_, all) = fit(&few, found)?;
+        few.keep_those_with_an_orbit(start);
+        let (_, all) = fit(&few, found).or_else(|| fit(&few, start))?;
         let contradictory = gaps_m.len() >= FEWEST_GAPS && all >= MISFIT;
         contradictory.then_some(Self {
             few,
+            records,
             gaps_m,
             all,
             start,
@@ -87,14 +93,27 @@ impl<'a> Contradiction<'a> {
             others.trajectory.records.retain(|r| r.clearance_m != *gap);
             Some((*gap, (self.fit)(&others, self.start)?))
         };
-        let (gap_m, (parameters, _)) = self.alone(self.gaps_m.iter().filter_map(without))?;
+        let (gap_m, (without, _)) = self.alone(self.gaps_m.iter().filter_map(without))?;
         let block = &self.few.trajectory;
-        let own = block.records.iter().filter(|r| r.clearance_m == gap_m);
+        let own = self.records.iter().filter(|r| r.clearance_m == gap_m);
         let own: Vec<TrajectoryRecord> = own.cloned().collect();
-        let scores = mean_squares(block, &parameters).into_iter().flatten();
-        let scores: Vec<f64> = scores.collect();
-        let typical = robust::median(&scores).unwrap_or(1.0).max(1.0);
-        recover(block, own, &parameters, typical)
+        let typical = typical(block, &without);
+        // what the others leave open of all else is more than the noise of these records
+        let about_m = fitting_clearance(block, own.clone(), &without, typical)?;
+        let (with, _) = (self.fit)(&self.with_clearance(gap_m, about_m, &without), &without)?;
+        recover(block, own, &with, typical)
+    }
+
+    /// All records, one gap with another clearance, as far as they have an orbit at parameters.
+    fn with_clearance(&self, gap_m: f64, other_m: f64, at: &Parameters) -> Blocks {
+        let mut records = self.records.clone();
+        for record in records.iter_mut().filter(|r| r.clearance_m == gap_m) {
+            record.clearance_m = other_m;
+        }
+        let trajectory = self.few.trajectory.with_records(records);
+        let mut all = self.few.with_trajectory(trajectory);
+        all.keep_those_with_an_orbit(at);
+        all
     }
 
     /// The two gaps with each other's clearances of which all records fit far better, where that is so of one pair alone.
@@ -125,6 +144,12 @@ impl<'a> Contradiction<'a> {
             .next()
             .filter(|(_, (_, best))| *best < most)
     }
+}
+
+/// The typical mean square of the records of a block at parameters, at least 1.
+fn typical(block: &TrajectoryBlock, at: &Parameters) -> f64 {
+    let scores: Vec<f64> = mean_squares(block, at).into_iter().flatten().collect();
+    robust::median(&scores).unwrap_or(1.0).max(1.0)
 }
 
 /// The clearance of a gap where two have each other's.

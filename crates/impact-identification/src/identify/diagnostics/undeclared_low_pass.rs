@@ -72,6 +72,7 @@ pub fn behind(evidence: &Evidence<'_>) -> Option<Refiltered> {
             .records
             .retain(|r| kept.contains(&r.observation));
         blocks.allow_least(&begin);
+        blocks.keep_those_with_an_orbit(&begin);
         let simple = Nominal {
             effects: evidence.nominal.effects.without(EffectKind::ForceFrequency),
             ..evidence.nominal

@@ -70,13 +70,14 @@ impl Search<'_> {
 
     /// Both parts of a campaign, each fitted by itself, where they differ by more than R over the speed explains.
     fn apart(&self, of: Other) -> Option<Change> {
-        let observations = self
-            .evidence
-            .observations
-            .iter()
-            .zip(ranks(self.evidence.observations));
-        let second: Vec<bool> = observations.map(|(o, rank)| of.holds(o, rank)).collect();
-        let both = [false, true].map(|part| part_alone(self.evidence, &|i| second[i] == part));
+        let (observations, selection) = (self.evidence.observations, self.fitted.selection);
+        let ranked = observations.iter().zip(ranks(observations));
+        let second: Vec<bool> = ranked.map(|(o, rank)| of.holds(o, rank)).collect();
+        let both = [false, true].map(|part| {
+            let within =
+                |i: usize| second[i] == part && !selection.is_of_a_gap_left_out(&observations[i]);
+            part_alone(self.evidence, &within)
+        });
         let [Some(first), Some(other)] = both else {
             return None;
         };
