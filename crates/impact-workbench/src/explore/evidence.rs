@@ -1,6 +1,8 @@
 //! A campaign at the sliders: a record beside its simulation with the evidence for its label, the
 //! residuals of every method, boundaries against brackets, and what to measure next.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
@@ -164,6 +166,27 @@ fn root_mean(squares: f64, count: usize) -> Option<f64> {
     (count > 0 && mean.is_finite()).then(|| mean.sqrt())
 }
 
+/// Why a method is not one of those with a weight in the joint fit; `None` for one that is.
+fn apart(
+    method: Method,
+    weights: &BTreeMap<Method, f64>,
+    remarks: &[Remark],
+) -> Option<&'static str> {
+    if weights.get(&method).is_some_and(|weight| *weight > 0.0) {
+        return None;
+    }
+    let joint = |of: Method| weights.contains_key(&of);
+    Some(if remarks.contains(&Remark::IdealRig) {
+        "takes the rig as ideal, not in the joint fit"
+    } else if method == Method::Flights && joint(Method::Trajectories) {
+        "not in the joint fit: trajectories tell the same better"
+    } else if method == Method::Impacts && joint(Method::Flights) {
+        "not in the joint fit: multiple shooting rests on the same impacts"
+    } else {
+        "not in the joint fit, as the findings say"
+    })
+}
+
 /// Residuals of every method and of the joint fit at the sliders, and where each boundary is then.
 pub(super) fn residuals(campaign: &OpenCampaign, state: &State, job: &Job) -> Result<(), Stop> {
     let at = match campaign.at_sliders(state) {
@@ -185,7 +208,7 @@ pub(super) fn residuals(campaign: &OpenCampaign, state: &State, job: &Job) -> Re
         let own = campaign.identification.methods.get(&method);
         let remarks = own.map_or(&[][..], |own| &own.remarks);
         methods.push(json!({
-            "ideal_rig": remarks.contains(&Remark::IdealRig),
+            "apart": weights.and_then(|w| apart(method, w, remarks)),
             "remarks": remarks.iter().map(|r| r.to_string()).collect::<Vec<_>>(),
             "method": method.to_string(),
             "rms": root_mean(found.squares, found.count),
