@@ -20,6 +20,7 @@ use crate::solver::normal::Normal;
 use crate::solver::placed_rows::PlacedRows;
 use crate::solver::rows::Rows;
 use crate::solver::{Fit, FitError, FitProgress};
+use crate::statistics::quantile::chi_squared_99;
 
 /// Gaussian prior on one coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -226,6 +227,15 @@ impl<'a> Problem<'a> {
     pub fn strained(&self, at: &Parameters) -> bool {
         let far = |p: &Prior| p.coordinate.is_stated() && is_far(p, at, FAR);
         self.priors.iter().any(far)
+    }
+
+    /// Whether what is stated of some coordinates together is less likely than 1 % at given parameters: the sum of their
+    /// squared deviations from their priors against chi-squared.
+    pub fn strained_together(&self, at: &Parameters, of: impl Fn(Coordinate) -> bool) -> bool {
+        let own = self.priors.iter().filter(|p| of(p.coordinate));
+        let squares: Vec<f64> = own.map(|p| prior_residual(p, at).powi(2)).collect();
+        let sum: f64 = squares.iter().sum();
+        !squares.is_empty() && sum > chi_squared_99(squares.len() as f64)
     }
 
     /// Sum of squared weighted residuals at given parameters; `None` if an item has no model.

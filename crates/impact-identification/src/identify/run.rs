@@ -319,6 +319,12 @@ impl<'a> IdentificationRun<'a> {
 
     /// Leave out, one by one, gaps that are not as stated; nothing where two have each other's clearances, which are returned.
     fn without_odd_gaps(&mut self) -> Option<[f64; 2]> {
+        if self.clearances_strained()
+            && let Some(zero) = self.common_zero()
+        {
+            self.odd_gaps.push(zero);
+            return None;
+        }
         while self.odd_gaps.len() < MOST_ODD_GAPS {
             let odd = match self.odd_gap() {
                 Some(Contradicting::One(odd)) => odd,
@@ -348,7 +354,17 @@ impl<'a> IdentificationRun<'a> {
         contradicting_gap::exchanged_of(&found.collect::<Vec<_>>())
     }
 
-    /// That all clearances are counted from another zero, where one of them seems to be off.
+    /// Whether the joint fit needs clearances that are together unlike what is stated of them.
+    fn clearances_strained(&self) -> bool {
+        let (joint, problem) = (self.found.together(), self.problem(self.found.start()));
+        joint.zip(problem).is_some_and(|(joint, problem)| {
+            let of_clearances =
+                |c: Coordinate| matches!(c, Coordinate::ScrewZero | Coordinate::Gap(_));
+            problem.strained_together(&joint.fit.parameters, of_clearances)
+        })
+    }
+
+    /// That all clearances are counted from another zero, where they are unlike what is stated.
     fn common_zero(&self) -> Option<Suspicion> {
         let blocks = &self.selection.blocks;
         let uncertainty_m = self.evidence.nominal.clearance_uncertainty_m;

@@ -9,6 +9,7 @@ use impact_oscillator::model::boundary::{alternating_of_branch, rho_grazing, s2_
 use impact_oscillator::model::orbit::Branch;
 use impact_records::event::RigKind;
 use impact_records::motion::{BoundaryKind, Bracket};
+use impact_records::record::Sweep;
 
 /// Share that an alternation between impacts keeps over a cycle up to which records may still show it as a motion: in the
 /// twelve cycles of a usual record half of it is left, from which it is hardly told to die away.
@@ -68,8 +69,8 @@ impl BoundaryBlock {
     }
 }
 
-/// Frequency of the boundary of a bracket according to the model, Hz: the crossing nearest to it.
-/// `None` where the boundary does not reach this clearance.
+/// Frequency of the boundary of a bracket according to the model, Hz: the crossing nearest to it at which the motion
+/// before ends in the direction of the sweep. `None` where the boundary has none at this clearance.
 pub fn predicted_hz(bracket: &Bracket, parameters: &Parameters, rig: RigKind) -> Option<f64> {
     BoundaryPlace::of(bracket, parameters, rig).nearest_hz()
 }
@@ -130,8 +131,24 @@ impl<'a> BoundaryPlace<'a> {
             bracket.clearance_m,
             bracket.drive_amplitude,
         );
-        let eta = nearest_crossing(excess, middle.clearance, middle.frequency_ratio)?;
+        let (level, eta) = (middle.clearance, middle.frequency_ratio);
+        let eta = nearest_crossing(excess, level, eta, self.falls())?;
         Some(eta * natural_hz)
+    }
+
+    /// Whether ρ of the boundary falls below the clearance as the frequency rises: a motion with impacts is below its s2,
+    /// one without them above ρ'. `None` where either may be.
+    fn falls(&self) -> Option<bool> {
+        let falls_forward = match self.bracket.kind {
+            BoundaryKind::SaddleNode => true,
+            BoundaryKind::Grazing => false,
+            BoundaryKind::PeriodDoubling | BoundaryKind::Other => return None,
+        };
+        match self.bracket.sweep {
+            Sweep::Up => Some(falls_forward),
+            Sweep::Down => Some(!falls_forward),
+            Sweep::Unknown => None,
+        }
     }
 
     /// ρ of the boundary less that of the bracket's clearance at a drive frequency; not a number where there is
@@ -208,15 +225,22 @@ struct Marginal {
     press: f64,
 }
 
-/// Crossing of ρ(η) with a level nearest to η0, by what ρ exceeds it: scanned outward, then closed in on.
-fn nearest_crossing(excess: impl Fn(f64) -> f64, level: f64, eta0: f64) -> Option<f64> {
+/// Crossing of ρ(η) with a level nearest to η0, by what ρ exceeds it, at which it falls or rises where that is known:
+/// scanned outward, then closed in on.
+fn nearest_crossing(
+    excess: impl Fn(f64) -> f64,
+    level: f64,
+    eta0: f64,
+    falls: Option<bool>,
+) -> Option<f64> {
     let here = excess(eta0);
     let step = 0.01;
     // Between two points of opposite sign; where the curve leaps there instead, it crosses nothing.
     let crossing = |low: (f64, f64), high: (f64, f64)| {
         let finite = low.1.is_finite() && high.1.is_finite();
-        let root = (finite && low.1.signum() != high.1.signum())
-            .then(|| root_between(&excess, low, high))?;
+        let crosses = low.1.signum() != high.1.signum();
+        let meant = falls.is_none_or(|falls| falls == (low.1 > high.1));
+        let root = (finite && crosses && meant).then(|| root_between(&excess, low, high))?;
         (excess(root).abs() < 1e-6 * (1.0 + level.abs())).then_some(root)
     };
     let (mut low, mut high) = ((eta0, here), (eta0, here));

@@ -8,8 +8,9 @@
 //! probability that every jump falls into its bracket, with how early they come summed out.
 //!
 //! Early jumps and the length of contacts act to one side: both take the ends of motions down, and R that explains
-//! them up. A rig may have neither, and a few brackets do not show which. The 95 % interval therefore reaches to that
-//! of a rig whose jumps come at their boundaries and whose contacts have no length, unless the brackets refute it.
+//! them up. A rig may have neither, and a few brackets do not show which. The 95 % interval therefore reaches to those
+//! of a rig whose contacts have no length, and of one whose jumps come at their boundaries too, unless the brackets refute
+//! it.
 //!
 //! Jumps that are all early by much the same look like jumps at the boundaries of a lower R: brackets
 //! alone cannot tell the two apart. Where the waveforms determine an R that the brackets miss, and that
@@ -148,9 +149,13 @@ pub fn of_brackets(
     };
     let boundaries = BoundaryCurves::new(block, surroundings);
     let mut found = over_grid(&boundaries, all);
-    let plain = over_grid(&boundaries.of_instants(), at_their_ends);
-    if plain.evidence > found.evidence + REFUTED.ln() {
-        found = found.reaching(&plain);
+    let instants = boundaries.of_instants();
+    let least = found.evidence + REFUTED.ln();
+    for ends in [all, at_their_ends] {
+        let plain = over_grid(&instants, ends);
+        if plain.evidence > least {
+            found = found.reaching(&plain);
+        }
     }
     let (mean, deviation) = found.restitution;
     let missed = waveforms.filter(|p| (p.restitution - mean).abs() > MISSED * deviation);
