@@ -222,6 +222,20 @@ pub struct JointFit {
     pub allowed: Vec<Allowed>,
 }
 
+impl JointFit {
+    /// The same with clearances as they were stated, where all were counted from a zero that is so much higher, m.
+    pub fn count_from_stated(&mut self, added_m: f64) {
+        self.fit.parameters.screw_zero_m += added_m;
+        for gap_m in &mut self.gaps_m {
+            *gap_m -= added_m;
+        }
+        let zeros = self.priors.iter_mut();
+        for prior in zeros.filter(|p| p.coordinate == Coordinate::ScrewZero) {
+            prior.centre += 1e3 * added_m;
+        }
+    }
+}
+
 /// How far a parameter may be off by all that its interval allows for: covariance, scatter between
 /// groups, first order of the effects, disagreement of methods.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -9,7 +9,7 @@ use crate::identify::diagnostics::cause;
 use crate::identify::diagnostics::change::{Change, Fitted, Search};
 use crate::identify::diagnostics::clock;
 use crate::identify::diagnostics::common_scale::{self, CommonScale, common_scale};
-use crate::identify::diagnostics::common_zero;
+use crate::identify::diagnostics::common_zero::{self, Stated};
 use crate::identify::diagnostics::contradicting_gap::{
     self, Contradicting, Contradiction, exchanged,
 };
@@ -85,6 +85,9 @@ fn identify_as_stated(evidence: &Evidence<'_>) -> Identification {
 
 /// The same, by gains that are left to the data where these refute them.
 fn with_gains_judged(run: IdentificationRun<'_>) -> Identification {
+    if let Some(zero) = run.common_zero() {
+        return with_zero(&run, zero);
+    }
     match run.refuted_gains() {
         Some(opened) => with_open_gains(&opened.evidence(run.evidence), run.contradicted),
         None => completed(run),
@@ -166,6 +169,35 @@ fn with_exchanged(evidence: &Evidence<'_>, pair_m: [f64; 2]) -> Identification {
     let finding = Finding::ClearancesExchanged { pair_m };
     run.odd_gaps.push(finding.into());
     completed(run)
+}
+
+/// The identification with all clearances counted from another zero.
+fn with_zero(run: &IdentificationRun<'_>, zero: Suspicion) -> Identification {
+    let added_m = match zero.finding {
+        Finding::CommonZero { added_m } => added_m,
+        _ => 0.0,
+    };
+    let mut observations = run.evidence.observations.to_vec();
+    for o in &mut observations {
+        o.setting.clearance_m = o.setting.clearance_m.map(|stated_m| stated_m + added_m);
+    }
+    let mut brackets = run.evidence.brackets.to_vec();
+    for bracket in &mut brackets {
+        bracket.clearance_m += added_m;
+    }
+    let other = Evidence {
+        observations: &observations,
+        brackets: &brackets,
+        ..*run.evidence
+    };
+    let mut again = IdentificationRun::of(&other, begun(&other), run.stated);
+    again.contradicted = run.contradicted.clone();
+    again.odd_gaps.push(zero);
+    let mut found = completed(again);
+    if let Some(joint) = &mut found.joint_fit {
+        joint.count_from_stated(added_m);
+    }
+    found
 }
 
 /// What an identification begins with: everything that may be used, and the fit of the resonance curve.
@@ -319,12 +351,6 @@ impl<'a> IdentificationRun<'a> {
 
     /// Leave out, one by one, gaps that are not as stated; nothing where two have each other's clearances, which are returned.
     fn without_odd_gaps(&mut self) -> Option<[f64; 2]> {
-        if self.clearances_strained()
-            && let Some(zero) = self.common_zero()
-        {
-            self.odd_gaps.push(zero);
-            return None;
-        }
         while self.odd_gaps.len() < MOST_ODD_GAPS {
             let odd = match self.odd_gap() {
                 Some(Contradicting::One(odd)) => odd,
@@ -333,12 +359,6 @@ impl<'a> IdentificationRun<'a> {
                 }
                 None => break,
             };
-            if self.odd_gaps.is_empty()
-                && let Some(zero) = self.common_zero()
-            {
-                self.odd_gaps.push(zero);
-                break;
-            }
             let records = self.selection.of_gap(odd.stated_m);
             let others = self.selection.leave_out_gap(odd.stated_m);
             if others {
@@ -364,17 +384,35 @@ impl<'a> IdentificationRun<'a> {
         })
     }
 
-    /// That all clearances are counted from another zero, where they are unlike what is stated.
+    /// That all clearances are counted from another zero, where they are unlike what is stated or records of impacts are of no
+    /// motion with them.
     fn common_zero(&self) -> Option<Suspicion> {
-        let blocks = &self.selection.blocks;
-        let uncertainty_m = self.evidence.nominal.clearance_uncertainty_m;
+        let nominal = &self.evidence.nominal;
+        let stated = Stated {
+            clearance_m: nominal.clearance_uncertainty_m,
+            gain: nominal.gain_uncertainty,
+        };
+        let Selection { blocks, lost, .. } = &self.selection;
+        let unlike = self.clearances_strained() || lost.len() > blocks.trajectory.records.len();
+        if !unlike || stated.clearance_m == 0.0 {
+            return None;
+        }
+        let flown_m = stated_clearances::shift_m(self.evidence, &self.found.begin);
+        let mut starts = [0.0, flown_m.unwrap_or(0.0)].into_iter();
+        starts.find_map(|added_m| self.common_zero_from(added_m, stated))
+    }
+
+    /// The same by a fit that starts with so much added to all clearances, m.
+    fn common_zero_from(&self, added_m: f64, stated: Stated) -> Option<Suspicion> {
         let open = Nominal {
-            clearance_uncertainty_m: common_zero::OPEN * uncertainty_m,
+            clearance_uncertainty_m: (common_zero::OPEN * stated.clearance_m).max(added_m.abs()),
             ..self.evidence.nominal
         };
-        let both = joint::curve_and_waveforms();
-        let found = joint::rough(blocks, self.found.begin, &both, &open)?;
-        common_zero::common_zero(&found.parameters, &blocks.gaps_m, uncertainty_m)
+        let mut blocks = self.selection.blocks.clone();
+        let begin = self.found.begin.with(Coordinate::ScrewZero, 1e3 * added_m);
+        blocks.keep_those_with_an_orbit(&begin);
+        let found = joint::rough(&blocks, begin, &joint::curve_and_waveforms(), &open)?;
+        common_zero::common_zero(&found.parameters, &blocks.gaps_m, stated)
     }
 
     /// A gap that is far off with the clearance with which its records fit what all others say: to first order about a

@@ -34,10 +34,24 @@ const HALF: [f64; 2] = [0.45, 0.65];
 
 /// That the stated clearances are all off alike, by fitted f0, β and `x_st`.
 pub fn contradicted(evidence: &Evidence<'_>, fitted: &Parameters) -> Option<Finding> {
+    found(evidence.rig, &stated_and_flown(evidence, fitted))
+}
+
+/// What flights tell the clearances to be more than stated, m, in the median record; `None` where none tells it.
+pub fn shift_m(evidence: &Evidence<'_>, fitted: &Parameters) -> Option<f64> {
+    let pairs = stated_and_flown(evidence, fitted).into_iter();
+    robust::median(
+        &pairs
+            .map(|[stated, flown]| flown - stated)
+            .collect::<Vec<_>>(),
+    )
+}
+
+/// The clearance, m, of each record that tells it as it is stated and as the record's flights tell it.
+fn stated_and_flown(evidence: &Evidence<'_>, fitted: &Parameters) -> Vec<[f64; 2]> {
     let flown_m = |o: &Observation| flown_m(evidence.rig, o, fitted);
     let of = |o: &Observation| Some([o.setting.clearance_m?, flown_m(o)?]);
-    let pairs: Vec<[f64; 2]> = evidence.observations.iter().filter_map(of).collect();
-    found(evidence.rig, &pairs)
+    evidence.observations.iter().filter_map(of).collect()
 }
 
 /// The finding, and what it leaves open: where all clearances seem to be off by one factor, the scales of the channels
