@@ -223,15 +223,18 @@ pub struct JointFit {
 }
 
 impl JointFit {
-    /// The same with clearances as they were stated, where all were counted from a zero that is so much higher, m.
-    pub fn count_from_stated(&mut self, added_m: f64) {
-        self.fit.parameters.screw_zero_m += added_m;
-        for gap_m in &mut self.gaps_m {
-            *gap_m -= added_m;
-        }
-        let zeros = self.priors.iter_mut();
-        for prior in zeros.filter(|p| p.coordinate == Coordinate::ScrewZero) {
-            prior.centre += 1e3 * added_m;
+    /// Take the clearances as they were stated, m, where the fit was with the `meant` ones: what they differ by is part of
+    /// their errors.
+    pub fn count_from_stated(&mut self, stated_m: &[f64], meant: impl Fn(f64) -> f64) {
+        self.gaps_m = stated_m.to_vec();
+        for (i, stated_m) in stated_m.iter().enumerate() {
+            let off_m = meant(*stated_m) - stated_m;
+            let errors = &mut self.fit.parameters.gap_errors_m;
+            errors.set(i, errors.of(i) + off_m);
+            let own = self.priors.iter_mut();
+            for prior in own.filter(|p| p.coordinate == Coordinate::Gap(i)) {
+                prior.centre += 1e3 * off_m;
+            }
         }
     }
 }

@@ -12,6 +12,7 @@ pub mod plan;
 pub mod published;
 pub mod replay;
 pub mod residuals;
+mod restated;
 pub mod results;
 pub mod run;
 pub mod specimens;

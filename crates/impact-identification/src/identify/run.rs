@@ -8,8 +8,8 @@ use crate::identify::diagnostics::beyond;
 use crate::identify::diagnostics::cause;
 use crate::identify::diagnostics::change::{Change, Fitted, Search};
 use crate::identify::diagnostics::clock;
+use crate::identify::diagnostics::common_error::{self, CommonError, Stated};
 use crate::identify::diagnostics::common_scale::{self, CommonScale, common_scale};
-use crate::identify::diagnostics::common_zero::{self, Stated};
 use crate::identify::diagnostics::contradicting_gap::{
     self, Contradicting, Contradiction, exchanged,
 };
@@ -33,6 +33,7 @@ use crate::identify::diagnostics::wrong_gains;
 use crate::identify::first_values::first_values;
 use crate::identify::identification::Identification;
 use crate::identify::residuals::{self, MethodResiduals};
+use crate::identify::restated::Restated;
 use crate::identify::uncertainty::budget::{self, Further};
 use crate::identify::uncertainty::{self, Uncertainty};
 use crate::identify::widening::Widened;
@@ -85,8 +86,8 @@ fn identify_as_stated(evidence: &Evidence<'_>) -> Identification {
 
 /// The same, by gains that are left to the data where these refute them.
 fn with_gains_judged(run: IdentificationRun<'_>) -> Identification {
-    if let Some(zero) = run.common_zero() {
-        return with_zero(&run, zero);
+    if let Some(error) = run.common_error() {
+        return with_clearances_corrected(&run, error);
     }
     match run.refuted_gains() {
         Some(opened) => with_open_gains(&opened.evidence(run.evidence), run.contradicted),
@@ -152,50 +153,27 @@ fn completed(mut run: IdentificationRun<'_>) -> Identification {
 
 /// The identification with the clearances of two gaps exchanged.
 fn with_exchanged(evidence: &Evidence<'_>, pair_m: [f64; 2]) -> Identification {
-    let mut observations = evidence.observations.to_vec();
-    for o in &mut observations {
-        o.setting.clearance_m = o.setting.clearance_m.map(|own| exchanged(own, pair_m));
-    }
-    let mut brackets = evidence.brackets.to_vec();
-    for bracket in &mut brackets {
-        bracket.clearance_m = exchanged(bracket.clearance_m, pair_m);
-    }
-    let other = Evidence {
-        observations: &observations,
-        brackets: &brackets,
-        ..*evidence
-    };
+    let restated = Restated::of(evidence, |own_m| exchanged(own_m, pair_m));
+    let other = restated.evidence(evidence);
     let mut run = IdentificationRun::of(&other, begun(&other), other.nominal);
     let finding = Finding::ClearancesExchanged { pair_m };
     run.odd_gaps.push(finding.into());
     completed(run)
 }
 
-/// The identification with all clearances counted from another zero.
-fn with_zero(run: &IdentificationRun<'_>, zero: Suspicion) -> Identification {
-    let added_m = match zero.finding {
-        Finding::CommonZero { added_m } => added_m,
-        _ => 0.0,
-    };
-    let mut observations = run.evidence.observations.to_vec();
-    for o in &mut observations {
-        o.setting.clearance_m = o.setting.clearance_m.map(|stated_m| stated_m + added_m);
-    }
-    let mut brackets = run.evidence.brackets.to_vec();
-    for bracket in &mut brackets {
-        bracket.clearance_m += added_m;
-    }
-    let other = Evidence {
-        observations: &observations,
-        brackets: &brackets,
-        ..*run.evidence
-    };
+/// The identification without the error that all clearances share.
+fn with_clearances_corrected(run: &IdentificationRun<'_>, error: CommonError) -> Identification {
+    let restated = Restated::of(run.evidence, |stated_m| error.corrected_m(stated_m));
+    let other = restated.evidence(run.evidence);
     let mut again = IdentificationRun::of(&other, begun(&other), run.stated);
     again.contradicted = run.contradicted.clone();
-    again.odd_gaps.push(zero);
+    let gaps_m = &run.selection.blocks.gaps_m;
+    let found = again.found.together().or(run.found.together());
+    let named = found.map(|found| error.suspicion(gaps_m, found));
+    again.odd_gaps.extend(named);
     let mut found = completed(again);
     if let Some(joint) = &mut found.joint_fit {
-        joint.count_from_stated(added_m);
+        joint.count_from_stated(gaps_m, |stated_m| error.corrected_m(stated_m));
     }
     found
 }
@@ -212,15 +190,8 @@ fn begun<'a>(evidence: &'a Evidence<'a>) -> Begin<'a> {
 
 /// Identify as if no clearance were stated, as all of them are `contradicted`.
 fn without_clearances(evidence: &Evidence<'_>, contradicted: Finding) -> Identification {
-    let mut observations = evidence.observations.to_vec();
-    for o in &mut observations {
-        o.setting.clearance_m = None;
-    }
-    let without = Evidence {
-        observations: &observations,
-        brackets: &[],
-        ..*evidence
-    };
+    let restated = Restated::without_clearances(evidence);
+    let without = restated.evidence(evidence);
     let mut run = IdentificationRun::of(&without, begun(&without), without.nominal);
     run.contradicted = Some(stated_clearances::suspicion(
         contradicted,
@@ -241,6 +212,9 @@ const MOST_ODD_GAPS: usize = 2;
 
 /// Relative deviation of a gap from which the first order about a fit does not tell it.
 const FAR_OFF: f64 = 0.02;
+
+/// Errors of clearances of which each may be so many times in a fit that is free to have them.
+const FREE: f64 = 3.0;
 
 /// Delay of a channel, in half samples, that multiple shooting does not notice.
 const ON_TIME: f64 = 0.05;
@@ -384,9 +358,9 @@ impl<'a> IdentificationRun<'a> {
         })
     }
 
-    /// That all clearances are counted from another zero, where they are unlike what is stated or records of impacts are of no
-    /// motion with them.
-    fn common_zero(&self) -> Option<Suspicion> {
+    /// The error that all clearances share, where they are unlike what is stated or most records of impacts are of no motion
+    /// with them.
+    fn common_error(&self) -> Option<CommonError> {
         let nominal = &self.evidence.nominal;
         let stated = Stated {
             clearance_m: nominal.clearance_uncertainty_m,
@@ -399,20 +373,30 @@ impl<'a> IdentificationRun<'a> {
         }
         let flown_m = stated_clearances::shift_m(self.evidence, &self.found.begin);
         let mut starts = [0.0, flown_m.unwrap_or(0.0)].into_iter();
-        starts.find_map(|added_m| self.common_zero_from(added_m, stated))
+        starts.find_map(|added_m| {
+            let open_m = (common_error::OPEN * stated.clearance_m).max(added_m.abs());
+            let first_m = self.clearance_errors_m(added_m, open_m)?;
+            let most_m = first_m.iter().fold(open_m, |most, e| most.max(e.abs()));
+            // what is stated of the clearances no longer holds the errors back
+            let errors_m = self.clearance_errors_m(added_m, FREE * most_m)?;
+            CommonError::of(&blocks.gaps_m, &errors_m, stated)
+        })
     }
 
-    /// The same by a fit that starts with so much added to all clearances, m.
-    fn common_zero_from(&self, added_m: f64, stated: Stated) -> Option<Suspicion> {
+    /// The errors of all clearances, m, by a fit that starts with so much added to each, where each may be off by so much.
+    fn clearance_errors_m(&self, added_m: f64, clearance_uncertainty_m: f64) -> Option<Vec<f64>> {
         let open = Nominal {
-            clearance_uncertainty_m: (common_zero::OPEN * stated.clearance_m).max(added_m.abs()),
+            clearance_uncertainty_m,
             ..self.evidence.nominal
         };
         let mut blocks = self.selection.blocks.clone();
         let begin = self.found.begin.with(Coordinate::ScrewZero, 1e3 * added_m);
         blocks.keep_those_with_an_orbit(&begin);
         let found = joint::rough(&blocks, begin, &joint::curve_and_waveforms(), &open)?;
-        common_zero::common_zero(&found.parameters, &blocks.gaps_m, stated)
+        Some(common_error::errors_m(
+            &found.parameters,
+            blocks.gaps_m.len(),
+        ))
     }
 
     /// A gap that is far off with the clearance with which its records fit what all others say: to first order about a

@@ -1,0 +1,197 @@
+//! Clearances that are all off alike: by one length, where they are counted from another zero than where the masses touch,
+//! or by one factor, where they or the channels of motion have another scale.
+//!
+//! The errors of all clearances are those of a fit that is free to have them. Gains that are off show in it as errors in
+//! proportion to the clearances, as far as their uncertainty goes; a factor beyond that is one of the clearances or of all
+//! gains.
+
+use impact_fit::messages::{Finding, Note};
+use impact_fit::method_fit::MethodFit;
+use impact_fit::parameters::{Coordinate, Parameters};
+use impact_records::signal::columns::dot;
+use impact_records::signal::robust;
+
+use super::common_scale::{self, CommonScale};
+use super::doubt::{Doubt, Suspicion};
+
+/// Stated uncertainties that each clearance has at least in the fit that tells its error.
+pub const OPEN: f64 = 20.0;
+/// Fewest gaps that tell an error of all from their own.
+const FEWEST_GAPS: usize = 3;
+/// Standard deviations of what is stated, of a gap and of what all share, from which it is named.
+const NAMED: f64 = 4.0;
+/// Greatest distance of a gap's error from the common one, over that.
+const ALIKE: f64 = 0.4;
+
+/// What is stated of the clearances' errors and of what takes their part.
+#[derive(Debug, Clone, Copy)]
+pub struct Stated {
+    /// Standard uncertainty of each clearance, m.
+    pub clearance_m: f64,
+    /// Relative one of a gain.
+    pub gain: f64,
+}
+
+/// The error that all clearances share.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CommonError {
+    /// A length that must be added to them, m.
+    Zero {
+        /// That length.
+        added_m: f64,
+    },
+    /// A share of them that must be added.
+    Scale(CommonScale),
+}
+
+impl CommonError {
+    /// The error that clearances share, by the errors that a fit found of them, m.
+    pub fn of(gaps_m: &[f64], errors_m: &[f64], stated: Stated) -> Option<Self> {
+        if gaps_m.len() < FEWEST_GAPS || gaps_m.len() != errors_m.len() {
+            return None;
+        }
+        zero(gaps_m, errors_m, stated).or_else(|| scale(gaps_m, errors_m, stated))
+    }
+
+    /// The clearance that is meant by a stated one, m.
+    pub fn corrected_m(self, stated_m: f64) -> f64 {
+        match self {
+            Self::Zero { added_m } => stated_m + added_m,
+            Self::Scale(scale) => stated_m * scale.share.exp(),
+        }
+    }
+
+    /// The finding, with what it leaves open of `x_st`, which the gains tell if the clearances are off, and the clearances
+    /// if the gains are; `found`: the joint fit with the clearances corrected, of gaps as stated.
+    pub fn suspicion(self, gaps_m: &[f64], found: &MethodFit) -> Suspicion {
+        match self {
+            Self::Zero { added_m } => {
+                let relative = robust::median(gaps_m).map_or(0.0, |gap| (added_m / gap).abs());
+                Suspicion {
+                    finding: Finding::CommonZero { added_m },
+                    doubts: vec![Doubt {
+                        parameter: Coordinate::Deflection,
+                        by: relative,
+                        note: Note::InstrumentOff,
+                    }],
+                }
+            }
+            Self::Scale(scale) => common_scale::suspicion(scale, found),
+        }
+    }
+}
+
+/// The errors of all clearances that a fit found, m.
+pub fn errors_m(found: &Parameters, gaps: usize) -> Vec<f64> {
+    let of = |i| found.screw_zero_m + found.gap_errors_m.of(i);
+    (0..gaps).map(of).collect()
+}
+
+/// A length that all errors have in common but for what gains within their uncertainty add, and that explains them better
+/// than a factor does.
+fn zero(gaps_m: &[f64], errors_m: &[f64], stated: Stated) -> Option<CommonError> {
+    let slope = slope(gaps_m, errors_m, stated);
+    let shares = gaps_m.iter().zip(errors_m).map(|(gap, e)| e - slope * gap);
+    let shares: Vec<f64> = shares.collect();
+    let added_m = mean(&shares);
+    let apart = |share: &f64| share - added_m;
+    let alike = shares
+        .iter()
+        .all(|share| apart(share).abs() < ALIKE * added_m.abs());
+    let left: f64 = shares.iter().map(|share| apart(share).powi(2)).sum();
+    let by_gains = slope.abs() < NAMED * stated.gain;
+    let named = added_m.abs() > NAMED * std::f64::consts::SQRT_2 * stated.clearance_m;
+    let better = left < left_by(factor(gaps_m, errors_m), gaps_m, errors_m);
+    (alike && by_gains && named && better).then_some(CommonError::Zero { added_m })
+}
+
+/// A factor that all errors have in common, beyond what gains within their uncertainty are.
+fn scale(gaps_m: &[f64], errors_m: &[f64], stated: Stated) -> Option<CommonError> {
+    let factor = factor(gaps_m, errors_m);
+    let mut shares = gaps_m.iter().zip(errors_m).map(|(gap, e)| e / gap);
+    let alike = shares.all(|share| (share - factor).abs() < ALIKE * factor.abs());
+    let of_clearances = stated.clearance_m / dot(gaps_m, gaps_m).sqrt();
+    let z_score = factor / stated.gain.hypot(of_clearances);
+    (alike && z_score.abs() > NAMED && factor > -1.0).then(|| {
+        CommonError::Scale(CommonScale {
+            share: factor.ln_1p(),
+            z_score,
+        })
+    })
+}
+
+/// Slope of errors over gaps, whose standard uncertainties are as stated, by a line with a free intercept.
+fn slope(gaps_m: &[f64], errors_m: &[f64], stated: Stated) -> f64 {
+    let (gap, error) = (mean(gaps_m), mean(errors_m));
+    let apart = gaps_m
+        .iter()
+        .zip(errors_m)
+        .map(|(g, e)| (g - gap, e - error));
+    let (squares, products) = apart.fold((0.0, 0.0), |(xx, xy), (x, y)| (xx + x * x, xy + x * y));
+    let known = (stated.clearance_m / stated.gain.max(f64::MIN_POSITIVE)).powi(2);
+    products / (squares + known)
+}
+
+/// The factor of the gaps that errors are nearest to.
+fn factor(gaps_m: &[f64], errors_m: &[f64]) -> f64 {
+    dot(gaps_m, errors_m) / dot(gaps_m, gaps_m)
+}
+
+/// Sum of the squares that a factor leaves of errors.
+fn left_by(factor: f64, gaps_m: &[f64], errors_m: &[f64]) -> f64 {
+    let left = gaps_m.iter().zip(errors_m).map(|(g, e)| e - factor * g);
+    left.map(|left| left * left).sum()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GAPS_M: [f64; 3] = [0.4e-3, 0.8e-3, 1.4e-3];
+
+    fn common(errors_m: [f64; 3]) -> Option<CommonError> {
+        let stated = Stated {
+            clearance_m: 1e-6,
+            gain: 5e-3,
+        };
+        CommonError::of(&GAPS_M, &errors_m, stated)
+    }
+
+    fn added_m(errors_m: [f64; 3]) -> f64 {
+        match common(errors_m) {
+            Some(CommonError::Zero { added_m }) => added_m,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn gaps_that_are_off_alike_have_another_zero_and_one_that_is_off_has_not() {
+        // 19e-6 in the mean, and what gains may add to a gap of 0.87 mm: 2.2e-3 of it
+        assert!((added_m([19e-6, 21e-6, 17e-6]) - 20.9e-6).abs() < 0.1e-6);
+        assert_eq!(common([19e-6, 1e-6, 0.0]), None);
+        assert_eq!(common([1e-6, 2e-6, 0.0]), None);
+    }
+
+    #[test]
+    fn gains_that_are_off_beside_another_zero_are_told_from_it() {
+        // 21e-6 with 5e-3 of the gaps, which the prior of the gains takes a part of
+        let added = added_m([23e-6, 25e-6, 28e-6]);
+        assert!((added - 21.7e-6).abs() < 0.3e-6, "{added}");
+    }
+
+    #[test]
+    fn clearances_off_by_a_factor_have_another_scale() {
+        let Some(CommonError::Scale(scale)) = common(GAPS_M.map(|gap| -0.1 * gap)) else {
+            panic!("no scale");
+        };
+        assert!((scale.share.exp() - 0.9).abs() < 1e-12);
+        assert!((scale.z_score + 20.0).abs() < 0.5, "{}", scale.z_score);
+        assert!((CommonError::Scale(scale).corrected_m(1e-3) - 0.9e-3).abs() < 1e-12);
+        // within what the gains may be off
+        assert_eq!(common(GAPS_M.map(|gap| 0.01 * gap)), None);
+    }
+}
