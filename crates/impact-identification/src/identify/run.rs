@@ -86,8 +86,9 @@ fn identify_as_stated(evidence: &Evidence<'_>) -> Identification {
 
 /// The same, by gains that are left to the data where these refute them.
 fn with_gains_judged(run: IdentificationRun<'_>) -> Identification {
-    if let Some(error) = run.common_error() {
-        return with_clearances_corrected(&run, error);
+    let shared = run.common_error();
+    if let Some(found) = shared.and_then(|error| with_clearances_corrected(&run, error)) {
+        return found;
     }
     match run.refuted_gains() {
         Some(opened) => with_open_gains(&opened.evidence(run.evidence), run.contradicted),
@@ -161,11 +162,17 @@ fn with_exchanged(evidence: &Evidence<'_>, pair_m: [f64; 2]) -> Identification {
     completed(run)
 }
 
-/// The identification without the error that all clearances share.
-fn with_clearances_corrected(run: &IdentificationRun<'_>, error: CommonError) -> Identification {
+/// The identification without the error that all clearances share; `None` where the data refute a gain even so.
+fn with_clearances_corrected(
+    run: &IdentificationRun<'_>,
+    error: CommonError,
+) -> Option<Identification> {
     let restated = Restated::of(run.evidence, |stated_m| error.corrected_m(stated_m));
     let other = restated.evidence(run.evidence);
     let mut again = IdentificationRun::of(&other, begun(&other), run.stated);
+    if again.refuted_gains().is_some() {
+        return None;
+    }
     again.contradicted = run.contradicted.clone();
     let gaps_m = &run.selection.blocks.gaps_m;
     let found = again.found.together().or(run.found.together());
@@ -175,7 +182,7 @@ fn with_clearances_corrected(run: &IdentificationRun<'_>, error: CommonError) ->
     if let Some(joint) = &mut found.joint_fit {
         joint.count_from_stated(gaps_m, |stated_m| error.corrected_m(stated_m));
     }
-    found
+    Some(found)
 }
 
 /// What an identification begins with: everything that may be used, and the fit of the resonance curve.
@@ -244,6 +251,25 @@ struct Changes {
     of_gain: Option<Suspicion>,
     /// Records of another rig.
     of_rig: Option<Change>,
+}
+
+/// A fit in which clearances are free.
+struct OpenClearances {
+    /// The error of each, m.
+    errors_m: Vec<f64>,
+    /// How far the logarithms of the gains are apart.
+    gains_apart: f64,
+    /// Mean square of what it leaves.
+    mean_square: f64,
+}
+
+/// How far values are apart at most.
+fn apart(values: impl Iterator<Item = f64>) -> f64 {
+    let ends = values.fold(None, |ends: Option<[f64; 2]>, value| match ends {
+        Some([low, high]) => Some([low.min(value), high.max(value)]),
+        None => Some([value, value]),
+    });
+    ends.map_or(0.0, |[low, high]| high - low)
 }
 
 struct IdentificationRun<'a> {
@@ -348,13 +374,14 @@ impl<'a> IdentificationRun<'a> {
         contradicting_gap::exchanged_of(&found.collect::<Vec<_>>())
     }
 
-    /// Whether the joint fit needs clearances that are together unlike what is stated of them.
-    fn clearances_strained(&self) -> bool {
+    /// Whether the joint fit needs clearances and gains that are together unlike what is stated of them.
+    fn scales_strained(&self) -> bool {
         let (joint, problem) = (self.found.together(), self.problem(self.found.start()));
         joint.zip(problem).is_some_and(|(joint, problem)| {
-            let of_clearances =
-                |c: Coordinate| matches!(c, Coordinate::ScrewZero | Coordinate::Gap(_));
-            problem.strained_together(&joint.fit.parameters, of_clearances)
+            let scales = |c: Coordinate| {
+                matches!(c, Coordinate::ScrewZero | Coordinate::Gap(_)) || c.gain().is_some()
+            };
+            problem.strained_together(&joint.fit.parameters, scales)
         })
     }
 
@@ -362,41 +389,59 @@ impl<'a> IdentificationRun<'a> {
     /// with them.
     fn common_error(&self) -> Option<CommonError> {
         let nominal = &self.evidence.nominal;
+        let joint = self.found.together();
+        let gains = joint.map_or(0, |j| {
+            j.fit.free.iter().filter(|c| c.gain().is_some()).count()
+        });
         let stated = Stated {
             clearance_m: nominal.clearance_uncertainty_m,
-            gain: nominal.gain_uncertainty,
+            gain: nominal.gain_uncertainty / (gains.max(1) as f64).sqrt(),
         };
         let Selection { blocks, lost, .. } = &self.selection;
-        let unlike = self.clearances_strained() || lost.len() > blocks.trajectory.records.len();
+        let unlike = self.scales_strained() || lost.len() > blocks.trajectory.records.len();
         if !unlike || stated.clearance_m == 0.0 {
             return None;
         }
-        let flown_m = stated_clearances::shift_m(self.evidence, &self.found.begin);
-        let mut starts = [0.0, flown_m.unwrap_or(0.0)].into_iter();
-        starts.find_map(|added_m| {
-            let open_m = (common_error::OPEN * stated.clearance_m).max(added_m.abs());
-            let first_m = self.clearance_errors_m(added_m, open_m)?;
-            let most_m = first_m.iter().fold(open_m, |most, e| most.max(e.abs()));
+        let flown_m =
+            stated_clearances::flown_errors_m(self.evidence, &self.found.begin, &blocks.gaps_m);
+        let as_stated_m = vec![0.0; flown_m.len()];
+        let found = [as_stated_m, flown_m].into_iter().filter_map(|from_m| {
+            let far_m = common_error::OPEN * stated.clearance_m;
+            let first = self.open_clearances(&from_m, far_m)?;
             // what is stated of the clearances no longer holds the errors back
-            let errors_m = self.clearance_errors_m(added_m, FREE * most_m)?;
-            CommonError::of(&blocks.gaps_m, &errors_m, stated)
-        })
+            self.open_clearances(&first.errors_m, far_m)
+        });
+        let best = found.min_by(|a, b| a.mean_square.total_cmp(&b.mean_square))?;
+        // one gain that is off is no error that all share
+        let apart = common_error::NAMED * std::f64::consts::SQRT_2 * nominal.gain_uncertainty;
+        let alike = best.gains_apart < apart;
+        alike
+            .then(|| CommonError::of(&blocks.gaps_m, &best.errors_m, stated))
+            .flatten()
     }
 
-    /// The errors of all clearances, m, by a fit that starts with so much added to each, where each may be off by so much.
-    fn clearance_errors_m(&self, added_m: f64, clearance_uncertainty_m: f64) -> Option<Vec<f64>> {
+    /// A fit that starts at some errors of the clearances, m, where each may be off by so much or as much as them.
+    fn open_clearances(&self, from_m: &[f64], far_m: f64) -> Option<OpenClearances> {
+        let most_m = from_m.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
         let open = Nominal {
-            clearance_uncertainty_m,
+            clearance_uncertainty_m: far_m.max(FREE * most_m),
             ..self.evidence.nominal
         };
         let mut blocks = self.selection.blocks.clone();
-        let begin = self.found.begin.with(Coordinate::ScrewZero, 1e3 * added_m);
+        let mut begin = self.found.begin;
+        for (i, error_m) in from_m.iter().enumerate() {
+            begin.gap_errors_m.set(i, *error_m);
+        }
         blocks.keep_those_with_an_orbit(&begin);
         let found = joint::rough(&blocks, begin, &joint::curve_and_waveforms(), &open)?;
-        Some(common_error::errors_m(
-            &found.parameters,
-            blocks.gaps_m.len(),
-        ))
+        Some(OpenClearances {
+            errors_m: common_error::errors_m(&found.parameters, from_m.len()),
+            gains_apart: apart(found.free.iter().filter_map(|c| {
+                let gain = c.gain()?;
+                Some(found.parameters.gains[gain].ln())
+            })),
+            mean_square: found.cost / found.residuals.max(1) as f64,
+        })
     }
 
     /// A gap that is far off with the clearance with which its records fit what all others say: to first order about a

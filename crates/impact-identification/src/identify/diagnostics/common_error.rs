@@ -19,7 +19,7 @@ pub const OPEN: f64 = 20.0;
 /// Fewest gaps that tell an error of all from their own.
 const FEWEST_GAPS: usize = 3;
 /// Standard deviations of what is stated, of a gap and of what all share, from which it is named.
-const NAMED: f64 = 4.0;
+pub const NAMED: f64 = 4.0;
 /// Greatest distance of a gap's error from the common one, over that.
 const ALIKE: f64 = 0.4;
 
@@ -28,7 +28,7 @@ const ALIKE: f64 = 0.4;
 pub struct Stated {
     /// Standard uncertainty of each clearance, m.
     pub clearance_m: f64,
-    /// Relative one of a gain.
+    /// Relative one of what the gains have in common.
     pub gain: f64,
 }
 

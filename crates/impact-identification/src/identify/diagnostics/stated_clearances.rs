@@ -37,14 +37,15 @@ pub fn contradicted(evidence: &Evidence<'_>, fitted: &Parameters) -> Option<Find
     found(evidence.rig, &stated_and_flown(evidence, fitted))
 }
 
-/// What flights tell the clearances to be more than stated, m, in the median record; `None` where none tells it.
-pub fn shift_m(evidence: &Evidence<'_>, fitted: &Parameters) -> Option<f64> {
-    let pairs = stated_and_flown(evidence, fitted).into_iter();
-    robust::median(
-        &pairs
-            .map(|[stated, flown]| flown - stated)
-            .collect::<Vec<_>>(),
-    )
+/// What flights tell each of some clearances to be more than stated, m, in the median record; zero where none tells it.
+pub fn flown_errors_m(evidence: &Evidence<'_>, fitted: &Parameters, gaps_m: &[f64]) -> Vec<f64> {
+    let pairs = stated_and_flown(evidence, fitted);
+    let of = |gap_m: &f64| {
+        let own = pairs.iter().filter(|[stated, _]| stated == gap_m);
+        let errors: Vec<f64> = own.map(|[stated, flown]| flown - stated).collect();
+        robust::median(&errors).unwrap_or(0.0)
+    };
+    gaps_m.iter().map(of).collect()
 }
 
 /// The clearance, m, of each record that tells it as it is stated and as the record's flights tell it.
