@@ -2,14 +2,9 @@
 
 use crate::record::Problem;
 use crate::signal::decay::{self, Watched};
+use crate::signal::swings::are_swings;
 use crate::signal::{columns, robust};
 
-/// Most numbers of a list of swings, which is written by hand.
-const MOST_LISTED: usize = 100;
-/// Share of their steps that fall.
-const FALL: f64 = 0.9;
-/// What is left of the first of them at the end, at most.
-const LEFT: f64 = 0.9;
 /// Size of an oscillation in the last third of a record over that in the first, from which it grows.
 const GROWS: f64 = 1.5;
 /// Turns of it, at least.
@@ -31,23 +26,6 @@ pub(super) fn cause(shown: &[Watched<'_>]) -> Problem {
     let found = values().find_map(wraps).or_else(listed);
     let found = found.or_else(|| values().find_map(grows));
     found.unwrap_or(Problem::NoDecayFound)
-}
-
-/// Whether numbers are the amplitudes of successive swings: their sizes fall from row to row, and all are of one sign, or of
-/// either in turn.
-fn are_swings(values: &[f64]) -> bool {
-    let steps = values.len().saturating_sub(1) as f64;
-    let share = |test: &dyn Fn(f64, f64) -> bool| {
-        let pairs = values.windows(2).filter(|w| test(w[0], w[1]));
-        pairs.count() as f64 > FALL * steps
-    };
-    let ends = values.first().zip(values.last());
-    let falls = ends.is_some_and(|(first, last)| last.abs() < LEFT * first.abs());
-    let in_turn = share(&|a, b| a * b < 0.0);
-    (3..=MOST_LISTED).contains(&values.len())
-        && falls
-        && share(&|a, b| b.abs() <= a.abs())
-        && (in_turn || values.iter().all(|v| *v > 0.0))
 }
 
 /// An oscillation that grows from third to third of a record.

@@ -6,7 +6,7 @@ use super::bind::flag;
 pub use super::bind::{BoundChannel, ChannelKey, ChannelSetup, RecordSetup, StatedTimes, bind};
 use super::times::Clocks;
 use super::{Channel, ContactContent, Flag, FlagCode, ListedTimes, Problem, Record, Role, Setting};
-use super::{changes, condition, consistency, contact_levels, events, heights, late};
+use super::{changes, condition, consistency, contact_levels, events, heights, late, wrapped};
 use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, units};
 
 /// A record without channels, for a file that cannot be read.
@@ -339,8 +339,14 @@ fn scale_all(
     samples: Vec<Samples>,
 ) -> (Vec<usize>, Vec<Option<f64>>) {
     let (mut kept, mut ranges) = (Vec::new(), Vec::new());
-    for ((channel, found), samples) in bound.iter().zip(samples) {
-        match scaled(samples, channel, found, &dataset.channels[found.index]) {
+    let excitation = record.setting.excitation;
+    for ((channel, found), mut samples) in bound.iter().zip(samples) {
+        let info = &dataset.channels[found.index];
+        if let Samples::Real(values) = &mut samples {
+            let wraps = wrapped::go_on(values, &info.name, channel.role, excitation);
+            record.flags.extend(wraps);
+        }
+        match scaled(samples, channel, found, info) {
             Ok(channel) => {
                 kept.push(found.index);
                 ranges.push(found.range_si);

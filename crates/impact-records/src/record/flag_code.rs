@@ -74,6 +74,8 @@ flag_codes! {
     ContactUnclear = "contact_unclear",
     /// Heights from which R follows.
     Heights = "heights",
+    /// Readings begin again at the other end of their range.
+    Wrapped = "wrapped",
     /// Echoes of impacts were heard.
     Echoes = "echoes",
     /// A camera's picture stood still, then jumped.

@@ -16,6 +16,10 @@ const STEPS: f64 = 5.0;
 const SLOWER: f64 = 0.5;
 /// Number of such stretches that noise alone makes by chance, at most.
 const BY_CHANCE: f64 = 1e-3;
+/// How far on each side of a stretch the motion is looked at, in its lengths, and the part of the channel's range that it goes
+/// through there at least: a mass at rest holds its value.
+const BESIDE: usize = 2;
+const MOVES: f64 = 0.1;
 
 /// Interpolate between the values of a sensor that is slower than the record; else take the values away that a channel
 /// holds in the midst of a decay.
@@ -25,7 +29,6 @@ pub(super) fn without_held(channel: &mut Channel) -> Option<Flag> {
     }
     let held = stretches(&channel.values);
     let repeats: Vec<f64> = held.iter().map(|s| (s.len() - 1) as f64).collect();
-    let first = held.first()?.start;
     let name = channel.name.clone();
     let problem = if repeats.iter().sum::<f64>() > SLOWER * channel.values.len() as f64 {
         // near a turn its values are as near as those that are rounded
@@ -36,6 +39,11 @@ pub(super) fn without_held(channel: &mut Channel) -> Option<Flag> {
             samples: robust::median(&repeats)? + 1.0,
         }
     } else {
+        let held: Vec<Range<usize>> = held
+            .into_iter()
+            .filter(|s| in_motion(&channel.values, s))
+            .collect();
+        let first = held.first()?.start;
         for stretch in &held {
             channel.values[stretch.clone()].fill(f64::NAN);
         }
@@ -52,7 +60,8 @@ pub(super) fn without_held(channel: &mut Channel) -> Option<Flag> {
 /// The stretches of equal values to which a motion comes by many steps of the converter and which it leaves by as many.
 fn stretches(values: &[f64]) -> Vec<Range<usize>> {
     let (low, high) = columns::extremes(values);
-    let digit = columns::least_step(values, 1e-12 * (high - low));
+    let still = 1e-12 * (high - low);
+    let digit = columns::least_step(values, still);
     let ways = values.windows(2).map(|w| (w[1] - w[0]).abs());
     let ways: Vec<f64> = ways.filter(|way| *way > 0.0).collect();
     let Some(way) = robust::median(&ways) else {
@@ -62,7 +71,11 @@ fn stretches(values: &[f64]) -> Vec<Range<usize>> {
         let each = (digit / way).min(1.0);
         values.len() as f64 * each.powi(i32::try_from(repeats).unwrap_or(i32::MAX))
     };
-    let far = |a: usize, b: usize| (values[a] - values[b]).abs() >= STEPS * digit;
+    let far = |a: usize, b: usize, digit: f64| (values[a] - values[b]).abs() >= STEPS * digit;
+    let both_far = |s: &Range<usize>| {
+        let digit = digit_at(values, s.start, still);
+        far(s.start, s.start - 1, digit) && far(s.end, s.end - 1, digit)
+    };
     // what is clipped stands at either end of the range
     let inside = |v: f64| v > low && v < high;
     let is_held = |s: &Range<usize>| {
@@ -70,11 +83,40 @@ fn stretches(values: &[f64]) -> Vec<Range<usize>> {
             && s.end < values.len()
             && s.len() > REPEATS
             && inside(values[s.start])
-            && far(s.start, s.start - 1)
-            && far(s.end, s.end - 1)
             && by_chance(s.len() - 1) < BY_CHANCE
+            && both_far(s)
     };
     equal(values).filter(is_held).collect()
+}
+
+/// Whether a channel moves before and after a stretch.
+fn in_motion(values: &[f64], stretch: &Range<usize>) -> bool {
+    let range = |side: &[f64]| {
+        let (low, high) = columns::extremes(side);
+        high - low
+    };
+    let reach = BESIDE * stretch.len();
+    let before = &values[stretch.start.saturating_sub(reach)..stretch.start];
+    let after = &values[stretch.end..(stretch.end + reach).min(values.len())];
+    let least = MOVES * range(values);
+    range(before) > least && range(after) > least
+}
+
+/// The least step between values of the size of one, or greater: printed with so many significant digits, small values have
+/// finer steps.
+fn digit_at(values: &[f64], index: usize, still: f64) -> f64 {
+    let size = values[index].abs();
+    let decade = if size > 0.0 {
+        10f64.powf(size.log10().floor())
+    } else {
+        0.0
+    };
+    let as_great = |v: &f64| v.abs() >= decade;
+    let steps = values.windows(2).filter(|w| w.iter().all(as_great));
+    let steps = steps.map(|w| (w[1] - w[0]).abs());
+    steps
+        .filter(|step| *step > still)
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// The stretches of equal values.
@@ -176,6 +218,19 @@ mod tests {
         assert!(stretches(&coarse).is_empty());
         let clipped: Vec<f64> = (0..3000).map(|i| swings(i).clamp(-14.0, 14.0)).collect();
         assert!(stretches(&clipped).is_empty());
+        // printed with three significant digits, which are coarser at the turns than near zero
+        let three = |v: f64| format!("{v:.2e}").parse::<f64>().unwrap();
+        let printed: Vec<f64> = (0..3000).map(|i| three(swings(i) + 8.0)).collect();
+        assert!(stretches(&printed).is_empty());
+        // an echo that goes to and fro between two values at rest, before and after the motion
+        let echo = |i: usize| if i % 11 < 8 { 0.013 } else { -0.913 };
+        let echoes = |i: usize| match i {
+            500..2500 => swings(i - 500),
+            _ => echo(i),
+        };
+        let echoes: Vec<f64> = (0..3000).map(echoes).collect();
+        let held = stretches(&echoes);
+        assert!(held.iter().all(|s| !in_motion(&echoes, s)));
         // at rest, then struck
         let struck: Vec<f64> = (0..1000)
             .map(|i| if i < 500 { 0.0 } else { swings(i - 500) })

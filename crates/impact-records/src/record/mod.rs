@@ -28,6 +28,7 @@ mod spikes;
 mod table_rows;
 pub mod time_axis;
 mod times;
+mod wrapped;
 
 use serde::{Deserialize, Serialize};
 

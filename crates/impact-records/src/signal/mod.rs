@@ -17,6 +17,7 @@ pub(crate) mod smoothing;
 pub mod spacing;
 mod spectrum;
 pub mod steps;
+pub mod swings;
 pub mod thinning;
 pub mod tone;
 pub(crate) mod turns;

@@ -3,14 +3,11 @@
 use super::place::Place;
 use super::{heights, lists};
 use impact_records::record::time_axis;
+use impact_records::signal::swings;
 use labfiles::{ChannelInfo, Source, StoredType};
 
 /// Most rows of a table of swings.
 const MOST_ROWS: u64 = 100;
-const FEWEST_ROWS: usize = 3;
-/// Share of the rows in which an amplitude is less than in the one before, and what is left of the first at the end.
-const FALL: f64 = 0.9;
-const LEFT: f64 = 0.9;
 /// How many times as much the amplitude falls in the first half of the rows as in the second, at least: what rolls
 /// away falls by as much.
 const SLOWS: f64 = 1.2;
@@ -81,24 +78,8 @@ fn are_swings(place: Place<'_>, index: usize) -> bool {
     };
     let some_counted = set.channels.iter().enumerate().any(counted);
     let named = called(&channel.name);
-    falls(&values) && (named || some_counted && slows(&values))
+    swings::are_swings(&values) && (named || some_counted && slows(&values))
         || named && channel.name.to_lowercase().starts_with("ln") && some_counted
-}
-
-/// Whether sizes fall from row to row, of one sign or of either in turn.
-fn falls(values: &[f64]) -> bool {
-    let steps = values.len().saturating_sub(1) as f64;
-    let share = |test: &dyn Fn(f64, f64) -> bool| {
-        let pairs = values.windows(2).filter(|w| test(w[0], w[1]));
-        pairs.count() as f64 >= FALL * steps
-    };
-    let ends = values.first().zip(values.last());
-    let less = ends.is_some_and(|(first, last)| last.abs() < LEFT * first.abs());
-    let of_one_sign = values.iter().all(|v| *v > 0.0);
-    values.len() >= FEWEST_ROWS
-        && less
-        && share(&|a, b| b.abs() < a.abs())
-        && (of_one_sign || share(&|a, b| a * b < 0.0))
 }
 
 /// Whether sizes fall by more in the first half of the rows than in the second.

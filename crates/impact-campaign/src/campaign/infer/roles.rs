@@ -426,8 +426,8 @@ fn kind(channel: &InferredChannel) -> Kind {
     const VELOCITIES: [&str; 9] = [
         "vel", "speed", "laser", "ldv", "vib", "vx", "vy", "geschw", "schnelle",
     ];
-    const DISPLACEMENTS: [&str; 8] = [
-        "disp", "pos", "dx", "dy", "angle", "winkel", "weg", "auslenk",
+    const DISPLACEMENTS: [&str; 9] = [
+        "disp", "pos", "dx", "dy", "angle", "winkel", "weg", "auslenk", "encoder",
     ];
     match () {
         () if has(&DRIVES) => Kind::Drive,

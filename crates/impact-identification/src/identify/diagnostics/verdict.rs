@@ -104,12 +104,14 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
     let mut findings = basis.suspicions.to_vec();
     findings.extend(basis.beyond.iter().cloned());
     for (method, result) in basis.methods {
-        let noticed = result.remarks.iter().filter(|r| is_to_be_mended(r));
+        let fits = result.fits != Some(false);
+        let noticed = result.remarks.iter();
+        let noticed = noticed.filter(|r| is_to_be_mended(r) || fits && is_beside_damping(r));
         findings.extend(noticed.map(|remark| Finding::Noticed {
             method: *method,
             remark: remark.clone(),
         }));
-        if result.fits == Some(false) {
+        if !fits {
             let misfit = |remark: &Remark| Finding::Misfit {
                 method: *method,
                 remark: remark.clone(),
@@ -189,6 +191,14 @@ fn is_to_be_mended(remark: &Remark) -> bool {
             | Remark::DecaysSlowNoise { .. }
             | Remark::FlightTimesOpen { .. }
             | Remark::HeightsOpen { .. }
+    )
+}
+
+/// Whether a remark is on damping that β does not hold.
+fn is_beside_damping(remark: &Remark) -> bool {
+    matches!(
+        remark,
+        Remark::DecaysRubbed { .. } | Remark::DecaysDamping { .. }
     )
 }
 
@@ -322,6 +332,23 @@ mod tests {
         };
         let found = judged(&joint(0.001, 0.001), &[(Method::FlightTimes, drops)], true);
         let method = Method::FlightTimes;
+        assert_eq!(found.findings, [Finding::Noticed { method, remark }]);
+    }
+
+    #[test]
+    fn friction_that_beta_is_without_is_a_finding_though_the_model_fits() {
+        let rubbed = Remark::DecaysRubbed {
+            share: 0.41,
+            half: 0.01,
+        };
+        let decays = MethodResult {
+            fits: Some(true),
+            remarks: vec![rubbed.clone()],
+            ..MethodResult::default()
+        };
+        let method = Method::FreeDecay;
+        let found = judged(&joint(0.001, 0.001), &[(method, decays)], true);
+        let remark = rubbed;
         assert_eq!(found.findings, [Finding::Noticed { method, remark }]);
     }
 

@@ -47,6 +47,9 @@ const STEP_SPREAD: f64 = 0.29;
 const LEAST_SPREAD: f64 = 0.1;
 /// Samples of a fall of differences of a displacement at a jump of the velocity.
 const IN_AN_INSTANT: usize = 3;
+/// Standard error of where a contact begins and ends, over its length: the force of a viscous bumper fades below the tenth at
+/// which a fall ends over some eighth of it.
+const ENDS: f64 = 0.125;
 /// Share of the approach that must be free flight, else what is left out is noted.
 const USED: f64 = 0.85;
 
@@ -280,7 +283,8 @@ impl<'a> Search<'a> {
         let error = speed_error(&before, &after, (time, time_error))
             .hypot(beyond)
             .hypot(self.ringing(fall, &after))
-            .hypot(friction_in_contact(fall, &before, &after));
+            .hypot(friction_in_contact(fall, &before, &after))
+            .hypot(force_in_contact(fall, &before, &after));
         if self.is_beyond(index, &before, approach, error) {
             return Found::Beyond(time / self.rate_hz);
         }
@@ -470,10 +474,10 @@ impl<'a> Search<'a> {
 /// Half of what a contact takes, samples. Between two lines of velocity the gap between the flights is the
 /// contact and what smooths the velocity, of which neither is known: a contact of anything up to half of the
 /// gap is taken as one of a quarter. A displacement is not smoothed; its differences are, over a jump in an
-/// instant they fall in three samples.
+/// instant they fall in three samples, and widths that follow each other add as their squares.
 fn half_contact(fall: Fall, before: &[Stretch], after: &[Stretch]) -> f64 {
     if before.iter().any(|s| s.displacement().is_some()) {
-        return (fall.last - fall.first).saturating_sub(IN_AN_INSTANT) as f64 / 2.0;
+        return 0.5 * lasting(fall);
     }
     let from = before.iter().map(|s| s.samples.1.saturating_sub(1)).min();
     let to = after.iter().map(|s| s.samples.0).max();
@@ -481,6 +485,24 @@ fn half_contact(fall: Fall, before: &[Stretch], after: &[Stretch]) -> f64 {
         (Some(from), Some(to)) => to.saturating_sub(from) as f64 / 8.0,
         _ => 0.0,
     }
+}
+
+/// Samples that a contact takes in which the differences of a displacement fall.
+fn lasting(fall: Fall) -> f64 {
+    let squared = |samples: usize| (samples as f64).powi(2);
+    let own = squared(fall.last - fall.first) - squared(IN_AN_INSTANT);
+    own.max(0.0).sqrt()
+}
+
+/// What a force that goes on while the contact lasts, as on a slope, changes of the speeds beside it: of a contact whose force
+/// fades its ends are not known.
+fn force_in_contact(fall: Fall, before: &[Stretch], after: &[Stretch]) -> f64 {
+    if before.iter().all(|s| s.displacement().is_none()) {
+        return 0.0;
+    }
+    let middle = 0.5 * (fall.first + fall.last) as f64;
+    let step = |flights: &[Stretch]| flights.iter().map(|s| s.step(middle)).sum::<f64>();
+    0.5 * (step(before) + step(after)).abs() * ENDS * lasting(fall)
 }
 
 /// What friction, which turns around at an impact, changes of the speeds while the contact lasts: it is not known

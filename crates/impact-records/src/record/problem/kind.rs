@@ -362,6 +362,17 @@ problems! {
         /// First sample of the first.
         first: usize,
     };
+    /// Readings that begin again at the other end of their range were made to go on.
+    Wrapped: ReadingsGoOn {
+        /// The channel.
+        channel: String,
+        /// The range, in the file's unit.
+        range: f64,
+        /// How often.
+        count: usize,
+        /// After which sample first.
+        first: usize,
+    };
     /// Echoes of the impacts are heard.
     Echoes: EchoesLeftOut {
         /// How many.

@@ -184,6 +184,11 @@ message_table! { "problem": Problem;
         count = Value::Count(*count),
         samples = Value::Count(*samples),
         first = Value::Count(*first);
+    Self::ReadingsGoOn { channel, range, count, first } =>
+        channel = Value::Name(channel),
+        range = Value::Number(*range, if range.fract() == 0.0 { 0 } else { 4 }),
+        count = Value::Count(*count),
+        first = Value::Count(*first);
     Self::SwingsListed { count } => count = Value::Count(*count);
     Self::MotionGrows { times } => times = Value::Number(*times, 1);
     Self::ReadingsWrap { count, sample } =>

@@ -19,6 +19,11 @@ const RISE: f64 = 2.0;
 /// Share of the excursion that ends what is looked at for the first estimate of the frequency.
 const DECAYED: f64 = 0.1;
 
+/// Standard deviations of noise above which samples are of the motion, and the part of the greatest excursion from which those
+/// hide where it ends.
+const ABOVE_NOISE: f64 = 5.0;
+const HIDES: f64 = 0.5;
+
 /// Samples between which the parts of a record decay freely, each after a blow of its own.
 pub(super) fn parts(samples: &[f64]) -> Vec<(usize, usize)> {
     let Some(centre) = robust::median(samples) else {
@@ -33,6 +38,7 @@ pub(super) fn parts(samples: &[f64]) -> Vec<(usize, usize)> {
         .map(|c| c.iter().map(|v| (v - centre).abs()).fold(0.0, f64::max))
         .collect();
     let greatest = heights.iter().copied().fold(0.0, f64::max);
+    let noise = ABOVE_NOISE * robust::noise_deviation(samples);
     let mut blows: Vec<usize> = (2..heights.len())
         .filter(|&i| {
             // the window of the blow and the one after it hold its height
@@ -45,7 +51,8 @@ pub(super) fn parts(samples: &[f64]) -> Vec<(usize, usize)> {
                 .copied()
                 .fold(0.0, f64::max);
             let before = heights[i - 2].max(heights[i - 1]);
-            height > RISE * before && height > BLOW * greatest && later <= 1.1 * height
+            let rises = height > (RISE * before).max(before + noise);
+            rises && height > BLOW * greatest && later <= 1.1 * height
         })
         .collect();
     blows.dedup_by(|b, a| *b <= *a + 2);
@@ -115,15 +122,18 @@ fn rests(before: &[f64], between: &[f64]) -> usize {
     last.map_or(0, |last| last + 1)
 }
 
-/// The part of a decay in which it is well above what is left of it.
+/// The part of a decay in which it is well above what is left of it; all of it where noise hides that.
 pub(super) fn lasting(samples: &[f64]) -> &[f64] {
     let Some(centre) = robust::median(samples) else {
         return samples;
     };
     let size = |v: &f64| (v - centre).abs();
     let greatest = samples.iter().map(size).fold(0.0, f64::max);
-    let noise = robust::noise_deviation(samples);
-    let least = (DECAYED * greatest).max(5.0 * noise);
+    let noise = ABOVE_NOISE * robust::noise_deviation(samples);
+    if noise > HIDES * greatest {
+        return samples;
+    }
+    let least = (DECAYED * greatest).max(noise);
     let last = samples.iter().rposition(|v| size(v) > least);
     let end = last.map_or(samples.len(), |l| (l + 1) * 3 / 2).max(24);
     &samples[..end.min(samples.len())]

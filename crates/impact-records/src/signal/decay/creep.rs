@@ -19,7 +19,8 @@ const ASTRAY: f64 = 1.3;
 /// Fewest samples on the way.
 const FEWEST: usize = 8;
 
-/// Whether a displacement, or a velocity, falls from its greatest excursion to rest as e^(−t/τ) does.
+/// Whether a displacement, or a velocity, falls from its greatest excursion to rest as e^(−t/τ) does, and stays there for longer
+/// than it fell: about a turn a swing rests for less.
 pub fn comes_to_rest(channel: &Watched<'_>) -> bool {
     let values = channel.values;
     let tail = &values[values.len() - values.len() / OVER..];
@@ -62,6 +63,7 @@ pub fn comes_to_rest(channel: &Watched<'_>) -> bool {
         && straight
         && first_at_rest.is_some_and(|first| first > end)
         && end >= begin + FEWEST
+        && shares.len() - end > end - begin
         && least > -BEYOND - 4.0 * noise
         && HALFWAY[0] < halfway
         && halfway < HALFWAY[1]
@@ -101,5 +103,7 @@ mod tests {
         assert!(!rests(|t| released(t, 0.0)));
         assert!(!rests(|t| released(t, (1.0 - t).max(0.0))));
         assert!(!rests(|_| 0.0));
+        // four tenths of a period, up to a turn
+        assert!(!rests(|t| (1.4 * (t + 0.2)).cos()));
     }
 }

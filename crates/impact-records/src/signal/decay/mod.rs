@@ -387,8 +387,9 @@ fn of_motions(part: &Cleared<'_>, rate_hz: f64) -> Vec<Decay> {
     split.unwrap_or_else(|| of_part(part, rate_hz).into_iter().collect())
 }
 
-/// What a decay leaves, over itself, at most.
+/// What a decay leaves, over itself, at most: of what neighbouring samples share, and of all.
 const MOST_LEFT: f64 = 1.0;
+const MOST_NOISE: f64 = 4.0;
 /// Relative difference of the frequencies of motions of one oscillator, at most.
 const SAME: f64 = 0.02;
 
@@ -444,7 +445,8 @@ fn fitted(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {
     let natural = Natural::of(&viscous.rates, &covariance);
     let hz = rate_hz / prepared.factor as f64;
     let whole = prepared.at_every_sample(&viscous)?;
-    if !(whole.residual_ratio < MOST_LEFT) {
+    // white noise may be greater than the decay, from which its many samples tell it
+    if !(whole.structured_ratio < MOST_LEFT && whole.residual_ratio < MOST_NOISE) {
         return None;
     }
     // where dry friction is what the damping follows, what it leaves beside friction is what is not explained
@@ -453,7 +455,9 @@ fn fitted(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {
     let explained = explained.filter(|e| e.residual_ratio < whole.residual_ratio);
     let explained = explained.as_ref().unwrap_or(&whole);
     let beside_friction = friction::beside(&prepared, &viscous, hz);
-    if beside_friction.is_some_and(|b| b.sticks && b.periods < LEAST_PERIODS) {
+    let periods = whole.samples as f64 * natural.frequency / prepared.factor as f64;
+    let moving = beside_friction.filter(|b| b.sticks);
+    if moving.map_or(periods, |b| b.periods) < LEAST_PERIODS {
         return None;
     }
     Some(Decay {
@@ -472,7 +476,7 @@ fn fitted(part: &Cleared<'_>, rate_hz: f64) -> Option<Decay> {
         beside_friction,
         course: change::course(&prepared, &viscous, rate_hz),
         channel: 0,
-        periods: whole.samples as f64 * natural.frequency / prepared.factor as f64,
+        periods,
         first: prepared.first,
         before: greatest(&part.cleared[..prepared.first], whole.offset) / whole.amplitude,
         samples: whole.samples,

@@ -20,6 +20,8 @@ use crate::signal::whole;
 const TRIED: usize = 12;
 /// What a fit leaves over the motion, below which it is exact.
 const EXACT: f64 = 1e-6;
+/// Difference of Bayes' criteria that is very strong (Kass and Raftery 1995): of all places at which noise may look so, one does.
+const TOLD: f64 = 10.0;
 /// Normal deviate of the 95 % interval.
 const QUANTILE: f64 = 1.96;
 
@@ -180,7 +182,7 @@ impl Trials {
             ..self.begun(&[0])
         };
         let other = self.smooth().fold(series.criterion(steady), f64::min);
-        let told = own.criterion(&point) + more < other;
+        let told = own.criterion(&point) + more + TOLD < other;
         (told && steady.squares > exact * count as f64).then_some(own.noise)
     }
 

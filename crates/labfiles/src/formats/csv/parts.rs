@@ -2,7 +2,7 @@
 
 use crate::formats::csv::columns::HeadRows;
 use crate::formats::csv::header::{Header, without_number};
-use crate::formats::csv::time_axis::{heads_pair, is_further};
+use crate::formats::csv::time_axis::{head_of, heads_pair, is_further};
 use crate::text::table::{Kind, Layout};
 use crate::timing::{is_time_name, is_unit_of_time, numbers_rows};
 use crate::units::{Dimension, parse_unit};
@@ -64,7 +64,9 @@ pub(crate) fn find(
     let used: Vec<usize> = (0..kinds.len())
         .filter(|&i| filled(i) || header.names[i] != format!("column_{}", i + 1))
         .collect();
-    if let Some(parts) = lists_of_runs(header, kinds, &used) {
+    let lists = lists_of_runs(header, kinds, &used);
+    let lists = lists.or_else(|| numbered_times(header, (layout, rows), &used, times));
+    if let Some(parts) = lists {
         return Makeup::Runs(parts);
     }
     let blocks = blocks(&used, times, |axis, column| {
@@ -297,6 +299,38 @@ fn lists_of_runs(header: &Header, kinds: &[Kind], used: &[usize]) -> Option<Vec<
     let known = |(k, part): (usize, &Part)| parts[..k].iter().any(|p| p.name == part.name);
     let repeated = parts.iter().enumerate().any(known);
     (parts.len() > 1 && !repeated).then_some(parts)
+}
+
+/// Lists of times that are called times and numbered (`Zeit 1 (s)`, `Zeit 2 (s)`), with no other column but such that count the
+/// rows: each is one run's. Where they rise along all rows, or fall, the rows are the runs, or times of one.
+fn numbered_times(
+    header: &Header,
+    (layout, rows): (&Layout, &HeadRows<'_>),
+    used: &[usize],
+    times: &[usize],
+) -> Option<Vec<Part>> {
+    let lists: Vec<usize> = used
+        .iter()
+        .copied()
+        .filter(|c| !counts(header, *c))
+        .collect();
+    let list = |&column: &usize| {
+        let (bare, number) = without_number(&header.names[column]);
+        let unit = header.units[column].as_deref()?;
+        let of_times = is_time_name(&bare) && !number.is_empty() && is_unit_of_time(unit);
+        (of_times && times.contains(&column)).then(|| Part {
+            name: header.names[column].clone(),
+            columns: vec![column],
+            names: vec![TIMES.to_owned()],
+        })
+    };
+    let parts: Vec<Part> = lists.iter().map(list).collect::<Option<_>>()?;
+    let heads: Vec<Vec<f64>> = lists.iter().map(|c| head_of(layout, rows, *c)).collect();
+    let longest = heads.iter().map(Vec::len).max()?;
+    let in_row = |row: usize| heads.iter().filter_map(move |h| h.get(row).copied());
+    let rise = (0..longest).all(|row| in_row(row).is_sorted());
+    let fall = (0..longest).all(|row| in_row(row).is_sorted_by(|a, b| a >= b));
+    (parts.len() > 1 && !rise && !fall).then_some(parts)
 }
 
 /// Whether a column counts the rows, by its heading.

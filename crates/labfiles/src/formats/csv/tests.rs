@@ -87,6 +87,28 @@ fn lists_of_times_called_after_throws_are_records() {
 }
 
 #[test]
+fn lists_of_numbered_times_are_records_where_the_rows_are_none() {
+    let s = source(b"Zeit 1 (s);Zeit 2 (s);Zeit 3 (s)\n0,30;0,41;0,52\n0,65;0,70;0,79\n0,94;0,95;1,02\n1,19;1,17;\n");
+    let sets: Vec<(&str, u64)> = s
+        .datasets()
+        .iter()
+        .map(|d| (d.name.as_str(), d.channels[0].samples))
+        .collect();
+    assert_eq!(sets, [("Zeit 1", 4), ("Zeit 2", 4), ("Zeit 3", 3)]);
+    let third = s.read(2, &[0]).unwrap().remove(0).into_real().unwrap();
+    assert_eq!(third, [0.52, 0.79, 1.02]);
+    // both edges of a contact, times and flights along the rows
+    for rows in [
+        "0.30,0.41\n0.65,0.70\n0.94,0.95\n",
+        "0.30,0.65\n0.41,0.70\n0.29,0.60\n",
+        "0.30,0.25\n0.32,0.27\n0.35,0.28\n",
+    ] {
+        let text = format!("t1 (s),t2 (s)\n{rows}");
+        assert_eq!(source(text.as_bytes()).datasets().len(), 1, "{text}");
+    }
+}
+
+#[test]
 fn a_unit_after_a_comma_is_that_of_the_heading() {
     let s = source(b"\"Time, ms\",\"Displacement, in\",\"Sensor, 1\"\n0,1.5,1\n4,1.4,2\n8,1.2,3\n");
     let named: Vec<_> = s.datasets()[0]

@@ -276,7 +276,7 @@ fn unnamed(header: &Header, layout: &Layout, rows: &HeadRows<'_>) -> Option<Time
 }
 
 /// The values of a column in the rows seen; of a clock with the parts of a second beside it.
-fn head_of(layout: &Layout, rows: &HeadRows<'_>, i: usize) -> Vec<f64> {
+pub(crate) fn head_of(layout: &Layout, rows: &HeadRows<'_>, i: usize) -> Vec<f64> {
     let mut values: Vec<f64> = match layout.kinds[i] {
         Kind::Number => numbers(layout, rows, i).collect(),
         Kind::Time => times(layout, rows, i),

@@ -373,6 +373,67 @@ fn prop_separation_speeds_hold_the_truth_over_a_range_of_what_is_taken_for_ringi
     }
 }
 
+/// Places of a mass that slides down a slope against a bumper of a spring and a dashpot which does not pull, with the speeds at
+/// which their force begins and ends: acceleration, speed at the start, length of the contact, damping ratio.
+fn on_a_slope([force, start, contact_s, damping]: [f64; 4]) -> (Vec<f64>, [f64; 2]) {
+    let omega = std::f64::consts::PI / contact_s;
+    let (fine, rate_hz) = (200, 500.0);
+    let step = 1.0 / (rate_hz * f64::from(fine));
+    let (mut x, mut v) = (-0.3, start);
+    let (mut places, mut speeds) = (Vec::new(), Vec::new());
+    for i in 0..600 * fine {
+        if i % fine == 0 {
+            places.push(x);
+        }
+        let bumper = if x > 0.0 {
+            (omega * omega * x + 2.0 * damping * omega * v).max(0.0)
+        } else {
+            0.0
+        };
+        if (bumper > 0.0) != (speeds.len() % 2 == 1) {
+            speeds.push(v);
+        }
+        v += step * (force - bumper);
+        x += step * v;
+    }
+    (places, [speeds[0], -speeds[1]])
+}
+
+#[test]
+fn valid_a_soft_bumper_on_a_slope_leaves_r_in_its_interval() {
+    use rand::{Rng, SeedableRng};
+    use rand_distr::StandardNormal;
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(20_261_204);
+    let (mut found, mut held) = (0, 0);
+    for _ in 0..40 {
+        let (places, [before, after]) = on_a_slope([
+            rng.random_range(0.05..0.5),
+            rng.random_range(0.3..0.6),
+            rng.random_range(0.01..0.06),
+            rng.random_range(0.02..0.35),
+        ]);
+        let deviation = rng.random_range(1e-5..6e-5);
+        let values: Vec<f64> = places
+            .iter()
+            .map(|x| x + deviation * rng.sample::<f64, _>(StandardNormal))
+            .collect();
+        let record = Record::of(500.0, &[(Role::DisplacementX, &values)]);
+        let kinematics = Kinematics::of(&record, RigKind::Single, 1);
+        let detected = detect(&kinematics, RigKind::Single, &[]);
+        let Some(impact) = detected.impacts.first() else {
+            continue;
+        };
+        let approach = impact.approach_speed_before_m_s.unwrap();
+        let ratio = -impact.approach_speed_after_m_s.unwrap() / approach;
+        let error = impact.speed_error_m_s().unwrap();
+        let half = 1.96 * error * (1.0 + ratio * ratio).sqrt() / approach;
+        found += 1;
+        held += usize::from((ratio - after / before).abs() < half);
+        assert!(half < 0.03, "{ratio} ± {half}");
+    }
+    assert!(found >= 36 && held * 100 >= 92 * found, "{held} of {found}");
+}
+
 /// A contact as smooth as rubber's, 40 ms at 500 Hz, after hands have braked the riders by nothing or by much.
 #[test]
 fn a_fall_is_one_contact_whole_and_not_what_slows_the_bodies_before_it() {
