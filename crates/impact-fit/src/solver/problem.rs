@@ -20,7 +20,6 @@ use crate::solver::normal::Normal;
 use crate::solver::placed_rows::PlacedRows;
 use crate::solver::rows::Rows;
 use crate::solver::{Fit, FitError, FitProgress};
-use crate::statistics::quantile::chi_squared_99;
 
 /// Gaussian prior on one coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -229,13 +228,10 @@ impl<'a> Problem<'a> {
         self.priors.iter().any(far)
     }
 
-    /// Whether what is stated of some coordinates together is less likely than 1 % at given parameters: the sum of their
-    /// squared deviations from their priors against chi-squared.
-    pub fn strained_together(&self, at: &Parameters, of: impl Fn(Coordinate) -> bool) -> bool {
+    /// How far some coordinates are from their priors, over these.
+    pub fn deviations(&self, at: &Parameters, of: impl Fn(Coordinate) -> bool) -> Vec<f64> {
         let own = self.priors.iter().filter(|p| of(p.coordinate));
-        let squares: Vec<f64> = own.map(|p| prior_residual(p, at).powi(2)).collect();
-        let sum: f64 = squares.iter().sum();
-        !squares.is_empty() && sum > chi_squared_99(squares.len() as f64)
+        own.map(|p| prior_residual(p, at)).collect()
     }
 
     /// Sum of squared weighted residuals at given parameters; `None` if an item has no model.

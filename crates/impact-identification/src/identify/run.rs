@@ -59,7 +59,9 @@ use impact_fit::methods::trajectories::record::TrajectoryRecord;
 use impact_fit::parameters::effect::{Effect, EffectKind};
 use impact_fit::parameters::{Coordinate, Parameters};
 use impact_fit::solver::{Precision, Prior, Problem};
+use impact_fit::statistics::quantile::chi_squared_99;
 use impact_records::event::RigKind;
+use impact_records::signal::columns::dot;
 
 /// Identify from observations and brackets, as records of one specimen.
 ///
@@ -381,7 +383,8 @@ impl<'a> IdentificationRun<'a> {
             let scales = |c: Coordinate| {
                 matches!(c, Coordinate::ScrewZero | Coordinate::Gap(_)) || c.gain().is_some()
             };
-            problem.strained_together(&joint.fit.parameters, scales)
+            let apart = problem.deviations(&joint.fit.parameters, scales);
+            dot(&apart, &apart) > chi_squared_99(apart.len() as f64)
         })
     }
 

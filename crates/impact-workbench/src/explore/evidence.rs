@@ -167,24 +167,18 @@ fn root_mean(squares: f64, count: usize) -> Option<f64> {
 }
 
 /// Why a method is not one of those with a weight in the joint fit; `None` for one that is.
-fn apart(
-    method: Method,
-    weights: &BTreeMap<Method, f64>,
-    remarks: &[Remark],
-) -> Option<&'static str> {
-    if weights.get(&method).is_some_and(|weight| *weight > 0.0) {
+fn apart(method: Method, weights: &BTreeMap<Method, f64>, remarks: &[Remark]) -> Option<String> {
+    let counts = |weight: &f64| *weight > 0.0;
+    if weights.get(&method).is_some_and(counts) {
         return None;
     }
-    let joint = |of: Method| weights.contains_key(&of);
-    Some(if remarks.contains(&Remark::IdealRig) {
-        "takes the rig as ideal, not in the joint fit"
-    } else if method == Method::Flights && joint(Method::Trajectories) {
-        "not in the joint fit: trajectories tell the same better"
-    } else if method == Method::Impacts && joint(Method::Flights) {
-        "not in the joint fit: multiple shooting rests on the same impacts"
-    } else {
-        "not in the joint fit, as the findings say"
-    })
+    if remarks.contains(&Remark::IdealRig) {
+        return Some("takes the rig as ideal, not in the joint fit".into());
+    }
+    let joint = weights.iter().filter(|(_, weight)| counts(weight));
+    let joint: Vec<String> = joint.map(|(method, _)| method.to_string()).collect();
+    let joint = joint.join(", ").to_lowercase();
+    Some(format!("not in the joint fit, which rests on {joint}"))
 }
 
 /// Residuals of every method and of the joint fit at the sliders, and where each boundary is then.

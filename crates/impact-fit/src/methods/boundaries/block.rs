@@ -132,22 +132,27 @@ impl<'a> BoundaryPlace<'a> {
             bracket.drive_amplitude,
         );
         let (level, eta) = (middle.clearance, middle.frequency_ratio);
-        let eta = nearest_crossing(excess, level, eta, self.falls())?;
+        let eta = nearest_crossing(excess, level, eta, self.passes())?;
         Some(eta * natural_hz)
     }
 
-    /// Whether ρ of the boundary falls below the clearance as the frequency rises: a motion with impacts is below its s2,
-    /// one without them above ρ'. `None` where either may be.
-    fn falls(&self) -> Option<bool> {
+    /// How ρ of the boundary passes the clearance as the frequency rises: a motion with impacts is below its s2, one without
+    /// them above ρ'.
+    fn passes(&self) -> Passes {
         let falls_forward = match self.bracket.kind {
             BoundaryKind::SaddleNode => true,
             BoundaryKind::Grazing => false,
-            BoundaryKind::PeriodDoubling | BoundaryKind::Other => return None,
+            BoundaryKind::PeriodDoubling | BoundaryKind::Other => return Passes::Either,
         };
-        match self.bracket.sweep {
-            Sweep::Up => Some(falls_forward),
-            Sweep::Down => Some(!falls_forward),
-            Sweep::Unknown => None,
+        let falls = match self.bracket.sweep {
+            Sweep::Up => falls_forward,
+            Sweep::Down => !falls_forward,
+            Sweep::Unknown => return Passes::Either,
+        };
+        if falls {
+            Passes::Falling
+        } else {
+            Passes::Rising
         }
     }
 
@@ -225,13 +230,21 @@ struct Marginal {
     press: f64,
 }
 
-/// Crossing of ρ(η) with a level nearest to η0, by what ρ exceeds it, at which it falls or rises where that is known:
+/// How a curve passes a level.
+#[derive(Clone, Copy)]
+enum Passes {
+    Falling,
+    Rising,
+    Either,
+}
+
+/// Crossing of ρ(η) with a level nearest to η0, by what ρ exceeds it, at which it passes as it is meant to:
 /// scanned outward, then closed in on.
 fn nearest_crossing(
     excess: impl Fn(f64) -> f64,
     level: f64,
     eta0: f64,
-    falls: Option<bool>,
+    passes: Passes,
 ) -> Option<f64> {
     let here = excess(eta0);
     let step = 0.01;
@@ -239,7 +252,11 @@ fn nearest_crossing(
     let crossing = |low: (f64, f64), high: (f64, f64)| {
         let finite = low.1.is_finite() && high.1.is_finite();
         let crosses = low.1.signum() != high.1.signum();
-        let meant = falls.is_none_or(|falls| falls == (low.1 > high.1));
+        let meant = match passes {
+            Passes::Falling => low.1 > high.1,
+            Passes::Rising => low.1 < high.1,
+            Passes::Either => true,
+        };
         let root = (finite && crosses && meant).then(|| root_between(&excess, low, high))?;
         (excess(root).abs() < 1e-6 * (1.0 + level.abs())).then_some(root)
     };

@@ -65,7 +65,8 @@ pub(crate) fn find(
         .filter(|&i| filled(i) || header.names[i] != format!("column_{}", i + 1))
         .collect();
     let lists = lists_of_runs(header, kinds, &used);
-    let lists = lists.or_else(|| numbered_times(header, (layout, rows), &used, times));
+    let lists =
+        lists.or_else(|| numbered_times(header, |c| head_of(layout, rows, c), &used, times));
     if let Some(parts) = lists {
         return Makeup::Runs(parts);
     }
@@ -305,7 +306,7 @@ fn lists_of_runs(header: &Header, kinds: &[Kind], used: &[usize]) -> Option<Vec<
 /// rows: each is one run's. Where they rise along all rows, or fall, the rows are the runs, or times of one.
 fn numbered_times(
     header: &Header,
-    (layout, rows): (&Layout, &HeadRows<'_>),
+    head: impl Fn(usize) -> Vec<f64>,
     used: &[usize],
     times: &[usize],
 ) -> Option<Vec<Part>> {
@@ -325,7 +326,7 @@ fn numbered_times(
         })
     };
     let parts: Vec<Part> = lists.iter().map(list).collect::<Option<_>>()?;
-    let heads: Vec<Vec<f64>> = lists.iter().map(|c| head_of(layout, rows, *c)).collect();
+    let heads: Vec<Vec<f64>> = lists.iter().map(|c| head(*c)).collect();
     let longest = heads.iter().map(Vec::len).max()?;
     let in_row = |row: usize| heads.iter().filter_map(move |h| h.get(row).copied());
     let rise = (0..longest).all(|row| in_row(row).is_sorted());

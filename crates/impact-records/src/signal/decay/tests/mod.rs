@@ -602,7 +602,6 @@ fn valid_friction_that_begins_on_the_way_is_told_from_that_of_the_rig() {
     assert!(off < 3.0 * error && error < 0.05 * beta, "{off} {error}");
 }
 
-/// A mass that sticks under dry friction was not stopped.
 /// Noise of two fifths of the first amplitude hides where the decay ends, and no more.
 #[test]
 fn prop_a_decay_is_found_in_noise_of_two_fifths_of_its_start() {
@@ -657,6 +656,7 @@ fn prop_noise_is_nothing_that_begins_to_rub() {
     assert!(rubs <= 1, "{rubs}");
 }
 
+/// A mass that sticks under dry friction was not stopped.
 #[test]
 fn prop_a_mass_that_sticks_is_not_stopped() {
     let mut rng = ChaCha8Rng::seed_from_u64(20_261_129);
