@@ -323,6 +323,7 @@ const LAYERS: [(&str, &str, &[&str]); 2] = [
             "plan",
             "replay",
             "residuals",
+            "restated",
             "uncertainty",
             "identification",
             "first_values",

@@ -345,13 +345,34 @@ mod tests {
         let p = Parameters::symmetric(0.9, 12.6, 0.07, 1e-3);
         let cases = [
             (BoundaryKind::SaddleNode, 1.3),
-            (BoundaryKind::Grazing, 1.2),
+            (BoundaryKind::Grazing, 0.8),
             (BoundaryKind::PeriodDoubling, 0.85),
         ];
         for (kind, eta) in cases {
             let found = predicted_hz(&bracket(kind, eta, &p, 0.0), &p, RigKind::Double);
             let found = found.expect("a boundary") / p.natural_frequency_hz;
             assert!((found - eta).abs() < 1e-9, "{kind:?} {found}");
+        }
+    }
+
+    /// Without impacts z = 0 ends at ρ' as the frequency rises below resonance and as it falls above it.
+    #[test]
+    fn valid_a_motion_ends_where_its_boundary_passes_the_clearance_in_the_direction_of_the_sweep() {
+        let p = Parameters::symmetric(0.9, 12.6, 0.07, 1e-3);
+        let of = |eta: f64, sweep: Sweep| {
+            let mut held = bracket(BoundaryKind::Grazing, eta, &p, 0.0);
+            held.sweep = sweep;
+            let found = predicted_hz(&held, &p, RigKind::Double).expect("a boundary");
+            found / p.natural_frequency_hz
+        };
+        for (eta, ends_in) in [(0.8, Sweep::Up), (1.2, Sweep::Down)] {
+            let other = match ends_in {
+                Sweep::Up => Sweep::Down,
+                _ => Sweep::Up,
+            };
+            assert!((of(eta, ends_in) - eta).abs() < 1e-9);
+            assert!((of(eta, Sweep::Unknown) - eta).abs() < 1e-9);
+            assert!((of(eta, other) - 1.0).signum() != (eta - 1.0f64).signum());
         }
     }
 

@@ -487,11 +487,16 @@ fn half_contact(fall: Fall, before: &[Stretch], after: &[Stretch]) -> f64 {
     }
 }
 
-/// Samples that a contact takes in which the differences of a displacement fall.
+/// Samples that a contact takes in which the differences of a displacement fall. A fall of less than twice that of an instant may
+/// be one that noise makes longer.
 fn lasting(fall: Fall) -> f64 {
+    let samples = fall.last - fall.first;
     let squared = |samples: usize| (samples as f64).powi(2);
-    let own = squared(fall.last - fall.first) - squared(IN_AN_INSTANT);
-    own.max(0.0).sqrt()
+    if samples < 2 * IN_AN_INSTANT {
+        samples.saturating_sub(IN_AN_INSTANT) as f64
+    } else {
+        (squared(samples) - squared(IN_AN_INSTANT)).sqrt()
+    }
 }
 
 /// What a force that goes on while the contact lasts, as on a slope, changes of the speeds beside it: of a contact whose force
