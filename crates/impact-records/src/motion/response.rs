@@ -170,6 +170,7 @@ impl Basis {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::signal::whole;
 
     const RATE_HZ: f64 = 2000.0;
 
@@ -221,7 +222,7 @@ mod tests {
         let noisy = |left: f64| {
             record(|theta, t| {
                 let decay = (-0.9 * t).exp() * (1.0 + 12.4 * std::f64::consts::TAU * t).cos();
-                theta.cos() + left * decay + 1e-3 * noise[(t * RATE_HZ).round() as usize]
+                theta.cos() + left * decay + 1e-3 * noise[whole::index(t * RATE_HZ)]
             })
         };
         let settled = responses(&noisy(0.0), &drive())[0];
