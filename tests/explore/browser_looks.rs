@@ -35,6 +35,10 @@ fn browser_boundaries_are_named_and_sweeps_lie_apart() {
     let residuals = residuals.as_str().unwrap();
     let why = "(takes the rig as ideal, not in the joint fit)";
     assert!(residuals.contains(why), "{residuals}");
+    let tips = "[...document.querySelectorAll('#residuals span')].map((s) => s.title).join()";
+    let tips = browser.evaluate(tips);
+    let tips = tips.as_str().unwrap();
+    assert!(tips.contains("the joint fit rests on "), "{tips}");
     let red = browser.evaluate("document.querySelectorAll('#residuals .worse').length");
     assert_eq!(red, json!(0), "{residuals}");
     browser.key("t", 0);

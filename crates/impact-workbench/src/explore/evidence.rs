@@ -166,19 +166,16 @@ fn root_mean(squares: f64, count: usize) -> Option<f64> {
     (count > 0 && mean.is_finite()).then(|| mean.sqrt())
 }
 
-/// Why a method is not one of those with a weight in the joint fit; `None` for one that is.
-fn apart(method: Method, weights: &BTreeMap<Method, f64>, remarks: &[Remark]) -> Option<String> {
+/// What the joint fit rests on beside a method without a weight in it; `None` for one that has one.
+fn apart(method: Method, weights: &BTreeMap<Method, f64>) -> Option<String> {
     let counts = |weight: &f64| *weight > 0.0;
     if weights.get(&method).is_some_and(counts) {
         return None;
     }
-    if remarks.contains(&Remark::IdealRig) {
-        return Some("takes the rig as ideal, not in the joint fit".into());
-    }
     let joint = weights.iter().filter(|(_, weight)| counts(weight));
     let joint: Vec<String> = joint.map(|(method, _)| method.to_string()).collect();
     let joint = joint.join(", ").to_lowercase();
-    Some(format!("not in the joint fit, which rests on {joint}"))
+    Some(format!("the joint fit rests on {joint}"))
 }
 
 /// Residuals of every method and of the joint fit at the sliders, and where each boundary is then.
@@ -202,7 +199,8 @@ pub(super) fn residuals(campaign: &OpenCampaign, state: &State, job: &Job) -> Re
         let own = campaign.identification.methods.get(&method);
         let remarks = own.map_or(&[][..], |own| &own.remarks);
         methods.push(json!({
-            "apart": weights.and_then(|w| apart(method, w, remarks)),
+            "ideal_rig": remarks.contains(&Remark::IdealRig),
+            "apart": weights.and_then(|w| apart(method, w)),
             "remarks": remarks.iter().map(|r| r.to_string()).collect::<Vec<_>>(),
             "method": method.to_string(),
             "rms": root_mean(found.squares, found.count),

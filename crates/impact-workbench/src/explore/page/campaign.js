@@ -239,13 +239,13 @@ export class CampaignView {
     const back = button("Back to the fit (Z)", () => this.app.backToFit());
     if (frame.none) { element("residuals").replaceChildren(make("span", `No residuals at the sliders: ${frame.none}.`), back); this.app.legend(this.app.legendStyles ?? []); this.app.map.redraw(); return; }
     // a method that the joint fit trusts less than its own noise is judged as the joint fit weighs it
-    const item = (name, rms, tip, { weight = 1, apart: why, remarks = [] } = {}) => {
+    const item = (name, rms, tip, { weight = 1, ideal_rig, apart: why, remarks = [] } = {}) => {
       const span = make("span"), weighed = weight ?? 1;
       const apart = weighed === 0 && rms > 2;
       const value = make("b", rms === null ? "no model" : number(rms, 3), rms === null || rms * Math.sqrt(weighed) > 2 ? "worse" : apart ? "" : "fits");
-      span.append(`${name} `, value, apart ? ` (${why})` : "");
+      span.append(`${name} `, value, apart ? ` (${ideal_rig ? "takes the rig as ideal, " : ""}not in the joint fit)` : "");
       const larger = weighed > 0 && weighed < 0.5 ? [`the joint fit takes its errors ${number(1 / Math.sqrt(weighed), 2)} times as large`] : [];
-      span.title = [tip, ...larger, ...remarks].join("; ");
+      span.title = [tip, ...(why ? [why] : []), ...larger, ...remarks].join("; ");
       return span;
     };
     const parts = frame.methods.map((m) => item(m.method, m.rms, `${m.count} residuals over their standard errors, root mean square${m.without ? `; ${m.without} observations have no such motion here` : ""}`, m));
