@@ -405,14 +405,20 @@ impl<'a> IdentificationRun<'a> {
         if !unlike || stated.clearance_m == 0.0 {
             return None;
         }
+        let far_m = common_error::OPEN * stated.clearance_m;
+        let is_far = |errors_m: &[f64]| errors_m.iter().any(|e| e.abs() > 0.5 * far_m);
         let flown_m =
             stated_clearances::flown_errors_m(self.evidence, &self.found.begin, &blocks.gaps_m);
         let as_stated_m = vec![0.0; flown_m.len()];
-        let found = [as_stated_m, flown_m].into_iter().filter_map(|from_m| {
-            let far_m = common_error::OPEN * stated.clearance_m;
+        let starts = [Some(as_stated_m), is_far(&flown_m).then_some(flown_m)];
+        let found = starts.into_iter().flatten().filter_map(|from_m| {
             let first = self.open_clearances(&from_m, far_m)?;
-            // what is stated of the clearances no longer holds the errors back
-            self.open_clearances(&first.errors_m, far_m)
+            // what is stated of clearances that are far off no longer holds the errors back
+            if is_far(&first.errors_m) {
+                self.open_clearances(&first.errors_m, far_m)
+            } else {
+                Some(first)
+            }
         });
         let best = found.min_by(|a, b| a.mean_square.total_cmp(&b.mean_square))?;
         // one gain that is off is no error that all share
