@@ -58,7 +58,7 @@ use impact_fit::methods::selection::Selection;
 use impact_fit::methods::trajectories::record::TrajectoryRecord;
 use impact_fit::parameters::effect::{Effect, EffectKind};
 use impact_fit::parameters::{Coordinate, Parameters};
-use impact_fit::solver::{Precision, Prior, Problem};
+use impact_fit::solver::{Fit, Precision, Prior, Problem};
 use impact_fit::statistics::quantile::chi_squared_99;
 use impact_records::event::RigKind;
 use impact_records::signal::columns::dot;
@@ -222,9 +222,6 @@ const MOST_ODD_GAPS: usize = 2;
 /// Relative deviation of a gap from which the first order about a fit does not tell it.
 const FAR_OFF: f64 = 0.02;
 
-/// Errors of clearances of which each may be so many times in a fit that is free to have them.
-const FREE: f64 = 3.0;
-
 /// Delay of a channel, in half samples, that multiple shooting does not notice.
 const ON_TIME: f64 = 0.05;
 
@@ -253,25 +250,6 @@ struct Changes {
     of_gain: Option<Suspicion>,
     /// Records of another rig.
     of_rig: Option<Change>,
-}
-
-/// A fit in which clearances are free.
-struct OpenClearances {
-    /// The error of each, m.
-    errors_m: Vec<f64>,
-    /// How far the logarithms of the gains are apart.
-    gains_apart: f64,
-    /// Mean square of what it leaves.
-    mean_square: f64,
-}
-
-/// How far values are apart at most.
-fn apart(values: impl Iterator<Item = f64>) -> f64 {
-    let ends = values.fold(None, |ends: Option<[f64; 2]>, value| match ends {
-        Some([low, high]) => Some([low.min(value), high.max(value)]),
-        None => Some([value, value]),
-    });
-    ends.map_or(0.0, |[low, high]| high - low)
 }
 
 struct IdentificationRun<'a> {
@@ -393,47 +371,27 @@ impl<'a> IdentificationRun<'a> {
     fn common_error(&self) -> Option<CommonError> {
         let nominal = &self.evidence.nominal;
         let joint = self.found.together();
-        let gains = joint.map_or(0, |j| {
-            j.fit.free.iter().filter(|c| c.gain().is_some()).count()
-        });
+        let free = joint.map_or(&[][..], |j| &j.fit.free);
         let stated = Stated {
             clearance_m: nominal.clearance_uncertainty_m,
-            gain: nominal.gain_uncertainty / (gains.max(1) as f64).sqrt(),
+            gain: nominal.gain_uncertainty,
+            gains: free.iter().filter(|c| c.gain().is_some()).count(),
         };
         let Selection { blocks, lost, .. } = &self.selection;
         let unlike = self.scales_strained() || lost.len() > blocks.trajectory.records.len();
         if !unlike || stated.clearance_m == 0.0 {
             return None;
         }
-        let far_m = common_error::OPEN * stated.clearance_m;
-        let is_far = |errors_m: &[f64]| errors_m.iter().any(|e| e.abs() > 0.5 * far_m);
-        let flown_m =
-            stated_clearances::flown_errors_m(self.evidence, &self.found.begin, &blocks.gaps_m);
-        let as_stated_m = vec![0.0; flown_m.len()];
-        let starts = [Some(as_stated_m), is_far(&flown_m).then_some(flown_m)];
-        let found = starts.into_iter().flatten().filter_map(|from_m| {
-            let first = self.open_clearances(&from_m, far_m)?;
-            // what is stated of clearances that are far off no longer holds the errors back
-            if is_far(&first.errors_m) {
-                self.open_clearances(&first.errors_m, far_m)
-            } else {
-                Some(first)
-            }
-        });
-        let best = found.min_by(|a, b| a.mean_square.total_cmp(&b.mean_square))?;
-        // one gain that is off is no error that all share
-        let apart = common_error::NAMED * std::f64::consts::SQRT_2 * nominal.gain_uncertainty;
-        let alike = best.gains_apart < apart;
-        alike
-            .then(|| CommonError::of(&blocks.gaps_m, &best.errors_m, stated))
-            .flatten()
+        let gaps_m = &blocks.gaps_m;
+        let flown_m = stated_clearances::flown_errors_m(self.evidence, &self.found.begin, gaps_m);
+        let fit = |from_m: &[f64], most_m: f64| self.open_clearances(from_m, most_m);
+        common_error::searched(gaps_m, flown_m, stated, &fit)
     }
 
-    /// A fit that starts at some errors of the clearances, m, where each may be off by so much or as much as them.
-    fn open_clearances(&self, from_m: &[f64], far_m: f64) -> Option<OpenClearances> {
-        let most_m = from_m.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
+    /// A fit that starts at some errors of the clearances, m, where each has a standard uncertainty of so much.
+    fn open_clearances(&self, from_m: &[f64], uncertainty_m: f64) -> Option<Fit> {
         let open = Nominal {
-            clearance_uncertainty_m: far_m.max(FREE * most_m),
+            clearance_uncertainty_m: uncertainty_m,
             ..self.evidence.nominal
         };
         let mut blocks = self.selection.blocks.clone();
@@ -442,15 +400,7 @@ impl<'a> IdentificationRun<'a> {
             begin.gap_errors_m.set(i, *error_m);
         }
         blocks.keep_those_with_an_orbit(&begin);
-        let found = joint::rough(&blocks, begin, &joint::curve_and_waveforms(), &open)?;
-        Some(OpenClearances {
-            errors_m: common_error::errors_m(&found.parameters, from_m.len()),
-            gains_apart: apart(found.free.iter().filter_map(|c| {
-                let gain = c.gain()?;
-                Some(found.parameters.gains[gain].ln())
-            })),
-            mean_square: found.cost / found.residuals.max(1) as f64,
-        })
+        joint::rough(&blocks, begin, &joint::curve_and_waveforms(), &open)
     }
 
     /// A gap that is far off with the clearance with which its records fit what all others say: to first order about a

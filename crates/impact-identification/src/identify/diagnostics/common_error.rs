@@ -8,18 +8,22 @@
 use impact_fit::messages::{Finding, Note};
 use impact_fit::method_fit::MethodFit;
 use impact_fit::parameters::{Coordinate, Parameters};
-use impact_records::signal::columns::dot;
-use impact_records::signal::robust;
+use impact_fit::solver::Fit;
+use impact_records::signal::columns::{dot, extremes};
+use impact_records::signal::robust::{self, mean};
 
 use super::common_scale::{self, CommonScale};
 use super::doubt::{Doubt, Suspicion};
 
 /// Stated uncertainties that each clearance has at least in the fit that tells its error.
-pub const OPEN: f64 = 20.0;
+const OPEN: f64 = 20.0;
+/// Share of that from which an error is far off, and times an error is that the clearance may be off by then.
+const FAR: f64 = 0.5;
+const FREE: f64 = 3.0;
 /// Fewest gaps that tell an error of all from their own.
 const FEWEST_GAPS: usize = 3;
 /// Standard deviations of what is stated, of a gap and of what all share, from which it is named.
-pub const NAMED: f64 = 4.0;
+const NAMED: f64 = 4.0;
 /// Greatest distance of a gap's error from the common one, over that.
 const ALIKE: f64 = 0.4;
 
@@ -28,8 +32,69 @@ const ALIKE: f64 = 0.4;
 pub struct Stated {
     /// Standard uncertainty of each clearance, m.
     pub clearance_m: f64,
-    /// Relative one of what the gains have in common.
+    /// Relative one of each gain.
     pub gain: f64,
+    /// How many gains there are.
+    pub gains: usize,
+}
+
+impl Stated {
+    /// Relative standard uncertainty of what the gains have in common.
+    fn of_all_gains(self) -> f64 {
+        self.gain / (self.gains.max(1) as f64).sqrt()
+    }
+}
+
+/// A fit that starts at errors of the clearances, m, of which each has a standard uncertainty, m.
+pub type FitFrom<'a> = &'a dyn Fn(&[f64], f64) -> Option<Fit>;
+
+/// The error that clearances share, by fits that are free to have errors of them: from the clearances as stated and, where these
+/// are far off, from where flights put them. One gain that is off is no error that all share.
+pub fn searched(
+    gaps_m: &[f64],
+    flown_m: Vec<f64>,
+    stated: Stated,
+    fit: FitFrom<'_>,
+) -> Option<CommonError> {
+    let open_m = OPEN * stated.clearance_m;
+    let is_far = |errors_m: &[f64]| errors_m.iter().any(|e| e.abs() > FAR * open_m);
+    let free = |from_m: &[f64]| {
+        let most_m = from_m.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
+        fit(from_m, open_m.max(FREE * most_m))
+    };
+    let as_stated_m = vec![0.0; gaps_m.len()];
+    let starts = [Some(as_stated_m), is_far(&flown_m).then_some(flown_m)];
+    let found = starts.into_iter().flatten().filter_map(|from_m| {
+        let first = free(&from_m)?;
+        let errors_m = errors_m(&first.parameters, gaps_m.len());
+        // what is stated of clearances that are far off no longer holds the errors back
+        if is_far(&errors_m) {
+            free(&errors_m)
+        } else {
+            Some(first)
+        }
+    });
+    let mean_square = |fit: &Fit| fit.cost / fit.residuals.max(1) as f64;
+    let best = found.min_by(|a, b| mean_square(a).total_cmp(&mean_square(b)))?;
+    let alike = gains_apart(&best) < NAMED * std::f64::consts::SQRT_2 * stated.gain;
+    let errors_m = errors_m(&best.parameters, gaps_m.len());
+    alike
+        .then(|| CommonError::of(gaps_m, &errors_m, stated))
+        .flatten()
+}
+
+/// The errors of all clearances that a fit found, m.
+fn errors_m(found: &Parameters, gaps: usize) -> Vec<f64> {
+    let of = |i| found.screw_zero_m + found.gap_errors_m.of(i);
+    (0..gaps).map(of).collect()
+}
+
+/// How far the logarithms of the gains of a fit are apart.
+fn gains_apart(fit: &Fit) -> f64 {
+    let gains = fit.free.iter().filter_map(|c| c.gain());
+    let logs: Vec<f64> = gains.map(|i| fit.parameters.gains[i].ln()).collect();
+    let (low, high) = extremes(&logs);
+    (high - low).max(0.0)
 }
 
 /// The error that all clearances share.
@@ -46,7 +111,7 @@ pub enum CommonError {
 
 impl CommonError {
     /// The error that clearances share, by the errors that a fit found of them, m.
-    pub fn of(gaps_m: &[f64], errors_m: &[f64], stated: Stated) -> Option<Self> {
+    fn of(gaps_m: &[f64], errors_m: &[f64], stated: Stated) -> Option<Self> {
         if gaps_m.len() < FEWEST_GAPS || gaps_m.len() != errors_m.len() {
             return None;
         }
@@ -81,12 +146,6 @@ impl CommonError {
     }
 }
 
-/// The errors of all clearances that a fit found, m.
-pub fn errors_m(found: &Parameters, gaps: usize) -> Vec<f64> {
-    let of = |i| found.screw_zero_m + found.gap_errors_m.of(i);
-    (0..gaps).map(of).collect()
-}
-
 /// A length that all errors have in common but for what gains within their uncertainty add, and that explains them better
 /// than a factor or one gap that is off does.
 fn zero(gaps_m: &[f64], errors_m: &[f64], stated: Stated) -> Option<CommonError> {
@@ -99,10 +158,11 @@ fn zero(gaps_m: &[f64], errors_m: &[f64], stated: Stated) -> Option<CommonError>
         .iter()
         .all(|share| apart(share).abs() < ALIKE * added_m.abs());
     let left: f64 = shares.iter().map(|share| apart(share).powi(2)).sum();
-    let by_gains = slope.abs() < NAMED * stated.gain;
+    let by_gains = slope.abs() < NAMED * stated.of_all_gains();
     let named = added_m.abs() > NAMED * std::f64::consts::SQRT_2 * stated.clearance_m;
     let better = left < left_by(factor(gaps_m, errors_m), gaps_m, errors_m)
-        && left + (stated.clearance_m * slope / stated.gain).powi(2) < left_by_one(errors_m);
+        && left + (stated.clearance_m * slope / stated.of_all_gains()).powi(2)
+            < left_by_one(errors_m);
     (alike && by_gains && named && better).then_some(CommonError::Zero { added_m })
 }
 
@@ -112,7 +172,7 @@ fn scale(gaps_m: &[f64], errors_m: &[f64], stated: Stated) -> Option<CommonError
     let mut shares = gaps_m.iter().zip(errors_m).map(|(gap, e)| e / gap);
     let alike = shares.all(|share| (share - factor).abs() < ALIKE * factor.abs());
     let of_clearances = stated.clearance_m / dot(gaps_m, gaps_m).sqrt();
-    let z_score = factor / stated.gain.hypot(of_clearances);
+    let z_score = factor / stated.of_all_gains().hypot(of_clearances);
     (alike && z_score.abs() > NAMED && factor > -1.0).then(|| {
         CommonError::Scale(CommonScale {
             share: factor.ln_1p(),
@@ -129,7 +189,7 @@ fn slope(gaps_m: &[f64], errors_m: &[f64], stated: Stated) -> f64 {
         .zip(errors_m)
         .map(|(g, e)| (g - gap, e - error));
     let (squares, products) = apart.fold((0.0, 0.0), |(xx, xy), (x, y)| (xx + x * x, xy + x * y));
-    let known = (stated.clearance_m / stated.gain.max(f64::MIN_POSITIVE)).powi(2);
+    let known = (stated.clearance_m / stated.of_all_gains().max(f64::MIN_POSITIVE)).powi(2);
     products / (squares + known)
 }
 
@@ -150,10 +210,6 @@ fn left_by_one(errors_m: &[f64]) -> f64 {
     dot(errors_m, errors_m) - most * most
 }
 
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -164,6 +220,7 @@ mod tests {
         let stated = Stated {
             clearance_m: 1e-6,
             gain: 5e-3,
+            gains: 1,
         };
         CommonError::of(&GAPS_M, &errors_m, stated)
     }

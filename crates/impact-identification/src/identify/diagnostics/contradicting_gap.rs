@@ -6,11 +6,10 @@
 use crate::identify::diagnostics::suspicion::{OddGap, fitting_clearance, recover};
 use impact_fit::messages::Finding;
 use impact_fit::methods::blocks::Blocks;
-use impact_fit::methods::trajectories::block::TrajectoryBlock;
 use impact_fit::methods::trajectories::record::TrajectoryRecord;
+use impact_fit::methods::weighing::Bulk;
 use impact_fit::parameters::Parameters;
 use impact_fit::solver::mean_squares;
-use impact_records::signal::robust;
 
 /// Mean square of the residuals from which the records contradict each other.
 const MISFIT: f64 = 4.0;
@@ -97,7 +96,11 @@ impl<'a> Contradiction<'a> {
         let block = &self.few.trajectory;
         let own = self.records.iter().filter(|r| r.clearance_m == gap_m);
         let own: Vec<TrajectoryRecord> = own.cloned().collect();
-        let typical = typical(block, &without);
+        let scores: Vec<f64> = mean_squares(block, &without)
+            .into_iter()
+            .flatten()
+            .collect();
+        let typical = Bulk::of(&scores).typical;
         // what the others leave open of all else is more than the noise of these records
         let about_m = fitting_clearance(block, own.clone(), &without, typical)?;
         let (with, _) = (self.fit)(&self.with_clearance(gap_m, about_m, &without), &without)?;
@@ -144,12 +147,6 @@ impl<'a> Contradiction<'a> {
             .next()
             .filter(|(_, (_, best))| *best < most)
     }
-}
-
-/// The typical mean square of the records of a block at parameters, at least 1.
-fn typical(block: &TrajectoryBlock, at: &Parameters) -> f64 {
-    let scores: Vec<f64> = mean_squares(block, at).into_iter().flatten().collect();
-    robust::median(&scores).unwrap_or(1.0).max(1.0)
 }
 
 /// The clearance of a gap where two have each other's.

@@ -61,15 +61,17 @@ fn commas_in_headings_do_not_shift_columns_and_decimal_commas_between_commas_are
     assert_eq!(real(&*s, 1), [0.125, -0.130]);
 }
 
+/// The datasets with the samples of the first channel of each.
+fn lists(source: &dyn Source) -> Vec<(&str, u64)> {
+    let sets = source.datasets().iter();
+    sets.map(|d| (d.name.as_str(), d.channels[0].samples))
+        .collect()
+}
+
 #[test]
 fn lists_of_times_called_after_throws_are_records() {
     let s = source(b"bounce no.,Throw 1 (ms),Throw 2 (ms)\n1,0.1,0.2\n2,500.0,510.0\n3,900.0,930.0\n4,1220.0,\n");
-    let sets: Vec<(&str, u64)> = s
-        .datasets()
-        .iter()
-        .map(|d| (d.name.as_str(), d.channels[0].samples))
-        .collect();
-    assert_eq!(sets, [("Throw 1", 4), ("Throw 2", 3)]);
+    assert_eq!(lists(&*s), [("Throw 1", 4), ("Throw 2", 3)]);
     for set in s.datasets() {
         assert_eq!(
             (set.channels.len(), set.channels[0].name.as_str()),
@@ -89,12 +91,7 @@ fn lists_of_times_called_after_throws_are_records() {
 #[test]
 fn lists_of_numbered_times_are_records_where_the_rows_are_none() {
     let s = source(b"Zeit 1 (s);Zeit 2 (s);Zeit 3 (s)\n0,30;0,41;0,52\n0,65;0,70;0,79\n0,94;0,95;1,02\n1,19;1,17;\n");
-    let sets: Vec<(&str, u64)> = s
-        .datasets()
-        .iter()
-        .map(|d| (d.name.as_str(), d.channels[0].samples))
-        .collect();
-    assert_eq!(sets, [("Zeit 1", 4), ("Zeit 2", 4), ("Zeit 3", 3)]);
+    assert_eq!(lists(&*s), [("Zeit 1", 4), ("Zeit 2", 4), ("Zeit 3", 3)]);
     let third = s.read(2, &[0]).unwrap().remove(0).into_real().unwrap();
     assert_eq!(third, [0.52, 0.79, 1.02]);
     // both edges of a contact, times and flights along the rows
