@@ -21,6 +21,6 @@ pub mod published;
 pub mod registry;
 pub mod resonance;
 pub mod selection;
-mod thinning;
+pub mod thinning;
 pub mod trajectories;
 pub mod weighing;

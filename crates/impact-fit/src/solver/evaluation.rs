@@ -1,6 +1,6 @@
 //! All items of a problem at given parameters, folded together by groups.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex};
 
 use rayon::prelude::*;
@@ -38,26 +38,42 @@ impl Evaluation {
     }
 }
 
-/// The evaluation of a problem that was made last: a fit ends where its groups are asked for.
+/// The evaluations of a problem that were made last: a fit ends where its groups are asked for, or where a fit with other
+/// priors begins.
 #[derive(Default)]
-pub(crate) struct LastEvaluation(Mutex<Option<Arc<Evaluation>>>);
+pub(crate) struct LastEvaluations(Mutex<VecDeque<Arc<Evaluation>>>);
 
-impl LastEvaluation {
-    /// The last one if it was made at these parameters, else a new one, which is kept.
+/// Where a fit began, or was before its last step, and where it ended.
+const LAST: usize = 2;
+
+impl LastEvaluations {
+    /// That of the last which was made at these parameters, else a new one, which is kept.
     pub(super) fn at_or(
         &self,
         parameters: &Parameters,
         evaluate: impl FnOnce() -> Evaluation,
     ) -> Arc<Evaluation> {
-        let last = self.0.lock().ok().and_then(|last| last.clone());
-        if let Some(last) = last.filter(|e| e.at == *parameters) {
-            return last;
+        if let Some(known) = self.kept().into_iter().find(|e| e.at == *parameters) {
+            return known;
         }
         let evaluation = Arc::new(evaluate());
         if let Ok(mut last) = self.0.lock() {
-            *last = Some(Arc::clone(&evaluation));
+            last.truncate(LAST - 1);
+            last.push_front(Arc::clone(&evaluation));
         }
         evaluation
+    }
+
+    fn kept(&self) -> VecDeque<Arc<Evaluation>> {
+        self.0
+            .lock()
+            .map_or_else(|_| VecDeque::new(), |last| last.clone())
+    }
+}
+
+impl Clone for LastEvaluations {
+    fn clone(&self) -> Self {
+        Self(Mutex::new(self.kept()))
     }
 }
 

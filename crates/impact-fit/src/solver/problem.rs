@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::parameters::{Coordinate, Parameters};
 use crate::solver::block::Block;
-use crate::solver::evaluation::{Evaluation, LastEvaluation, Part, kept};
+use crate::solver::evaluation::{Evaluation, LastEvaluations, Part, kept};
 use crate::solver::factor::Factor;
 use crate::solver::group::Group;
 use crate::solver::least_squares::{LeastSquares, Limits, Variance, minimise};
@@ -56,8 +56,8 @@ pub struct Problem<'a> {
     pub progress: FitProgress,
     /// How close to the least sum of squares its fits end.
     pub precision: Precision,
-    /// What was evaluated last: a fit ends where its groups are asked for.
-    pub(crate) last: LastEvaluation,
+    /// What was evaluated last, of these blocks over these coordinates.
+    pub(crate) last: LastEvaluations,
 }
 
 /// How close to the least sum of squares a fit ends.
@@ -218,7 +218,7 @@ impl<'a> Problem<'a> {
             free: self.free.clone(),
             progress: self.progress.clone(),
             precision: self.precision,
-            ..Self::default()
+            last: self.last.clone(),
         }
     }
 

@@ -55,6 +55,7 @@ use impact_fit::methods::influence::Places;
 use impact_fit::methods::joint::{self, Weights};
 use impact_fit::methods::registry::{BY_RECORD, REGISTRY};
 use impact_fit::methods::selection::Selection;
+use impact_fit::methods::thinning::of_each_gap;
 use impact_fit::methods::trajectories::record::TrajectoryRecord;
 use impact_fit::parameters::effect::{Effect, EffectKind};
 use impact_fit::parameters::{Coordinate, Parameters};
@@ -388,17 +389,21 @@ impl<'a> IdentificationRun<'a> {
         common_error::searched(gaps_m, flown_m, stated, &fit)
     }
 
-    /// A fit that starts at some errors of the clearances, m, where each has a standard uncertainty of so much.
+    /// A fit of a few records of each gap that starts at some errors of the clearances, m, where each has a standard
+    /// uncertainty of so much.
     fn open_clearances(&self, from_m: &[f64], uncertainty_m: f64) -> Option<Fit> {
         let open = Nominal {
             clearance_uncertainty_m: uncertainty_m,
             ..self.evidence.nominal
         };
-        let mut blocks = self.selection.blocks.clone();
         let mut begin = self.found.begin;
         for (i, error_m) in from_m.iter().enumerate() {
             begin.gap_errors_m.set(i, *error_m);
         }
+        let Selection { blocks, lost, .. } = &self.selection;
+        let of_all = blocks.trajectory.records.iter().chain(lost);
+        let few = of_each_gap(of_all, common_error::FEW);
+        let mut blocks = blocks.with_trajectory(blocks.trajectory.with_records(few));
         blocks.keep_those_with_an_orbit(&begin);
         joint::rough(&blocks, begin, &joint::curve_and_waveforms(), &open)
     }

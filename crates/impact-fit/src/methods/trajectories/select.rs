@@ -7,6 +7,7 @@ use crate::messages::Reason;
 use crate::method_fit::MethodFit;
 use crate::methods::fit::FitResult;
 use crate::methods::selection::{ROUNDS, Selection};
+use crate::methods::thinning::every;
 use crate::methods::trajectories::{fit, starts};
 use crate::methods::weighing::Bulk;
 use crate::parameters::{Coordinate, Parameters};
@@ -69,8 +70,7 @@ impl Selection<'_> {
     fn roughly_fitted(&mut self, start: Parameters) -> Option<FitResult> {
         let nominal = self.evidence.nominal;
         let all = std::mem::take(&mut self.blocks.trajectory.records);
-        let stride = all.len().div_ceil(FIRST).max(1);
-        let some = || all.iter().step_by(stride).cloned().collect();
+        let some = || every(&all, FIRST);
         self.blocks.trajectory.records = some();
         self.keep_those_with_orbits(&start);
         let ideal = self.trajectories_with_orbits(&nominal.ideal(), start);

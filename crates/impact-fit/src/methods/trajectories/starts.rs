@@ -10,6 +10,7 @@ use crate::evidence::Nominal;
 use crate::methods::blocks::Blocks;
 use crate::methods::joint;
 use crate::methods::resonance::fit::deflection_guess;
+use crate::methods::thinning::every;
 use crate::parameters::Parameters;
 use crate::solver::{Block, mean_squares};
 use impact_records::signal::robust;
@@ -56,9 +57,8 @@ pub(super) fn best(blocks: &Blocks, nominal: &Nominal, given: Parameters) -> Par
 /// The blocks with some of their records.
 fn thinned(blocks: &Blocks) -> Blocks {
     let records = &blocks.trajectory.records;
-    let stride = records.len().div_ceil(MOST).max(1);
-    let few = records.iter().step_by(stride).cloned().collect();
-    let mut some = blocks.with_trajectory(blocks.trajectory.with_records(few));
+    let few = blocks.trajectory.with_records(every(records, MOST));
+    let mut some = blocks.with_trajectory(few);
     some.resonance = blocks.resonance.few(MOST);
     some
 }

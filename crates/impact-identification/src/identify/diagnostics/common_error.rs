@@ -15,6 +15,8 @@ use impact_records::signal::robust::{self, mean};
 use super::common_scale::{self, CommonScale};
 use super::doubt::{Doubt, Suspicion};
 
+/// Waveforms of each gap that are looked at.
+pub const FEW: usize = 12;
 /// Stated uncertainties that each clearance has at least in the fit that tells its error.
 const OPEN: f64 = 20.0;
 /// Share of that from which an error is far off, and times an error is that the clearance may be off by then.

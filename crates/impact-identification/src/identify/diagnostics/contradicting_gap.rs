@@ -6,6 +6,7 @@
 use crate::identify::diagnostics::suspicion::{OddGap, fitting_clearance, recover};
 use impact_fit::messages::Finding;
 use impact_fit::methods::blocks::Blocks;
+use impact_fit::methods::thinning::of_each_gap;
 use impact_fit::methods::trajectories::record::TrajectoryRecord;
 use impact_fit::methods::weighing::Bulk;
 use impact_fit::parameters::Parameters;
@@ -60,7 +61,7 @@ impl<'a> Contradiction<'a> {
         [start, found]: [&'a Parameters; 2],
         fit: FitOf<'a>,
     ) -> Option<Self> {
-        let records = of_each_gap(blocks.trajectory.records.iter().chain(lost).collect());
+        let records = of_each_gap(blocks.trajectory.records.iter().chain(lost), FEW);
         let mut few = blocks.with_trajectory(blocks.trajectory.with_records(records));
         few.allow_least(start);
         let records = few.trajectory.records.clone();
@@ -176,17 +177,6 @@ pub fn exchanged_of(odd: &[&Finding]) -> Option<[f64; 2]> {
     let near = |fits: f64, stated: f64| (fits / stated - 1.0).abs() < ABOUT;
     let exchanged = near(fits_one_m, other_m) && near(fits_other_m, one_m);
     exchanged.then(|| [one_m.min(other_m), one_m.max(other_m)])
-}
-
-/// A few records of each gap, spread over them, in the order of the gaps.
-fn of_each_gap(mut records: Vec<&TrajectoryRecord>) -> Vec<TrajectoryRecord> {
-    records.sort_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m));
-    let gaps = records.chunk_by(|a, b| a.clearance_m == b.clearance_m);
-    gaps.flat_map(|gap| {
-        let step = gap.len().div_ceil(FEW).max(1);
-        gap.iter().step_by(step).copied().cloned()
-    })
-    .collect()
 }
 
 #[cfg(test)]

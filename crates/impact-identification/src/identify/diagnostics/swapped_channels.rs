@@ -7,6 +7,7 @@ use crate::identify::diagnostics::suspicion::SURE;
 use impact_fit::messages::Finding;
 use impact_fit::methods::blocks::Blocks;
 use impact_fit::methods::joint::{self, Weights};
+use impact_fit::methods::thinning::every;
 use impact_fit::methods::weighing::LEAST_ALLOWANCE;
 use impact_fit::parameters::gain_index;
 use impact_records::record::Role;
@@ -70,12 +71,6 @@ fn thinned(blocks: &Blocks) -> Blocks {
     let mut few = blocks.with_trajectory(blocks.trajectory.with_records(records));
     few.resonance.points = every(&blocks.resonance.points, FEW_POINTS);
     few
-}
-
-/// About so many of some, evenly spread.
-fn every<T: Clone>(all: &[T], count: usize) -> Vec<T> {
-    let step = all.len().div_ceil(count).max(1);
-    all.iter().step_by(step).cloned().collect()
 }
 
 /// Whose filter an interchanged velocity has passed.

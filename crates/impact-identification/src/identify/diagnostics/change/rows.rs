@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::found::FEWEST;
 use super::search::Search;
+use impact_fit::methods::thinning::every;
 use impact_fit::parameters::Coordinate;
 use impact_fit::solver::normal::{Normal, inverse};
 use impact_fit::solver::placed_rows::PlacedRows;
@@ -83,8 +84,7 @@ impl Search<'_> {
             .map(|(i, rows)| (ranks[*i], rows))
             .collect();
         records.sort_by_key(|(rank, _)| *rank);
-        let stride = records.len().div_ceil(MOST).max(1);
-        let records: Vec<(usize, &PlacedRows)> = records.into_iter().step_by(stride).collect();
+        let records = every(&records, MOST);
         let free = problem.free.iter().enumerate();
         let places: Vec<usize> = free.filter(|(_, c)| of(**c)).map(|(i, _)| i).collect();
         let mut all = problem.priors_normal(self.fitted.at);
