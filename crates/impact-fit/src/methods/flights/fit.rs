@@ -7,7 +7,12 @@ use crate::parameters::{Coordinate, Parameters};
 use crate::solver::Precision;
 
 /// All four parameters from the states at the impacts of records without a closed-form orbit.
-pub(super) fn from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
+pub(super) fn from(
+    blocks: &Blocks,
+    nominal: &Nominal,
+    start: Parameters,
+    precision: Precision,
+) -> Option<FitResult> {
     if blocks.flight.records.is_empty() {
         return None;
     }
@@ -17,6 +22,6 @@ pub(super) fn from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Opt
         nominal,
         &Coordinate::PHYSICAL,
         start,
-        Precision::Result,
+        precision,
     ))
 }

@@ -6,12 +6,24 @@ use crate::methods::flights::fit;
 use crate::methods::selection::{ROUNDS, Selection};
 use crate::methods::weighing::Bulk;
 use crate::parameters::Parameters;
-use crate::solver::mean_squares;
+use crate::solver::{Precision, mean_squares};
 
 impl Selection<'_> {
     /// Fit the records that are shot from impact to impact, R allowed the scatter that they show; those that fit far
     /// worse than the bulk, as where an impact was missed, are left out and named.
     pub(super) fn fit_flights(&mut self, start: Parameters) -> Option<FitResult> {
+        match self.roughly_flown(start)? {
+            Ok(rough) => self.flown(rough.fit.parameters, Precision::Result),
+            failed => Some(failed),
+        }
+    }
+
+    fn flown(&self, start: Parameters, precision: Precision) -> Option<FitResult> {
+        fit::from(&self.blocks, &self.evidence.nominal, start, precision)
+    }
+
+    /// Rough fits until no record is left out and the scatter of R stays.
+    fn roughly_flown(&mut self, start: Parameters) -> Option<FitResult> {
         let mut parameters = start;
         let (mut found, mut changed) = (None, false);
         for _ in 0..=ROUNDS {
@@ -28,7 +40,7 @@ impl Selection<'_> {
             for record in gone.collect::<Vec<_>>() {
                 self.note(record.observation, Reason::ImpactsDoNotFollow);
             }
-            match fit::from(&self.blocks, &self.evidence.nominal, parameters)? {
+            match self.flown(parameters, Precision::Start)? {
                 Ok(fit) => {
                     parameters = fit.fit.parameters;
                     changed = self.blocks.weigh_flights(&parameters);
