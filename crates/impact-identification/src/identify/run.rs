@@ -9,7 +9,6 @@ use crate::identify::diagnostics::cause;
 use crate::identify::diagnostics::change::{Change, Fitted, Search};
 use crate::identify::diagnostics::clock;
 use crate::identify::diagnostics::common_error::{self, CommonError, Stated};
-use crate::identify::diagnostics::common_scale::{self, CommonScale, common_scale};
 use crate::identify::diagnostics::contradicting_gap::{
     self, Contradicting, Contradiction, exchanged,
 };
@@ -731,11 +730,11 @@ impl<'a> IdentificationRun<'a> {
         })
     }
 
-    /// The share by which all clearances are off alike, if they are.
-    fn common_scale(&self) -> Option<CommonScale> {
+    /// The error that all clearances share within what the joint fit carries of them, if they do.
+    fn carried_error(&self) -> Option<CommonError> {
         let uncertainty_m = self.evidence.nominal.clearance_uncertainty_m;
-        common_scale(
-            &self.selection.blocks,
+        CommonError::carried(
+            &self.selection.blocks.gaps_m,
             self.found.together()?,
             uncertainty_m,
         )
@@ -744,7 +743,7 @@ impl<'a> IdentificationRun<'a> {
     /// The gap that deviates most from what the others say, if one does and not all do alike, or two that are exchanged.
     fn odd_gap(&self) -> Option<Contradicting> {
         let joint = self.found.together()?;
-        if self.common_scale().is_some() {
+        if self.carried_error().is_some() {
             return None;
         }
         let Selection {
@@ -840,8 +839,9 @@ impl<'a> IdentificationRun<'a> {
         found.extend(suspicion::sides(&joint.fit, &Vec::from_iter(stated)));
         let mut found: Vec<Suspicion> = found.into_iter().map(Suspicion::from).collect();
         found.extend(wrong_gains::open(joint, nominal));
-        found.extend(match self.common_scale() {
-            Some(scale) => Some(common_scale::suspicion(scale, joint)),
+        let gaps_m = &self.selection.blocks.gaps_m;
+        found.extend(match self.carried_error() {
+            Some(error) => Some(error.suspicion(gaps_m, joint)),
             None => wrong_gains::wrong_gain(joint, nominal),
         });
         found

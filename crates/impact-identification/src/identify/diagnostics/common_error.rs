@@ -7,13 +7,15 @@
 
 use impact_fit::messages::{Finding, Note};
 use impact_fit::method_fit::MethodFit;
-use impact_fit::parameters::{Coordinate, Parameters};
-use impact_fit::solver::Fit;
+use impact_fit::parameters::{Coordinate, GAIN_ROLES, Parameters};
+use impact_fit::solver::{Fit, Prior};
+use impact_records::record::Role;
 use impact_records::signal::columns::{dot, extremes};
 use impact_records::signal::robust::{self, mean};
 
-use super::common_scale::{self, CommonScale};
 use super::doubt::{Doubt, Suspicion};
+use super::off_stated::{self, Off};
+use super::suspicion::{self, GAP_SURE};
 
 /// Waveforms of each gap that are looked at.
 pub const FEW: usize = 12;
@@ -107,8 +109,13 @@ pub enum CommonError {
         /// That length.
         added_m: f64,
     },
-    /// A share of them that must be added.
-    Scale(CommonScale),
+    /// One factor of them: the motion channels read too much or too little, or the clearances do.
+    Scale {
+        /// Its logarithm, positive where the masses move as if all clearances were greater.
+        share: f64,
+        /// That over its standard error.
+        z_score: f64,
+    },
 }
 
 impl CommonError {
@@ -124,28 +131,80 @@ impl CommonError {
     pub fn corrected_m(self, stated_m: f64) -> f64 {
         match self {
             Self::Zero { added_m } => stated_m + added_m,
-            Self::Scale(scale) => stated_m * scale.share.exp(),
+            Self::Scale { share, .. } => stated_m * share.exp(),
         }
     }
 
+    /// That which a fit carries within the priors of the clearances, where it is beyond chance and explains their errors better
+    /// than that of one clearance alone does.
+    pub fn carried(gaps_m: &[f64], found: &MethodFit, uncertainty_m: f64) -> Option<Self> {
+        let stated = |coordinate| Prior::new(coordinate, 0.0, 1e3 * uncertainty_m);
+        let gaps = gaps_m.iter().enumerate();
+        let scale: Vec<(Prior, f64)> = gaps
+            .map(|(i, gap)| (stated(Coordinate::Gap(i)), 1e3 * gap))
+            .collect();
+        let scale = off_stated::along(found, &scale).filter(|_| scale.len() > 1);
+        let zero = off_stated::alone(found, stated(Coordinate::ScrewZero));
+        let zero = zero.filter(|_| gaps_m.len() >= FEWEST_GAPS);
+        let sure = |off: &Off| off.z_score.abs();
+        let of_scale = scale.map(|off| {
+            let error = Self::Scale {
+                share: off.by,
+                z_score: off.z_score,
+            };
+            (sure(&off), error)
+        });
+        let of_zero = zero.map(|off| {
+            (
+                sure(&off),
+                Self::Zero {
+                    added_m: 1e-3 * off.by,
+                },
+            )
+        });
+        let (sure, error) = [of_scale, of_zero]
+            .into_iter()
+            .flatten()
+            .max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let alone = suspicion::gaps_beyond_stated(gaps_m, found, uncertainty_m);
+        let better = alone.iter().all(|odd| odd.z_score.abs() < sure);
+        (sure > GAP_SURE && better).then_some(error)
+    }
+
     /// The finding, with what it leaves open of `x_st`, which the gains tell if the clearances are off, and the clearances
-    /// if the gains are; `found`: the joint fit with the clearances corrected, of gaps as stated.
+    /// if the gains are.
     pub fn suspicion(self, gaps_m: &[f64], found: &MethodFit) -> Suspicion {
-        match self {
+        let (finding, by) = match self {
             Self::Zero { added_m } => {
-                let relative = robust::median(gaps_m).map_or(0.0, |gap| (added_m / gap).abs());
-                Suspicion {
-                    finding: Finding::CommonZero { added_m },
-                    doubts: vec![Doubt {
-                        parameter: Coordinate::Deflection,
-                        by: relative,
-                        note: Note::InstrumentOff,
-                    }],
-                }
+                let relative = robust::median(gaps_m).map_or(0.0, |gap| added_m / gap);
+                (Finding::CommonZero { added_m }, relative)
             }
-            Self::Scale(scale) => common_scale::suspicion(scale, found),
+            Self::Scale { share, z_score } => {
+                let deviation = share.exp_m1();
+                let finding = match only_channel(found) {
+                    Some(channel) => Finding::GainOrClearances {
+                        channel,
+                        deviation,
+                        z_score,
+                    },
+                    None => Finding::GainsOrClearances { deviation, z_score },
+                };
+                (finding, share)
+            }
+        };
+        let doubt = Doubt::material(found, Coordinate::Deflection, by.abs(), Note::InstrumentOff);
+        Suspicion {
+            finding,
+            doubts: Vec::from_iter(doubt),
         }
     }
+}
+
+/// The one channel of motion of which a fit has a gain.
+fn only_channel(found: &MethodFit) -> Option<Role> {
+    let mut gains = found.fit.free.iter().filter_map(|c| c.gain());
+    let only = gains.next().filter(|_| gains.next().is_none());
+    GAIN_ROLES.get(only?).copied()
 }
 
 /// A length that all errors have in common but for what gains within their uncertainty add, and that explains them better
@@ -175,11 +234,9 @@ fn scale(gaps_m: &[f64], errors_m: &[f64], stated: Stated) -> Option<CommonError
     let alike = shares.all(|share| (share - factor).abs() < ALIKE * factor.abs());
     let of_clearances = stated.clearance_m / dot(gaps_m, gaps_m).sqrt();
     let z_score = factor / stated.of_all_gains().hypot(of_clearances);
-    (alike && z_score.abs() > NAMED && factor > -1.0).then(|| {
-        CommonError::Scale(CommonScale {
-            share: factor.ln_1p(),
-            z_score,
-        })
+    (alike && z_score.abs() > NAMED && factor > -1.0).then(|| CommonError::Scale {
+        share: factor.ln_1p(),
+        z_score,
     })
 }
 
@@ -215,6 +272,8 @@ fn left_by_one(errors_m: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impact_fit::fixture::fitted;
+    use nalgebra::{DMatrix, DVector};
 
     const GAPS_M: [f64; 3] = [0.4e-3, 0.8e-3, 1.4e-3];
 
@@ -251,13 +310,70 @@ mod tests {
 
     #[test]
     fn clearances_off_by_a_factor_have_another_scale() {
-        let Some(CommonError::Scale(scale)) = common(GAPS_M.map(|gap| -0.1 * gap)) else {
-            panic!("no scale");
+        let found = common(GAPS_M.map(|gap| -0.1 * gap)).expect("an error");
+        let CommonError::Scale { share, z_score } = found else {
+            panic!("{found:?}");
         };
-        assert!((scale.share.exp() - 0.9).abs() < 1e-12);
-        assert!((scale.z_score + 20.0).abs() < 0.5, "{}", scale.z_score);
-        assert!((CommonError::Scale(scale).corrected_m(1e-3) - 0.9e-3).abs() < 1e-12);
+        assert!((share.exp() - 0.9).abs() < 1e-12);
+        assert!((z_score + 20.0).abs() < 0.5, "{z_score}");
+        assert!((found.corrected_m(1e-3) - 0.9e-3).abs() < 1e-12);
         // within what the gains may be off
         assert_eq!(common(GAPS_M.map(|gap| 0.01 * gap)), None);
+    }
+    const UNCERTAINTY_M: f64 = 1e-5;
+
+    /// A fit whose data tell the clearances, which are off by so much, each within 1 µm; mm.
+    fn carrying(errors_mm: [f64; 3]) -> MethodFit {
+        let (data, prior) = (1e6, (1e3 * UNCERTAINTY_M).powi(-2));
+        // unknowns: the zero, then the gaps
+        let slopes = DMatrix::from_fn(3, 4, |i, k| f64::from(u8::from(k == 0 || k == i + 1)));
+        let information = slopes.transpose() * &slopes * data + DMatrix::identity(4, 4) * prior;
+        let covariance = information.try_inverse().expect("regular");
+        let told = slopes.transpose() * DVector::from_row_slice(&errors_mm) * data;
+        let solution = &covariance * told;
+        let gaps = (0..3).map(Coordinate::Gap);
+        let free: Vec<Coordinate> = std::iter::once(Coordinate::ScrewZero).chain(gaps).collect();
+        let mut parameters = Parameters::symmetric(0.8, 12.0, 0.05, 1e-3);
+        for (coordinate, error) in free.iter().zip(&solution) {
+            parameters = parameters.with(*coordinate, *error);
+        }
+        fitted(parameters, free, covariance)
+    }
+
+    fn carried(errors_mm: [f64; 3]) -> Option<CommonError> {
+        CommonError::carried(&GAPS_M, &carrying(errors_mm), UNCERTAINTY_M)
+    }
+
+    #[test]
+    fn valid_an_error_that_all_clearances_share_is_told_by_a_fit_that_carries_them() {
+        let Some(CommonError::Zero { added_m }) = carried([0.08; 3]) else {
+            panic!("no zero");
+        };
+        assert!((added_m - 8e-5).abs() < 1e-6, "{added_m}");
+        let Some(CommonError::Scale { share, .. }) = carried(GAPS_M.map(|gap| 80.0 * gap)) else {
+            panic!("no scale");
+        };
+        assert!((share - 0.08).abs() < 0.02, "{share}");
+        assert_eq!(carried([0.0, 0.0, 0.09]), None);
+        assert_eq!(carried([0.01, -0.01, 0.01]), None);
+    }
+
+    #[test]
+    fn without_another_gain_the_one_channel_is_named_beside_the_clearances() {
+        let scale = CommonError::Scale {
+            share: 0.05,
+            z_score: 6.0,
+        };
+        let finding = |free: &[Coordinate]| {
+            let mut found = carrying([0.0; 3]);
+            found.fit.free = free.to_vec();
+            scale.suspicion(&GAPS_M, &found).finding
+        };
+        let both = [Coordinate::Gain(0), Coordinate::Gain(1)];
+        assert!(matches!(finding(&both), Finding::GainsOrClearances { .. }));
+        assert!(matches!(
+            finding(&both[..1]),
+            Finding::GainOrClearances { .. }
+        ));
     }
 }

@@ -1,12 +1,13 @@
 //! Channels whose delay, sign or filter is not as stated: found by the impacts before the fit, or by the fit.
 
 use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
-use crate::identify::diagnostics::suspicion::INFORMED;
+use crate::identify::diagnostics::off_stated;
 use impact_fit::evidence::Nominal;
 use impact_fit::messages::{Finding, Note};
 use impact_fit::method_fit::MethodFit;
 use impact_fit::methods::blocks::Blocks;
 use impact_fit::parameters::{Coordinate, GAIN_ROLES};
+use impact_fit::solver::Prior;
 use impact_records::motion::{Observation, one_pole_hz};
 use impact_records::record::{LowPass, Role};
 use std::collections::BTreeSet;
@@ -122,13 +123,10 @@ fn by_order(found: &MethodFit, filter: LowPass, open: f64) -> Vec<Doubt> {
     open.into_iter().filter_map(of).collect()
 }
 
-/// How far a fit has a delay off the centre of its prior, ms, and the statistic of that: a delay that is as
-/// stated lies about the centre with the prior's variance less that of the fit.
+/// How far a fit has a delay off the centre of its prior, ms, and the statistic of that.
 fn beyond_stated(found: &MethodFit, i: usize, [centre, stated]: [f64; 2]) -> Option<(f64, f64)> {
     let coordinate = Coordinate::Delay(i);
-    let variance = found.fit.error(coordinate)?.powi(2) * found.factor;
-    let told = stated.powi(2) - variance;
-    let between = found.spread(coordinate)?.between_groups;
-    let off = found.fit.parameters.coordinate(coordinate) - centre;
-    (told > INFORMED * stated.powi(2)).then(|| (off, off / told.sqrt().hypot(between)))
+    let off = off_stated::alone(found, Prior::new(coordinate, centre, stated))?;
+    let fitted = found.fit.parameters.coordinate(coordinate);
+    Some((fitted - centre, off.z_score))
 }

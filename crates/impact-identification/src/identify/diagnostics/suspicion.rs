@@ -6,6 +6,7 @@
 
 use nalgebra::DVector;
 
+use crate::identify::diagnostics::off_stated;
 use impact_fit::evidence::Nominal;
 use impact_fit::messages::Finding;
 use impact_fit::method_fit::MethodFit;
@@ -25,9 +26,6 @@ const GAP_LIMIT: f64 = 2e-3;
 /// Standard uncertainties, those of the clearances and of the fit combined, from which a gap is named
 /// whose uncertainty is stated.
 pub(super) const GAP_SURE: f64 = 3.4;
-
-/// Least part of a prior's variance that the data take away for what it states to be judged.
-pub(super) const INFORMED: f64 = 0.1;
 
 /// Whether a gap is so far off that it is named, where clearances have a standard uncertainty.
 fn is_named(odd: &OddGap, uncertainty_m: f64) -> bool {
@@ -126,7 +124,7 @@ pub fn odd_gap(
 ) -> Option<OddGap> {
     let block = &blocks.trajectory;
     let odd: Vec<OddGap> = if uncertainty_m > 0.0 {
-        gaps_beyond_stated(blocks, found, uncertainty_m)
+        gaps_beyond_stated(&blocks.gaps_m, found, uncertainty_m)
     } else {
         let gaps = stated_gaps(&block.records);
         let shifts = gaps.iter();
@@ -141,34 +139,23 @@ pub fn odd_gap(
 
 /// What the data alone say of the errors of all gaps that a fit carries with their priors.
 pub(super) fn gaps_beyond_stated(
-    blocks: &Blocks,
+    gaps_m: &[f64],
     found: &MethodFit,
     uncertainty_m: f64,
 ) -> Vec<OddGap> {
-    let gaps = blocks.gaps_m.iter().enumerate();
+    let gaps = gaps_m.iter().enumerate();
     gaps.filter_map(|(i, gap)| beyond_stated(found, i, *gap, uncertainty_m))
         .collect()
 }
 
-/// What the data alone say of the error of a gap that a fit carries with its prior of standard
-/// uncertainty u: an estimate e of variance C comes from one without the prior of e u²/(u² − C), whose
-/// variance is C u²/(u² − C). Scatter between groups, by which the fit does not weigh, grows by as much as
-/// the estimate.
+/// What the data alone say of the error of a gap that a fit carries with a prior.
 fn beyond_stated(found: &MethodFit, i: usize, gap: f64, uncertainty_m: f64) -> Option<OddGap> {
-    let coordinate = Coordinate::Gap(i);
-    let between_m = 1e-3 * found.spread(coordinate)?.between_groups;
-    let variance = 1e-6 * found.fit.error(coordinate)?.powi(2) * found.factor;
-    let stated = uncertainty_m.powi(2);
-    let informed = (stated - variance) / stated;
-    // A gap that the data hardly inform is not judged.
-    (informed > INFORMED).then(|| {
-        let off_m = 1e-3 * found.fit.parameters.coordinate(coordinate) / informed;
-        let apart = stated + variance / informed + (between_m / informed).powi(2);
-        OddGap {
-            stated_m: gap,
-            fitting_m: gap + off_m,
-            z_score: off_m / apart.sqrt(),
-        }
+    let stated = Prior::new(Coordinate::Gap(i), 0.0, 1e3 * uncertainty_m);
+    let off = off_stated::alone(found, stated)?;
+    Some(OddGap {
+        stated_m: gap,
+        fitting_m: gap + 1e-3 * off.by,
+        z_score: off.z_score,
     })
 }
 
@@ -332,33 +319,12 @@ mod tests {
 
     use super::*;
     use impact_fit::fixture::fitted;
-    use impact_fit::statistics::scatter::{Excess, Scatter};
-
-    /// A fit whose first gap is 6 µm off with a variance of 1 µm², 8/9 of it known by the data; `ratio`: the
-    /// scatter between groups over what noise explains.
-    fn found(ratio: f64) -> MethodFit {
-        let gap = Coordinate::Gap(0);
-        let excess = Excess {
-            coordinate: gap,
-            ratio,
-            freedom: 5.0,
-            share: 1.0,
-        };
-        let parameters = Parameters::symmetric(0.8, 12.0, 0.05, 1e-3).with(gap, 6e-3);
-        let covariance = DMatrix::from_element(1, 1, 1e-6);
-        MethodFit {
-            scatter: Scatter {
-                groups: 6,
-                excess: vec![excess],
-            },
-            ..fitted(parameters, vec![gap], covariance)
-        }
-    }
 
     #[test]
     fn sides_that_differ_by_more_than_is_stated_are_named() {
-        let mut found = found(1.0).fit;
-        found.parameters = found.parameters.with(Coordinate::MassAsymmetry, -0.041);
+        let parameters = Parameters::symmetric(0.8, 12.0, 0.05, 1e-3);
+        let parameters = parameters.with(Coordinate::MassAsymmetry, -0.041);
+        let found = fitted(parameters, Vec::new(), DMatrix::zeros(0, 0)).fit;
         let of = |coordinate, deviation| sides(&found, &[Prior::new(coordinate, 0.0, deviation)]);
         assert_eq!(of(Coordinate::MassAsymmetry, 0.02), []);
         assert_eq!(of(Coordinate::Gap(0), 1e-6), []);
@@ -369,17 +335,5 @@ mod tests {
              or assumed: weigh both masses and state mass_x and mass_y in [rig], and check springs, \
              dashpots and drives of both sides"
         );
-    }
-
-    #[test]
-    fn scatter_between_groups_makes_a_gap_less_suspect() {
-        let of = |ratio: f64| beyond_stated(&found(ratio), 0, 1e-3, 3e-6).expect("an informed gap");
-        // Without the prior 6 · 9/8 = 6.75 µm, of variance 9/8 µm² beside the 9 µm² that are stated.
-        let odd = of(1.0);
-        assert!((odd.fitting_m - 1.00675e-3).abs() < 1e-12);
-        assert!((odd.z_score - 6.75 / (9.0f64 + 1.125).sqrt()).abs() < 1e-9);
-        // Scatter of 3 µm² grows to 3 · (9/8)² µm².
-        let odd = of(4.0);
-        assert!((odd.z_score - 6.75 / (10.125f64 + 3.0 * 1.265_625).sqrt()).abs() < 1e-9);
     }
 }

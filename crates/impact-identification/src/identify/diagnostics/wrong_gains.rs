@@ -1,19 +1,15 @@
 //! A gain that is far off its stated value, and what that leaves open in the estimates.
 //!
-//! Gains that are as stated, each within its standard uncertainty u, have errors g in a fit with the
-//! covariance S = u²I − C, C being that of the fit: what all have in common the data hardly tell, so
-//! that C is near u² along it and S near zero. If one gain k is off, the statistic that tells it best is
-//! `g_k/√S_kk`, and it is off by `g_k u²/S_kk`. The gain with the greatest statistic is named; where another
-//! explains the data nearly as well, as of two gains alone, both are, and the data do not tell which.
-
-use nalgebra::DMatrix;
+//! What all gains have in common the data hardly tell. The gain that is off by itself with the greatest statistic is named; where
+//! another explains the data nearly as well, as of two gains alone, both are, and the data do not tell which.
 
 use crate::identify::diagnostics::doubt::{Doubt, Suspicion};
-use crate::identify::diagnostics::suspicion::INFORMED;
+use crate::identify::diagnostics::off_stated::{self, Off};
 use impact_fit::evidence::Nominal;
 use impact_fit::messages::{Finding, Note};
 use impact_fit::method_fit::MethodFit;
 use impact_fit::parameters::{Coordinate, GAIN_ROLES};
+use impact_fit::solver::Prior;
 use impact_records::record::Role;
 
 /// Standard deviations from which a gain is named: chance makes one of two differ so in 0.3 %. What masses
@@ -28,17 +24,13 @@ const TOLD: f64 = 9.0;
 struct Candidate {
     channel: Role,
     place: usize,
-    /// Its logarithm as fitted.
-    found: f64,
-    /// u² less its variance in the fit.
-    told: f64,
-    z_score: f64,
+    /// Of its logarithm, if the others are as stated.
+    off: Off,
 }
 
 impl Candidate {
-    /// How far off it is if the others are as stated.
-    fn off(&self, stated: f64) -> f64 {
-        self.found * stated.powi(2) / self.told
+    fn sure(&self) -> f64 {
+        self.off.z_score.abs()
     }
 }
 
@@ -95,23 +87,23 @@ pub fn open(found: &MethodFit, nominal: &Nominal) -> Option<Suspicion> {
 /// The gain that is off of those that are as stated but for their uncertainty, with what it leaves open.
 pub fn wrong_gain(found: &MethodFit, nominal: &Nominal) -> Option<Suspicion> {
     let stated = nominal.gain_uncertainty;
-    let covariance = &found.fit.covariance * found.factor;
-    let mut candidates: Vec<Candidate> = candidates(found, &covariance, nominal);
-    candidates.sort_by(|a, b| b.z_score.abs().total_cmp(&a.z_score.abs()));
-    let worst = *candidates.first().filter(|c| c.z_score.abs() > SURE)?;
+    let mut candidates: Vec<Candidate> = candidates(found, nominal);
+    candidates.sort_by(|a, b| b.sure().total_cmp(&a.sure()));
+    let worst = *candidates.first().filter(|c| c.sure() > SURE)?;
     let also = candidates.get(1).copied();
-    let also = also.filter(|c| worst.z_score.powi(2) - c.z_score.powi(2) < TOLD);
+    let also = also.filter(|c| worst.sure().powi(2) - c.sure().powi(2) < TOLD);
     let finding = match also {
         None => Finding::WrongGain {
             channel: worst.channel,
-            deviation: worst.off(stated).exp_m1(),
-            z_score: worst.z_score,
+            deviation: worst.off.by.exp_m1(),
+            z_score: worst.off.z_score,
         },
-        Some(other) => apart([worst, other], stated),
+        Some(other) => apart([worst, other]),
     };
     let moved = |parameter: Coordinate, k: &Candidate| {
         let place = found.fit.free.iter().position(|c| *c == parameter)?;
-        Some((covariance[(place, k.place)] * k.found / k.told).abs())
+        let together = found.fit.covariance[(place, k.place)] * found.factor;
+        Some((together * k.off.by / stated.powi(2)).abs())
     };
     let open = Coordinate::PHYSICAL.into_iter().filter_map(|parameter| {
         let each = [Some(worst), also].into_iter().flatten();
@@ -127,37 +119,28 @@ pub fn wrong_gain(found: &MethodFit, nominal: &Nominal) -> Option<Suspicion> {
 }
 
 /// Two gains of which one is off, the one that reads more first.
-fn apart(pair: [Candidate; 2], stated: f64) -> Finding {
-    let [a, b] = pair;
-    let [high, low] = if a.found > b.found { [a, b] } else { [b, a] };
-    let deviation = 0.5 * (high.off(stated) - low.off(stated));
+fn apart([a, b]: [Candidate; 2]) -> Finding {
+    let [high, low] = if a.off.by > b.off.by { [a, b] } else { [b, a] };
+    let deviation = 0.5 * (high.off.by - low.off.by);
     Finding::GainsApart {
         channels: [high.channel, low.channel],
         deviation: deviation.exp_m1(),
-        z_score: a.z_score.abs(),
+        z_score: a.sure(),
     }
 }
 
-fn candidates(found: &MethodFit, covariance: &DMatrix<f64>, nominal: &Nominal) -> Vec<Candidate> {
-    let stated = nominal.gain_uncertainty;
+fn candidates(found: &MethodFit, nominal: &Nominal) -> Vec<Candidate> {
     let places = found.fit.free.iter().enumerate();
     let of = |(place, coordinate): (usize, &Coordinate)| {
         let index = coordinate.gain()?;
         if nominal.open_gains[index].is_some() {
             return None;
         }
-        let told = stated.powi(2) - covariance[(place, place)];
-        if told < INFORMED * stated.powi(2) {
-            return None;
-        }
-        let gain = found.fit.parameters.coordinate(*coordinate);
-        let between = found.spread(*coordinate)?.between_groups;
+        let stated = Prior::new(*coordinate, 0.0, nominal.gain_uncertainty);
         Some(Candidate {
             channel: *GAIN_ROLES.get(index)?,
             place,
-            found: gain,
-            told,
-            z_score: gain / told.sqrt().hypot(between),
+            off: off_stated::alone(found, stated)?,
         })
     };
     places.filter_map(of).collect()
@@ -165,6 +148,8 @@ fn candidates(found: &MethodFit, covariance: &DMatrix<f64>, nominal: &Nominal) -
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DMatrix;
+
     use super::*;
     use impact_fit::fixture::fitted;
     use impact_fit::parameters::Parameters;
