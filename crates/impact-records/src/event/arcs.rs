@@ -7,7 +7,8 @@ use crate::signal::local_fit::LocalFit;
 use crate::signal::whole;
 
 /// Degree of the polynomials by which velocity and displacement are extrapolated from the arcs beside
-/// an impact to it.
+/// an impact to it; one more where an arc is hardly shorter than those that are fitted at most. What a cubic misses there is
+/// alike at all impacts that follow each other alike, so that no number of them averages it out.
 pub(super) const DEGREE: usize = 3;
 
 /// Part of an arc that may be left out beside an impact: a third.
@@ -70,6 +71,12 @@ impl<'a> Arcs<'a> {
     pub(super) fn of(self, candidates: &'a [Candidate]) -> Self {
         Self { candidates, ..self }
     }
+
+    /// Degree of a polynomial through so many samples of an arc.
+    fn degree(self, samples: usize) -> usize {
+        let long = 4 * samples >= 3 * self.samples;
+        DEGREE + usize::from(long)
+    }
 }
 
 /// Windows before and after one candidate: ranges that contain no other impact.
@@ -106,15 +113,22 @@ pub(super) fn windows(velocity: &Series, arcs: Arcs<'_>, index: usize) -> [(usiz
     ]
 }
 
-/// Polynomials through values in two windows.
-pub(super) fn fits(values: &[f64], windows: [(usize, usize); 2]) -> Option<[LocalFit; 2]> {
-    let [before, after] = windows.map(|(first, end)| LocalFit::new(values, first, end, DEGREE));
+/// Polynomials through values in two windows of arcs.
+pub(super) fn fits(
+    values: &[f64],
+    windows: [(usize, usize); 2],
+    arcs: Arcs<'_>,
+) -> Option<[LocalFit; 2]> {
+    let [before, after] = windows.map(|(first, end)| {
+        let degree = arcs.degree(end.saturating_sub(first));
+        LocalFit::new(values, first, end, degree)
+    });
     Some([before?, after?])
 }
 
 /// Flights of one signal before and after a candidate, fitted to samples that touch no impact.
 pub(super) fn flights(velocity: &Series, arcs: Arcs<'_>, index: usize) -> Option<[LocalFit; 2]> {
-    fits(&velocity.values, windows(velocity, arcs, index))
+    fits(&velocity.values, windows(velocity, arcs, index), arcs)
 }
 
 /// Mean instant, in samples, of the change from the flight before a candidate to the one after: half a sample behind the

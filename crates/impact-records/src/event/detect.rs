@@ -379,7 +379,7 @@ pub fn extrapolation_error(samples_per_period: f64) -> f64 {
         let value = |at: f64| of(std::f64::consts::TAU * at / per_period);
         let values: Vec<f64> = (0..count).map(|i| value(i as f64)).collect();
         let at = count as f64 - 0.5;
-        let fit = LocalFit::new(&values, 0, count, DEGREE);
+        let fit = LocalFit::new(&values, 0, count, DEGREE + 1);
         fit.map_or(1.0, |fit| fit.value(at) - value(at))
     };
     apart(f64::cos).hypot(apart(f64::sin))
@@ -395,7 +395,7 @@ fn window_samples(per_period: f64, periods: f64) -> usize {
 
 /// Most samples of an arc beside an impact, from those of a window in which jumps are looked for.
 fn arc_samples(width: usize) -> usize {
-    (4 * width / 3).max(6)
+    (5 * width / 3).max(7)
 }
 
 /// Refine the times, remove the drift that follows from them, refine again, extrapolate the speeds.
@@ -628,7 +628,7 @@ impl Fused {
                     return false;
                 }
             }
-            let Some([before, after]) = arcs::fits(&velocity.values, windows) else {
+            let Some([before, after]) = arcs::fits(&velocity.values, windows, arcs) else {
                 return true;
             };
             let fall = before.value(middle) - after.value(middle);

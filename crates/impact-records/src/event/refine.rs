@@ -62,7 +62,7 @@ pub(super) fn kink(
 ) -> Option<Instant> {
     let jump = arcs.candidates[index].jump;
     let windows = windows(velocity, arcs, index);
-    let [before, after] = fits(&displacement.values, windows)?;
+    let [before, after] = fits(&displacement.values, windows, arcs)?;
     let (low, high) = (jump.left as f64, (jump.left + jump.gap) as f64);
     let time = crossing(&before, &after, low, high)?;
     let spread = before.error_factor(time).hypot(after.error_factor(time)) * displacement.noise;

@@ -1,6 +1,6 @@
 //! How a velocity rings beside its jumps, and what that leaves of its flights.
 
-use crate::event::arcs::{Arcs, Candidate, DEGREE, flights};
+use crate::event::arcs::{Arcs, Candidate, flights};
 use crate::event::kinematics::Series;
 use crate::signal::local_fit::LocalFit;
 use crate::signal::{ringing, robust};
@@ -76,5 +76,5 @@ impl Roughness {
 
 /// Variance of the noise beside a polynomial of a flight, from what it leaves, (m/s)².
 fn left(flight: &LocalFit) -> f64 {
-    flight.residual_squares / flight.samples.saturating_sub(DEGREE + 1).max(1) as f64
+    flight.residual_squares / flight.freedom().max(1) as f64
 }

@@ -22,7 +22,7 @@ pub struct LocalFit {
 impl LocalFit {
     /// Fit a polynomial of at most `degree` to samples `first..last` (index = time in steps).
     ///
-    /// The degree is at most 3; it is lowered if the samples are too few for it (at least one more sample
+    /// The degree is at most 4; it is lowered if the samples are too few for it (at least one more sample
     /// than coefficients, except for a constant). `None` for an empty range.
     ///
     /// ```
@@ -88,6 +88,11 @@ impl LocalFit {
         self.spread(&slopes(self.place(time))) / self.basis.scale
     }
 
+    /// Samples beyond those that determine the polynomial.
+    pub fn freedom(&self) -> usize {
+        self.samples - self.basis.degree - 1
+    }
+
     /// Standard error of a sum of multiples of the coefficients.
     fn spread(&self, row: &Row) -> f64 {
         let along = self.basis.covariance.map(|of| product(&of, row));
@@ -96,27 +101,29 @@ impl LocalFit {
 }
 
 /// Highest degree of a polynomial.
-const MOST: usize = 3;
+const MOST: usize = 4;
 
 /// A number for each power.
 type Row = [f64; MOST + 1];
 
 fn powers(u: f64) -> Row {
-    [1.0, u, u * u, u * u * u]
+    let square = u * u;
+    [1.0, u, square, square * u, square * square]
 }
 
 /// Slopes of the powers.
 fn slopes(u: f64) -> Row {
-    [0.0, 1.0, 2.0 * u, 3.0 * u * u]
+    [0.0, 1.0, 2.0 * u, 3.0 * u * u, 4.0 * u * u * u]
 }
 
 fn product(a: &Row, b: &Row) -> f64 {
-    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
+    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) + a[4] * b[4]
 }
 
 /// What fits of one number of samples and one degree have in common.
 #[derive(Debug, PartialEq)]
 struct Basis {
+    degree: usize,
     /// Of the coefficients, for noise of unit deviation; zero above the degree.
     covariance: [Row; MOST + 1],
     /// Powers of the samples' times about their middle, over the scale.
@@ -136,6 +143,7 @@ impl Basis {
         let inverse = DMatrix::from_fn(degree + 1, degree + 1, moment).try_inverse()?;
         let of = |i: usize, k: usize| inverse.get((i, k)).copied().unwrap_or(0.0);
         Some(Self {
+            degree,
             covariance: std::array::from_fn(|i| std::array::from_fn(|k| of(i, k))),
             powers,
             scale,
