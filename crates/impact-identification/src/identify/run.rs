@@ -286,10 +286,14 @@ impl<'a> IdentificationRun<'a> {
         self.without_influential();
     }
 
-    /// The gains that all data refute; `None` where another statement of the rig is wrong, or none is.
+    /// The gains that all data refute but for records that fit far worse than the others; `None` where another statement of
+    /// the rig is wrong, or none is.
     fn refuted_gains(&self) -> Option<Opened> {
         let joint = self.found.together()?;
-        let gains = refuted_gains::refuted(self.problem(self.found.start())?, joint)?;
+        let mut blocks = self.selection.blocks.clone();
+        blocks.keep_bulk(&joint.fit.parameters);
+        let problem = self.problem_of(&blocks, self.found.start())?;
+        let gains = refuted_gains::refuted(problem, joint)?;
         Some(Opened::of(self.evidence, &self.selection.blocks, gains))
     }
 
@@ -514,14 +518,13 @@ impl<'a> IdentificationRun<'a> {
 
     /// The problem of all methods with their weights, at a start.
     fn problem(&self, start: Parameters) -> Option<Problem<'_>> {
-        let (blocks, nominal) = (&self.selection.blocks, &self.evidence.nominal);
-        joint::problem(
-            blocks,
-            start,
-            &self.found.weights,
-            nominal,
-            self.of_brackets(),
-        )
+        self.problem_of(&self.selection.blocks, start)
+    }
+
+    /// The same of some blocks.
+    fn problem_of<'b>(&self, blocks: &'b Blocks, start: Parameters) -> Option<Problem<'b>> {
+        let (weights, nominal) = (&self.found.weights, &self.evidence.nominal);
+        joint::problem(blocks, start, weights, nominal, self.of_brackets())
     }
 
     /// What the brackets say of R where the resonance curve determines the rest.

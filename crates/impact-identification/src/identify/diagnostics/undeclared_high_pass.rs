@@ -55,6 +55,16 @@ pub fn undeclared(
         found.extend(step.roles.iter().map(|role| (*role, step.z_score)));
         (here, now) = (step.fit, step.blocks);
     }
+    // what was taken before others were found may not be needed beside these
+    for (channel, _) in found.clone() {
+        let others = found.iter().map(|(role, _)| *role);
+        let others: Vec<Role> = others.filter(|role| *role != channel).collect();
+        let without = (!others.is_empty()).then(|| fit(&behind(&stated, &others, start_hz)));
+        if let Some(without) = without.flatten().filter(|other| !explains(other, &here)) {
+            found.retain(|(role, _)| *role != channel);
+            here = without;
+        }
+    }
     // a high-pass of several channels is explained by a pick-up of one as little as by a high-pass of one
     let picked_up = |other: Fit| {
         let noise = CLEARLY * other.residuals as f64;
@@ -92,29 +102,36 @@ fn step(
     let tried = |roles: Vec<Role>| {
         let blocks = behind(now, &roles, start_hz);
         let fit = fit(&blocks)?;
-        let typical = (fit.cost / fit.residuals.max(1) as f64).max(1.0);
-        let z_score = ((here.cost - fit.cost) / typical).max(0.0).sqrt();
         Some(Step {
             roles,
-            z_score,
+            z_score: z_score(here, &fit),
             fit,
             blocks,
         })
     };
-    let explains = |step: &Step| {
+    let is_told = |step: &Step| {
         let mut corners = step
             .roles
             .iter()
             .map(|role| step.fit.parameters.corner(*role));
-        step.z_score > SURE
-            && (here.cost >= CLEARLY * step.fit.cost || leaves_noise(&step.fit))
-            && corners.all(|corner| BELOW / corner <= FURTHEST_BELOW)
+        explains(here, &step.fit) && corners.all(|corner| BELOW / corner <= FURTHEST_BELOW)
     };
     let alone = roles.iter().filter_map(|role| tried(vec![*role]));
     let best = alone.min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
     let together = || tried(roles.clone()).filter(|_| roles.len() > 1);
-    best.filter(explains)
-        .or_else(|| together().filter(explains))
+    best.filter(is_told).or_else(|| together().filter(is_told))
+}
+
+/// Standard deviations by which a fit with a high-pass more is better than one without it.
+fn z_score(without: &Fit, with: &Fit) -> f64 {
+    let typical = (with.cost / with.residuals.max(1) as f64).max(1.0);
+    ((without.cost - with.cost) / typical).max(0.0).sqrt()
+}
+
+/// Whether a high-pass more explains far more than a fit without it does.
+fn explains(without: &Fit, with: &Fit) -> bool {
+    let clearly = without.cost >= CLEARLY * with.cost || leaves_noise(with);
+    z_score(without, with) > SURE && clearly
 }
 
 /// Whether a fit leaves nothing beside the noise, so that no error of the model is in what it gained.
