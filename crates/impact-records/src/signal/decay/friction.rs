@@ -165,7 +165,35 @@ fn settled(prepared: &Prepared, viscous: &Point) -> Option<(Series, Point)> {
     if own_noise {
         point = fitted(&mut series, Shape::Rubbed, &point)?;
     }
-    Some((series, point))
+    Some(beside_harmonics(&series, &point).unwrap_or((series, point)))
+}
+
+/// Difference of Bayes' criteria that is very strong (Kass and Raftery 1995).
+const TOLD: f64 = 10.0;
+/// Normal deviate from which friction by its harmonics and friction by the fall of the amplitude are not the same.
+const APART: f64 = 3.3;
+
+/// The fit with harmonics of the motion beside it, where it has another friction: a spring that is not straight makes harmonics
+/// too, and the fall of the amplitude alone tells friction then.
+fn beside_harmonics(series: &Series, point: &Point) -> Option<(Series, Point)> {
+    let [omega, sigma, ..] = point.rates;
+    let mut own = series.clone();
+    let harmonics = [2.0, 3.0].map(|order| [order * omega, order * sigma]);
+    let below = harmonics.iter().filter(|[w, _]| *w < std::f64::consts::PI);
+    own.taken.extend(below);
+    let found = fitted(&mut own, Shape::Rubbed, point)?;
+    if own.criterion(&found) + TOLD > series.criterion(point) {
+        return None;
+    }
+    let known = [(series, point), (&own, &found)].map(|(series, point)| {
+        let variance = series.covariance(point)?[(0, 0)];
+        Some((point.friction()?, variance))
+    });
+    let [Some((by_both, less)), Some((by_fall, more))] = known else {
+        return None;
+    };
+    let apart = (by_fall - by_both).abs();
+    (apart > APART * (more - less).max(0.0).sqrt()).then_some((own, found))
 }
 
 /// The decay beside friction; `None` if friction is not told from the rest at all, or would be worth so much more than
