@@ -123,6 +123,10 @@ pub(super) enum Output {
     OneNote(usize),
     /// Several of these.
     Notes(usize),
+    /// How to see each of the problems that are printed as one.
+    SeeEach,
+    /// What stands before a remedy.
+    Help,
 }
 
 /// Records with one kind of fault.
