@@ -5,7 +5,7 @@ use std::path::Path;
 use miette::{GraphicalReportHandler, GraphicalTheme};
 
 use super::Verbosity;
-use super::speech::Output;
+use super::outputs::Output;
 use impact_campaign::campaign::diagnostic::{Code, Diagnostic, Diagnostics, Place, Severity};
 use impact_campaign::pipeline::{PipelineError, RefusedRecord};
 use impact_records::message::{Print, Typed};
