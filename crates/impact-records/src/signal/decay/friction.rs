@@ -168,8 +168,10 @@ fn settled(prepared: &Prepared, viscous: &Point) -> Option<(Series, Point)> {
     Some(beside_harmonics(&series, &point).unwrap_or((series, point)))
 }
 
-/// Difference of Bayes' criteria that is very strong (Kass and Raftery 1995).
-const TOLD: f64 = 10.0;
+/// What a fit leaves over the motion, below which it is exact.
+const EXACT: f64 = 1e-6;
+/// Squares that harmonics leave of those without them, at most, where there are some.
+const LESS: f64 = 0.95;
 /// Normal deviate from which friction by its harmonics and friction by the fall of the amplitude are not the same.
 const APART: f64 = 3.3;
 
@@ -182,7 +184,14 @@ fn beside_harmonics(series: &Series, point: &Point) -> Option<(Series, Point)> {
     let below = harmonics.iter().filter(|[w, _]| *w < std::f64::consts::PI);
     own.taken.extend(below);
     let found = fitted(&mut own, Shape::Rubbed, point)?;
-    if own.criterion(&found) + TOLD > series.criterion(point) {
+    let squares = |series: &Series, point: &Point| {
+        let rest = series.residuals(point);
+        rest.iter().map(|v| v * v).sum::<f64>()
+    };
+    let count = series.values.len();
+    let left = squares(series, point);
+    let exact = (EXACT * point.level(count)).powi(2) * count as f64;
+    if left < exact || squares(&own, &found) > LESS * left {
         return None;
     }
     let known = [(series, point), (&own, &found)].map(|(series, point)| {
