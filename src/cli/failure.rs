@@ -5,6 +5,7 @@ use std::path::Path;
 use miette::{GraphicalReportHandler, GraphicalTheme};
 
 use super::Verbosity;
+use super::outputs::Output;
 use impact_campaign::campaign::diagnostic::{Code, Diagnostic, Diagnostics, Place, Severity};
 use impact_campaign::pipeline::{PipelineError, RefusedRecord};
 use impact_records::message::{Print, Typed};
@@ -153,19 +154,31 @@ pub(super) fn print_diagnostics(all: &Diagnostics, words: &dyn Print, verbosity:
         match group.summary(words) {
             Some(summary) if members.len() >= MANY && !verbosity.is_detailed() => {
                 shortened = true;
-                print_one(&summary);
+                print_one(&summary, words);
             }
-            _ => members.iter().for_each(|one| print_one(one)),
+            _ => members.iter().for_each(|one| print_one(one, words)),
         }
     }
     if shortened {
-        verbosity.info("Add -v to see each of them.");
+        verbosity.info(&words.print(&Output::SeeEach));
     }
 }
 
-fn print_one(one: &Diagnostic) {
-    eprint!("{}", rendered(&one.headline(), &one.remedy, one.severity));
+fn print_one(one: &Diagnostic, words: &dyn Print) {
+    let text = rendered(&one.headline(), &one.remedy, one.severity);
+    eprint!("{}", with_label(&text, &words.print(&Output::Help)));
 }
+
+/// A rendered problem with the label of its remedy, which is English as it is rendered.
+fn with_label(text: &str, label: &str) -> String {
+    match text.rsplit_once(LABEL) {
+        Some((message, remedy)) => format!("{message}  {label}: {remedy}"),
+        None => text.to_owned(),
+    }
+}
+
+/// What is rendered before a remedy.
+const LABEL: &str = "  help: ";
 
 /// A problem in the form that miette prints.
 #[derive(Debug, thiserror::Error)]
@@ -252,6 +265,16 @@ fn width() -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_label_of_a_remedy_is_in_the_language_of_what_is_said() {
+        let text = rendered("no file", "name one", Severity::Record);
+        assert!(text.contains("  help: name one"), "{text}");
+        assert_eq!(with_label(&text, "help"), text);
+        let german = with_label(&text, "Hilfe");
+        assert!(german.contains("  Hilfe: name one"), "{german}");
+        assert!(!german.contains("help"), "{german}");
+    }
 
     #[test]
     fn sentences_are_broken_between_words_at_the_width() {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::{Exit, Failure, Verbosity};
-use impact_campaign::campaign::infer::{self, FolderContents, InferredChannel};
+use impact_campaign::campaign::infer::{self, FolderContents, InferredChannel, RefusedFile};
 use impact_campaign::campaign::template;
 use impact_records::message::counted;
 use labfiles::open;
@@ -78,7 +78,7 @@ fn name_records() -> String {
     format!("name the folder that holds files of {titles} or other text tables")
 }
 
-/// No record: each file with the reason, and the remedy of the first reader that refused one.
+/// No record: each file with the reason, and the remedies of the readers that refused them.
 fn none_found(folder: &Path, found: &FolderContents) -> Failure {
     let refused = found.refused.iter();
     let refused = refused.map(|r| format!("; {}: {}", r.file, r.reason));
@@ -92,12 +92,30 @@ fn none_found(folder: &Path, found: &FolderContents) -> Failure {
     if let Some(more) = all.checked_sub(NAMED).filter(|n| *n > 0) {
         faults += &format!("; {}", counted(more, "more file"));
     }
-    let remedy = found.refused.first().map(|r| r.remedy.clone());
+    let remedy = remedies(&found.refused);
     let of_lists = || (!found.others.is_empty()).then(name_columns);
     Failure::new(
         format!("no record found in {}{faults}", folder.display()),
         remedy.or_else(of_lists).unwrap_or_else(name_records),
     )
+}
+
+/// What to do with refused files, each way once: behind the first file of each where there are several.
+fn remedies(refused: &[RefusedFile]) -> Option<String> {
+    let mut unlike: Vec<&RefusedFile> = Vec::new();
+    for file in refused.iter().take(NAMED) {
+        if !unlike.iter().any(|known| known.remedy == file.remedy) {
+            unlike.push(file);
+        }
+    }
+    match unlike[..] {
+        [] => None,
+        [only] => Some(only.remedy.clone()),
+        _ => {
+            let each = unlike.iter().map(|r| format!("{}: {}", r.file, r.remedy));
+            Some(each.collect::<Vec<_>>().join("; "))
+        }
+    }
 }
 
 /// How the columns of a list are recognised.
@@ -168,7 +186,6 @@ fn named(names: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impact_campaign::campaign::infer::RefusedFile;
 
     #[test]
     fn where_there_is_no_record_each_refused_file_is_named_with_the_readers_remedy() {
@@ -192,7 +209,12 @@ mod tests {
             "no record found in r; t1.mat: it holds a table T; t2.mat: it holds a table T; a.csv was read, but \
              is neither a series of 16 samples or more nor a list of times or heights"
         );
-        assert_eq!(remedy, "save table2struct(T) of 1");
+        assert_eq!(
+            remedy,
+            "t1.mat: save table2struct(T) of 1; t2.mat: save table2struct(T) of 2"
+        );
+        found.refused[1].remedy = found.refused[0].remedy.clone();
+        assert_eq!(only(&found).1, "save table2struct(T) of 1");
         let list = FolderContents {
             others: found.others.clone(),
             ..FolderContents::default()

@@ -26,6 +26,7 @@ mod merge;
 #[cfg(feature = "mpi")]
 mod mpi;
 mod out_folder;
+mod outputs;
 mod pairs;
 mod patterns;
 mod plan;

@@ -166,6 +166,46 @@ fn valid_a_line_of_a_preamble_is_no_heading() {
 }
 
 #[test]
+fn valid_a_preamble_whose_lines_end_with_commas() {
+    let data = rows(60, |i| format!("{:.5E},", f64::from(i) * 0.01));
+    let instek = format!(
+        "Format,2.0B,\nMemory Length,60,\nSource,CH1,\nVertical Units,V,\nLabel,,\nProbe,1.000e+00,\n\
+         Horizontal Units,S,\nSampling Period,4.000e-04,\nFirmware,V1.15,\nMode,Fast,\nWaveform Data,\n{data}"
+    );
+    let source = read("a.csv", &instek);
+    let record = &source.datasets()[0];
+    assert_eq!(named(record), [("CH1", Some("V"))]);
+    check_rate(record, 2500.0);
+    assert_eq!(real(&*source, 0, 0)[..2], [0.0, 0.01]);
+    let data = rows(60, |i| format!(",{:.5E},{:.5E},", f64::from(i) * 0.01, 1.0));
+    let yokogawa = format!(
+        "//YOKOGAWA ASCII FILE FORMAT\n\"Header Size\",16\n\"Model Name\",\"DL0\"\n\"TraceName\",\"CH1\",\"CH2\"\n\
+         \"BlockSize\",60,60\n\"VUnit\",\"V\",\"V\"\n\"SampleRate\",2.5E+03,2.5E+03\n\"HUnit\",\"s\",\"s\"\n\n{data}"
+    );
+    let source = read("a.csv", &yokogawa);
+    let record = &source.datasets()[0];
+    let held = named(record);
+    assert_eq!(
+        held[held.len() - 2..],
+        [("CH1", Some("V")), ("CH2", Some("V"))]
+    );
+    check_rate(record, 2500.0);
+    assert_eq!(record.channels[held.len() - 1].samples, 60);
+}
+
+#[test]
+fn valid_a_time_without_a_name_beside_the_numbers_of_the_rows() {
+    let data = rows(60, |i| {
+        format!("{}\t{:.6e}\t{:.6e}", i + 1, f64::from(i) * 4e-4, 0.25)
+    });
+    let pulse = format!("Title 1:\tTime(Input)\nX-axis size:\t60\nY-axis unit:\tm/s²\n\n{data}");
+    let source = read("a.txt", &pulse);
+    let record = &source.datasets()[0];
+    assert_eq!(record.time_axis, Some(1));
+    check_rate(record, 2500.0);
+}
+
+#[test]
 fn remarks_beside_a_table_are_no_channels() {
     let remarks = [
         "Record Length,2.5e+03",

@@ -210,11 +210,18 @@ fn names_none(own: &[String], table: &Table, faults: &mut FaultCollector) -> boo
 }
 
 /// Whether a text begins as a run table does: with the headings of files, or of a setting and a column whose cells name
-/// files, below any titles.
+/// files, below any titles. A preamble of a record may name its own file above numbers.
 pub(super) fn is_run_table(head: &[u8], is_file: &dyn Fn(&str) -> bool) -> bool {
     let table = table_in(&decode(head), [is_file, &|_| false]);
-    let named = table.headings.iter().any(|h| column_of(h) == Some(FILE));
+    let numbers = table.cells(FILE).filter(|cell| is_number(cell)).count();
+    let headed = table.headings.iter().any(|h| column_of(h) == Some(FILE));
+    let named = headed && 2 * numbers <= table.cells(FILE).count();
     named || table.position(FILE).is_some() && states_setting(&table.columns)
+}
+
+/// Whether a cell is a number with either decimal mark.
+fn is_number(cell: &str) -> bool {
+    cell.replace(',', ".").parse::<f64>().is_ok()
 }
 
 /// Whether the front of a run table states drive frequencies, and no free decays.
@@ -573,7 +580,9 @@ mod tests {
             .flat_map(u16::to_le_bytes)
             .collect();
         assert!(is_run_table(&unicode, &|_| false));
-        for text in ["", "t;x\n0;1\n", "profile;my file\n", "1,2\n"] {
+        let hioki =
+            "File name,AUTO1.MEM\nCH1-1,Range\nTime,CH1-1[V]\n0.0,1.5\n0.1,1.4\n0.2,1.2\n0.3,1\n";
+        for text in ["", "t;x\n0;1\n", "profile;my file\n", "1,2\n", hioki] {
             assert!(!is_run_table(text.as_bytes(), &|_| false), "{text}");
         }
     }

@@ -31,9 +31,11 @@ pub(super) fn align(record: &mut Record, timings: &[Timing]) -> Option<f64> {
         record.flags.push(flag);
         return None;
     }
-    let known = timings.iter().filter_map(|t| t.start_s);
-    let first_s = known.clone().fold(f64::INFINITY, f64::min);
-    let last_s = known.fold(f64::NEG_INFINITY, f64::max);
+    let starts = timings.iter().map(|t| t.start_s);
+    let not_stated_s = unstated_s(starts.clone());
+    let starts = starts.map(|s| s.unwrap_or(not_stated_s));
+    let first_s = starts.clone().fold(f64::INFINITY, f64::min);
+    let last_s = starts.fold(f64::NEG_INFINITY, f64::max);
     if !(last_s > first_s) {
         return Some(rate_hz);
     }
@@ -42,7 +44,7 @@ pub(super) fn align(record: &mut Record, timings: &[Timing]) -> Option<f64> {
     }
     let mut shifted = false;
     for (channel, timing) in record.channels.iter_mut().zip(timings) {
-        let early = (last_s - timing.start_s.unwrap_or(first_s)) * rate_hz;
+        let early = (last_s - timing.start_s.unwrap_or(not_stated_s)) * rate_hz;
         shifted |= early > PLACE;
         advance(channel, early);
     }
@@ -65,6 +67,20 @@ pub(super) fn align(record: &mut Record, timings: &[Timing]) -> Option<f64> {
             .push(channels_shifted(record, timings, last_s - first_s));
     }
     Some(rate_hz)
+}
+
+/// Start from which on it is a date, and not a time after the start of the record, s.
+const DATED_S: f64 = 1e6;
+
+/// When channels begin that state no start, s: with the record where those of the others are times after that, else with the
+/// first of them.
+pub(super) fn unstated_s(starts: impl Iterator<Item = Option<f64>>) -> f64 {
+    let first_s = starts.flatten().fold(f64::INFINITY, f64::min);
+    if first_s < DATED_S {
+        first_s.min(0.0)
+    } else {
+        first_s
+    }
 }
 
 /// Let a channel begin so many samples later, by leaving out the samples before.
@@ -187,6 +203,21 @@ mod tests {
             apart.flags[0].message(),
             "channel 'velocity_y' begins 0.040000 s after the first: all are put in place"
         );
+    }
+
+    #[test]
+    fn a_channel_without_a_start_begins_with_the_record_beside_one_that_begins_later() {
+        let count: Vec<f64> = (0..100).map(f64::from).collect();
+        let mut apart = record([&count, &count[40..]]);
+        let unstated = Timing {
+            rate_hz: 1000.0,
+            start_s: None,
+        };
+        align(&mut apart, &[unstated, timing(1000.0, 0.04)]);
+        assert_eq!(apart.channels[0].values, apart.channels[1].values);
+        assert_eq!(apart.channels[0].values.len(), 60);
+        let starts = [None, Some(1.7e9), Some(1.7e9 + 0.04)];
+        assert_eq!(unstated_s(starts.into_iter()), 1.7e9);
     }
 
     #[test]

@@ -69,12 +69,11 @@ impl Clocks {
         axes.sort_unstable();
         axes.dedup();
         let mixed = axes.len() > 1 || (!axes.is_empty() && each.contains(&None));
-        let starts = bound
-            .iter()
-            .filter_map(|(_, b)| dataset.channels[b.index].start_s);
-        let unlike = starts
-            .clone()
-            .any(|s| starts.clone().any(|other| (s - other).abs() > 1e-9));
+        let starts = bound.iter().map(|(_, b)| dataset.channels[b.index].start_s);
+        let not_stated_s = alignment::unstated_s(starts.clone());
+        let mut starts = starts.map(|s| s.unwrap_or(not_stated_s));
+        let first_s = starts.clone().fold(f64::INFINITY, f64::min);
+        let unlike = starts.any(|s| s - first_s > 1e-9);
         Self {
             axes,
             apart: mixed || unlike,

@@ -1,17 +1,7 @@
-//! Readings that begin again at the other end of their range: angles after a turn, counters that run over.
+//! Channels whose readings begin again at the other end of their range, made to go on.
 
 use super::{Excitation, Flag, Problem, Role};
-use crate::signal::columns;
-
-/// What an angle counts until it begins again: degrees, radians, gon.
-const TURNS: [f64; 3] = [360.0, std::f64::consts::TAU, 400.0];
-/// Bits of counters.
-const BITS: [i32; 7] = [8, 10, 12, 14, 16, 24, 32];
-/// Share of their range that readings which begin again go through, at least.
-const GOES_THROUGH: f64 = 0.75;
-/// Share of the range by which they jump there, at least, and by which the motion goes on from sample to sample, at most.
-const JUMPS: f64 = 0.7;
-const GOES_ON: f64 = 0.25;
+use crate::signal::wrapped;
 
 /// Make readings that begin again go on, if they do. `role`: what they show; where masses may strike each other, velocities jump.
 pub(super) fn go_on(
@@ -25,10 +15,7 @@ pub(super) fn go_on(
     if !place && !decays {
         return None;
     }
-    let of_bits = BITS.map(|bits| 2f64.powi(bits));
-    let ranges = TURNS.into_iter().chain(of_bits);
-    let found = ranges.filter_map(|range| Unwrapped::of(values, range));
-    let found = found.min_by(|a, b| a.farthest.total_cmp(&b.farthest))?;
+    let found = wrapped::go_on(values)?;
     values.copy_from_slice(&found.values);
     let problem = Problem::ReadingsGoOn {
         channel: name.to_owned(),
@@ -37,56 +24,6 @@ pub(super) fn go_on(
         first: found.first,
     };
     Some(Flag::new(Some(name), problem).excluding(false))
-}
-
-/// Readings made to go on.
-struct Unwrapped {
-    range: f64,
-    values: Vec<f64>,
-    /// How often they begin again, and after which sample first.
-    count: usize,
-    first: usize,
-    /// The greatest step between them.
-    farthest: f64,
-}
-
-impl Unwrapped {
-    /// Readings that begin again after a range; `None` if they do not.
-    fn of(values: &[f64], range: f64) -> Option<Self> {
-        let (low, high) = columns::extremes(values);
-        let span = high - low;
-        let begins = low >= 0.0 || low >= -0.5 * range && high <= 0.5 * range;
-        if !begins || span > range || high > range || span < GOES_THROUGH * range {
-            return None;
-        }
-        let mut turns = 0.0;
-        let mut out = Vec::with_capacity(values.len());
-        let (mut count, mut first, mut farthest) = (0, 0, 0.0f64);
-        let mut last: Option<(f64, f64)> = None;
-        for (i, value) in values.iter().enumerate() {
-            if let Some((reading, place)) = last.filter(|_| value.is_finite()) {
-                let jump = value - reading;
-                if jump.abs() > JUMPS * range {
-                    turns -= jump.signum();
-                    first = if count == 0 { i - 1 } else { first };
-                    count += 1;
-                }
-                farthest = farthest.max((value + turns * range - place).abs());
-            }
-            let place = value + turns * range;
-            if value.is_finite() {
-                last = Some((*value, place));
-            }
-            out.push(place);
-        }
-        (count > 0 && farthest < GOES_ON * range).then_some(Self {
-            range,
-            values: out,
-            count,
-            first,
-            farthest,
-        })
-    }
 }
 
 #[cfg(test)]

@@ -22,3 +22,4 @@ pub mod thinning;
 pub mod tone;
 pub(crate) mod turns;
 pub mod whole;
+pub mod wrapped;

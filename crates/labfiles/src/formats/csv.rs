@@ -243,7 +243,8 @@ fn run_of(
         name: run.name.clone(),
         ..dataset(own, &part, rows as u64, Some(&axis))
     };
-    let note = known.note(&run.names[0]);
+    // a list alone is no axis of others
+    let note = known.note(&run.names[0]).filter(|_| run.columns.len() > 1);
     Ok(((info, note.into_iter().collect()), rows))
 }
 

@@ -1,10 +1,10 @@
 //! What was probably measured: a driven rig, free decays, free flights, or the times of impacts.
 
-use super::bodies;
 use super::found::{Experiment, FolderContents, InferredChannel};
 use super::heights::{self, Heights};
 use super::look::{Detected, correlation, notes, read, strikes, strikes_once};
 use super::place::{Place, spread};
+use super::{axes, bodies};
 use super::{contact, drive, lists};
 use impact_records::event::{Detection, RigKind};
 use impact_records::record::{Channel, ContactContent, FlagCode, Record, Role};
@@ -137,7 +137,7 @@ fn of_motions(some: &[Place<'_>], found: &mut FolderContents) {
             false => strikes_once(d) || notes(d, FlagCode::OppositeSign),
         };
         if !(two && Detected::of(&read_all(some, found), RigKind::Double).most(strike)) {
-            free_decays(&records, found);
+            free_decays(some, &records, found);
             return;
         }
     }
@@ -151,7 +151,7 @@ fn of_motions(some: &[Place<'_>], found: &mut FolderContents) {
         bodies::ask_or_note(some, rig, found);
     }
     if !fly && decaying > 0 && 2 * decaying >= records.len() {
-        free_decays(&records, found);
+        free_decays(some, &records, found);
     }
 }
 
@@ -183,11 +183,12 @@ fn flights(some: &[Place<'_>], rig: RigKind, found: &mut FolderContents) -> bool
 }
 
 /// The records are free decays, of one body where all sensors see one motion.
-fn free_decays(records: &[Record], found: &mut FolderContents) {
+fn free_decays(some: &[Place<'_>], records: &[Record], found: &mut FolderContents) {
     found.experiment = Experiment::FreeDecay;
     if records.iter().all(is_one_body) {
         keep_one_mass(&mut found.channels);
     }
+    axes::note_turning(some, found);
 }
 
 /// Channels whose names and units say nothing that are tried as the motion of a decay.

@@ -61,6 +61,8 @@ const COMPUTED_WORDS: [&str; 7] = ["sd", "std", "stdev", "sem", "cor", "diff", "
 const ORDINALS: [&str; 10] = [
     "first", "second", "third", "fourth", "fifth", "erste", "zweite", "dritte", "vierte", "next",
 ];
+/// Stems of words that tell a drop from its rebounds, lower case.
+const STAGES: [&str; 6] = ["drop", "fall", "release", "rebound", "bounce", "sprung"];
 /// Part of the heights below each other that are below the one before.
 const MOSTLY: f64 = 0.6;
 /// Least fall from the second column to the third over that from the first to the second, in logarithms, of heights
@@ -105,7 +107,9 @@ pub(super) fn of(place: Place<'_>) -> Option<Heights> {
         [first, second, third, ..] => {
             let all = values[1..].iter().all(|column| below(first, column));
             let follow = !of_bodies && fall(second, third) > FOLLOWS * fall(first, second);
-            all.then_some(if follow {
+            let tells = |i: &usize| called(&channels[*i], &STAGES);
+            let alike = used.iter().all(|i| tells(i) == tells(&used[0]));
+            (all && !(alike && are_throws(&values))).then_some(if follow {
                 ContactContent::Heights
             } else {
                 ContactContent::Rebounds
@@ -232,6 +236,21 @@ fn below(before: &[f64], after: &[f64]) -> bool {
     filled.all(|(b, a)| *a > 0.0 && a < b)
 }
 
+/// How many times the fall from the first column to the others heights fall from row to row, at least, where each column is a
+/// throw of its own.
+const DOWN: f64 = 4.0;
+
+/// Whether each column is the tops of a throw: they fall from row to row, and are alike along the rows.
+fn are_throws(columns: &[Vec<f64>]) -> bool {
+    let down = |column: &Vec<f64>| {
+        let below = column.get(1..).unwrap_or_default();
+        fall(column, below)
+    };
+    let along = |column: &Vec<f64>| fall(&columns[0], column).abs();
+    let most = columns.iter().map(along).fold(0.0, f64::max);
+    columns.iter().all(|c| falls(c)) && columns.iter().all(|c| down(c) > DOWN * most)
+}
+
 /// The typical fall from one column to another, as a logarithm.
 fn fall(before: &[f64], after: &[f64]) -> f64 {
     let each = before.iter().zip(after).map(|(b, a)| (b / a).ln());
@@ -272,6 +291,9 @@ mod tests {
         // of two balls, beside what is computed from them and other quantities
         let bodies = "Drop height (cm),Ball A rebound (cm),Ball B rebound (cm)\n100,64,36\n80,51,29\n60,38,22\n";
         assert_eq!(of_text(bodies), Some((vec![0, 1, 2], Rebounds)));
+        // of a ball that loses little
+        let steel = "Drop height (cm),Ball A (cm),Ball B (cm)\n100,98,97\n70,68.6,67.9\n50,49,48.5\n30,29.4,29.1\n";
+        assert_eq!(of_text(steel), Some((vec![0, 1, 2], Rebounds)));
         let lost = "Drop height (cm),Rebound height (cm),Height lost (cm),SD (cm),COR\n100,64,36,1,0.8\n80,51,29,1,0.8\n";
         assert_eq!(of_text(lost), Some((vec![0, 1], Heights)));
         let warm = "Temperature (°C),Drop (m),Bounce (cm)\n20,1.0,64\n30,0.8,51\n40,0.6,38\n";
@@ -295,6 +317,9 @@ mod tests {
             of_text("height (cm),mass (kg)\n170,70\n180,80\n190,90\n"),
             None
         );
+        // a throw in each column
+        let throws = "Ball A height (cm),Ball B height (cm),Ball C height (cm)\n100,99,98\n66,65,64\n43,42.5,42\n28,27.5,27\n";
+        assert_eq!(of_text(throws), None);
         // of people
         assert_eq!(of_text("height (cm)\n170\n180\n165\n190\n"), None);
     }

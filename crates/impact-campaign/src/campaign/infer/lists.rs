@@ -68,7 +68,10 @@ fn are_clocks_alone(place: Place<'_>, columns: &[usize]) -> bool {
 fn of_columns(place: Place<'_>) -> Vec<usize> {
     let set = place.set();
     let rows = set.channels.iter().map(|c| c.samples).max().unwrap_or(0);
-    if !(FEWEST_EVENTS..=MOST_EVENTS).contains(&rows) {
+    if rows < FEWEST_EVENTS {
+        return of_few_rows(place);
+    }
+    if rows > MOST_EVENTS {
         return Vec::new();
     }
     if let Some(time) = changes_at(place) {
@@ -97,11 +100,19 @@ fn of_columns(place: Place<'_>) -> Vec<usize> {
     }
 }
 
+/// The columns of a table of one row or two, of times alone, each of which is a throw.
+fn of_few_rows(place: Place<'_>) -> Vec<usize> {
+    let found = numbers(place);
+    let of_times = found.iter().all(|i| is_of_time(&place.set().channels[*i]));
+    let throws = of_times && found.len() >= FEWEST_BESIDE && along_rows(place, &found).is_some();
+    if throws { found } else { Vec::new() }
+}
+
 /// Part of the rows that go the same way where each is a throw of its own.
 const MOSTLY: f64 = 0.9;
 
 /// What the rows of several columns of times are, where each is a throw of its own: times that rise along them, or flights that
-/// become shorter, and neither down the first column unless another column numbers the trials.
+/// become shorter, and neither down the first column, of three rows and more, unless another column numbers the trials.
 pub(super) fn along_rows(place: Place<'_>, columns: &[usize]) -> Option<ContactContent> {
     let values: Vec<Vec<f64>> = columns.iter().map(|i| place.numbers(*i)).collect();
     let first = values.first()?;
@@ -121,11 +132,12 @@ pub(super) fn along_rows(place: Place<'_>, columns: &[usize]) -> Option<ContactC
     };
     let shorter = first.windows(2).filter(|w| w[1] < w[0]).count() as f64;
     let steps = first.len().saturating_sub(1) as f64;
-    if goes(first, false) && !numbers_trials(place) {
+    let few = (first.len() as u64) < FEWEST_EVENTS;
+    if rows.is_empty() || !few && goes(first, false) && !numbers_trials(place) {
         None
     } else if mostly(3, false) {
         Some(ContactContent::Times)
-    } else if mostly(2, true) && shorter < MOST_SHORTER * steps {
+    } else if mostly(2, true) && (few || shorter < MOST_SHORTER * steps) {
         Some(ContactContent::Intervals)
     } else {
         None
@@ -269,6 +281,12 @@ mod tests {
         assert_eq!(of(without_unit), [1, 2, 3]);
         let heights = "trial,h1,h2,h3\n1,0.61,0.50,0.42\n2,0.64,0.53,0.43\n3,0.60,0.49,0.41\n";
         assert!(of(heights).is_empty());
+        // a throw in each file
+        let one = "Interval 1 (s),Interval 2 (s),Interval 3 (s)\n0.53,0.42,0.33\n";
+        assert_eq!(along(one), Some(ContactContent::Intervals));
+        let one = "t1 (s),t2 (s),t3 (s)\n0.30,0.90,1.40\n";
+        assert_eq!(along(one), Some(ContactContent::Times));
+        assert!(of("a (s),b (s),c (s)\n0.30,0.90,0.40\n").is_empty());
         // each column is a throw
         let columns =
             "a (s),b (s),c (s)\n0.61,0.64,0.60\n0.50,0.53,0.49\n0.42,0.43,0.41\n0.35,0.36,0.34\n";

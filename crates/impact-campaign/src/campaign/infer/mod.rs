@@ -1,5 +1,6 @@
 //! The records in a folder of files, and the role that each channel probably has.
 
+mod axes;
 mod bodies;
 mod contact;
 mod drive;

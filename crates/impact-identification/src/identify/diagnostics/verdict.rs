@@ -161,6 +161,9 @@ fn wide(parameter: Coordinate, estimate: &Estimate) -> Option<Note> {
     let value = estimate.value.filter(|_| estimate.status == Status::Weak)?;
     let [low, high] = estimate.interval95?;
     let half = 0.5 * (high - low);
+    if parameter == Coordinate::Damping && value == 0.0 {
+        return Some(Note::Undamped { most: high });
+    }
     let half_width = if parameter.is_logarithm() {
         half / value
     } else {

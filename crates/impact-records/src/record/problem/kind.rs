@@ -771,13 +771,6 @@ problems! {
         /// Its size in the last third of the record over that in the first.
         times: f64,
     };
-    /// The readings begin again at the other end of their range.
-    NoFreeDecay: ReadingsWrap {
-        /// How often.
-        count: usize,
-        /// Sample before the first.
-        sample: usize,
-    };
     /// Contact pulses without a jump of velocity, of a record that is identified.
     ContactWithoutVelocityJump: PulsesWithoutJump {
         /// Pulses without one.

@@ -191,9 +191,6 @@ message_table! { "problem": Problem;
         first = Value::Count(*first);
     Self::SwingsListed { count } => count = Value::Count(*count);
     Self::MotionGrows { times } => times = Value::Number(*times, 1);
-    Self::ReadingsWrap { count, sample } =>
-        count = Value::Count(*count),
-        sample = Value::Count(*sample);
     Self::EchoesLeftOut { count, impacts, delay_ms } =>
         count = Value::Count(*count),
         impacts = Value::Count(*impacts),

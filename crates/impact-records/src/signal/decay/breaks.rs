@@ -36,6 +36,9 @@ pub(super) fn find(part: &Cleared<'_>) -> Option<usize> {
     let tail = &samples[begun..];
     let omega = peak(tail)?;
     let found = acts(tail, omega)?;
+    // what acts once more is no part of the motion after it
+    let next = acts(&tail[found..], omega).map_or(tail.len(), |next| found + next);
+    let tail = &tail[..next];
     let factor = factor(omega);
     let series = Series {
         quantity: part.channel.quantity,

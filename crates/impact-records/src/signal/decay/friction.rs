@@ -165,7 +165,44 @@ fn settled(prepared: &Prepared, viscous: &Point) -> Option<(Series, Point)> {
     if own_noise {
         point = fitted(&mut series, Shape::Rubbed, &point)?;
     }
-    Some((series, point))
+    Some(beside_harmonics(&series, &point).unwrap_or((series, point)))
+}
+
+/// What a fit leaves over the motion, below which it is exact.
+const EXACT: f64 = 1e-6;
+/// Squares that harmonics leave of those without them, at most, where there are some.
+const LESS: f64 = 0.95;
+/// Normal deviate from which friction by its harmonics and friction by the fall of the amplitude are not the same.
+const APART: f64 = 3.3;
+
+/// The fit with harmonics of the motion beside it, where it has another friction: a spring that is not straight makes harmonics
+/// too, and the fall of the amplitude alone tells friction then.
+fn beside_harmonics(series: &Series, point: &Point) -> Option<(Series, Point)> {
+    let [omega, sigma, ..] = point.rates;
+    let mut own = series.clone();
+    let harmonics = [2.0, 3.0].map(|order| [order * omega, order * sigma]);
+    let below = harmonics.iter().filter(|[w, _]| *w < std::f64::consts::PI);
+    own.taken.extend(below);
+    let found = fitted(&mut own, Shape::Rubbed, point)?;
+    let squares = |series: &Series, point: &Point| {
+        let rest = series.residuals(point);
+        rest.iter().map(|v| v * v).sum::<f64>()
+    };
+    let count = series.values.len();
+    let left = squares(series, point);
+    let exact = (EXACT * point.level(count)).powi(2) * count as f64;
+    if left < exact || squares(&own, &found) > LESS * left {
+        return None;
+    }
+    let known = [(series, point), (&own, &found)].map(|(series, point)| {
+        let variance = series.covariance(point)?[(0, 0)];
+        Some((point.friction()?, variance))
+    });
+    let [Some((by_both, less)), Some((by_fall, more))] = known else {
+        return None;
+    };
+    let apart = (by_fall - by_both).abs();
+    (apart > APART * (more - less).max(0.0).sqrt()).then_some((own, found))
 }
 
 /// The decay beside friction; `None` if friction is not told from the rest at all, or would be worth so much more than

@@ -272,7 +272,9 @@ fn begins_empty(lines: &[&[u8]], values: &[bool], dialect: &Dialect) -> bool {
         .iter()
         .map(|line| Cells::new(line, dialect.separator).next());
     let empty = firsts.all(|cell| cell.is_some_and(<[u8]>::is_empty));
-    let others = values.get(1..).unwrap_or_default();
+    // a separator may end each line
+    let end = values.iter().rposition(|of_values| *of_values);
+    let others = end.and_then(|end| values.get(1..=end)).unwrap_or_default();
     empty && !others.is_empty() && others.iter().all(|of_values| *of_values)
 }
 

@@ -62,6 +62,7 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect, filled: Range<usize>) -> 
         ..*dialect
     };
     of_logger(&mut rows);
+    below_units(&mut rows, dialect.columns, &mut header.attributes);
     let units = units_row(&rows, dialect.columns);
     let alone = units.is_some() && units_alone(&rows);
     if units.is_some() && !alone {
@@ -157,20 +158,22 @@ fn keyed_above(plain: &[&[u8]], signals: usize) -> Vec<Keyed> {
         let cells: Vec<String> = cells.collect();
         let (key, values) = cells.split_first()?;
         let word = key.starts_with(char::is_alphabetic) && !values.is_empty();
+        // a key may have no value, and a comma may end each line
+        let values = &values[..filled_cells(values)];
         let given = values.len() <= signals && values.iter().all(|v| !v.is_empty());
         let key = key.trim_end_matches(':').to_owned();
         (word && given).then(|| (key, values.to_vec()))
     };
-    // a line that says that the data follow
-    let says_data = |line: &&&[u8]| {
-        let line = line.trim_ascii().to_ascii_lowercase();
-        line.starts_with(b"data:") && line.len() <= b"data:,".len()
-    };
-    let above = plain.iter().rev().skip_while(says_data);
-    let all: Vec<Keyed> = above.map_while(keyed).collect();
+    let above = plain.iter().rev().skip_while(|line| says_data(line));
+    let mut all: Vec<Keyed> = above.map_while(keyed).collect();
+    if all.first().is_some_and(|(_, values)| values.is_empty()) {
+        // a heading
+        return Vec::new();
+    }
+    all.retain(|(_, values)| !values.is_empty());
     let named = all
         .iter()
-        .any(|(key, names)| key == TRACES && names.len() == signals);
+        .any(|(key, names)| TRACES.contains(&key.as_str()) && names.len() == signals);
     if all.len() < FEWEST_PAIRS || !(signals == 1 || named) {
         Vec::new()
     } else {
@@ -178,16 +181,24 @@ fn keyed_above(plain: &[&[u8]], signals: usize) -> Vec<Keyed> {
     }
 }
 
-/// The key by which Yokogawa names the traces.
-const TRACES: &str = "TraceName";
+/// Whether a line says that the data follow: `data:`, `Waveform Data,`.
+fn says_data(line: &[u8]) -> bool {
+    let line = decode(line).to_lowercase();
+    let said = line.trim().trim_end_matches([',', ':']);
+    said == "data" || said == "waveform data"
+}
 
-/// The headings that a preamble gives the columns, as Yokogawa writes it: names and units.
+/// The keys by which Yokogawa and GW Instek name the traces, and those of their units.
+const TRACES: [&str; 2] = ["TraceName", "Source"];
+const TRACE_UNITS: [&str; 2] = ["VUnit", "Vertical Units"];
+
+/// The headings that a preamble gives the columns: names and units.
 fn traces_of(keyed: &[Keyed]) -> Vec<String> {
-    let stated = |key: &str| {
-        let found = keyed.iter().find(|(known, _)| known == key);
+    let stated = |keys: [&str; 2]| {
+        let found = keyed.iter().find(|(key, _)| keys.contains(&key.as_str()));
         found.map_or(&[][..], |(_, values)| values)
     };
-    let units = stated("VUnit");
+    let units = stated(TRACE_UNITS);
     let name = |(i, name): (usize, &String)| match units.get(i) {
         Some(unit) => format!("{} [{}]", name.trim(), unit.trim()),
         None => name.trim().to_owned(),
@@ -417,6 +428,26 @@ fn units_row(rows: &[Vec<String>], columns: usize) -> Option<Vec<Option<String>>
     })
 }
 
+/// Take out the line below one of units, the time's among them, and their names, as loggers state the rate of each column there.
+fn below_units(
+    rows: &mut Vec<Vec<String>>,
+    columns: usize,
+    attributes: &mut BTreeMap<String, String>,
+) {
+    let Some((last, above)) = rows.split_last() else {
+        return;
+    };
+    let timed = above.last().is_some_and(|row| {
+        let mut cells = row.iter().filter(|cell| !cell.is_empty());
+        cells.clone().any(|cell| is_unit_of_time(unwrapped(cell)))
+            && cells.all(|cell| is_unit(unwrapped(cell)))
+    });
+    if timed && units_row(above, columns).is_some() && units_row(rows, columns).is_none() {
+        last.iter().for_each(|cell| remark(cell, attributes));
+        rows.pop();
+    }
+}
+
 /// Names in the last comment before the table, if it has as many words as columns.
 fn commented_names(comments: &[&[u8]], dialect: &Dialect) -> Option<Vec<String>> {
     let last = comments.last()?.trim_ascii_start();
@@ -600,6 +631,18 @@ mod tests {
         );
         assert_eq!(h.attributes["clearance_m"], "0.001");
         assert_eq!(h.attributes["Operator"], "Novák");
+    }
+
+    #[test]
+    fn a_line_below_that_of_units_is_no_heading() {
+        let h = header(&[
+            "Zeit;Weg;Kraft",
+            "s;mm;N",
+            "Rate: 50 Hz;Rate: 50 Hz;Rate: 50 Hz",
+        ]);
+        assert_eq!(h.names, ["Zeit", "Weg", "Kraft"]);
+        assert_eq!(h.units[1].as_deref(), Some("mm"));
+        assert_eq!(h.attributes["Rate"], "50 Hz");
     }
 
     #[test]

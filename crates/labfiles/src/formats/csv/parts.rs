@@ -65,8 +65,10 @@ pub(crate) fn find(
         .filter(|&i| filled(i) || header.names[i] != format!("column_{}", i + 1))
         .collect();
     let lists = lists_of_runs(header, kinds, &used);
-    let lists =
-        lists.or_else(|| numbered_times(header, |c| head_of(layout, rows, c), &used, times));
+    let head = |c: usize| head_of(layout, rows, c);
+    let lists = lists
+        .or_else(|| numbered_times(header, head, &used, times))
+        .or_else(|| numbered_heights(header, head, &used));
     if let Some(parts) = lists {
         return Makeup::Runs(parts);
     }
@@ -270,22 +272,43 @@ fn parts_of(
 const TIMES: &str = "time";
 const HEIGHTS: &str = "height";
 
-/// Lists of times or of heights that are called after runs alone (`Throw 1 (ms)`, `Throw 2 (ms)`), with no other column but such that
-/// count the rows: one time axis for all would be wrong.
+/// Words for a height, lower case.
+const HEIGHT_WORDS: [&str; 8] = [
+    "h",
+    "height",
+    "rebound",
+    "rebound height",
+    "höhe",
+    "hoehe",
+    "hauteur",
+    "altezza",
+];
+
+/// Whether a name is that of a height alone.
+fn is_height(name: &str) -> bool {
+    HEIGHT_WORDS.contains(&name.to_lowercase().as_str())
+}
+
+/// Whether a unit is one of length.
+fn is_length(unit: &str) -> bool {
+    parse_unit(unit).is_some_and(|u| u.dimension == Dimension::Length)
+}
+
+/// Lists of times or of heights that are called after runs alone (`Throw 1 (ms)`, `Throw 2 (ms)`), or after what they hold too
+/// (`Throw 1 height`), with no other column but such that count the rows: one time axis for all would be wrong.
 fn lists_of_runs(header: &Header, kinds: &[Kind], used: &[usize]) -> Option<Vec<Part>> {
     let numbers = |c: &usize| kinds[*c] == Kind::Number;
     if !used.iter().all(numbers) {
         return None;
     }
-    let lists = used.iter().copied().filter(|c| !counts(header, *c));
+    let lists = no_counts(header, used).into_iter();
     let list = |column: usize| {
         let (bare, run) = without_run(&header.names[column])?;
         let unit = header.units[column].as_deref()?;
-        let length = parse_unit(unit).is_some_and(|u| u.dimension == Dimension::Length);
-        let name = if is_unit_of_time(unit) {
-            TIMES
-        } else if length {
-            HEIGHTS
+        let (name, own) = if is_unit_of_time(unit) {
+            (TIMES, is_time_name(&bare))
+        } else if is_length(unit) {
+            (HEIGHTS, is_height(&bare))
         } else {
             return None;
         };
@@ -294,7 +317,7 @@ fn lists_of_runs(header: &Header, kinds: &[Kind], used: &[usize]) -> Option<Vec<
             columns: vec![column],
             names: vec![name.to_owned()],
         };
-        bare.is_empty().then(part)
+        (bare.is_empty() || own).then(part)
     };
     let parts: Vec<Part> = lists.map(list).collect::<Option<_>>()?;
     let known = |(k, part): (usize, &Part)| parts[..k].iter().any(|p| p.name == part.name);
@@ -302,23 +325,27 @@ fn lists_of_runs(header: &Header, kinds: &[Kind], used: &[usize]) -> Option<Vec<
     (parts.len() > 1 && !repeated).then_some(parts)
 }
 
-/// Lists of times that are called times and numbered (`Zeit 1 (s)`, `Zeit 2 (s)`), with no other column but such that count the
-/// rows: each is one run's. Where they rise along all rows, or fall, the rows are the runs, or times of one.
+/// The columns that do not count the rows.
+fn no_counts(header: &Header, used: &[usize]) -> Vec<usize> {
+    let columns = used.iter().copied();
+    columns.filter(|c| !counts(header, *c)).collect()
+}
+
+/// Lists of times that are called times and numbered (`Zeit 1 (s)`, `Zeit 2 (s)`; all may lack the unit), with no other column but
+/// such that count the rows: each is one run's. Where they rise along all rows, or fall, the rows are the runs, or times of one.
 fn numbered_times(
     header: &Header,
     head: impl Fn(usize) -> Vec<f64>,
     used: &[usize],
     times: &[usize],
 ) -> Option<Vec<Part>> {
-    let lists: Vec<usize> = used
-        .iter()
-        .copied()
-        .filter(|c| !counts(header, *c))
-        .collect();
+    let lists = no_counts(header, used);
+    let first = header.units[*lists.first()?].as_deref();
     let list = |&column: &usize| {
         let (bare, number) = without_number(&header.names[column]);
-        let unit = header.units[column].as_deref()?;
-        let of_times = is_time_name(&bare) && !number.is_empty() && is_unit_of_time(unit);
+        let unit = header.units[column].as_deref();
+        let timed = unit.map_or(first.is_none(), is_unit_of_time);
+        let of_times = is_time_name(&bare) && !number.is_empty() && timed;
         (of_times && times.contains(&column)).then(|| Part {
             name: header.names[column].clone(),
             columns: vec![column],
@@ -332,6 +359,44 @@ fn numbered_times(
     let rise = (0..longest).all(|row| in_row(row).is_sorted());
     let fall = (0..longest).all(|row| in_row(row).is_sorted_by(|a, b| a >= b));
     (parts.len() > 1 && !rise && !fall).then_some(parts)
+}
+
+/// How many times what lies between columns beside each other heights fall from row to row, at least, where each column is a
+/// throw: along the rows of one throw they fall more.
+const ALIKE: f64 = 4.0;
+
+/// Lists of heights that are called so and numbered (`h1 (cm)`, `h2 (cm)`), each of which falls from row to row while they are alike
+/// along the rows, with no other column but such that count the rows: each is one throw's.
+fn numbered_heights(
+    header: &Header,
+    head: impl Fn(usize) -> Vec<f64>,
+    used: &[usize],
+) -> Option<Vec<Part>> {
+    let lists = no_counts(header, used);
+    let list = |&column: &usize| {
+        let (bare, number) = without_number(&header.names[column]);
+        let length = header.units[column].as_deref().is_some_and(is_length);
+        (is_height(&bare) && !number.is_empty() && length).then(|| Part {
+            name: header.names[column].clone(),
+            columns: vec![column],
+            names: vec![HEIGHTS.to_owned()],
+        })
+    };
+    let parts: Vec<Part> = lists.iter().map(list).collect::<Option<_>>()?;
+    let heads: Vec<Vec<f64>> = lists.iter().map(|c| head(*c)).collect();
+    let steps = |column: &Vec<f64>| -> Vec<f64> {
+        let falls = column.windows(2).map(|w| (w[0] / w[1]).ln());
+        falls.collect()
+    };
+    let least = heads.iter().flat_map(steps).fold(f64::INFINITY, f64::min);
+    let beside = heads.windows(2).flat_map(|two| {
+        let pairs = two[0].iter().zip(&two[1]);
+        pairs.map(|(a, b)| (a / b).ln().abs()).collect::<Vec<_>>()
+    });
+    let mut beside: Vec<f64> = beside.collect();
+    beside.sort_by(f64::total_cmp);
+    let typical = *beside.get(beside.len() / 2)?;
+    (parts.len() > 1 && least.is_finite() && least > ALIKE * typical).then_some(parts)
 }
 
 /// Whether a column counts the rows, by its heading.

@@ -89,8 +89,32 @@ fn lists_of_times_called_after_throws_are_records() {
 }
 
 #[test]
+fn lists_of_heights_are_records_where_the_columns_are_throws() {
+    let rows = "100,101,99\n66,65,67\n43,42,44\n28,28,29\n";
+    for heading in [
+        "h1 (cm),h2 (cm),h3 (cm)",
+        "Drop 1 height (cm),Drop 2 height (cm),Drop 3 height (cm)",
+    ] {
+        let s = source(format!("{heading}\n{rows}").as_bytes());
+        let held = lists(&*s);
+        assert_eq!(
+            held.iter().map(|l| l.1).collect::<Vec<_>>(),
+            [4, 4, 4],
+            "{heading}"
+        );
+    }
+    // the tops of one throw in each row
+    let along = "h1 (cm),h2 (cm),h3 (cm)\n100,64,41\n90,58,37\n80,51,33\n70,45,29\n";
+    assert_eq!(source(along.as_bytes()).datasets().len(), 1);
+}
+
+#[test]
 fn lists_of_numbered_times_are_records_where_the_rows_are_none() {
     let s = source(b"Zeit 1 (s);Zeit 2 (s);Zeit 3 (s)\n0,30;0,41;0,52\n0,65;0,70;0,79\n0,94;0,95;1,02\n1,19;1,17;\n");
+    assert_eq!(lists(&*s), [("Zeit 1", 4), ("Zeit 2", 4), ("Zeit 3", 3)]);
+    let s = source(
+        b"Zeit 1;Zeit 2;Zeit 3\n0,30;0,41;0,52\n0,65;0,70;0,79\n0,94;0,95;1,02\n1,19;1,17;\n",
+    );
     assert_eq!(lists(&*s), [("Zeit 1", 4), ("Zeit 2", 4), ("Zeit 3", 3)]);
     let third = s.read(2, &[0]).unwrap().remove(0).into_real().unwrap();
     assert_eq!(third, [0.52, 0.79, 1.02]);

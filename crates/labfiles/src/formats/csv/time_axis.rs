@@ -257,21 +257,31 @@ fn candidate(header: &Header, layout: &Layout, column: usize) -> Option<TimeAxis
     }
 }
 
-/// A first column without a name that climbs evenly and is no mere count of rows.
+/// A first column without a name that climbs evenly and is no mere count of rows, or the second beside such a count.
 fn unnamed(header: &Header, layout: &Layout, rows: &HeadRows<'_>) -> Option<TimeAxis> {
-    if header.names.first()? != "column_1"
-        || layout.kinds[0] != Kind::Number
-        || layout.kinds.len() < 2
-    {
+    let free = |column: usize| {
+        header.names.get(column) == Some(&format!("column_{}", column + 1))
+            && layout.kinds[column] == Kind::Number
+            && layout.kinds.len() > column + 1
+    };
+    let climbs = |column: usize| free(column) && climbs_evenly(&head_of(layout, rows, column));
+    let counts = || {
+        let counted = head_of(layout, rows, 0);
+        counted.windows(2).all(|w| w[1] - w[0] == 1.0)
+    };
+    let (column, which) = if climbs(0) {
+        (0, "first column")
+    } else if free(0) && counts() && climbs(1) {
+        (1, "second column, beside the numbers of the rows,")
+    } else {
         return None;
-    }
-    climbs_evenly(&head_of(layout, rows, 0)).then(|| {
-        let note = "first column climbs evenly and has no name: taken as time in seconds";
-        TimeAxis {
-            column: 0,
-            note: Some(note.to_owned()),
-            ..TimeAxis::default()
-        }
+    };
+    Some(TimeAxis {
+        column,
+        note: Some(format!(
+            "{which} climbs evenly and has no name: taken as time in seconds"
+        )),
+        ..TimeAxis::default()
     })
 }
 

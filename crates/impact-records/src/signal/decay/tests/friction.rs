@@ -75,3 +75,19 @@ fn valid_friction_is_told_under_a_drift_and_in_noise_above_it() {
         assert!(held > 5, "{damping_ratio} {drift}: {held} of 8");
     }
 }
+
+#[test]
+fn valid_harmonics_of_another_cause_are_no_friction() {
+    // a gyroscope on a wheel that swings for five periods, with a third harmonic of 0.4 % at the phase that friction's has
+    let beta = 0.015;
+    let (decay, third) = (super::decay(2.4, beta, 0.0), super::decay(7.2, beta, 0.0));
+    for seed in 0..4 {
+        let mut samples = super::sampled(1000, 500.0, |t| decay(t) + 4e-3 * third(t));
+        white(&mut samples, 8e-4, seed);
+        let channel = Watched::new(&samples, MotionSignal::Velocity);
+        let found = fit_channels(&[channel], 500.0)[0].beside_friction.unwrap();
+        let error = found.known_friction_error.hypot(found.added_error);
+        let off = (found.damping_ratio - beta).abs();
+        assert!(off < 4.0 * error, "{found:?}");
+    }
+}

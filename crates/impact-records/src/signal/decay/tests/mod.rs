@@ -208,6 +208,26 @@ fn each_blow_of_a_record_has_a_decay_of_its_own() {
 }
 
 #[test]
+fn valid_many_blows_before_the_last_decay_is_over_are_told_apart() {
+    let value = decay(9.4, 0.018, -TAU / 4.0);
+    let blows = [
+        0.4, 1.0, 1.7, 2.2, 3.0, 3.5, 4.4, 5.1, 5.9, 6.6, 7.2, 8.0, 9.0, 9.9, 10.8,
+    ];
+    let mut samples = sampled(12_000, 1000.0, |t| {
+        let begun = blows.iter().filter(|b| **b <= t);
+        begun.map(|b| value(t - b)).sum()
+    });
+    white(&mut samples, 5e-3, 16);
+    let found = fit_channels(&[Watched::displacement(&samples)], 1000.0);
+    assert!(found.len() > 10, "{}", found.len());
+    for decay in &found {
+        let off = (decay.natural_frequency_hz - 9.4).abs();
+        assert!(off < 5.0 * decay.natural_frequency_error_hz, "{decay:?}");
+        assert!(off < 0.02, "{decay:?}");
+    }
+}
+
+#[test]
 fn valid_dry_friction_and_drag_are_named_and_viscous_damping_is_not() {
     let mut viscous = sampled(1200, 120.0, decay(3.0, 0.015, 0.0));
     white(&mut viscous, 1e-3, 2);
