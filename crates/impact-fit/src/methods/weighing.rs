@@ -37,16 +37,6 @@ impl Blocks {
         records.retain(|_| has_orbit.next().unwrap_or(false));
     }
 
-    /// Leave out periodic records that have no orbit at parameters or fit far worse there than the others.
-    pub fn keep_bulk(&mut self, at: &Parameters) {
-        let scores = mean_squares(&self.trajectory, at);
-        let known: Vec<f64> = scores.iter().flatten().copied().collect();
-        let limit = Bulk::of(&known).limit;
-        let mut belongs = scores.iter().map(|s| s.is_some_and(|s| s <= limit));
-        let records = &mut self.trajectory.records;
-        records.retain(|_| belongs.next().unwrap_or(false));
-    }
-
     /// Find what the errors of the drive's frequency change in the impactless records, and allow them
     /// the least relative error that explains the rest.
     pub fn weigh_resonance(&mut self, parameters: &Parameters) {

@@ -286,14 +286,17 @@ impl<'a> IdentificationRun<'a> {
         self.without_influential();
     }
 
-    /// The gains that all data refute but for records that fit far worse than the others; `None` where another statement of
-    /// the rig is wrong, or none is.
+    /// The gains that all data refute, where the joint fit is strained; `None` where another statement of the rig is wrong, or
+    /// none is. The fits start where the first of all did, as records that would lose their orbit may hold the joint one far
+    /// from what all others say.
     fn refuted_gains(&self) -> Option<Opened> {
-        let joint = self.found.together()?;
+        self.strained().filter(|strained| *strained)?;
+        let begin = self.found.begin;
         let mut blocks = self.selection.blocks.clone();
-        blocks.keep_bulk(&joint.fit.parameters);
+        blocks.keep_those_with_an_orbit(&begin);
         let problem = self.problem_of(&blocks, self.found.start())?;
-        let gains = refuted_gains::refuted(problem, joint)?;
+        let factor = self.found.together()?.factor;
+        let gains = refuted_gains::refuted(problem, begin, factor)?;
         Some(Opened::of(self.evidence, &self.selection.blocks, gains))
     }
 

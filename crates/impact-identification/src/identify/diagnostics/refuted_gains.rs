@@ -7,7 +7,6 @@
 
 use impact_fit::evidence::{Evidence, Nominal, OpenGains};
 use impact_fit::messages::Finding;
-use impact_fit::method_fit::MethodFit;
 use impact_fit::methods::blocks::Blocks;
 use impact_fit::parameters::{Coordinate, GAIN_ROLES, Parameters, gain_index};
 use impact_fit::solver::{Fit, Precision, Prior, Problem};
@@ -52,15 +51,11 @@ struct Without {
     squares: f64,
 }
 
-/// The gains that all data refute, by the joint fit with all statements; `None` where another statement is wrong, or none is.
-pub fn refuted(problem: Problem<'_>, found: &MethodFit) -> Option<OpenGains> {
-    let at = found.fit.parameters;
-    if !problem.strained(&at) {
-        return None;
-    }
+/// The gains that all data refute, near a joint fit with all statements; `None` where another statement is wrong, or none is.
+pub fn refuted(problem: Problem<'_>, at: Parameters, factor: f64) -> Option<OpenGains> {
     let problem = problem.with_precision(Precision::Start);
     let with_all = problem.fit(at).ok()?;
-    let variance = found.factor.max(1.0);
+    let variance = factor.max(1.0);
     let priors = problem.priors.iter();
     let stated = priors.filter(|prior| prior.coordinate.is_stated());
     let may_be_wrong = stated.filter(|prior| fall(&with_all, prior) > TRIED * REFUTED * variance);
