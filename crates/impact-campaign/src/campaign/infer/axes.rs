@@ -27,12 +27,12 @@ pub(super) fn note_turning(some: &[Place<'_>], found: &mut FolderContents) {
         others
     };
     let pairs = own.flat_map(|own| beside(&own).into_iter().map(move |other| (own, other)));
-    let turned = pairs.filter_map(|(own, other)| {
+    let turned = pairs.map(|(own, other)| {
         let angles = some.iter().filter_map(|place| {
             let of = |i: usize| Some(place.numbers(channels[i].find(place.set())?));
             turning_deg(&of(own)?, &of(other)?)
         });
-        Some((angles.fold(0.0, f64::max), own, other))
+        (angles.fold(0.0, f64::max), own, other)
     });
     let most = turned.max_by(|a, b| a.0.total_cmp(&b.0));
     let Some((angle, own, other)) = most.filter(|(angle, ..)| *angle > TURNS_DEG) else {

@@ -51,7 +51,8 @@ struct Without {
     squares: f64,
 }
 
-/// The gains that all data refute, near a joint fit with all statements; `None` where another statement is wrong, or none is.
+/// The gains that all data refute, by fits from a start; `factor`: the variance that the joint fit has. `None` where another
+/// statement is wrong, or none is.
 pub fn refuted(problem: Problem<'_>, at: Parameters, factor: f64) -> Option<OpenGains> {
     let problem = problem.with_precision(Precision::Start);
     let with_all = problem.fit(at).ok()?;
