@@ -287,16 +287,23 @@ impl<'a> IdentificationRun<'a> {
     }
 
     /// The gains that all data refute, where the joint fit is strained; `None` where another statement of the rig is wrong, or
-    /// none is. The fits start where the first of all did, as records that would lose their orbit may hold the joint one far
-    /// from what all others say.
+    /// none is. Records that would lose their orbit may hold fits that start where the joint one ended far from what all others
+    /// say: then they start where the first of all did, without those.
     fn refuted_gains(&self) -> Option<Opened> {
         self.strained().filter(|strained| *strained)?;
-        let begin = self.found.begin;
-        let mut blocks = self.selection.blocks.clone();
-        blocks.keep_those_with_an_orbit(&begin);
-        let problem = self.problem_of(&blocks, self.found.start())?;
-        let factor = self.found.together()?.factor;
-        let gains = refuted_gains::refuted(problem, begin, factor)?;
+        let joint = self.found.together()?;
+        let start = self.found.start();
+        let refuted = |blocks: &Blocks, at: Parameters| {
+            let problem = self.problem_of(blocks, start)?;
+            refuted_gains::refuted(problem, at, joint.factor)
+        };
+        let from_begin = || {
+            let begin = self.found.begin;
+            let mut blocks = self.selection.blocks.clone();
+            blocks.keep_those_with_an_orbit(&begin);
+            refuted(&blocks, begin)
+        };
+        let gains = refuted(&self.selection.blocks, joint.fit.parameters).or_else(from_begin)?;
         Some(Opened::of(self.evidence, &self.selection.blocks, gains))
     }
 
