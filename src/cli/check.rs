@@ -6,9 +6,10 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::print_diagnostics;
+use super::outputs::Output;
 use super::read_log::ReadLog;
 use super::report_args::language_parser;
-use super::speech::{Output, Speech};
+use super::speech::Speech;
 use super::stdout::print_json;
 use super::{Exit, Failure, Progress, Verbosity};
 use impact_campaign::campaign::check;

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::Verbosity;
-use super::speech::{LeftOutRecords, Output, Speech};
+use super::outputs::{LeftOutRecords, Output};
+use super::speech::Speech;
 use impact_campaign::campaign::check::LISTED;
 use impact_campaign::campaign::diagnostic::{Diagnostic, Diagnostics, Group, Severity};
 use impact_records::message::Print;

@@ -9,7 +9,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Args, Command};
 
 use super::failure::wrapped;
-use super::speech::{Output, Speech};
+use super::outputs::Output;
+use super::speech::Speech;
 use super::{Failure, Verbosity};
 use impact_campaign::campaign::resolved::ResolvedCampaign;
 use impact_campaign::campaign::sections::report::ReportSettings;

@@ -1,7 +1,6 @@
 //! How a command speaks of its results: in the language of the report.
 
 use super::Failure;
-pub(super) use super::outputs::{LeftOutRecords, Output};
 use impact_campaign::campaign::sections::report::ReportSettings;
 use impact_campaign::pipeline;
 use impact_records::language::Language;
@@ -96,6 +95,7 @@ pub(super) fn plain(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::outputs::Output;
     use impact_fit::messages::Sentence;
 
     #[test]

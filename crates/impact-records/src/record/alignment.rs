@@ -5,6 +5,7 @@
 //! refused by name.
 
 use super::{Channel, Flag, Problem, Record, Role};
+use crate::signal::columns::extremes;
 use crate::signal::whole;
 
 /// When the samples of a channel were taken.
@@ -31,11 +32,8 @@ pub(super) fn align(record: &mut Record, timings: &[Timing]) -> Option<f64> {
         record.flags.push(flag);
         return None;
     }
-    let starts = timings.iter().map(|t| t.start_s);
-    let not_stated_s = unstated_s(starts.clone());
-    let starts = starts.map(|s| s.unwrap_or(not_stated_s));
-    let first_s = starts.clone().fold(f64::INFINITY, f64::min);
-    let last_s = starts.fold(f64::NEG_INFINITY, f64::max);
+    let starts_s = starts_s(timings.iter().map(|t| t.start_s));
+    let (first_s, last_s) = extremes(&starts_s);
     if !(last_s > first_s) {
         return Some(rate_hz);
     }
@@ -43,8 +41,8 @@ pub(super) fn align(record: &mut Record, timings: &[Timing]) -> Option<f64> {
         record.flags.push(start_missing(record, timings));
     }
     let mut shifted = false;
-    for (channel, timing) in record.channels.iter_mut().zip(timings) {
-        let early = (last_s - timing.start_s.unwrap_or(not_stated_s)) * rate_hz;
+    for (channel, start_s) in record.channels.iter_mut().zip(&starts_s) {
+        let early = (last_s - start_s) * rate_hz;
         shifted |= early > PLACE;
         advance(channel, early);
     }
@@ -69,12 +67,18 @@ pub(super) fn align(record: &mut Record, timings: &[Timing]) -> Option<f64> {
     Some(rate_hz)
 }
 
+/// When each channel begins, s, those too that do not state it.
+pub(super) fn starts_s(stated: impl Iterator<Item = Option<f64>> + Clone) -> Vec<f64> {
+    let not_stated_s = unstated_s(stated.clone());
+    stated.map(|s| s.unwrap_or(not_stated_s)).collect()
+}
+
 /// Start from which on it is a date, and not a time after the start of the record, s.
 const DATED_S: f64 = 1e6;
 
 /// When channels begin that state no start, s: with the record where those of the others are times after that, else with the
 /// first of them.
-pub(super) fn unstated_s(starts: impl Iterator<Item = Option<f64>>) -> f64 {
+fn unstated_s(starts: impl Iterator<Item = Option<f64>>) -> f64 {
     let first_s = starts.flatten().fold(f64::INFINITY, f64::min);
     if first_s < DATED_S {
         first_s.min(0.0)

@@ -4,6 +4,7 @@ use super::alignment::{self, Timing};
 use super::bind::{BoundRole, RecordSetup};
 use super::{Channel, Flag, FlagCode, Problem, Record, Role};
 use super::{changes, condition, even, time_axis};
+use crate::signal::columns::extremes;
 use labfiles::timing::AxisUnit;
 use labfiles::units::symbol_of;
 use labfiles::{Clock, DatasetInfo, Samples, StoredType};
@@ -69,11 +70,9 @@ impl Clocks {
         axes.sort_unstable();
         axes.dedup();
         let mixed = axes.len() > 1 || (!axes.is_empty() && each.contains(&None));
-        let starts = bound.iter().map(|(_, b)| dataset.channels[b.index].start_s);
-        let not_stated_s = alignment::unstated_s(starts.clone());
-        let mut starts = starts.map(|s| s.unwrap_or(not_stated_s));
-        let first_s = starts.clone().fold(f64::INFINITY, f64::min);
-        let unlike = starts.any(|s| s - first_s > 1e-9);
+        let stated = bound.iter().map(|(_, b)| dataset.channels[b.index].start_s);
+        let (first_s, last_s) = extremes(&alignment::starts_s(stated));
+        let unlike = last_s - first_s > 1e-9;
         Self {
             axes,
             apart: mixed || unlike,

@@ -48,25 +48,14 @@ pub fn go_on(values: &[f64]) -> Option<Unwrapped> {
     };
     let of_bits = BITS.map(|bits| 2f64.powi(bits));
     let ranges = TURNS.into_iter().chain(of_bits).filter(begins);
-    let found = ranges.filter_map(|range| Some((roughness(values, range)?, range)));
+    let found = ranges.filter_map(|range| Unwrapped::of(values, range));
+    let found = found.map(|whole| (whole.roughness(values), whole));
     let known = found.min_by(|a, b| a.0.total_cmp(&b.0));
     let smooth = known.filter(|(rough, _)| *rough < ROUGHER);
-    let range = smooth.map_or_else(|| own_range(values), |(_, range)| Some(range))?;
-    Unwrapped::of(values, range)
-}
-
-/// The greatest second difference of readings that go on where they began again, over that elsewhere; `None` if they do not
-/// begin again after that range.
-fn roughness(values: &[f64], range: f64) -> Option<f64> {
-    let whole = Unwrapped::of(values, range)?.values;
-    let mut most = [f64::MIN_POSITIVE, 0.0];
-    for (own, read) in whole.windows(3).zip(values.windows(3)) {
-        let jumps = read.windows(2).any(|w| (w[1] - w[0]).abs() > JUMPS * range);
-        let bend = (own[2] - 2.0 * own[1] + own[0]).abs();
-        let most = &mut most[usize::from(jumps)];
-        *most = most.max(bend);
+    match smooth {
+        Some((_, whole)) => Some(whole),
+        None => Unwrapped::of(values, own_range(values)?),
     }
-    Some(most[1] / most[0])
 }
 
 /// The range after which readings begin again that nothing tells but themselves: what their jumps against the way that they go
@@ -78,10 +67,14 @@ fn own_range(values: &[f64]) -> Option<f64> {
     let jumped = |steps: &[f64]| {
         let (before, after) = (&steps[..BESIDE], &steps[BESIDE + 1..]);
         let (last, jump, next) = (before[BESIDE - 1], steps[BESIDE], after[0]);
+        // most steps of a record are none
+        if jump.abs() <= JUMPS * span {
+            return None;
+        }
         let mut beside = before.iter().chain(after);
         let slow = beside.all(|s| s.abs() < GOES_ON * span);
         let back = last * jump < 0.0 && next * jump < 0.0;
-        (jump.abs() > JUMPS * span && slow && back).then(|| (jump - 0.5 * (last + next)).abs())
+        (slow && back).then(|| (jump - 0.5 * (last + next)).abs())
     };
     let each: Vec<f64> = steps.windows(2 * BESIDE + 1).filter_map(jumped).collect();
     let range = robust::median(&each)?;
@@ -90,6 +83,19 @@ fn own_range(values: &[f64]) -> Option<f64> {
 }
 
 impl Unwrapped {
+    /// The greatest second difference where readings began again, over that elsewhere.
+    fn roughness(&self, read: &[f64]) -> f64 {
+        let mut most = [f64::MIN_POSITIVE, 0.0];
+        for (own, read) in self.values.windows(3).zip(read.windows(3)) {
+            let mut steps = read.windows(2).map(|w| (w[1] - w[0]).abs());
+            let jumps = steps.any(|step| step > JUMPS * self.range);
+            let bend = (own[2] - 2.0 * own[1] + own[0]).abs();
+            let most = &mut most[usize::from(jumps)];
+            *most = most.max(bend);
+        }
+        most[1] / most[0]
+    }
+
     /// Readings that begin again after a range; `None` if they do not.
     fn of(values: &[f64], range: f64) -> Option<Self> {
         let (low, high) = columns::extremes(values);

@@ -146,26 +146,17 @@ impl CommonError {
         let scale = off_stated::along(found, &scale).filter(|_| scale.len() > 1);
         let zero = off_stated::alone(found, stated(Coordinate::ScrewZero));
         let zero = zero.filter(|_| gaps_m.len() >= FEWEST_GAPS);
-        let sure = |off: &Off| off.z_score.abs();
-        let of_scale = scale.map(|off| {
-            let error = Self::Scale {
-                share: off.by,
-                z_score: off.z_score,
-            };
-            (sure(&off), error)
-        });
-        let of_zero = zero.map(|off| {
-            (
-                sure(&off),
-                Self::Zero {
-                    added_m: 1e-3 * off.by,
-                },
-            )
-        });
-        let (sure, error) = [of_scale, of_zero]
-            .into_iter()
-            .flatten()
-            .max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let of_scale = |off: Off| Self::Scale {
+            share: off.by,
+            z_score: off.z_score,
+        };
+        let of_zero = |off: Off| Self::Zero {
+            added_m: 1e-3 * off.by,
+        };
+        let scale = scale.map(|off| (off.z_score.abs(), of_scale(off)));
+        let zero = zero.map(|off| (off.z_score.abs(), of_zero(off)));
+        let both = scale.into_iter().chain(zero);
+        let (sure, error) = both.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let alone = suspicion::gaps_beyond_stated(gaps_m, found, uncertainty_m);
         let better = alone.iter().all(|odd| odd.z_score.abs() < sure);
         (sure > GAP_SURE && better).then_some(error)

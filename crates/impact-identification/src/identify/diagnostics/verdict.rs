@@ -326,6 +326,19 @@ mod tests {
     }
 
     #[test]
+    fn a_damping_ratio_of_zero_has_an_upper_limit() {
+        let weak = Estimate {
+            value: Some(0.0),
+            standard_error: Some(0.002),
+            interval95: Some([0.0, 0.004]),
+            status: Status::Weak,
+            note: None,
+        };
+        let found = wide(Coordinate::Damping, &weak);
+        assert_eq!(found, Some(Note::Undamped { most: 0.004 }));
+    }
+
+    #[test]
     fn what_decides_an_interval_is_a_finding() {
         let remark = Remark::HeightsOpen { half_width: 0.09 };
         let drops = MethodResult {
