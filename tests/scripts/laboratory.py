@@ -20,9 +20,13 @@ import h5py
 import numpy as np
 
 from bench import measure, selected
+from drawn import laboratory_of
 from instruments import channels
 from kinds import KINDS
 from specimen import alternatives, draw, truth
+
+
+DRAWN = "any"
 
 
 def campaign_toml(d, kind, name, sensors):
@@ -77,6 +81,11 @@ def make(name, kind, seed, folder):
             rows.writerow([f"record_{i:04d}", p, n, int(settled), int(stuck), len(hits)])
 
 
+def kind_of(name, seed):
+    """The kind of a name; of `any` that of the seed."""
+    return laboratory_of(seed) if name == DRAWN else KINDS[name]
+
+
 def with_settings(kind, settings):
     """The kind with KEY=VALUE settings, values as Python literals."""
     known = {f.name for f in fields(kind)}
@@ -94,7 +103,7 @@ def with_settings(kind, settings):
 def main():
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", nargs="?", choices=sorted(KINDS), metavar="KIND")
+    parser.add_argument("kind", nargs="?", choices=sorted([*KINDS, DRAWN]), metavar="KIND")
     parser.add_argument("seed", nargs="?", type=int)
     parser.add_argument("folder", nargs="?")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a field of kinds.Kind")
@@ -104,6 +113,7 @@ def main():
     if given.list:
         for name, kind in KINDS.items():
             print(f"{name:24} {kind.about}")
+        print(f"{DRAWN:24} rig, instruments and settings drawn from the seed")
     elif given.selftest:
         import selftest
 
@@ -111,7 +121,7 @@ def main():
     elif given.folder is None:
         parser.error("KIND, SEED and FOLDER are needed")
     else:
-        make(given.kind, with_settings(KINDS[given.kind], given.set), given.seed, given.folder)
+        make(given.kind, with_settings(kind_of(given.kind, given.seed), given.set), given.seed, given.folder)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,62 @@
+"""A laboratory of which everything is drawn from the seed: rig, instruments, settings. Sound instruments alone, so that every
+parameter that is given should be held."""
+
+import math
+
+import numpy as np
+
+from kinds import ACCELERATIONS, BOTH, DISPLACEMENTS, Kind
+
+CONTACT = ("drive", "contact")
+OF_TWO = (BOTH, BOTH, BOTH[:1] + BOTH[2:], DISPLACEMENTS, ("drive", "contact", *DISPLACEMENTS[1:]),
+          ACCELERATIONS, ("drive", "contact", *ACCELERATIONS[1:]), BOTH[:3], ("drive", "contact", "displacement_x"))
+OF_ONE = (("drive", "contact", "velocity_x"), ("drive", "velocity_x"), ("drive", "contact", "displacement_x"),
+          ("drive", "contact", "velocity_x", "displacement_x"), ("drive", "acceleration_x"))
+
+
+def laboratory_of(seed):
+    """The laboratory of a seed."""
+    rng = np.random.default_rng([seed, 6])
+
+    def log_uniform(low, high):
+        return float(math.exp(rng.uniform(math.log(low), math.log(high))))
+
+    def sometimes(share, value, otherwise):
+        return value if rng.random() < share else otherwise
+
+    frequency_hz, damping = log_uniform(4.0, 40.0), log_uniform(0.01, 0.12)
+    speed = log_uniform(0.04, 0.15)
+    deflection_m = min(2e-3, speed / (2.0 * math.pi * frequency_hz))
+    machine = sometimes(0.75, "double", "single")
+    choice = OF_TWO if machine == "double" else OF_ONE
+    roles = choice[int(rng.integers(len(choice)))]
+    accelerations = any(role.startswith("acceleration") for role in roles)
+    rate_hz = float(round(log_uniform(max(500.0, 50.0 * frequency_hz), 2e4), -1))
+    gaps = np.sort(rng.uniform(0.3, 2.5, int(rng.integers(2, 6))))
+    gaps = tuple(round(float(g), 3) for g in gaps[np.diff(gaps, prepend=0.0) > 0.1])
+    folds = rng.uniform(8.0, 40.0)  # time constants of the free oscillation before a record
+    contact = sometimes(0.25, "spring-damper", "rigid")
+    return Kind(
+        "everything drawn",
+        rate_hz=rate_hz,
+        duration_s=float(round(rng.uniform(8.0, 40.0) / frequency_hz, 3)),
+        settle_s=folds / (2.0 * math.pi * damping * frequency_hz),
+        roles=roles,
+        bits=16 if accelerations else int(rng.choice((12, 14, 16))),
+        frequency_stated=sometimes(0.8, True, False),
+        clearances=gaps,
+        lowest=float(rng.uniform(0.7, 0.9)),
+        highest=float(rng.uniform(1.6, 2.4)),
+        frequencies=int(rng.integers(5, 21)),
+        machine=machine,
+        restitution=(r := float(rng.uniform(0.1, 0.93)), r),
+        frequency_hz=(frequency_hz, frequency_hz),
+        damping=(damping, damping),
+        deflection_m=(deflection_m, deflection_m),
+        mass_ratio=sometimes(0.2, float(rng.uniform(0.85, 1.15)), 1.0),
+        effects=sometimes(0.3, float(rng.uniform(0.0, 1.0)), 0.0),
+        force_power=sometimes(0.15, 2.0, 0.0),
+        contact=contact,
+        contact_s=0.01 / frequency_hz * float(rng.uniform(0.1, 0.5)),
+        noise=log_uniform(0.3, 2.0),
+    )
