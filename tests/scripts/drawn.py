@@ -35,7 +35,9 @@ def laboratory_of(seed):
     gaps = np.sort(rng.uniform(0.3, 2.5, int(rng.integers(2, 6))))
     gaps = tuple(round(float(g), 3) for g in gaps[np.diff(gaps, prepend=0.0) > 0.1])
     folds = rng.uniform(8.0, 40.0)  # time constants of the free oscillation before a record
-    contact = sometimes(0.25, "spring-damper", "rigid")
+    restitution = float(rng.uniform(0.1, 0.93))
+    # a spring and damper that only press cannot restore less
+    contact = sometimes(0.25 if restitution > 0.2 else 0.0, "spring-damper", "rigid")
     return Kind(
         "everything drawn",
         rate_hz=rate_hz,
@@ -49,7 +51,7 @@ def laboratory_of(seed):
         highest=float(rng.uniform(1.6, 2.4)),
         frequencies=int(rng.integers(5, 21)),
         machine=machine,
-        restitution=(r := float(rng.uniform(0.1, 0.93)), r),
+        restitution=(restitution, restitution),
         frequency_hz=(frequency_hz, frequency_hz),
         damping=(damping, damping),
         deflection_m=(deflection_m, deflection_m),

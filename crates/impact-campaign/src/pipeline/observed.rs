@@ -11,7 +11,10 @@ use crate::campaign::resolved::ResolvedCampaign;
 use impact_fit::evidence::Evidence;
 use impact_fit::methods::resonance::channels::misstated_channels;
 use impact_fit::methods::resonance::drive_amplitudes::follow_stated;
-use impact_fit::methods::resonance::force_law::force_law;
+use impact_fit::methods::resonance::force_law;
+use impact_fit::methods::trajectories::rising_force::rising_force;
+use impact_fit::parameters::Coordinate;
+use impact_fit::parameters::effect::Effect;
 use impact_identification::identify::identify_campaign;
 use impact_records::motion::{
     Bracket, ForceLaw, LateChannel, Observation, brackets, follow_force_law, inverted_channels,
@@ -183,18 +186,58 @@ fn scale(campaign: &ResolvedCampaign, observations: &mut [Observation]) {
     }
 }
 
-/// Let the drive amplitudes follow the law of the force that the resonance curve shows, if it shows one, about the f0
-/// that all records tell: they tell it better than the curve, which the power bends.
+/// Let the drive amplitudes follow the law of the force that the resonance curve or, where it has too few points to tell,
+/// waveforms show, about the f0 that all records tell: they tell it better than the curve, which the power bends.
 fn follow_the_force(campaign: &ResolvedCampaign, observations: &mut [Observation]) {
-    let Some(law) = force_law(&evidence::evidence(campaign, observations, &[])) else {
+    let Some(mut law) = force_law_shown(&evidence::evidence(campaign, observations, &[])) else {
         return;
     };
-    follow_force_law(observations, law);
-    let found = identify_campaign(&evidence::evidence(campaign, observations, &[]));
-    let about_f0 = found.joint.parameters.natural_frequency_hz;
-    if let Some(at_hz) = about_f0.and_then(|f0| f0.value) {
-        follow_force_law(observations, ForceLaw { at_hz, ..law });
+    for _ in 0..LAW_ROUNDS {
+        follow_force_law(observations, law);
+        let Some(told) = law_told(campaign, observations, law.power) else {
+            return;
+        };
+        let settled = told.power == law.power;
+        law = told;
+        if settled {
+            break;
+        }
     }
+    follow_force_law(observations, law);
+}
+
+/// The law of the force that the resonance curve shows or, where it cannot tell, the waveforms.
+fn force_law_shown(evidence: &Evidence<'_>) -> Option<ForceLaw> {
+    if force_law::tells(evidence) {
+        force_law::force_law(evidence)
+    } else {
+        rising_force(evidence)
+    }
+}
+
+/// Times at most that all records tell the law: the slope of the force that a fit finds beside a power is what that leaves.
+const LAW_ROUNDS: usize = 3;
+
+/// The law that all records together tell: f0, and the given power with the slope of the force at f0 that it leaves, where that
+/// is one that counts.
+fn law_told(
+    campaign: &ResolvedCampaign,
+    observations: &[Observation],
+    power: f64,
+) -> Option<ForceLaw> {
+    let found = identify_campaign(&evidence::evidence(campaign, observations, &[])).joint;
+    let at_hz = found.parameters.natural_frequency_hz?.value?;
+    let slope = found.further.get(&Coordinate::Effect(Effect::ForceSlope));
+    let slope = slope.and_then(|slope| slope.value).unwrap_or(0.0);
+    let left = if slope.abs() > force_law::LEAST {
+        slope
+    } else {
+        0.0
+    };
+    Some(ForceLaw {
+        power: power + left,
+        at_hz,
+    })
 }
 
 /// Share of the records with a drive of another frequency than stated up to which these are single rows that contradict, and not

@@ -13,20 +13,36 @@ use impact_records::motion::ForceLaw;
 const STEEPEST: f64 = 4.0;
 const STEP: f64 = 0.5;
 /// Least power that counts: the effect `force_frequency`, of first and second order about f0, describes less of it.
-const LEAST: f64 = 0.3;
+pub const LEAST: f64 = 0.3;
 /// Part of the misfit of a constant force that the law may leave.
 const LEFT: f64 = 0.1;
 /// Deviation of the responses from the curve of a constant force up to which there is no law: a power of 0.3 over
 /// frequencies of 1.2 to 2 f0 leaves more.
 const FITS: f64 = 0.01;
-/// Impactless records from which a law is told: two of them would determine a curve and the power.
+/// Frequencies of impactless records from which a law is told: two of them would determine a curve and the power.
 const FEWEST: usize = 5;
+/// Relative difference from which two frequencies are not those of one setting.
+const APART: f64 = 1e-3;
+
+/// Whether impactless records have enough frequencies that the resonance curve tells a law, or that there is none.
+pub fn tells(evidence: &Evidence<'_>) -> bool {
+    frequencies_n(&Blocks::new(evidence)) >= FEWEST
+}
+
+/// Number of different frequencies on the resonance curve.
+fn frequencies_n(blocks: &Blocks) -> usize {
+    let points = blocks.resonance.points.iter();
+    let mut hz: Vec<f64> = points.map(|p| p.frequency_hz).collect();
+    hz.sort_by(f64::total_cmp);
+    hz.dedup_by(|next, kept| *next < *kept * (1.0 + APART));
+    hz.len()
+}
 
 /// The law, where the responses are those of one degree of freedom with it and not without; about the natural
 /// frequency, so that `x_st` is that of the force there.
 pub fn force_law(evidence: &Evidence<'_>) -> Option<ForceLaw> {
     let blocks = Blocks::new(evidence);
-    if blocks.resonance.points.len() < FEWEST {
+    if frequencies_n(&blocks) < FEWEST {
         return None;
     }
     let constant = fit::start(&blocks, &evidence.nominal)?;

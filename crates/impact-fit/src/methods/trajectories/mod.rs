@@ -7,6 +7,7 @@ pub mod record;
 pub mod record_motion;
 pub mod reduced_record;
 mod result;
+pub mod rising_force;
 mod select;
 mod starts;
 

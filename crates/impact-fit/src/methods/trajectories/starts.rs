@@ -55,7 +55,7 @@ pub(super) fn best(blocks: &Blocks, nominal: &Nominal, given: Parameters) -> Par
 }
 
 /// The blocks with some of their records.
-fn thinned(blocks: &Blocks) -> Blocks {
+pub(super) fn thinned(blocks: &Blocks) -> Blocks {
     let records = &blocks.trajectory.records;
     let few = blocks.trajectory.with_records(every(records, MOST));
     let mut some = blocks.with_trajectory(few);
@@ -70,7 +70,7 @@ fn with_orbits(blocks: &Blocks, at: &Parameters) -> f64 {
 }
 
 /// How badly records fit: the mean of the logarithms of their mean squares.
-fn score(blocks: &Blocks, at: &Parameters) -> f64 {
+pub(super) fn score(blocks: &Blocks, at: &Parameters) -> f64 {
     let waveforms = mean_squares(&blocks.trajectory, at);
     let responses = mean_squares(&blocks.resonance, at);
     let scores: Vec<f64> = waveforms
@@ -117,7 +117,7 @@ fn grid(blocks: &Blocks, nominal: &Nominal, given: Parameters) -> Vec<Parameters
 }
 
 /// A rough fit of resonance curve and waveforms together, of the records with an orbit at the start.
-fn fitted(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<Parameters> {
+pub(super) fn fitted(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<Parameters> {
     let found = mean_squares(&blocks.trajectory, &start);
     let records = blocks.trajectory.records.iter().zip(found);
     let with_orbit = records.filter(|(_, square)| square.is_some());
