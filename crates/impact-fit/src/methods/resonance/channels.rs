@@ -9,6 +9,7 @@ use crate::evidence::{Evidence, Nominal};
 use crate::methods::blocks::Blocks;
 use crate::methods::resonance::drive_channel;
 use crate::methods::resonance::fit;
+use crate::methods::resonance::force_law;
 use crate::methods::resonance::misfit::{least_of, left_by, misfit};
 use crate::methods::resonance::phases::{
     EXPLAINED, Misstated, ONE, Phases, fastest_hz, with_responses,
@@ -27,11 +28,14 @@ const SLOWEST: f64 = 3.0;
 const POLE_STEP: f64 = 0.1;
 
 /// The channels that impactless records show not to be as stated, by the one cause that leaves least of the misfit; none
-/// where no cause leaves little of it.
+/// where no cause leaves little of it. What a force that rises with the frequency leaves is no channel's.
 pub fn misstated_channels(evidence: &Evidence<'_>) -> Vec<LateChannel> {
     let impactless = evidence.impactless();
     let of_impactless = evidence.of_records(&impactless);
-    let found = causes(&of_impactless, &Blocks::new(&of_impactless)).unwrap_or_default();
+    let stated = Blocks::new(&of_impactless);
+    let law = force_law::force_law(&of_impactless);
+    let blocks = law.map_or_else(|| stated.clone(), |law| force_law::followed(&stated, law));
+    let found = causes(&of_impactless, &blocks).unwrap_or_default();
     let best = found.into_iter().min_by(|a, b| a.left.total_cmp(&b.left));
     best.map(|best| best.channels).unwrap_or_default()
 }
@@ -65,7 +69,8 @@ fn causes(evidence: &Evidence<'_>, blocks: &Blocks) -> Option<Vec<Misstated>> {
     let explains = |cause: &Misstated| cause.left < LEFT * at_once;
     let of_drive = drive_channel::causes(&phases);
     let mut found: Vec<Misstated> = of_drive.chain(filtered).filter(explains).collect();
-    if found.is_empty() && at_once > EXPLAINED {
+    // a few frequencies do not tell whether the force rises
+    if found.is_empty() && at_once > EXPLAINED && force_law::has_frequencies(blocks) {
         let candidates = may_be_unsteady(blocks, evidence.observations);
         found.extend(unsteady::channel(&phases, &candidates).filter(explains));
     }
@@ -313,6 +318,19 @@ mod tests {
         assert_eq!(found.role, Role::Drive);
         let scatter_s = found.unsteady_s.expect("a scatter");
         assert!((1e-3..3e-3).contains(&scatter_s), "{scatter_s}");
+    }
+
+    #[test]
+    fn valid_a_force_that_rises_with_the_frequency_is_no_channel_that_is_not_as_stated() {
+        let mut observations = observed(&recorded(0.8, 12.0, 60, 42));
+        for o in &mut observations {
+            let Some(hz) = o.frequency_hz() else { continue };
+            o.setting.stated_frequency_hz = Some(hz);
+            for r in &mut o.response {
+                *r = r.times(Complex::from((hz / 12.0).powi(2)));
+            }
+        }
+        assert_eq!(misstated_channels(&evidence(&observations)), []);
     }
 
     #[test]

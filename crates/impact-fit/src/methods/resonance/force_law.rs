@@ -26,23 +26,32 @@ const APART: f64 = 1e-3;
 
 /// Whether impactless records have enough frequencies that the resonance curve tells a law, or that there is none.
 pub fn tells(evidence: &Evidence<'_>) -> bool {
-    frequencies_n(&Blocks::new(evidence)) >= FEWEST
+    has_frequencies(&Blocks::new(evidence))
 }
 
-/// Number of different frequencies on the resonance curve.
-fn frequencies_n(blocks: &Blocks) -> usize {
+/// The blocks with a resonance curve whose forces follow a law.
+pub(super) fn followed(blocks: &Blocks, law: ForceLaw) -> Blocks {
+    let mut blocks = blocks.clone();
+    for point in &mut blocks.resonance.points {
+        point.drive_amplitude *= law.factor(point.frequency_hz);
+    }
+    blocks
+}
+
+/// Whether the resonance curve has so many different frequencies that it tells a law.
+pub(super) fn has_frequencies(blocks: &Blocks) -> bool {
     let points = blocks.resonance.points.iter();
     let mut hz: Vec<f64> = points.map(|p| p.frequency_hz).collect();
     hz.sort_by(f64::total_cmp);
     hz.dedup_by(|next, kept| *next < *kept * (1.0 + APART));
-    hz.len()
+    hz.len() >= FEWEST
 }
 
 /// The law, where the responses are those of one degree of freedom with it and not without; about the natural
 /// frequency, so that `x_st` is that of the force there.
 pub fn force_law(evidence: &Evidence<'_>) -> Option<ForceLaw> {
     let blocks = Blocks::new(evidence);
-    if frequencies_n(&blocks) < FEWEST {
+    if !has_frequencies(&blocks) {
         return None;
     }
     let constant = fit::start(&blocks, &evidence.nominal)?;
@@ -56,14 +65,7 @@ pub fn force_law(evidence: &Evidence<'_>) -> Option<ForceLaw> {
         .map(|p| p.frequency_hz)
         .collect();
     let middle_hz = impact_records::signal::robust::median(&hz)?;
-    let about = |power: f64, at_hz: f64| {
-        let law = ForceLaw { power, at_hz };
-        let mut blocks = blocks.clone();
-        for point in &mut blocks.resonance.points {
-            point.drive_amplitude *= law.factor(point.frequency_hz);
-        }
-        blocks
-    };
+    let about = |power: f64, at_hz: f64| followed(&blocks, ForceLaw { power, at_hz });
     let left = |power: f64| misfit(&about(power, middle_hz), &evidence.nominal);
     let power = least_of(STEEPEST, STEP, &left)?;
     let with = about(power, middle_hz);
