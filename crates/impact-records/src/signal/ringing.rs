@@ -14,6 +14,8 @@ const RINGS: f64 = 3e-3;
 const STANDS_OUT: f64 = 4.0;
 /// Samples of a third difference.
 const SPAN: usize = 4;
+/// Samples without ringing that may be where a vibration passes through zero: two third differences.
+const CALM: usize = 2 * SPAN;
 
 /// Samples before and after an impact in which a waveform of a size rings, by third differences: these are small
 /// along a flight. Times of impacts in samples; zero where impacts are few.
@@ -38,10 +40,25 @@ pub(crate) fn beside_impacts(values: &[f64], times: &[f64], size: f64) -> [f64; 
         2 * ringing > known
     };
     // of a difference the sample next to the impact
-    let after = (1..=most).rfind(|k| rings(&|t| Some(whole::index(t.floor()) + k)));
-    let before =
-        (1..=most).rfind(|k| rings(&|t| (whole::index(t.ceil())).checked_sub(k + SPAN - 1)));
+    let after = last(most, |k| rings(&|t| Some(whole::index(t.floor()) + k)));
+    let before = last(most, |k| {
+        rings(&|t| (whole::index(t.ceil())).checked_sub(k + SPAN - 1))
+    });
     [before, after].map(|last| last.map_or(0.0, |k| (k + 1) as f64))
+}
+
+/// The last of the samples beside an impact that ring, up to `most`: what comes after a calm longer than the ringing is another
+/// impact, which follows a strong one alike in every period.
+fn last(most: usize, rings: impl Fn(usize) -> bool) -> Option<usize> {
+    let mut last = None;
+    for k in (1..=most).filter(|k| rings(*k)) {
+        let begun = last.unwrap_or(0);
+        if k - begun > CALM.max(begun) {
+            break;
+        }
+        last = Some(k);
+    }
+    last
 }
 
 #[cfg(test)]
@@ -74,6 +91,15 @@ mod tests {
         assert!((20.0..30.0).contains(&after), "{after}");
         // what is small beside the motion does not count
         assert_eq!(found(&waveform(3e-4)), [0.0; 2]);
+    }
+
+    #[test]
+    fn an_impact_soon_after_another_is_no_ringing() {
+        let mut values = waveform(0.0);
+        for (i, value) in values.iter_mut().enumerate() {
+            *value -= 0.1 * f64::from(u8::from(i % PERIOD >= 25));
+        }
+        assert_eq!(found(&values), [0.0; 2]);
     }
 
     #[test]
