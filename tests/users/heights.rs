@@ -49,6 +49,30 @@ fn valid_a_drop_below_each_other_in_rows_and_in_columns() {
 }
 
 #[test]
+fn heights_of_two_balls_beside_each_other_are_no_rebounds() {
+    // with one R for both, the second would be 0.9 of the first in each row
+    let row = |i: i32| {
+        let top = R.powi(2 * i);
+        format!("{i},{:.1},{:.1}\n", 100.0 * top, 81.0 * top)
+    };
+    let rows: String = (0..6).map(row).collect();
+    for heading in [
+        "bounce,Tennis ball (cm),Squash ball (cm)",
+        "bounce,height A (cm),height B (cm)",
+    ] {
+        let text = format!("{heading}\n{rows}");
+        let folder = Folder::of(&[("heights.csv".to_owned(), text.into_bytes())]);
+        let (said, code) = folder.run(&["init", "day"]);
+        assert_eq!(code, 2, "{said}");
+        assert!(
+            said.contains("each fall from one impact to the next"),
+            "{said}"
+        );
+        assert!(said.contains("give each throw a file of its own"), "{said}");
+    }
+}
+
+#[test]
 fn valid_pairs_and_repeated_rebounds() {
     let pair = |k: usize| {
         let height = 0.4 + 0.2 * (k % 4) as f64;

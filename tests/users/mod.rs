@@ -9,6 +9,7 @@ mod loggers;
 mod matlab;
 mod odd_tables;
 mod one_of_two;
+mod riders;
 mod rig;
 mod stepped;
 mod trials;

@@ -574,6 +574,17 @@ pub(crate) fn climbs_evenly(values: &[f64]) -> bool {
     steps_evenly(values) && !counts
 }
 
+/// Fewest counts from one sample to the next of a clock, as one of a microcontroller; rows, frames and encoders count by one.
+const FEWEST_TICKS: f64 = 2.0;
+
+/// Whether whole numbers without a name climb by even steps of several, as the counts of a clock do.
+pub(crate) fn ticks_evenly(values: &[f64]) -> bool {
+    let head = &values[..values.len().min(crate::rate::HEAD_SAMPLES)];
+    let counts = head.iter().all(|v| v.fract() == 0.0);
+    let step = crate::rate::median_step(head).unwrap_or(0.0);
+    counts && step >= FEWEST_TICKS && steps_evenly(values)
+}
+
 /// Whether values climb by even steps at their front, and never fall.
 pub(crate) fn steps_evenly(values: &[f64]) -> bool {
     let head = &values[..values.len().min(crate::rate::HEAD_SAMPLES)];

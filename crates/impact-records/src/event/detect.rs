@@ -16,7 +16,7 @@ use crate::event::refine;
 use crate::event::ringing::Ringing;
 use crate::event::touches::touches;
 use crate::event::{drift, free_flight, impact_speeds, integrated};
-use crate::record::{Flag, ListedTimes, Problem, Record, Role};
+use crate::record::{Flag, FlagCode, ListedTimes, Problem, Record, Role};
 use crate::signal::local_fit::LocalFit;
 use crate::signal::whole;
 use labfiles::units::Dimension;
@@ -257,10 +257,15 @@ fn freely(record: &Record, rig: RigKind, closed: &[Closed]) -> Detection {
     }
     let strides = [2, 4, 8, 16].into_iter();
     let strides = strides.filter(|s| record.sample_rate_hz / *s as f64 >= SLOWEST_HZ);
-    let coarser = strides.map(|stride| freely_every(record, rig, closed, stride));
-    // the finest of those that show the most
-    let most = coarser.rev().max_by_key(|found| found.impacts.len());
-    most.filter(|found| !found.impacts.is_empty())
+    let mut coarser: Vec<Detection> = strides
+        .map(|stride| freely_every(record, rig, closed, stride))
+        .collect();
+    // the finest of those that show the most, else of those that show bodies along one axis
+    let along = |found: &Detection| found.flags.iter().any(|f| f.code == FlagCode::OppositeSign);
+    let tells = |found: &Detection| (found.impacts.len(), along(found));
+    coarser.reverse();
+    let most = coarser.into_iter().max_by_key(tells);
+    most.filter(|found| tells(found) > (0, false))
         .unwrap_or(fine)
 }
 
@@ -776,7 +781,7 @@ fn wrong_way(found: &Fused, record: &Record) -> Option<Flag> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{Channel, FlagCode, Setting, Sweep};
+    use crate::record::{Channel, Setting, Sweep};
     use rand::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
 

@@ -8,6 +8,7 @@ use super::place::Place;
 use super::roles;
 use impact_records::event::RigKind;
 use impact_records::record::{Record, Role};
+use impact_records::signal::robust;
 
 /// Give the channel that moves beside the only mass the role of the second one, where the records show that the two
 /// strike each other.
@@ -54,8 +55,13 @@ pub(super) fn apart(channels: &[InferredChannel]) -> String {
 /// Ask for the machine where a channel without a role moves as that of the mass does, unless it shows the same motion.
 pub(super) fn ask_or_note(some: &[Place<'_>], rig: RigKind, found: &mut FolderContents) {
     let mut others = others(&found.channels);
-    if rig == RigKind::Single {
-        others.retain(|(index, role)| !is_same(some, &found.channels, *index, *role));
+    match rig {
+        RigKind::Single => {
+            others.retain(|(index, role)| !is_same(some, &found.channels, *index, *role));
+        }
+        RigKind::Double => {
+            others.retain(|(index, _)| leaves_line(some, &found.channels, *index));
+        }
     }
     if others.is_empty() {
         return;
@@ -90,6 +96,34 @@ pub(super) fn ask_or_note(some: &[Place<'_>], rig: RigKind, found: &mut FolderCo
         }
     };
     found.notes.push(note);
+}
+
+/// Whether a channel shows a motion beside the line along which a body moves: a line across the axes shows in both of them, and R
+/// along either is that along the line.
+fn leaves_line(some: &[Place<'_>], channels: &[InferredChannel], index: usize) -> bool {
+    let moving = channels.iter().enumerate();
+    let moving = moving.filter(|(_, c)| c.role.is_some_and(Role::is_motion));
+    let own: Vec<usize> = moving.map(|(i, _)| i).collect();
+    let beside = |place: &Place<'_>| -> Option<f64> {
+        let of = |i: usize| Some(place.numbers(channels[i].find(place.set())?));
+        let values = of(index)?;
+        let shares = own
+            .iter()
+            .filter_map(|i| Some(share_beside(&of(*i)?, &values)));
+        shares.reduce(f64::min)
+    };
+    let shares = some.iter().filter_map(beside);
+    shares.fold(0.0, f64::max) > roles::MOVES
+}
+
+/// What a channel shows beside the line of another, over how far that moves.
+fn share_beside(own: &[f64], other: &[f64]) -> f64 {
+    let pairs = own.iter().zip(other);
+    let known = pairs.filter(|(a, b)| a.is_finite() && b.is_finite());
+    let (own, other): (Vec<f64>, Vec<f64>) = known.map(|(a, b)| (*a, *b)).unzip();
+    let [size, of_other] = [&own, &other].map(|v| robust::rms_about_mean(v));
+    let along = look::correlation(&own, &other);
+    (1.0 - along * along).max(0.0).sqrt() * of_other / size.max(f64::MIN_POSITIVE)
 }
 
 /// Whether a channel is called as one with a role is but for the letter of the axis: `y1` beside `x1`.

@@ -2,7 +2,7 @@
 
 use super::found::{Experiment, FolderContents, InferredChannel};
 use super::heights::{self, Heights};
-use super::look::{Detected, correlation, notes, read, strikes, strikes_once};
+use super::look::{Detected, bounces, correlation, notes, read, strikes, strikes_once};
 use super::place::{Place, spread};
 use super::{axes, bodies};
 use super::{contact, drive, lists};
@@ -92,6 +92,7 @@ fn of_heights(listed: &Heights, found: &mut FolderContents) {
 /// What records without a known channel of motion show.
 fn without_motion(some: &[Place<'_>], found: &mut FolderContents) {
     let plate = contact::bounced_on(some, &found.channels);
+    let decay = unnamed_decay(some, &found.channels);
     let (index, experiment, role) = if let Some((index, level)) = plate {
         found.channels[index].closes_at = Some(level);
         (
@@ -99,10 +100,10 @@ fn without_motion(some: &[Place<'_>], found: &mut FolderContents) {
             Experiment::FreeFlight(RigKind::Single),
             Role::Contact,
         )
-    } else if let Some(index) = microphone(some, &found.channels) {
+    } else if let Some(index) = microphone(some, &found.channels, decay) {
         let sound = Experiment::Events(ContactContent::Sound);
         (index, sound, Role::Contact)
-    } else if let Some(index) = unnamed_decay(some, &found.channels) {
+    } else if let Some(index) = decay {
         (index, Experiment::FreeDecay, Role::VelocityX)
     } else {
         return;
@@ -130,27 +131,31 @@ fn of_motions(some: &[Place<'_>], found: &mut FolderContents) {
     }
     let of_y = |c: &InferredChannel| c.role.is_some_and(Role::is_of_y);
     let two = found.channels.iter().any(of_y);
+    let rig = if two {
+        RigKind::Double
+    } else {
+        RigKind::Single
+    };
     if mostly_decays {
         // carts that come to rest strike each other once, which is seen along one axis too
         let strike = |d: &Detection| match mostly_swing {
             true => strikes(d),
             false => strikes_once(d) || notes(d, FlagCode::OppositeSign),
         };
-        if !(two && Detected::of(&read_all(some, found), RigKind::Double).most(strike)) {
+        let struck = two && Detected::of(&read_all(some, found), RigKind::Double).most(strike);
+        let clear = records.iter().filter(|r| is_clear(r)).count();
+        let bounces = || 2 * clear <= records.len() && Detected::of(&records, rig).most(bounces);
+        if !struck && (two || !bounces()) {
             free_decays(some, &records, found);
             return;
         }
     }
-    let rig = if two {
-        RigKind::Double
-    } else {
-        RigKind::Single
-    };
     let fly = flights(some, rig, found);
     if found.experiment == Experiment::FreeFlight(rig) {
         bodies::ask_or_note(some, rig, found);
     }
-    if !fly && decaying > 0 && 2 * decaying >= records.len() {
+    let fades = |r: &Record| longest(r).is_some_and(|d| fades(&d, r));
+    if !fly && (decaying > 0 && 2 * decaying >= records.len() || records.iter().all(fades)) {
         free_decays(some, &records, found);
     }
 }
@@ -194,7 +199,12 @@ fn free_decays(some: &[Place<'_>], records: &[Record], found: &mut FolderContent
 /// Channels whose names and units say nothing that are tried as the motion of a decay.
 const MOST_TRIED: usize = 4;
 
-/// The first channel that decays freely in most records, where no name or unit says what any channel is.
+/// How many times as long as that of a channel before it a decay lasts that is the motion, and the other one what struck it: a
+/// hammer's pulse rings too.
+const LASTS: f64 = 4.0;
+
+/// The first channel that decays freely in most records, where no name or unit says what any channel is, or another one whose
+/// decays last far longer.
 fn unnamed_decay(some: &[Place<'_>], channels: &[InferredChannel]) -> Option<usize> {
     if channels.iter().any(|c| c.role.is_some()) {
         return None;
@@ -205,15 +215,18 @@ fn unnamed_decay(some: &[Place<'_>], channels: &[InferredChannel]) -> Option<usi
         let channel = &channels[*i];
         !channel.is_time && channel.samples == longest && alive(channel)
     };
-    let mut tried = (0..channels.len()).filter(untold).take(MOST_TRIED);
-    tried.find(|index| {
+    let tried = (0..channels.len()).filter(untold).take(MOST_TRIED);
+    let lasting = tried.filter_map(|index| {
         let mut guessed = channels.to_vec();
-        guessed[*index].role = Some(Role::VelocityX);
-        let decaying = some
-            .iter()
-            .filter(|place| decays(&from_greatest(read(**place, &guessed))));
-        2 * decaying.count() > some.len()
-    })
+        guessed[index].role = Some(Role::VelocityX);
+        let read = |place: &Place<'_>| from_greatest(read(*place, &guessed));
+        let decaying = some.iter().map(read).filter(decays);
+        let lasts: Vec<f64> = decaying.map(|r| lasts(&r)).collect();
+        let mostly = 2 * lasts.len() > some.len();
+        Some((index, robust::median(&lasts).filter(|_| mostly)?))
+    });
+    let longest = lasting.reduce(|own, next| if next.1 > LASTS * own.1 { next } else { own });
+    longest.map(|(index, _)| index)
 }
 
 /// Samples of an unnamed channel that are looked at, and those of them before its greatest excursion.
@@ -332,11 +345,19 @@ const USUAL_SOUND_HZ: f64 = 44_100.0;
 /// Fewest samples of a sound.
 const FEWEST_SAMPLES: u64 = 4_000;
 
-/// The channel in which bounces are heard in most records: the first of a sound file, or the only one of a table.
-fn microphone(some: &[Place<'_>], channels: &[InferredChannel]) -> Option<usize> {
+/// The channel in which bounces are heard in most records: the first of a sound file, or the only one of a table. Beside another
+/// one that decays far longer it is that of a hammer.
+fn microphone(
+    some: &[Place<'_>],
+    channels: &[InferredChannel],
+    decay: Option<usize>,
+) -> Option<usize> {
     let first = some.first()?;
     let mut signals = channels.iter().enumerate().filter(|(_, c)| !c.is_time);
     let (index, channel) = signals.next()?;
+    if decay.is_some_and(|other| other != index) {
+        return None;
+    }
     let alone = signals.next().is_none() && channel.unit.is_none();
     let long = channel.samples >= FEWEST_SAMPLES;
     if first.source.format() != "wav"
@@ -378,15 +399,48 @@ fn watched(record: &Record) -> Vec<Watched<'_>> {
 /// Whether a record's longest oscillation is a free decay: a hold before its release, or noise, may be fitted first.
 fn swings(record: &Record) -> bool {
     let is_one = |d: &Decay| {
-        let periods = d.samples as f64 / record.sample_rate_hz * d.natural_frequency_hz;
+        let periods = periods(d, record);
         let long = d.residual_ratio < DECAY_LEAVES && periods > DECAY_PERIODS;
         let clear = d.residual_ratio < CLEAR_LEAVES && periods > CLEAR_PERIODS;
         let heavy = d.residual_ratio < HEAVY_LEAVES && periods > CLEAR_PERIODS;
         (long || clear) && d.damping_ratio < 0.5 || heavy && d.damping_ratio < MOST_DAMPED
     };
+    longest(record).as_ref().is_some_and(is_one)
+}
+
+/// Whether a record's longest oscillation leaves little of it.
+fn is_clear(record: &Record) -> bool {
+    longest(record).is_some_and(|d| d.residual_ratio < CLEAR_LEAVES)
+}
+
+/// The longest oscillation of a record.
+fn longest(record: &Record) -> Option<Decay> {
     let found = decay::fit_channels(&watched(record), record.sample_rate_hz);
-    let longest = found.iter().max_by_key(|d| d.samples);
-    longest.is_some_and(is_one)
+    found.into_iter().max_by_key(|d| d.samples)
+}
+
+/// How long the longest oscillation of a record lasts, s; 0 if it has none.
+fn lasts(record: &Record) -> f64 {
+    longest(record).map_or(0.0, |d| d.samples as f64 / record.sample_rate_hz)
+}
+
+/// The periods that a decay was fitted to.
+fn periods(decay: &Decay, record: &Record) -> f64 {
+    decay.samples as f64 / record.sample_rate_hz * decay.natural_frequency_hz
+}
+
+/// Part of a signal that the fit of a decay of several modes, or under much noise, may leave.
+const FADES_LEAVES: f64 = 0.8;
+
+/// Whether an oscillation falls by e and more, whatever else is in the record: where nothing drives the masses and they do not
+/// fly, it is a free decay of which the identification says what is wrong.
+fn fades(decay: &Decay, record: &Record) -> bool {
+    let periods = periods(decay, record);
+    let falls = std::f64::consts::TAU * decay.damping_ratio * periods > 1.0;
+    falls
+        && periods > DECAY_PERIODS
+        && decay.damping_ratio < 0.5
+        && decay.residual_ratio < FADES_LEAVES
 }
 
 /// Correlation from which two sensors see one body, whichever way they point: 1/(1 + q²) with noise of q times the motion

@@ -91,7 +91,8 @@ pub(super) fn of(place: Place<'_>) -> Option<Heights> {
         .collect();
     let (used, others): (Vec<usize>, Vec<usize>) =
         numbers.iter().partition(|i| may_be_height(&channels[**i]));
-    let named = used.iter().any(|i| names_height(&channels[*i]));
+    let bounces = counts_bounces(channels);
+    let named = bounces || used.iter().any(|i| names_height(&channels[*i]));
     let alone =
         others.is_empty() || used.len() > 1 && !others.iter().any(|i| may_be_time(&channels[*i]));
     if rows > MOST_ROWS || !named || !alone {
@@ -103,6 +104,7 @@ pub(super) fn of(place: Place<'_>) -> Option<Heights> {
     let content = match values.as_slice() {
         [] => None,
         [below] => falls(below).then_some(ContactContent::Heights),
+        _ if bounces && are_of_throws(&values) => None,
         [first, second] => below(first, second).then_some(ContactContent::Heights),
         [first, second, third, ..] => {
             let all = values[1..].iter().all(|column| below(first, column));
@@ -121,6 +123,34 @@ pub(super) fn of(place: Place<'_>) -> Option<Heights> {
         of_bodies,
         content: content?,
     })
+}
+
+/// Stems of the words for an impact that rows are counted by, lower case.
+const BOUNCES: [&str; 6] = ["bounce", "impact", "prell", "aufprall", "rebond", "rimbalz"];
+
+/// Whether a column of plain numbers counts the impacts of one throw, row by row.
+fn counts_bounces(channels: &[ChannelInfo]) -> bool {
+    let of_rows = |c: &ChannelInfo| c.unit.is_none() && numbers_rows(&c.name);
+    channels.iter().any(|c| of_rows(c) && called(c, &BOUNCES))
+}
+
+/// Whether several columns fall from row to row each, as where each is a throw of its own.
+fn are_of_throws(columns: &[Vec<f64>]) -> bool {
+    columns.len() > 1 && columns.iter().all(|column| falls(column))
+}
+
+/// The columns of a table whose rows are the impacts of several throws, one beside the other.
+pub(super) fn side_by_side(place: Place<'_>) -> Option<Vec<&str>> {
+    let channels = &place.set().channels;
+    let rows = channels.iter().map(|c| c.samples).max().unwrap_or(0);
+    if rows > MOST_ROWS || !counts_bounces(channels) {
+        return None;
+    }
+    let each = channels.iter().enumerate();
+    let heights = each.filter(|(_, c)| may_be_height(c) && !is_computed(c));
+    let used: Vec<usize> = heights.map(|(i, _)| i).collect();
+    let names = used.iter().map(|i| channels[*i].name.as_str());
+    are_of_throws(&in_one_unit(place, &used)).then(|| names.collect())
 }
 
 /// Whether a column numbers the rows, or the trials.

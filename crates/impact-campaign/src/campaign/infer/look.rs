@@ -101,15 +101,25 @@ pub(super) fn strikes_once(found: &Detection) -> bool {
     2 * count_strikes(found) > found.impacts.len()
 }
 
+/// Whether a mass bounces again and again, as a cart does on a slope: a decay of that shape leaves much of it.
+pub(super) fn bounces(found: &Detection) -> bool {
+    found.impacts.iter().filter(|i| turns(i)).count() >= FEWEST_STRIKES
+}
+
+/// Whether an impact turns an approach into a separation, by far more than its error.
+fn turns(impact: &Impact) -> bool {
+    let before = impact.approach_speed_before_m_s.unwrap_or(0.0);
+    let after = impact.approach_speed_after_m_s.unwrap_or(0.0);
+    let error = impact.speed_error_m_s().unwrap_or(f64::INFINITY);
+    before > 0.0 && after < 0.0 && before - after > STRIKES * error
+}
+
 /// Impacts that turn the approach of two masses into a separation, and by which each mass loses speed toward the other.
 fn count_strikes(found: &Detection) -> usize {
     let is = |impact: &&Impact| {
-        let before = impact.approach_speed_before_m_s.unwrap_or(0.0);
-        let after = impact.approach_speed_after_m_s.unwrap_or(0.0);
         let error = impact.speed_error_m_s().unwrap_or(f64::INFINITY);
         let pushed = |mass: Option<MassSpeeds>| mass.is_some_and(|m| m.jump_m_s() > error);
-        let turned = before > 0.0 && after < 0.0 && before - after > STRIKES * error;
-        turned && pushed(impact.x) && pushed(impact.y)
+        turns(impact) && pushed(impact.x) && pushed(impact.y)
     };
     found.impacts.iter().filter(is).count()
 }

@@ -47,6 +47,15 @@ pub(super) fn why(source: &dyn Source) -> Option<[String; 2]> {
     if lists::is_list(place) || heights::of(place).is_some() {
         return None;
     }
+    if let Some(names) = heights::side_by_side(place) {
+        return Some([
+            format!(
+                "{} each fall from one impact to the next: they are the heights of throws of their own",
+                names.join(", ")
+            ),
+            "give each throw a file of its own, with the columns bounce and height (cm)".to_owned(),
+        ]);
+    }
     let swings = (0..set.channels.len()).find(|i| are_swings(place, *i))?;
     let name = &set.channels[swings].name;
     Some([

@@ -51,7 +51,7 @@ fn leave_out_beside_rates(channels: &mut [InferredChannel]) {
 }
 
 /// Part of the way of a mass from which a channel beside it moves too.
-const MOVES: f64 = 0.02;
+pub(super) const MOVES: f64 = 0.02;
 
 /// Whether a channel moves, and shows the quantity that another one shows.
 pub(super) fn moves_like(own: &InferredChannel, other: &InferredChannel) -> bool {
@@ -206,9 +206,12 @@ fn axis(channel: &InferredChannel) -> Option<(Vec<String>, char)> {
     let quantity = &last[..last.len() - 1];
     if !quantity.is_empty() {
         // ax, vy, accz, gx of a gyroscope
-        ["a", "v", "w", "g", "gf", "acc", "accel", "gyr", "gyro"]
-            .contains(&quantity)
-            .then_some(())?;
+        let short = ["a", "v", "w", "g", "gf", "acc", "accel", "gyr", "gyro"].contains(&quantity);
+        // accelerometerAccelerationX, gyroRotationX
+        let long = ["acceleration", "rotation", "rate"]
+            .iter()
+            .any(|word| quantity.ends_with(word));
+        (short || long).then_some(())?;
         words.push(quantity.to_owned());
     }
     Some((words, letter))
@@ -227,7 +230,9 @@ fn without_unit(name: &str) -> &str {
                 | Dimension::Frequency
         )
     };
-    let known = unit.and_then(units::parse_split_unit);
+    // a capital letter by which loggers mean gravity
+    let known = unit.map(|symbol| if symbol == "G" { "g" } else { symbol });
+    let known = known.and_then(units::parse_split_unit);
     if known.is_some_and(of_motion) {
         bare
     } else {
@@ -336,10 +341,15 @@ const G_FORCES: [&str; 3] = ["gfx", "gfy", "gfz"];
 /// The unit that a channel's name implies where none is stated.
 pub fn implied_unit(channel: &InferredChannel) -> Option<&'static str> {
     let is_g_force = || matches!(&words(shown(channel))[..], [word] if G_FORCES.contains(&&**word));
+    let (_, in_name) = units::split_unit(&channel.name);
+    let in_gravity = || {
+        let stated = channel.unit.as_deref().or(in_name);
+        stated == Some("G") && kind(channel) == Kind::Acceleration
+    };
     if is_rate(channel) {
         Some("rad/s")
     } else {
-        is_g_force().then_some("g")
+        (is_g_force() || in_gravity()).then_some("g")
     }
 }
 
@@ -415,6 +425,8 @@ fn kind(channel: &InferredChannel) -> Kind {
         Some(Dimension::Acceleration) => return Kind::Acceleration,
         // of a rig that turns
         Some(Dimension::Angle) => return Kind::Displacement,
+        // of a further clock, whatever sensor it is named after
+        Some(Dimension::Time) => return Kind::Unknown,
         _ if is_rate(channel) => return Kind::Velocity,
         Some(Dimension::Force) => return Kind::Drive,
         _ => {}

@@ -9,7 +9,10 @@ use impact_records::event::Impact;
 use impact_records::motion::Observation;
 use impact_records::signal::robust;
 
-/// How far the speeds at impacts are known, where no method has a result.
+/// Share of a speed to which it is known well: R's interval is then as wide as that of one that is weak, 0.05 = 1.96 √2 times it.
+const KNOWN_WELL: f64 = 0.05 / (1.96 * std::f64::consts::SQRT_2);
+
+/// How far the speeds at impacts are known, where no method has a result because they hardly are.
 pub fn uncertain_speeds(
     observations: &[Observation],
     methods: &BTreeMap<Method, MethodResult>,
@@ -24,9 +27,10 @@ pub fn uncertain_speeds(
         .filter_map(share)
         .filter(|share| *share > 0.0)
         .collect();
+    let share = robust::median(&shares).filter(|share| *share > KNOWN_WELL)?;
     Some(Finding::UncertainSpeeds {
         impacts: shares.len(),
-        share: robust::median(&shares)?,
+        share,
     })
 }
 
@@ -50,6 +54,13 @@ mod tests {
         };
         assert!((share - 0.1).abs() < 1e-12);
         let with = BTreeMap::from([(Method::Impacts, MethodResult::default())]);
-        assert_eq!(uncertain_speeds(&[o], &with), None);
+        assert_eq!(uncertain_speeds(&[o.clone()], &with), None);
+        // speeds that are known well do not say why there is no result
+        let quiet = |speed: f64| Impact {
+            speed_errors_m_s: Some([1e-3, 1e-3]),
+            ..impact(speed)
+        };
+        o.impacts = [0.8, 1.0, 1.3].map(quiet).into();
+        assert_eq!(uncertain_speeds(&[o], &BTreeMap::new()), None);
     }
 }

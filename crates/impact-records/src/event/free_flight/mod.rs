@@ -27,11 +27,12 @@ pub(super) fn detect(kinematics: &Kinematics, rig: RigKind, closed: &[Closed]) -
             ..FreeFlights::default()
         };
     }
-    let plain = Search::new(kinematics, rig).impacts(closed);
+    let search = Search::new(kinematics, rig);
+    let plain = search.impacts(closed);
     if !plain.impacts.is_empty() {
         return plain;
     }
-    let seen = !plain.flags.is_empty();
+    let seen = !plain.flags.is_empty() && search.falls_of_all_bodies();
     orientation::search(kinematics, rig, closed, seen).unwrap_or(plain)
 }
 

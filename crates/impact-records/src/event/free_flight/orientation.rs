@@ -8,7 +8,7 @@ use super::search::{FreeFlights, Search};
 
 /// The impacts of a record that is measured the other way round; `None` if it has none then either.
 ///
-/// Where falls of the approach were `seen` as it is measured, which only lack a flight, its signs are right.
+/// Where falls of the approach of all bodies were `seen` as it is measured, which only lack a flight, its signs are right.
 pub(super) fn search(
     kinematics: &Kinematics,
     rig: RigKind,

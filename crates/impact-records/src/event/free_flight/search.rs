@@ -39,6 +39,8 @@ const GREATEST_RATIO: f64 = 1.3;
 const EXPLAINED: f64 = 0.5;
 /// Standard errors by which each mass's speed must change.
 const CHANGED: f64 = 3.0;
+/// Part of an approach that is told from none.
+const LEAST_SHARE: f64 = 0.02;
 /// Standard error of the time of a crossing of two parabolas, samples: what the contact takes.
 const BLUR: f64 = 0.25;
 /// Standard deviation of the place of a jump between two samples, samples.
@@ -220,6 +222,20 @@ impl<'a> Search<'a> {
         found
     }
 
+    /// Whether all bodies lose speed at one of the falls, as they do where they meet: what one of them strikes, or its own ringing,
+    /// makes falls of that one alone.
+    pub(super) fn falls_of_all_bodies(&self) -> bool {
+        let loses = |body: &Body, fall: &Fall| {
+            body.velocity.as_ref().is_some_and(|own| {
+                let lost = own.values[fall.first] - own.values[fall.last];
+                let noise = CHANGED * std::f64::consts::SQRT_2 * own.noise;
+                lost > noise.max(LEAST_SHARE * self.drop(*fall))
+            })
+        };
+        let all = |fall: &Fall| self.bodies.iter().all(|body| loses(body, fall));
+        self.falls.iter().any(all)
+    }
+
     /// Samples that a fall takes in the median; a velocity derived from a displacement smears it by two.
     fn jump_samples(&self) -> usize {
         let gaps: Vec<f64> = self
@@ -290,13 +306,14 @@ impl<'a> Search<'a> {
         }
         let rebounds = match self.bodies.len() {
             1 => separation > CHANGED * error,
-            _ => separation > -CHANGED * error.max(0.02 * approach),
+            _ => separation > -CHANGED * error.max(LEAST_SHARE * approach),
         };
         let pairs = before.iter().zip(&after);
         // each body's change over what shows one
         let changes: Vec<f64> = pairs
             .map(|(b, a)| {
-                let shows = (CHANGED * b.error(time).hypot(a.error(time))).max(0.02 * approach);
+                let least = LEAST_SHARE * approach;
+                let shows = (CHANGED * b.error(time).hypot(a.error(time))).max(least);
                 (b.speed(begin) - a.speed(end)) / shows
             })
             .collect();

@@ -8,7 +8,7 @@ use crate::text::table::{Fraction, Kind, Layout, Times};
 use crate::text::{clock, decode};
 use crate::timing::{
     AxisUnit, StatedUnit, climbs_evenly, is_general, is_time_name, stated_unit, states_unit,
-    steps_evenly,
+    steps_evenly, ticks_evenly,
 };
 use crate::units::symbol_of;
 
@@ -265,12 +265,16 @@ fn unnamed(header: &Header, layout: &Layout, rows: &HeadRows<'_>) -> Option<Time
             && layout.kinds.len() > column + 1
     };
     let climbs = |column: usize| free(column) && climbs_evenly(&head_of(layout, rows, column));
+    let ticks = |column: usize| free(column) && ticks_evenly(&head_of(layout, rows, column));
     let counts = || {
         let counted = head_of(layout, rows, 0);
         counted.windows(2).all(|w| w[1] - w[0] == 1.0)
     };
     let (column, which) = if climbs(0) {
         (0, "first column")
+    } else if ticks(0) {
+        // in which unit it counts is not known
+        return Some(TimeAxis::default());
     } else if free(0) && counts() && climbs(1) {
         (1, "second column, beside the numbers of the rows,")
     } else {

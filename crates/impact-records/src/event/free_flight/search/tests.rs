@@ -79,6 +79,20 @@ fn carts_measured_the_other_way_round_are_turned_and_along_one_axis_are_refused(
 }
 
 #[test]
+fn what_one_cart_strikes_afterwards_does_not_hide_that_both_are_measured_along_one_axis() {
+    let [mut x, y] = carts(0.6);
+    let along: Vec<f64> = y.iter().map(|v| -v).collect();
+    // at the end of the track, by hand: a fall without a flight after it
+    let last = x.len() - 4;
+    for (i, v) in x[last..].iter_mut().enumerate() {
+        *v -= 0.4 * (i + 1) as f64;
+    }
+    let found = detected(&x, &along);
+    assert!(found.impacts.is_empty());
+    assert_eq!(found.flags[0].code, FlagCode::OppositeSign, "{found:?}");
+}
+
+#[test]
 fn a_mass_that_is_pushed_into_the_stop_has_no_speed() {
     // Faster and faster up to the contact, then a free flight away.
     let value = |i: usize| match i {
