@@ -854,6 +854,26 @@ mod tests {
     }
 
     #[test]
+    fn whole_numbers_that_climb_by_several_are_counts_of_a_clock() {
+        let column = |step: i32| {
+            (0..40)
+                .map(|i| f64::from(5321 + step * i))
+                .collect::<Vec<f64>>()
+        };
+        assert!(ticks_evenly(&column(10)));
+        // rounded down to whole milliseconds
+        let rounded: Vec<f64> = (0..40).map(|i| (f64::from(i) * 9.77).floor()).collect();
+        assert!(ticks_evenly(&rounded));
+        // rows, a signal, and times in parts
+        assert!(!ticks_evenly(&column(1)));
+        let wave: Vec<f64> = (0..40)
+            .map(|i| (f64::from(i).sin() * 100.0).round())
+            .collect();
+        assert!(!ticks_evenly(&wave));
+        assert!(!ticks_evenly(&[0.0, 2.5, 5.0, 7.5]));
+    }
+
+    #[test]
     fn a_column_without_a_name_is_time_where_it_climbs_evenly_by_parts() {
         let column = |step: f64| (0..600).map(|i| f64::from(i) * step).collect::<Vec<f64>>();
         assert!(climbs_evenly(&column(2e-3)));
