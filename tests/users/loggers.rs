@@ -118,12 +118,12 @@ fn counts_of_a_clock_without_a_heading_need_their_unit() {
     assert!(told.contains("time_unit = \"ms\""), "{told}");
 }
 
-/// A sound file of two channels, numbers of 32 bits.
+/// A sound file of two channels, numbers of 64 bits.
 fn wav(rate_hz: u32, channels: [&[f64]; 2]) -> Vec<u8> {
     let samples = channels[0].iter().zip(channels[1]);
     let data: Vec<u8> = samples
         .flat_map(|(a, b)| [*a, *b])
-        .flat_map(|v| (v as f32).to_le_bytes())
+        .flat_map(f64::to_le_bytes)
         .collect();
     let size = u32::try_from(data.len()).unwrap();
     let mut bytes = b"RIFF".to_vec();
@@ -132,8 +132,8 @@ fn wav(rate_hz: u32, channels: [&[f64]; 2]) -> Vec<u8> {
     bytes.extend(16_u32.to_le_bytes());
     bytes.extend([3, 0, 2, 0]);
     bytes.extend(rate_hz.to_le_bytes());
-    bytes.extend((8 * rate_hz).to_le_bytes());
-    bytes.extend([8, 0, 32, 0]);
+    bytes.extend((16 * rate_hz).to_le_bytes());
+    bytes.extend([16, 0, 64, 0]);
     bytes.extend(b"data");
     bytes.extend(size.to_le_bytes());
     bytes.extend(data);
