@@ -33,12 +33,19 @@ fn browser_boundaries_are_named_and_sweeps_lie_apart() {
     assert_eq!(browser.evaluate(apart), json!(true));
     let residuals = browser.evaluate("document.getElementById('residuals').textContent");
     let residuals = residuals.as_str().unwrap();
-    let why = "(takes the rig as ideal, not in the joint fit)";
-    assert!(residuals.contains(why), "{residuals}");
+    for why in [
+        "(takes the rig as ideal, not in the joint fit)",
+        "(in the joint fit by R)",
+    ] {
+        assert!(residuals.contains(why), "{residuals}");
+    }
     let tips = "[...document.querySelectorAll('#residuals span')].map((s) => s.title).join()";
     let tips = browser.evaluate(tips);
     let tips = tips.as_str().unwrap();
-    assert!(tips.contains("the joint fit rests on "), "{tips}");
+    assert!(
+        tips.contains("the joint fit rests on the residuals of "),
+        "{tips}"
+    );
     let red = browser.evaluate("document.querySelectorAll('#residuals .worse').length");
     assert_eq!(red, json!(0), "{residuals}");
     browser.key("t", 0);
@@ -69,9 +76,20 @@ fn browser_far_clearances_have_a_strip_above_the_map() {
     let of = |i: usize| place[i].as_f64().expect("a number");
     browser.click((of(0), of(1)));
     browser.until("impactid.state.record === wanted && impactid.state.panel === 'record'");
-    // in a view that holds them they are on the map
+    // its ring is whole
+    let ring = "(() => { const { r, x, y } = impactid.campaign.placed(impactid.map.frame).find((p) => p.r.id === wanted), c = impactid.map.canvas.getContext('2d'); \
+         const red = ([r, g, b]) => r > 1.5 * g && r > 1.5 * b; \
+         return [-9.6, 9.6].map((by) => red(c.getImageData(Math.round(x), Math.round(y + by), 1, 1).data)); })()";
+    browser.until(&format!("{ring}.every((whole) => whole)"));
+    // in a view that holds them they are on the map, and no strip is left without them
     browser.evaluate("impactid.look([0.5, 3], [0, 12])");
     browser.until(&format!("{far}.every((p) => p.strip === -1)"));
+    assert_eq!(browser.evaluate("impactid.campaign.far"), json!([]));
+    // however far the view is, its numbers leave room for the titles
+    browser.evaluate(CUT);
+    browser.evaluate("impactid.look([1, 1.00000001], [1, 1.00000001])");
+    browser.until(QUIET);
+    assert_eq!(browser.evaluate("[...cut]"), json!([]));
 }
 
 #[test]

@@ -183,6 +183,41 @@ fn browser_how_to_draw_a_line_is_said_until_it_is_drawn() {
     browser.until("!impactid.map.drawing && document.getElementById('caption').hidden");
 }
 
+/// A key that is held steps on, but does not turn on and off.
+#[test]
+#[ignore = "needs chromium"]
+fn browser_a_held_key_counts_once_where_it_is_no_step() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    let hold = |browser: &mut Chromium, key: &str| {
+        browser.key_event("keyDown", key, 0);
+        for _ in 0..3 {
+            let again = json!({"type": "keyDown", "key": key, "text": key, "autoRepeat": true});
+            browser.call("Input.dispatchKeyEvent", again);
+        }
+        browser.key_event("keyUp", key, 0);
+    };
+    browser.evaluate("document.getElementById('map').focus()");
+    hold(&mut browser, "g");
+    assert_eq!(browser.evaluate("impactid.run"), json!(true));
+    hold(&mut browser, "k");
+    assert_eq!(
+        browser.evaluate("impactid.player.recording !== null"),
+        json!(true)
+    );
+    let width = "impactid.state.view.eta[1] - impactid.state.view.eta[0]";
+    let before = browser.evaluate(width).as_f64().unwrap();
+    hold(&mut browser, "+");
+    let after = browser.evaluate(width).as_f64().unwrap();
+    assert!((before / after / 1.25_f64.powi(4) - 1.0).abs() < 1e-6);
+    // from a choice of the panel Esc leads back to the map
+    browser.key("h", 0);
+    browser.evaluate("document.getElementById('characteristic').focus()");
+    browser.key("Escape", 0);
+    browser.until("document.activeElement.id === 'map'");
+}
+
 #[test]
 #[ignore = "needs chromium"]
 fn browser_restitution_is_a_formula() {

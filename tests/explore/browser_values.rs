@@ -86,6 +86,45 @@ fn browser_values_out_of_range_are_refused_in_their_field() {
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
+/// Values each within its range that together take too long.
+#[test]
+#[ignore = "needs chromium"]
+fn browser_values_that_take_too_long_together_are_refused_in_their_field() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.evaluate("impactid.goTo(0.1, 1); true");
+    browser.until(QUIET);
+    let before = browser.evaluate("impactid.state.watch");
+    browser.key("d", 0);
+    let all = "[...document.querySelectorAll('dialog label')]";
+    let name = "periods watched";
+    let field = format!("{all}.find((l) => l.textContent === '{name}').querySelector('input')");
+    type_into(&mut browser, &field, "20000");
+    browser.until(&format!("{field}.getAttribute('aria-invalid') === 'true'"));
+    let said = fault(&mut browser, &field);
+    assert!(
+        said.starts_with("periods watched: This takes too long"),
+        "{said}"
+    );
+    browser.until(QUIET);
+    assert_eq!(browser.evaluate("impactid.state.watch"), before);
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+/// A place beside the view moves it as far as it must.
+#[test]
+#[ignore = "needs chromium"]
+fn browser_the_view_follows_the_motion_along_one_axis() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    let view = browser.evaluate("impactid.state.view");
+    browser.evaluate("impactid.goTo(9, 1); true");
+    browser.until("impactid.state.view.eta[0] > 5 && impactid.state.view.eta[1] > 9");
+    assert_eq!(browser.evaluate("impactid.state.view.rho"), view["rho"]);
+}
+
 #[test]
 #[ignore = "needs chromium"]
 fn browser_a_thumb_steps_from_a_value_beyond_its_end() {

@@ -1,8 +1,6 @@
 //! A campaign at the sliders: a record beside its simulation with the evidence for its label, the
 //! residuals of every method, boundaries against brackets, and what to measure next.
 
-use std::collections::BTreeMap;
-
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
@@ -11,9 +9,9 @@ use super::job::Job;
 use super::stop::Stop;
 use super::{ExploreError, State};
 use impact_fit::methods::boundaries::block::predicted_hz;
-use impact_fit::parameters::Parameters;
-use impact_fit::solver::Block;
-use impact_fit::{Method, Remark};
+use impact_fit::parameters::{Coordinate, Parameters};
+use impact_fit::solver::{Block, Prior};
+use impact_fit::{JointFit, Method, MethodResult, Remark};
 use impact_identification::identify::plan::propose;
 use impact_identification::replay::{BesideRecord, Signal, beside};
 use impact_oscillator::model::params::Asymmetry;
@@ -166,16 +164,35 @@ fn root_mean(squares: f64, count: usize) -> Option<f64> {
     (count > 0 && mean.is_finite()).then(|| mean.sqrt())
 }
 
-/// What the joint fit rests on beside a method without a weight in it; `None` for one that has one.
-fn apart(method: Method, weights: &BTreeMap<Method, f64>) -> Option<String> {
-    let counts = |weight: &f64| *weight > 0.0;
-    if weights.get(&method).is_some_and(counts) {
+/// Of brackets, which the joint fit takes as a distribution of R.
+const BY_R: &str = "in the joint fit by R";
+
+/// How the joint fit takes a method whose residuals are not among its own; `None` for one whose are.
+fn apart(method: Method, own: Option<&MethodResult>, joint: &JointFit) -> Option<&'static str> {
+    if joint.weights.get(&method).is_some_and(|w| *w > 0.0) {
         return None;
     }
-    let joint = weights.iter().filter(|(_, weight)| counts(weight));
-    let joint: Vec<String> = joint.map(|(method, _)| method.to_string()).collect();
-    let joint = joint.join(", ").to_lowercase();
-    Some(format!("the joint fit rests on {joint}"))
+    let remarks = own.map_or(&[][..], |own| &own.remarks);
+    let value = own.and_then(|own| own.parameters.restitution.as_ref()?.value);
+    let of_it = |p: &Prior| p.coordinate == Coordinate::Restitution && Some(p.centre) == value;
+    Some(match method {
+        Method::Boundaries if joint.priors.iter().any(of_it) => BY_R,
+        _ if remarks.contains(&Remark::IdealRig) => "takes the rig as ideal, not in the joint fit",
+        _ => "not in the joint fit",
+    })
+}
+
+/// What the joint fit rests on, as a remark of a method whose residuals are not among its own.
+fn rests_on(joint: &JointFit, by_r: bool) -> String {
+    let some = joint.weights.iter().filter(|(_, weight)| **weight > 0.0);
+    let some: Vec<String> = some.map(|(method, _)| method.to_string()).collect();
+    let some = some.join(", ").to_lowercase();
+    let also = if by_r {
+        " and on the R that the brackets give"
+    } else {
+        ""
+    };
+    format!("the joint fit rests on the residuals of {some}{also}")
 }
 
 /// Residuals of every method and of the joint fit at the sliders, and where each boundary is then.
@@ -186,25 +203,30 @@ pub(super) fn residuals(campaign: &OpenCampaign, state: &State, job: &Job) -> Re
     };
     let mut methods = Vec::new();
     let (mut squares, mut count) = (0.0, 0);
-    let weights = campaign.identification.joint_fit.as_ref();
-    let weights = weights.map(|j| &j.weights);
+    let joint = campaign.identification.joint_fit.as_ref();
+    let weight = |method| joint.map(|j| j.weights.get(&method).copied().unwrap_or(0.0));
     for method in Method::FITTED {
         let block = campaign.blocks.of(method).filter(|b| b.items() > 0);
         let Some(block) = block else { continue };
         let found = misfit(block, &at);
-        if let Some(weight) = weights.and_then(|w| w.get(&method)) {
+        let weight = weight(method);
+        if let Some(weight) = weight.filter(|weight| *weight > 0.0) {
             squares += weight * found.squares;
             count += found.count;
         }
         let own = campaign.identification.methods.get(&method);
-        let remarks = own.map_or(&[][..], |own| &own.remarks);
+        let apart = joint.and_then(|joint| apart(method, own, joint));
+        let rests = joint
+            .zip(apart)
+            .map(|(joint, apart)| rests_on(joint, apart == BY_R));
+        let noticed = own.iter().flat_map(|own| &own.remarks);
+        let remarks = rests.into_iter().chain(noticed.map(ToString::to_string));
         methods.push(json!({
-            "ideal_rig": remarks.contains(&Remark::IdealRig),
-            "apart": weights.and_then(|w| apart(method, w)),
-            "remarks": remarks.iter().map(|r| r.to_string()).collect::<Vec<_>>(),
+            "apart": apart,
+            "remarks": remarks.collect::<Vec<_>>(),
             "method": method.to_string(),
             "rms": root_mean(found.squares, found.count),
-            "weight": weights.map(|w| w.get(&method).copied().unwrap_or(0.0)),
+            "weight": weight,
             "count": found.count,
             "without": found.without,
         }));

@@ -51,21 +51,28 @@ export class CampaignView {
     return [frequency_hz / rig.natural_frequency_hz, r.clearance_m / (rig.static_deflection_m * r.drive_amplitude)];
   }
 
+  /** Clearances that have strips and lie above the view, m. */
+  get far() {
+    const { static_deflection_m: x } = this.app.scale() ?? {};
+    return this.facts.strips_m.filter((s) => s / x > this.app.state.view.rho[1]);
+  }
+
   placed(f) {
     return this.facts.records.filter((r) => r.frequency_hz !== null && r.clearance_m !== null).map((r) => {
       const [eta, rho] = this.at(r.frequency_hz, r), far = rho > f.y[1] ? r.clearance_m / r.drive_amplitude : NaN;
-      const strip = this.facts.strips_m.findIndex((s) => Math.abs(s - far) <= SAME * s);
+      const strip = this.far.findIndex((s) => Math.abs(s - far) <= SAME * s);
       return { r, strip, x: f.px(eta), y: (strip < 0 ? f.py(rho) : middleOf(f, strip)) + (APART[r.sweep] ?? 0) };
     });
   }
 
-  /** Clearances far above all impacts, each in a strip above the map unless it is in view. */
+  /** Clearances far above all impacts, each in a strip above the map. */
   strips(f) {
     const { context: c, box } = f, { static_deflection_m: x } = this.app.scale() ?? {}, text = (v) => v.toFixed(1);
-    this.facts.strips_m.forEach((s, i) => {
+    this.far.forEach((s, i) => {
       const y = middleOf(f, i), bounds = [box.left + 0.5, Math.round(y - STRIP / 2) + 2.5, box.width, STRIP - 4];
       c.strokeStyle = colour("frame"); c.lineWidth = 1; c.strokeRect(...bounds);
-      c.save(); c.beginPath(); c.rect(...bounds); c.clip();
+      // the ring about a chosen mark is higher than its strip
+      c.save(); c.beginPath(); c.rect(box.left, y - STRIP, box.width, 2 * STRIP); c.clip();
       this.marks(c, this.placed(f).filter((p) => p.strip === i));
       c.restore();
       c.fillStyle = colour("ink"); c.font = `13px ${FONT}`; c.textBaseline = "middle";
@@ -151,8 +158,7 @@ export class CampaignView {
 
   /** Choose the record so many places further in the list. */
   step(by) {
-    const all = this.facts.records;
-    const now = all.findIndex((r) => r.id === this.app.state.record);
+    const all = this.facts.records, now = all.findIndex((r) => r.id === this.app.state.record);
     this.app.choose(all[(now + by + all.length) % all.length]);
   }
 
@@ -225,10 +231,8 @@ export class CampaignView {
     rows.push(["used by", e.used_by.join(", ") || "no method"]);
     const list = make("dl", undefined, "facts");
     list.append(...facts(rows));
-    const notes = [];
-    if (e.undetermined && frame.shown !== "decay") notes.push(make("p", `Undetermined: ${e.undetermined}`, "bad"));
-    for (const reason of e.left_out) notes.push(make("p", `Left out: ${reason}`, "bad"));
-    for (const flag of e.flags) notes.push(make("p", `${flag.message}; ${flag.remedy}.`, flag.excludes ? "bad" : "note"));
+    const faults = [...(e.undetermined && frame.shown !== "decay" ? [`Undetermined: ${e.undetermined}`] : []), ...e.left_out.map((reason) => `Left out: ${reason}`)];
+    const notes = [...faults.map((text) => make("p", text, "bad")), ...e.flags.map((f) => make("p", `${f.message}; ${f.remedy}.`, f.excludes ? "bad" : "note"))];
     const key = make("p", frame.shown === "decay" ? "Solid: measured; blue dashed: the fitted decay." : frame.shown === "nothing" ? "" : frame.not_simulated ? "Solid: measured; ticks: impacts." : "Solid: measured; blue dashed: simulated at the sliders; thin red: their difference; ticks: impacts.", "note");
     box.replaceChildren(key, make("h2", frame.shown === "decay" ? "Fit" : "What the label rests on"), list, ...notes);
   }
@@ -236,16 +240,20 @@ export class CampaignView {
   residuals(frame) {
     this.residual = frame.none ? null : frame;
     if (!this.fit) return;
-    const back = button("Back to the fit (Z)", () => this.app.backToFit());
-    if (frame.none) { element("residuals").replaceChildren(make("span", `No residuals at the sliders: ${frame.none}.`), back); this.app.legend(this.app.legendStyles ?? []); this.app.map.redraw(); return; }
+    element("residuals").replaceChildren(...(frame.none ? [make("span", `No residuals at the sliders: ${frame.none}.`)] : this.misfits(frame)), button("Back to the fit (Z)", () => this.app.backToFit()));
+    this.app.legend();
+    this.app.map.redraw();
+  }
+
+  /** Residuals of the joint fit and of each method, and the boundaries past their brackets. */
+  misfits(frame) {
     // a method that the joint fit trusts less than its own noise is judged as the joint fit weighs it
-    const item = (name, rms, tip, { weight = 1, ideal_rig, apart: why, remarks = [] } = {}) => {
-      const span = make("span"), weighed = weight ?? 1;
-      const apart = weighed === 0 && rms > 2;
-      const value = make("b", rms === null ? "no model" : number(rms, 3), rms === null || rms * Math.sqrt(weighed) > 2 ? "worse" : apart ? "" : "fits");
-      span.append(`${name} `, value, apart ? ` (${ideal_rig ? "takes the rig as ideal, " : ""}not in the joint fit)` : "");
+    const item = (name, rms, tip, { weight, apart, remarks = [] } = {}) => {
+      const span = make("span"), weighed = weight ?? 1, aside = apart && rms > 2;
+      const value = make("b", rms === null ? "no model" : number(rms, 3), rms === null || rms * Math.sqrt(weighed) > 2 ? "worse" : aside ? "" : "fits");
+      span.append(`${name} `, value, aside ? ` (${apart})` : "");
       const larger = weighed > 0 && weighed < 0.5 ? [`the joint fit takes its errors ${number(1 / Math.sqrt(weighed), 2)} times as large`] : [];
-      span.title = [tip, ...(why ? [why] : []), ...larger, ...remarks].join("; ");
+      span.title = [tip, ...larger, ...remarks].join("; ");
       return span;
     };
     const parts = frame.methods.map((m) => item(m.method, m.rms, `${m.count} residuals over their standard errors, root mean square${m.without ? `; ${m.without} observations have no such motion here` : ""}`, m));
@@ -253,8 +261,6 @@ export class CampaignView {
     const known = frame.brackets.filter((b) => b.boundary_hz !== null), past = known.filter((b) => b.past_hz > 0);
     const most = Math.max(0, ...past.map((b) => b.past_hz));
     if (known.length) parts.push(make("span", `Boundaries: ${past.length} of ${known.length} past their brackets${past.length ? `, by up to ${number(most, 3)} Hz` : ""}`));
-    element("residuals").replaceChildren(make("span", "Residuals at the sliders:"), ...parts, back);
-    this.app.legend(this.app.legendStyles ?? []);
-    this.app.map.redraw();
+    return [make("span", "Residuals at the sliders:"), ...parts];
   }
 }

@@ -44,13 +44,12 @@ export class Demos {
   }
 
   replay() {
-    if (this.recorded) { this.once(this.read(this.recorded), (demo) => this.play(demo)); return; }
-    const input = document.getElementById("file");
+    const input = document.getElementById("file"), play = (text) => this.once(this.read(text), (demo) => this.play(demo));
+    if (this.recorded) { play(this.recorded); return; }
     input.onchange = async () => {
-      const file = input.files[0];
+      const [file] = input.files;
       input.value = "";
-      if (!file) return;
-      this.once(this.read(await file.text()), (demo) => this.play(demo));
+      if (file) play(await file.text());
     };
     input.click();
   }

@@ -150,9 +150,7 @@ export class Dialogs {
 
   choices(title, list, note) {
     const box = make("div", undefined, "choices");
-    for (const [name, action] of list) {
-      box.append(button(name, () => { this.box.close(); action(); }));
-    }
+    box.append(...list.map(([name, action]) => button(name, () => { this.box.close(); action(); })));
     this.open(title, ...(note ? [make("p", note, "note")] : []), box);
   }
 

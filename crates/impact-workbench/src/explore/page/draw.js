@@ -119,7 +119,7 @@ export const FONT = '"Libertinus Serif", Georgia, serif';
 /** Room of the title beside the numbers of an axis, px. */
 const TITLE = 26;
 /** About how many numbers an axis of a length has. */
-const rows = (height) => Math.max(2.4, height / 42), columns = (width) => Math.max(2.4, width / 75);
+export const rows = (height) => Math.max(2.4, height / 42), columns = (width) => Math.max(2.4, width / 75);
 
 /** A frame with axes; maps values to pixels. */
 export class Frame {
@@ -130,7 +130,9 @@ export class Frame {
     // the numbers beside the box leave room for its title, and those below it have room themselves
     context.font = `13px ${FONT}`;
     const widest = ({ all, text }) => Math.max(0, ...all.map((v) => context.measureText(text(v)).width));
-    m.left = Math.max(m.left, TITLE + widest(ticks(...y, rows(height - m.top - m.bottom))));
+    const room = (scale) => TITLE + widest(ticks(...y.map((v) => v * scale), rows(height - m.top - m.bottom)));
+    m.left = Math.max(m.left, room(1));
+    if (m.beside) m.right = Math.max(m.right, room(m.beside));
     m.right = Math.max(m.right, widest(ticks(...x, columns(width - m.left - m.right))) / 2);
     this.box = { left: m.left, top: m.top, width: Math.max(10, width - m.left - m.right), height: Math.max(10, height - m.top - m.bottom) };
   }

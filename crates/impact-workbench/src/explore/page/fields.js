@@ -39,6 +39,9 @@ export function kept(name, value) {
 }
 
 let fields = 0;
+/** Says beside the dialog's field that was changed last why the server refused it; whether there is such a field. */
+let refuse = () => false;
+export const refusedInField = ({ message, remedy }) => refuse([message, remedy].map(sentence).join(" "));
 
 /** A field [label, range, get, put] of a number, with the place where it says what is wrong. `put` may refuse a value
  * with a text. */
@@ -60,6 +63,7 @@ export function numberField(name, range, get, put) {
     if (v === null || v < low || v > high) { say(`${name}: ${between(range)}`); return; }
     say("");
     input.defaultValue = input.value;
+    refuse = (why) => { const seen = element("dialog").open && input.isConnected && input.closest("dialog") !== null; if (seen) say(`${name}: ${why}`); return seen; };
     const refused = put(v);
     if (refused) say(`${name}: ${refused}`);
   });

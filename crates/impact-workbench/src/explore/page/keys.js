@@ -25,8 +25,8 @@ export const KEYS = [
   ["-", "zoom out", (app) => app.zoom(1.25)],
   ["Home", "all of the plane, or all records", (app) => app.home()],
   ["q", "start again from rest at the cursor", (app) => app.start({ x: 0, vx: 0, y: 0, vy: 0 }, 0)],
-  ["w", "map from rest or from a lively start", (app) => app.toggleStart()],
-  ["u", "phase of the Poincaré map, by an eighth of the period", (app) => app.strobe()],
+  ["w", "map from rest or from a lively start", (app) => app.mapFrom(app.state.map_start.vx === 0 ? 3 : 0)],
+  ["u", "phase of the Poincaré map, by an eighth of the period", (app) => app.set({ poincare_phase: (app.state.poincare_phase + Math.PI / 4) % (2 * Math.PI) }, ["motion"])],
   ["[", "campaign: the record before", (app) => app.campaign?.step(-1)],
   ["]", "campaign: the record after", (app) => app.campaign?.step(1)],
   ["Enter", "campaign: the record nearest the cursor", (app) => app.nearest()],
@@ -44,6 +44,8 @@ export const titleOf = (key) => `${KEYS.find(([k]) => k === key)[1]} (${key.toUp
 /** Keys by another name than in the list. */
 const ALIASES = { "=": "+", "−": "-", Escape: "Esc" };
 
+/** What a held key does again. */
+const AGAIN = /^(Arrow.*|[-+=−[\]])$/;
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 /** Do what a key means; whether it means anything. */
@@ -63,8 +65,8 @@ export function listen(app) {
     if (document.body.classList.contains("gone")) return;
     const target = event.target, kind = target.tagName;
     const closed = target.closest("dialog") && !document.getElementById("dialog").open;
-    const writes = !closed && (kind === "TEXTAREA" || kind === "SELECT" || (kind === "INPUT" && target.type !== "range"));
-    if (document.getElementById("dialog").open || writes) return;
+    const writes = !closed && (kind === "TEXTAREA" || (kind === "SELECT" && event.key !== "Escape") || (kind === "INPUT" && target.type !== "range"));
+    if (document.getElementById("dialog").open || writes || (event.repeat && !AGAIN.test(event.key))) return;
     if (target.id === "basins" && ARROWS[event.key]) { app.basins.nudge(...ARROWS[event.key], event); event.preventDefault(); return; }
     const slides = kind === "INPUT" && target.type === "range";
     const own = slides && (event.key.startsWith("Arrow") || event.key === "Home");

@@ -7,7 +7,7 @@ import { Dialogs } from "./dialogs.js";
 import { listen, press, titleOf } from "./keys.js";
 import { enter, lost } from "./door.js";
 import { Demos } from "./demos.js";
-import { Sliders, button, element, hasLength, kept, make, sentence } from "./fields.js";
+import { Sliders, button, element, hasLength, kept, make, refusedInField, sentence } from "./fields.js";
 import { fit, number, named, colour, markColour } from "./draw.js";
 import { formulaOf, tableOf } from "./formula.js";
 
@@ -132,7 +132,7 @@ class App {
 
   /** The server refused a state as a whole: the last one that it took counts. */
   refused(frame) {
-    this.message(frame.message, frame.remedy);
+    if (frame.taken !== false || !refusedInField(frame)) this.message(frame.message, frame.remedy);
     this.refusal = true;
     if (frame.taken === false && this.good) this.become(structuredClone(this.good), EVERYTHING);
     else if (this.run && frame.id === this.wire.newest.motion) this.running();
@@ -279,10 +279,9 @@ class App {
   goTo(...to) {
     this.carry(...to);
     const { cursor: { eta, rho }, view } = this.state;
-    if (eta < view.eta[0] || eta > view.eta[1] || rho < view.rho[0] || rho > view.rho[1]) {
-      const about = (at, r) => [at - (r[1] - r[0]) / 2, at + (r[1] - r[0]) / 2];
-      this.look(about(eta, view.eta), about(rho, view.rho));
-    }
+    const about = (at, r) => (r[0] <= at && at <= r[1] ? r : [at - (r[1] - r[0]) / 2, at + (r[1] - r[0]) / 2]);
+    const next = [about(eta, view.eta), about(rho, view.rho)];
+    if (next[0] !== view.eta || next[1] !== view.rho) this.look(...next);
   }
 
   /** Start the motion afresh, and show it unsettled. */
@@ -381,18 +380,9 @@ class App {
     return { x: [-size, Math.max(this.state.cursor.rho, -0.9 * size)], vx: [-size, size], cells: [101, 101] };
   }
 
-  toggleStart() {
-    this.mapFrom(this.state.map_start.vx === 0 ? 3 : 0);
-  }
-
   mapFrom(v) {
     this.said(v === 0 ? "the map is computed from rest" : `the map is computed from X′ = Y′ = ${number(v)}`);
     this.set({ map_start: { x: 0, vx: v, y: 0, vy: v } }, ["map"]);
-  }
-
-  strobe() {
-    const next = (this.state.poincare_phase + Math.PI / 4) % (2 * Math.PI);
-    this.set({ poincare_phase: next }, ["motion"]);
   }
 
   /** Run the motion in real time, or stop it. */
@@ -492,10 +482,10 @@ class App {
     const root = document.documentElement;
     root.dataset.theme = root.dataset.theme === "dark" ? "light" : "dark";
     kept("theme", root.dataset.theme);
-    this.map.redraw(); this.restorePanel(); this.note(); this.legend(this.legendStyles ?? []);
+    this.map.redraw(); this.restorePanel(); this.note(); this.legend();
   }
 
-  legend(styles) {
+  legend(styles = this.legendStyles ?? []) {
     this.legendStyles = styles;
     const place = (s) => s.order[0] * 1e6 + s.order[1] * 1e3 + s.order[2], samples = this.campaign?.samples() ?? {};
     const items = [...styles].sort((a, b) => place(a) - place(b)).map((s) => swatch(s, named(s), samples.marks?.get(s.label)));

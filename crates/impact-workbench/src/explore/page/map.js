@@ -1,5 +1,5 @@
 // The (η, ρ) map: tiles, boundaries, records, brackets, bands, cursor, line.
-import { Frame, cellCanvas, colour, markColour, named, paintCells, rich, ticks, tint, FONT } from "./draw.js";
+import { Frame, cellCanvas, colour, markColour, named, paintCells, rich, rows, ticks, tint, FONT } from "./draw.js";
 
 const KINDS = {
   s2: { text: "saddle-node *s*₂", colour: "ink", width: 1.6 },
@@ -106,7 +106,7 @@ export class MapView {
     if (first + frame.cell.length < b.cells.length) return;
     this.other = b;
     this.regions = regions(b);
-    this.app.legend(this.app.legendStyles ?? []);
+    this.app.legend();
     this.redraw("tiles", "lines");
   }
 
@@ -200,7 +200,7 @@ export class MapView {
   /** Draw the boundaries, and list their kinds where others are in view. */
   listKinds() {
     const kinds = this.kinds().map((k) => k.text).join();
-    if (this.listed !== kinds) { this.listed = kinds; this.app.legend(this.app.legendStyles ?? []); }
+    if (this.listed !== kinds) { this.listed = kinds; this.app.legend(); }
     this.redraw("lines");
   }
 
@@ -218,8 +218,7 @@ export class MapView {
   frameOf(canvas) {
     const { state } = this.app, scale = this.app.scale();
     const titles = ["frequency ratio *η* = *ω*/*Ω*", "clearance ratio *ρ* = *r*/*x*ₛₜ"];
-    const strips = STRIP * (this.app.campaign?.facts.strips_m.length ?? 0);
-    const margin = { left: 50, right: scale ? 50 : 10, top: (scale ? 40 : 8) + strips };
+    const margin = { left: 50, right: scale ? 50 : 10, top: (scale ? 40 : 8) + STRIP * (this.app.campaign?.facts.strips_m.length ?? 0), beside: scale && 1e3 * scale.static_deflection_m };
     return new Frame(canvas, state.view.eta, state.view.rho, titles, margin);
   }
 
@@ -352,10 +351,10 @@ export class MapView {
   /** Frequency in Hz above, clearance in mm on the right. */
   rigAxes(f, scale) {
     const { context: c, box: b } = f, hz = scale.natural_frequency_hz, mm = 1e3 * scale.static_deflection_m;
-    const across = ticks(...f.x.map((v) => v * hz), b.width / 80), up = ticks(...f.y.map((v) => v * mm), b.height / 45);
+    const across = ticks(...f.x.map((v) => v * hz), b.width / 80), up = ticks(...f.y.map((v) => v * mm), rows(b.height));
     c.fillStyle = colour("ink"); c.strokeStyle = colour("frame"); c.font = `13px ${FONT}`;
     c.textAlign = "center"; c.textBaseline = "alphabetic"; c.beginPath(); c.lineWidth = 1;
-    const top = b.top - STRIP * (this.app.campaign?.facts.strips_m.length ?? 0);
+    const top = b.top - STRIP * (this.app.campaign?.far.length ?? 0);
     for (const v of across.all) { const p = Math.round(f.px(v / hz)) + 0.5; c.moveTo(p, top); c.lineTo(p, top + 4); c.fillText(across.text(v), p, top - 4); }
     c.textAlign = "left"; c.textBaseline = "middle";
     for (const v of up.all) { const p = Math.round(f.py(v / mm)) + 0.5; c.moveTo(b.left + b.width, p); c.lineTo(b.left + b.width - 4, p); c.fillText(up.text(v), b.left + b.width + 4, p); }

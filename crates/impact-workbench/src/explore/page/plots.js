@@ -371,7 +371,7 @@ export class BasinsPanel extends Panel {
     });
     f.axes();
     const shares = [...t.counts.values()].sort((a, b) => b.count - a.count).slice(0, 8);
-    const share = ({ style, count }) => `${named(style)}: ${(100 * count / t.total).toFixed(1)} %`;
+    const share = ({ style, count }) => `${named(style)}: ${count < 5e-4 * t.total ? "< 0.1" : (100 * count / t.total).toFixed(1)} %`;
     element("basin-shares").replaceChildren(...shares.map((s) => swatch(s.style, share(s))));
     element("basins").setAttribute("aria-label", `Basins of attraction over the start, ${shares.map(share).join(", ")}. Arrow keys move the start.`);
   }
