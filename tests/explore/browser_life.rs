@@ -149,3 +149,30 @@ fn browser_an_address_of_the_theory_is_shown_on_a_campaign_and_the_reverse() {
     );
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
+
+/// What a page sends at most: a long recording is kept, and what is larger is refused without losing the server.
+#[test]
+#[ignore = "needs chromium"]
+fn browser_large_messages_are_taken_or_refused_on_the_page() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.key("k", 0);
+    let minutes = "impactid.player.recording.steps = Array.from({ length: 1900 }, (_, i) => \
+         [0.25, { ...impactid.state, cursor: { ...impactid.state.cursor, eta: 1 + i / 1900 } }]); true";
+    browser.evaluate(minutes);
+    browser.key("k", 0);
+    browser.until("(impactid.player.recorded?.match(/step]]/g) ?? []).length > 1900");
+    let message = "document.getElementById('message').textContent";
+    let gone = "document.body.classList.contains('gone')";
+    browser.evaluate("impactid.player.once(impactid.player.read('a'.repeat(5e6)), () => {}); true");
+    browser.until(&format!("{message}.includes('larger than')"));
+    // a table that long would not fit into an address either
+    let long = "impactid.parameters({ restitution: { table: Array.from({ length: 30000 }, (_, i) => [i, 0.9]) } })";
+    browser.evaluate(long);
+    browser.until(&format!("{message}.includes('lines = 30000')"));
+    browser.until("impactid.state.restitution === 0.9");
+    browser.until(QUIET);
+    assert_eq!(browser.evaluate(gone), json!(false));
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}

@@ -76,7 +76,7 @@ fn two_explorers_have_two_tokens_and_one_port_each() {
 fn oversized_messages_end_the_page_and_not_the_server() {
     let explorer = Explorer::theory();
     let mut page = explorer.page();
-    let _ = page.send(Message::text(" ".repeat(1 << 19)));
+    let _ = page.send(Message::text(" ".repeat(1 << 23)));
     while page.next().is_some() {}
     assert_eq!(explorer.page().hello().kind(), "hello");
 }

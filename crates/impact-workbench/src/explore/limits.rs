@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 
 use impact_oscillator::ModelError;
 use impact_oscillator::model::range;
+use impact_records::signal::whole;
 
 /// The range of a quantity.
 #[derive(Debug, Clone, Copy)]
@@ -48,6 +49,8 @@ limits! {
     TOLERANCE "tolerance": 1e-12, 0.1;
     STEPS "steps": 2, 2001;
     CELLS "cells": 2, 1000;
+    ROWS "rows": 1, 1000;
+    MESSAGE "message": 0, 4_194_304;
     FREQUENCY "natural_frequency_hz": 1e-6, 1e9;
     DEFLECTION "static_deflection_m": 1e-12, 1000;
 }
@@ -66,6 +69,11 @@ impl Limit {
     pub(super) fn nearest(&self, value: f64) -> f64 {
         value.clamp(self.low, self.high)
     }
+}
+
+/// Largest message that a page may send, bytes: some thousand steps of a recorded demo.
+pub(super) fn largest_message() -> usize {
+    whole::index(MESSAGE.high)
 }
 
 /// All limits by name, for the page.

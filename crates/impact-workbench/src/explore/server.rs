@@ -29,11 +29,10 @@ use super::answer::campaign_now;
 use super::frame::Frame;
 use super::job::refusal;
 use super::jobs::Jobs;
+use super::limits::largest_message;
 use super::{ExploreError, Session, wire};
 use impact_report::style::{FontFace, font};
 
-/// Largest message that a page may send, bytes.
-const LARGEST_MESSAGE: usize = 1 << 18;
 /// Pages that may be open at a time.
 const MOST_PAGES: usize = 12;
 /// Frames that wait for a slow page before its jobs pause.
@@ -286,8 +285,8 @@ async fn upgrade(
     let session = Arc::clone(&app.session);
     socket
         .protocols([PROTOCOL])
-        .max_message_size(LARGEST_MESSAGE)
-        .max_frame_size(LARGEST_MESSAGE)
+        .max_message_size(largest_message())
+        .max_frame_size(largest_message())
         .write_buffer_size(0)
         .on_upgrade(move |socket| async move {
             page(socket, session).await;

@@ -13,7 +13,7 @@ use impact_oscillator::atlas::portrait::PortraitPlan;
 use impact_oscillator::atlas::{BasinGrid, MapSettings, Starts};
 use impact_oscillator::model::params::Asymmetry;
 use impact_oscillator::model::{ModelError, range};
-use impact_oscillator::{Initial, Machine, Setting, Watch};
+use impact_oscillator::{Initial, Machine, Restitution, Setting, Watch};
 
 /// The version of the state that this program reads and writes.
 pub(super) const VERSION: u32 = 1;
@@ -271,8 +271,12 @@ impl State {
     }
 
     fn check_machine(&self) -> Result<(), ModelError> {
-        if let RestitutionLaw::Constant(r) = self.restitution {
-            limits::RESTITUTION.check("restitution", r)?;
+        match self.restitution.restitution() {
+            Restitution::Constant(r) => limits::RESTITUTION.check("restitution", r)?,
+            Restitution::Table(rows) => {
+                limits::ROWS.check("restitution.table's lines", rows.len() as f64)?;
+            }
+            _ => {}
         }
         limits::DAMPING_RATIO.check("damping_ratio", self.damping_ratio)?;
         let unlike = &self.asymmetry;

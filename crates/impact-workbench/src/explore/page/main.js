@@ -56,7 +56,7 @@ class App {
     await this.wire.opened;
     const written = this.written(saved.get("s"));
     const { hello, restored } = await this.hello(written);
-    this.first = hello.state; this.demos = hello.demos; this.limits = hello.limits;
+    this.first = hello.state; this.demos = hello.demos; this.limits = hello.limits; [, this.wire.most] = hello.limits.message;
     if (hello.title) element("title").textContent = hello.title;
     if (hello.campaign) {
       this.campaign = new CampaignView(this, hello.campaign);

@@ -18,6 +18,9 @@ export function decode(buffer) {
 /** What is asked of a server that is gone. */
 const GONE = { message: "The server is gone.", remedy: "Start `impactid explore` again." };
 
+/** What is larger than the server takes. */
+const TOO_LARGE = { kind: "refused", taken: false, message: "This is larger than what the explorer takes.", remedy: "Take fewer steps or lines." };
+
 /** What is answered once, to the newest request alone. */
 const REPLACED = new Set(["proposals", "tables"]);
 
@@ -26,6 +29,7 @@ export class Wire {
   constructor(token, receive, closed) {
     this.receive = receive;
     this.next = 1;
+    this.most = Infinity;  // bytes of a message, as the server says
     this.newest = {};      // slot → id of its newest request
     this.asked = new Map(); // id → { slot, since, state, promise } of what may still be answered
     this.busy = {};        // slot → id that is waited for, of slots that ask one at a time
@@ -52,7 +56,9 @@ export class Wire {
     this.asked.delete(this.newest[slot]);
     this.newest[slot] = id;
     this.asked.set(id, { slot, state, since: since ?? this.clock() });
-    if (this.socket.readyState === 1) this.socket.send(JSON.stringify({ id, ask, state }));
+    const text = JSON.stringify({ id, ask, state });
+    if (3 * text.length > this.most && new Blob([text]).size > this.most) queueMicrotask(() => this.take({ ...TOO_LARGE, id }));
+    else if (this.socket.readyState === 1) this.socket.send(text);
     return id;
   }
 
