@@ -175,10 +175,12 @@ fn apart(method: Method, own: Option<&MethodResult>, joint: &JointFit) -> Option
     let remarks = own.map_or(&[][..], |own| &own.remarks);
     let value = own.and_then(|own| own.parameters.restitution.as_ref()?.value);
     let of_it = |p: &Prior| p.coordinate == Coordinate::Restitution && Some(p.centre) == value;
-    Some(match method {
-        Method::Boundaries if joint.priors.iter().any(of_it) => BY_R,
-        _ if remarks.contains(&Remark::IdealRig) => "takes the rig as ideal, not in the joint fit",
-        _ => "not in the joint fit",
+    Some(if joint.priors.iter().any(of_it) {
+        BY_R
+    } else if remarks.contains(&Remark::IdealRig) {
+        "takes the rig as ideal, not in the joint fit"
+    } else {
+        "not in the joint fit"
     })
 }
 
