@@ -104,7 +104,7 @@ fn browser_a_run_goes_on_from_every_new_start() {
     for _ in 0..5 {
         browser.until("impactid.motion.live?.end > 0.3");
         browser.evaluate(
-            "window.before = impactid.motion.live; impactid.strobe(); \
+            "window.before = impactid.motion.live; impactid.set({ poincare_phase: Math.PI / 4 }, ['motion']); \
              for (let v = 0; v < 6; v++) impactid.start({ x: 0, vx: v, y: 0, vy: v }, 0)",
         );
         browser.until("impactid.motion.live !== before");
