@@ -112,6 +112,24 @@ fn browser_values_that_take_too_long_together_are_refused_in_their_field() {
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
+#[test]
+#[ignore = "needs chromium"]
+fn browser_the_samples_of_the_series_are_chosen() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.until("impactid.motion.frame.column.periods.length === 8 * 200 + 1");
+    browser.key("c", 0);
+    let all = "[...document.querySelectorAll('dialog label')]";
+    let name = "its samples in a period";
+    let field = format!("{all}.find((l) => l.textContent === '{name}').querySelector('input')");
+    type_into(&mut browser, &field, "50");
+    browser.until("impactid.motion.frame.column.periods.length === 8 * 50 + 1");
+    // they are those of the study too
+    let study = "impactid.wire.once({ kind: 'study' }, impactid.state).then((f) => f.files.some((f) => f.text.includes('samples_per_period = 50')))";
+    assert_eq!(browser.evaluate(study), json!(true));
+}
+
 /// A place beside the view moves it as far as it must.
 #[test]
 #[ignore = "needs chromium"]

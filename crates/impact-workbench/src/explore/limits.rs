@@ -44,6 +44,7 @@ limits! {
     START "start": -10000, 10000;
     MASSES "masses": 1, 2;
     PERIODS "periods": 0.1, 400;
+    SAMPLES "samples": 10, 1000;
     SETTLE_PERIODS "settle_periods": 0, 20000;
     WATCH_PERIODS "watch_periods": 1, 20000;
     TOLERANCE "tolerance": 1e-12, 0.1;

@@ -118,6 +118,7 @@ impl Session {
             state.cursor.phase = plan.setting.phase;
             state.cursor.start = plan.start;
             state.periods = plan.periods;
+            state.samples_per_period = plan.samples_per_period;
             state.poincare_phase = plan.poincare_phase;
         }
         state.check()?;

@@ -44,6 +44,9 @@ pub struct State {
     /// Drive periods of its time series.
     #[serde(default = "eight")]
     pub periods: f64,
+    /// Samples of it in a drive period.
+    #[serde(default = "two_hundred")]
+    pub samples_per_period: usize,
     /// Phase of the drive at which the Poincaré map is taken, rad.
     #[serde(default)]
     pub poincare_phase: f64,
@@ -75,6 +78,10 @@ pub struct State {
 
 fn eight() -> f64 {
     8.0
+}
+
+fn two_hundred() -> usize {
+    200
 }
 
 /// Ranges of η and ρ.
@@ -207,6 +214,7 @@ impl Default for State {
                 start: Initial::rest(),
             },
             periods: eight(),
+            samples_per_period: two_hundred(),
             poincare_phase: 0.0,
             watch: Watch::default(),
             line: None,
@@ -250,6 +258,7 @@ impl State {
         rising("view.eta", self.view.eta, &limits::ETA)?;
         rising("view.rho", self.view.rho, &limits::RHO)?;
         limits::PERIODS.check("periods", self.periods)?;
+        limits::SAMPLES.check("samples_per_period", self.samples_per_period as f64)?;
         limits::PHASE.check("poincare_phase", self.poincare_phase)?;
         let watch = &self.watch;
         limits::SETTLE_PERIODS.check("watch.settle_periods", watch.settle_periods)?;
@@ -360,7 +369,7 @@ impl State {
             start: self.cursor.start,
             skip_periods: 0.0,
             periods: self.periods,
-            samples_per_period: 200,
+            samples_per_period: self.samples_per_period,
             poincare_periods: 300,
             poincare_phase: self.poincare_phase,
             soft: None,

@@ -93,7 +93,7 @@ export class Dialogs {
   picture() {
     const { app } = this, v = () => app.state.view;
     const end = (name, key, i) => rangeEnd(name, key, () => v()[key], i, (r) => { app.look(...(key === "eta" ? [r, v().rho] : [v().eta, r])); });
-    this.fields("Parameters of the picture (C)", [end("η from", "eta", 0), end("η to", "eta", 1), end("ρ from", "rho", 0), end("ρ to", "rho", 1), ["drive periods of the series", "periods", () => app.state.periods, (x) => { app.set({ periods: x }, ["motion"]); }]]);
+    this.fields("Parameters of the picture (C)", [end("η from", "eta", 0), end("η to", "eta", 1), end("ρ from", "rho", 0), end("ρ to", "rho", 1), ["drive periods of the series", "periods", () => app.state.periods, (x) => { app.set({ periods: x }, ["motion"]); }], ["its samples in a period", "samples", () => app.state.samples_per_period, (x) => { app.set({ samples_per_period: Math.round(x) }, ["motion"]); }]]);
   }
 
   simulation() {

@@ -474,7 +474,7 @@ class App {
 
   /** Draw every picture now. */
   paint() {
-    this.samples(); this.map.redrawNow(); this.motion.paint(); this.line.paint(); this.basins.paint(); this.campaign?.traces();
+    this.samples(); this.map.redraw(); this.map.draw(); this.motion.paint(); this.line.paint(); this.basins.paint(); this.campaign?.traces();
   }
 
   // ---- looks ---------------------------------------------------------------------

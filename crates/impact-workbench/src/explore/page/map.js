@@ -68,12 +68,6 @@ export class MapView {
     requestAnimationFrame(() => { this.drawn = false; this.draw(); });
   }
 
-  /** Draw all layers at once. */
-  redrawNow() {
-    for (const layer of Object.keys(LAYERS)) this.due.add(layer);
-    this.draw();
-  }
-
   /** Another map was asked for: what is shown is that of another machine or view, and faint unless one that is wanted
    * comes at once, however many are asked for until then. */
   asked() {

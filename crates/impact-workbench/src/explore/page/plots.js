@@ -136,7 +136,7 @@ export class MotionPanel extends Panel {
   poincare() {
     const l = this.live, c = this.frame?.column;
     const xs = l ? l.px : c.poincare_x, vs = l ? l.pv : c.poincare_vx;
-    const grown = (list) => { const [a, b] = around([list], 0.1), m = 0.05; return b - a < 2 * m ? [(a + b) / 2 - m, (a + b) / 2 + m] : [a, b]; };
+    const grown = (list) => { const [a, b] = around([list], 0.1), m = 0.1, at = m * Math.round((a + b) / 2 / m); return b - a < m ? [at - m, at + m] : [a, b]; };
     const before = l ? l.pt.findLastIndex((t) => t < l.moved) + 1 : 0, size = xs.length > 50 ? 1.2 : 2.5;
     const f = new Frame(element("poincare"), grown(xs), grown(vs), [before ? "*X* each period; grey: before the move" : "*X* once a drive period", "*X*′"]).axes();
     f.clip(() => {
