@@ -175,7 +175,8 @@ fn apart(method: Method, own: Option<&MethodResult>, joint: &JointFit) -> Option
     let remarks = own.map_or(&[][..], |own| &own.remarks);
     let value = own.and_then(|own| own.parameters.restitution.as_ref()?.value);
     let of_it = |p: &Prior| p.coordinate == Coordinate::Restitution && Some(p.centre) == value;
-    Some(if joint.priors.iter().any(of_it) {
+    let by_r = method.observes_boundaries() && joint.priors.iter().any(of_it);
+    Some(if by_r {
         BY_R
     } else if remarks.contains(&Remark::IdealRig) {
         "takes the rig as ideal, not in the joint fit"
