@@ -200,19 +200,22 @@ fn browser_a_campaign_without_records_leads_back_to_what_it_found() {
         .arg(&results)
         .status();
     assert!(run.is_ok_and(|status| status.code() < Some(2)));
-    let explorer = Explorer::start(&[&results.to_string_lossy()], folder.path());
-    let mut browser = Chromium::open(&explorer.url(), SIZE);
-    browser.until(QUIET);
-    assert_eq!(
-        browser.evaluate("document.getElementById('tab-record').hidden"),
-        json!(true)
-    );
-    let found = browser.evaluate("impactid.state.damping_ratio");
-    browser.evaluate("impactid.parameters({ damping_ratio: 0.2 })");
-    browser.key("z", 0);
-    assert_eq!(browser.evaluate("impactid.state.damping_ratio"), found);
-    browser.until(QUIET);
-    assert_eq!(browser.errors(), Vec::<String>::new());
+    // by its results and by itself
+    for given in [&*results.to_string_lossy(), campaign] {
+        let explorer = Explorer::start(&[given], folder.path());
+        let mut browser = Chromium::open(&explorer.url(), SIZE);
+        browser.until(QUIET);
+        assert_eq!(
+            browser.evaluate("document.getElementById('tab-record').hidden"),
+            json!(true)
+        );
+        let found = browser.evaluate("impactid.state.damping_ratio");
+        browser.evaluate("impactid.parameters({ damping_ratio: 0.2 })");
+        browser.key("z", 0);
+        assert_eq!(browser.evaluate("impactid.state.damping_ratio"), found);
+        browser.until(QUIET);
+        assert_eq!(browser.errors(), Vec::<String>::new());
+    }
 }
 
 #[test]

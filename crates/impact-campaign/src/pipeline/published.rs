@@ -40,6 +40,18 @@ pub fn run(
     Ok((found.identification, beside))
 }
 
+/// What published speeds say.
+///
+/// # Errors
+/// Where the table cannot be read.
+pub fn identified(
+    campaign: &ResolvedCampaign,
+    published: &Published,
+) -> Result<Identification, PipelineError> {
+    let speeds = read(&campaign.folder().join(&published.speeds))?;
+    Ok(identify(&speeds, &published.damping_ratio_hypotheses))
+}
+
 /// The files of a report of what was identified from published speeds.
 ///
 /// # Errors

@@ -14,7 +14,7 @@ use impact_campaign::pipeline::identify::IdentificationFile;
 use impact_campaign::pipeline::observe::read_one;
 use impact_campaign::pipeline::watch::Live;
 use impact_campaign::pipeline::{
-    Observed, PipelineError, Progress, identify, inputs, layout, store,
+    Observed, PipelineError, Progress, identify, inputs, layout, published, store,
 };
 use impact_fit::Estimate;
 use impact_fit::methods::blocks::Blocks;
@@ -44,11 +44,16 @@ pub struct OpenCampaign {
 }
 
 impl OpenCampaign {
-    /// Observe and identify a campaign.
+    /// Observe and identify a campaign, or what its published speeds say.
     ///
     /// # Errors
     /// [`ExploreError`] where none of its records can be used.
     pub fn of(resolved: ResolvedCampaign, progress: Progress<'_>) -> Result<Self, ExploreError> {
+        if let Some(speeds) = &resolved.published {
+            let identification = published::identified(&resolved, speeds)?;
+            let observed = Observed::whatever_is_there(&resolved, progress)?;
+            return Ok(Self::with(resolved, observed, identification));
+        }
         let observed = Observed::of(&resolved, progress)?;
         progress("identify", 0, 1);
         let found = identify::identify(&resolved, &observed, None)?;
