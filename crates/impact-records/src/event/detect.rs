@@ -10,7 +10,7 @@ use crate::event::drive::{self, DriveTone};
 use crate::event::finite_contact::{self, FiniteContact};
 use crate::event::heights::by_heights;
 use crate::event::impact::{DetectionSource, Impact};
-use crate::event::jumps::{Jump, JumpSearch, KnownJumps};
+use crate::event::jumps::{self, Jump, JumpSearch, KnownJumps};
 use crate::event::kinematics::{Body, Kinematics, RigKind, Series};
 use crate::event::refine;
 use crate::event::ringing::Ringing;
@@ -194,13 +194,21 @@ pub(crate) fn detect_at(
     let closed: Vec<Closed> = closed.iter().map(|c| c.every(stride)).collect();
     let dead_from = samples_of(settings.dead_zone_s, rate_hz).max(4);
     let per_period = drive.as_ref().map(|d| rate_hz / d.frequency_hz);
-    let width = per_period.map_or(5, |p| window_samples(p, settings.window_periods));
+    let width = width(&kinematics, per_period, settings.window_periods);
     let arc_samples = arc_samples(width);
     let found = match &kinematics.relative.velocity {
         Some(velocity) => {
             let known = before.map(Detection::known_jumps);
+            // a displacement that is cut off has kinks of its own
+            let clipped = record.flags.iter().any(|f| f.code == FlagCode::Clipped);
+            let recurs_after = per_period.filter(|_| !clipped);
             let body = (&kinematics.relative, velocity);
-            let found = fuse(body, (&closed, known.as_ref()), width, dead_from);
+            let found = fuse(
+                body,
+                (&closed, known.as_ref()),
+                (width, recurs_after),
+                dead_from,
+            );
             found.confirmed(velocity, arc_samples)
         }
         None => from_contact_alone(&closed, dead_from),
@@ -398,6 +406,22 @@ fn window_samples(per_period: f64, periods: f64) -> usize {
     whole::index((periods * per_period).round()).clamp(4, 16)
 }
 
+/// Greatest share of a period in which a jump is looked for to either side, where noise asks for it: impacts twice in a
+/// period still leave both sides to themselves.
+const WIDEST_PERIODS: f64 = 0.25;
+
+/// Samples of the windows in which jumps are looked for: a share of the period, or more of a noisy displacement, whose
+/// differences from sample to sample may be nothing but noise.
+fn width(kinematics: &Kinematics, per_period: Option<f64>, periods: f64) -> usize {
+    let Some(per_period) = per_period else {
+        return 5;
+    };
+    let least = window_samples(per_period, periods);
+    let most = whole::index(WIDEST_PERIODS * per_period);
+    let velocity = kinematics.relative.velocity.as_ref();
+    velocity.map_or(least, |v| jumps::window(v, per_period, least, most))
+}
+
 /// Most samples of an arc beside an impact, from those of a window in which jumps are looked for.
 fn arc_samples(width: usize) -> usize {
     (5 * width / 3).max(7)
@@ -500,15 +524,18 @@ struct Fused {
 fn fuse(
     (relative, velocity): (&Body, &Series),
     (closed, known): (&[Closed], Option<&KnownJumps>),
-    width: usize,
+    (width, recurs_after): (usize, Option<f64>),
     dead_from: usize,
 ) -> Fused {
     let search = JumpSearch::new(velocity, width);
     let mut jumps = search.find();
-    if let Some(known) = known {
-        search.keep_known(&mut jumps, known);
+    match known {
+        Some(known) => search.keep_known(&mut jumps, known),
+        None if closed.is_empty() => search.admit_recurring(recurs_after, &mut jumps),
+        None => {}
     }
     let (upward, downward) = search.directions();
+    let downward = downward.max(jumps.len());
     let mut unsupported = Vec::new();
     for pulse in closed {
         let (first, last) = reach(pulse, search.gap);
@@ -702,17 +729,30 @@ fn candidates(
     out
 }
 
+/// Share of a jump below which a velocity that stays there after it rests.
+const AT_REST: f64 = 0.1;
+
 /// Samples for which the approach velocity stays at zero after a jump, for records without a
-/// contact channel.
+/// contact channel; of means of so many samples that noise could not hide a rebound, no more than a dead zone has.
 fn resting_samples(velocity: &Series, jump: &Jump, next: usize, dead_from: usize) -> f64 {
     let begin = jump.left + jump.gap;
-    let rest_below = 4.0 * velocity.noise + 5e-3 * jump.height.abs();
-    let resting = velocity.values[begin.min(next)..next]
-        .iter()
-        .take_while(|v| v.abs() <= rest_below)
+    let height = jump.height.abs();
+    let noise = |count: usize| 4.0 * velocity.error_of_sum(&vec![1.0 / count as f64; count]);
+    let tells = (1..=dead_from).find(|count| noise(*count) <= AT_REST * height);
+    let Some(count) = tells else {
+        return 0.0;
+    };
+    let rest_below = noise(count) + 5e-3 * height;
+    let means = velocity.values[begin.min(next)..next].windows(count);
+    let rests = |mean: &f64| mean.abs() <= rest_below;
+    let resting = means
+        .map(|samples| samples.iter().sum::<f64>() / count as f64)
+        .take_while(rests)
         .count();
-    if resting >= dead_from {
-        resting as f64
+    // the samples of the last of these means
+    let samples = resting + (count - 1) * usize::from(resting > 0);
+    if samples >= dead_from {
+        samples as f64
     } else {
         0.0
     }
@@ -804,7 +844,12 @@ mod tests {
         // the last impact is too near the end for a jump, and those before it are seen across it
         let velocity = Series::clean(sawtooth(303));
         let closed = [pulse(100, 102), pulse(200, 202), pulse(300, 302)];
-        let found = fuse((&Body::default(), &velocity), (&closed, None), 8, 10);
+        let found = fuse(
+            (&Body::default(), &velocity),
+            (&closed, None),
+            (8, None),
+            10,
+        );
         let places = |found: &Fused| -> Vec<usize> {
             found.candidates.iter().map(|c| c.jump.left).collect()
         };
@@ -812,7 +857,12 @@ mod tests {
         // of two impacts that follow each other closely the contact may show one, and the velocity the other
         let velocity = Series::clean(sawtooth(400));
         let closed = [pulse(100, 102), pulse(205, 205), pulse(300, 302)];
-        let found = fuse((&Body::default(), &velocity), (&closed, None), 8, 10);
+        let found = fuse(
+            (&Body::default(), &velocity),
+            (&closed, None),
+            (8, None),
+            10,
+        );
         assert_eq!(
             (places(&found).as_slice(), found.unsupported),
             ([99, 199, 299].as_slice(), 1)
@@ -838,7 +888,7 @@ mod tests {
         for (y, inverted) in [(-0.8, true), (0.8, false)] {
             let of = kinematics(y);
             let velocity = of.relative.velocity.as_ref().unwrap();
-            let found = fuse((&Body::default(), velocity), (&[], None), 8, 10);
+            let found = fuse((&Body::default(), velocity), (&[], None), (8, None), 10);
             assert_eq!(found.candidates.len(), 3);
             assert_eq!(found.may_be_inverted(&of), inverted, "{y}");
         }
@@ -848,8 +898,13 @@ mod tests {
     fn a_pulse_belongs_to_the_jump_within_its_reach() {
         let velocity = Series::clean(sawtooth(400));
         let closed = [pulse(100, 102), pulse(245, 247)];
-        let found = fuse((&Body::default(), &velocity), (&closed, None), 8, 10)
-            .confirmed(&velocity, ARC_SAMPLES);
+        let found = fuse(
+            (&Body::default(), &velocity),
+            (&closed, None),
+            (8, None),
+            10,
+        )
+        .confirmed(&velocity, ARC_SAMPLES);
         let sources: Vec<_> = found.candidates.iter().map(|c| c.source).collect();
         use DetectionSource::{Both, Velocity};
         assert_eq!(sources, [Both, Velocity, Velocity]);
@@ -864,7 +919,7 @@ mod tests {
     #[test]
     fn a_jump_that_the_flights_do_not_show_needs_a_pulse() {
         let velocity = Series::clean(sawtooth(400));
-        let mut found = fuse((&Body::default(), &velocity), (&[], None), 8, 10);
+        let mut found = fuse((&Body::default(), &velocity), (&[], None), (8, None), 10);
         assert_eq!(found.candidates.len(), 3);
         // Between two impacts the velocity climbs steadily.
         let mut seeming = found.candidates[0].clone();
@@ -890,7 +945,7 @@ mod tests {
         let values = sawtooth(800).into_iter().enumerate();
         let ringing: Vec<f64> = values.map(|(i, v)| v + rings(i)).collect();
         let ringing = Series::clean(ringing);
-        let mut found = fuse((&Body::default(), &ringing), (&[], None), 16, 10);
+        let mut found = fuse((&Body::default(), &ringing), (&[], None), (16, None), 10);
         let first = found.candidates[0].clone();
         let jumps = Arcs {
             candidates: &found.candidates,
@@ -920,7 +975,7 @@ mod tests {
         let found = fuse(
             (&Body::default(), &velocity),
             (&[pulse(100, 120), pulse(200, 330)], None),
-            8,
+            (8, None),
             10,
         );
         let dead: Vec<f64> = found.candidates.iter().map(|c| c.dead_samples).collect();

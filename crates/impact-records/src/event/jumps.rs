@@ -1,6 +1,8 @@
 //! Jumps of the approach velocity: instants at which one-sided extrapolations from left and right
 //! disagree.
 
+use std::f64::consts::SQRT_2;
+
 use crate::event::kinematics::Series;
 use crate::signal::columns;
 use crate::signal::local_fit::LocalFit;
@@ -12,6 +14,16 @@ const SIGNIFICANT: f64 = 6.0;
 
 /// Significance that suffices where the contact channel shows a pulse, or the masses touch.
 const SUPPORTED: f64 = 3.0;
+
+/// Significance that suffices where most motions show a jump at the same place.
+const RECURRING: f64 = 1.0;
+
+/// Motions of which most must show a weak jump.
+const FEWEST_MOTIONS: usize = 5;
+
+/// Share of the motions that must show it: more than show one of every second period. Noise shows one at less than a
+/// hundredth of all places.
+const MOST: f64 = 0.6;
 
 /// A jump of velocity between two samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,6 +64,34 @@ pub(super) struct KnownJumps {
     pub rang: f64,
 }
 
+/// Jump that is to be significant despite the noise, over the amplitude of the velocity.
+const WEAK: f64 = 0.1;
+
+/// Samples of one-sided windows in which jumps show: as many as given, or so many more, up to a limit, that weak ones are
+/// significant or that noise makes no greater error of a jump than what parabolas miss of a harmonic motion with so
+/// many samples a period.
+pub(super) fn window(velocity: &Series, per_period: f64, least: usize, most: usize) -> usize {
+    let noise = velocity.noise;
+    let squares = robust::rms_about_mean(&velocity.values).powi(2) - noise * noise;
+    let amplitude = (2.0 * squares.max(0.0)).sqrt();
+    let turn = std::f64::consts::TAU / per_period;
+    let ahead = 0.5 * velocity.least_gap() as f64;
+    let bends = |weights: &[f64]| {
+        let places = || (0..weights.len()).map(|i| turn * (i as f64 + ahead));
+        let sum =
+            |of: fn(f64) -> f64| -> f64 { places().zip(weights).map(|(at, w)| w * of(at)).sum() };
+        amplitude * (sum(f64::cos) - 1.0).hypot(sum(f64::sin))
+    };
+    let enough = |count: &usize| {
+        let weights = one_sided_weights(*count, ahead);
+        let error = SQRT_2 * velocity.error_of_sum(&weights);
+        error <= (WEAK / SIGNIFICANT * amplitude).max(SQRT_2 * bends(&weights))
+    };
+    let wider = (0..).map(|k| least + k * least.div_ceil(4));
+    let mut wider = wider.take_while(|count| *count < most);
+    wider.find(enough).unwrap_or(most.max(least))
+}
+
 /// A search for jumps in one velocity signal.
 #[derive(Debug, Clone)]
 pub(super) struct JumpSearch<'a> {
@@ -62,6 +102,8 @@ pub(super) struct JumpSearch<'a> {
     pub gap: usize,
     scan: Vec<f64>,
     scan_deviation: f64,
+    /// Standard error of a jump between full windows by noise.
+    full_error: f64,
 }
 
 impl<'a> JumpSearch<'a> {
@@ -79,7 +121,7 @@ impl<'a> JumpSearch<'a> {
     }
 
     fn with_gap(velocity: &'a Series, window: usize, gap: usize) -> Self {
-        let (weights, factor) = one_sided_weights(window, 0.5 * gap as f64);
+        let weights = one_sided_weights(window, 0.5 * gap as f64);
         let values = &velocity.values;
         let count = values.len();
         let mut scan = vec![0.0; count];
@@ -91,14 +133,15 @@ impl<'a> JumpSearch<'a> {
             let before = values.get(first - j..).unwrap_or_default();
             columns::add_difference(heights, *weight, [after, before]);
         }
-        let theory = velocity.noise * factor * 2f64.sqrt();
+        let full_error = SQRT_2 * velocity.error_of_sum(&weights);
         let observed = quiet_deviation(&scan);
         Self {
             velocity,
             window,
             gap,
-            scan_deviation: observed.max(theory),
+            scan_deviation: observed.max(full_error),
             scan,
+            full_error,
         }
     }
 
@@ -180,6 +223,72 @@ impl<'a> JumpSearch<'a> {
         self.remeasured(accepted)
     }
 
+    /// Add the jumps that are too weak to count alone and come again at the same place of most motions of one to
+    /// four drive periods, as no noise does. Only of differences of a displacement: what recurs in a measured velocity
+    /// may be its ringing.
+    pub(super) fn admit_recurring(&self, per_period: Option<f64>, accepted: &mut Vec<Jump>) {
+        let Some(per_period) = per_period.filter(|_| self.velocity.is_differentiated()) else {
+            return;
+        };
+        let weak = self.candidates(SUPPORTED, -1.0);
+        while let Some(series) = self.recurring(&weak, per_period, accepted) {
+            let found = accepted.len();
+            for at in series {
+                let first = whole::index((at - self.gap as f64).round());
+                if self.is_free(at, accepted) {
+                    self.admit_as((first, first + 2 * self.gap), accepted, RECURRING);
+                }
+            }
+            if accepted.len() == found {
+                break;
+            }
+        }
+    }
+
+    /// The places of a jump, of those given the strongest one, that comes again and is none of those accepted.
+    fn recurring(&self, weak: &[usize], per_period: f64, accepted: &[Jump]) -> Option<Vec<f64>> {
+        let shows = |left: &usize| {
+            let free = self.is_free(*left as f64, accepted);
+            free && self.measure(*left, accepted, SUPPORTED).is_some()
+        };
+        let shown: Vec<usize> = weak.iter().copied().filter(shows).collect();
+        let mut places = shown.clone();
+        places.sort_unstable();
+        let mut motions = (1..=4).map(|n| f64::from(n) * per_period);
+        motions.find_map(|samples| {
+            let mut series = shown.iter().map(|left| self.every(*left, samples));
+            series.find(|series| self.recurs(&places, series))
+        })
+    }
+
+    /// Whether a place is so far from all accepted jumps that it shares less than half a window with them.
+    fn is_free(&self, at: f64, accepted: &[Jump]) -> bool {
+        let apart = 0.5 * self.window as f64;
+        accepted.iter().all(|j| (j.left as f64 - at).abs() >= apart)
+    }
+
+    fn beside(&self, left: usize, at: f64) -> bool {
+        (left as f64 - at).abs() <= self.gap as f64
+    }
+
+    /// The places at which a jump is if it comes again every so many samples.
+    fn every(&self, left: usize, samples: f64) -> Vec<f64> {
+        let inner = self.window as f64..self.scan.len() as f64 - self.window as f64;
+        let first = left as f64 - ((left as f64 - inner.start) / samples).floor() * samples;
+        let places = (0..).map(|k| first + f64::from(k) * samples);
+        places.take_while(|at| *at < inner.end).collect()
+    }
+
+    /// Whether most of a series of places are among those given in order.
+    fn recurs(&self, places: &[usize], series: &[f64]) -> bool {
+        let shows = |at: &&f64| {
+            let first = places.partition_point(|p| (*p as f64) < **at - self.gap as f64);
+            places.get(first).is_some_and(|p| self.beside(*p, **at))
+        };
+        let shown = series.iter().filter(shows).count() as f64;
+        series.len() >= FEWEST_MOTIONS && shown >= MOST * series.len() as f64
+    }
+
     /// Only the jumps at known places, with weaker ones where none was found.
     pub(super) fn keep_known(&self, jumps: &mut Vec<Jump>, known: &KnownJumps) {
         let gap = self.gap as f64 + 1.0;
@@ -231,8 +340,17 @@ impl<'a> JumpSearch<'a> {
     }
 
     /// Add the jump whose left sample is in `first..=last` to the accepted ones, if there is a supported one.
-    pub(super) fn admit(&self, (first, last): (usize, usize), accepted: &mut Vec<Jump>) -> bool {
-        let found = self.near(first, last, accepted, SUPPORTED);
+    pub(super) fn admit(&self, range: (usize, usize), accepted: &mut Vec<Jump>) -> bool {
+        self.admit_as(range, accepted, SUPPORTED)
+    }
+
+    fn admit_as(
+        &self,
+        (first, last): (usize, usize),
+        accepted: &mut Vec<Jump>,
+        significance: f64,
+    ) -> bool {
+        let found = self.near(first, last, accepted, significance);
         if let Some(jump) = found {
             let place = accepted.partition_point(|j| j.left < jump.left);
             accepted.insert(place, jump);
@@ -289,9 +407,12 @@ impl<'a> JumpSearch<'a> {
             .error_factor(middle)
             .hypot(after.error_factor(middle));
         let full = before.samples == self.window && after.samples == self.window;
-        let noise = self.velocity.noise * factor;
         // What parabolas miss of the flights themselves is in the scan; shorter windows miss no more.
-        let noise = if full { noise } else { 1.5 * noise };
+        let noise = if full {
+            self.full_error
+        } else {
+            1.5 * self.velocity.noise * factor
+        };
         let error = noise.max(self.scan_deviation);
         let jump = Jump {
             left,
@@ -332,22 +453,22 @@ fn quiet_deviation(scan: &[f64]) -> f64 {
 }
 
 /// Weights that extrapolate a parabola from `count` samples by `ahead` steps beyond the first of
-/// them (index 0 is the nearest sample), and their root sum of squares.
-fn one_sided_weights(count: usize, ahead: f64) -> (Vec<f64>, f64) {
-    let weights: Vec<f64> = (0..count)
+/// them (index 0 is the nearest sample).
+fn one_sided_weights(count: usize, ahead: f64) -> Vec<f64> {
+    (0..count)
         .map(|i| {
             let mut unit = vec![0.0; count];
             unit[i] = 1.0;
             LocalFit::new(&unit, 0, count, 2).map_or(0.0, |fit| fit.value(-ahead))
         })
-        .collect();
-    let factor = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
-    (weights, factor)
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, Normal};
 
     /// A line of slope 0.01 per sample that steps by `height` after sample 50, over `gap` samples.
     fn stepped(height: f64, gap: usize) -> Series {
@@ -416,6 +537,49 @@ mod tests {
         assert_eq!((search.gap, found.len()), (3, 1));
         assert_eq!(found[0].left, 49);
         assert!((found[0].height + 0.9).abs() < 1e-9, "{}", found[0].height);
+    }
+
+    /// Differences of a displacement of parabolas that meet in a kink every 200 samples, or of a sine of the same size, under
+    /// white noise.
+    fn noisy(kinks: bool, noise: f64) -> Series {
+        let place = |i: u32| {
+            let share = f64::from(i) / 200.0;
+            let phase = share.fract();
+            if kinks {
+                2.0 * phase * (phase - 1.0)
+            } else {
+                0.25 * (std::f64::consts::TAU * share).sin()
+            }
+        };
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(11);
+        let normal = Normal::new(0.0, noise).expect("a deviation");
+        let places: Vec<f64> = (0..4000)
+            .map(|i| place(i) + normal.sample(&mut rng))
+            .collect();
+        let last = places.len() - 1;
+        let difference = |i: usize| 0.5 * (places[(i + 1).min(last)] - places[i.saturating_sub(1)]);
+        let mut velocity = Series::clean((0..places.len()).map(difference).collect());
+        velocity.role = crate::record::Role::DisplacementX;
+        velocity.noise = noise / SQRT_2;
+        velocity
+    }
+
+    #[test]
+    fn weak_kinks_of_a_noisy_displacement_are_found_where_they_recur_and_none_where_there_are_none()
+    {
+        for kinks in [true, false] {
+            let velocity = noisy(kinks, 0.02);
+            let width = window(&velocity, 200.0, 16, 50);
+            assert!(width > 16);
+            let search = JumpSearch::new(&velocity, width);
+            let mut found = search.find();
+            search.admit_recurring(Some(200.0), &mut found);
+            let expected = if kinks { 19 } else { 0 };
+            assert_eq!(found.len(), expected, "{found:?}");
+            let at_kink =
+                |j: &Jump| (j.middle() / 200.0 - (j.middle() / 200.0).round()).abs() * 200.0;
+            assert!(found.iter().all(|j| at_kink(j) < 6.0), "{found:?}");
+        }
     }
 
     #[test]

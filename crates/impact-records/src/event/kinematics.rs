@@ -80,15 +80,32 @@ impl Series {
         measured + 2 * self.spread
     }
 
+    /// Standard error, by noise, of the sum of neighbouring samples with weights: neighbours of a differentiated
+    /// displacement share its samples, so that most of their noise cancels in a sum.
+    pub(super) fn error_of_sum(&self, weights: &[f64]) -> f64 {
+        if !self.is_differentiated() {
+            return self.noise * columns::dot(weights, weights).sqrt();
+        }
+        let weight = |i: Option<usize>| i.and_then(|i| weights.get(i)).copied().unwrap_or(0.0);
+        let of_sample = |i: usize| weight(i.checked_sub(2)) - weight(Some(i));
+        let of_samples: Vec<f64> = (0..weights.len() + 2).map(of_sample).collect();
+        self.noise * (0.5 * columns::dot(&of_samples, &of_samples)).sqrt()
+    }
+
     /// Part of a velocity that this one shows at a frequency, in periods per sample, and the deviation of white noise that
     /// is as large as its noise there: differences of displacements over two samples show less of what is faster.
     pub(crate) fn shown_at(&self, frequency: f64) -> (f64, f64) {
-        if !matches!(self.role, Role::DisplacementX | Role::DisplacementY) {
+        if !self.is_differentiated() {
             return (1.0, self.noise);
         }
         let turned = std::f64::consts::TAU * frequency;
         let part = turned.sin().abs();
         (part / turned, 2f64.sqrt() * part * self.noise)
+    }
+
+    /// Whether it is a velocity by differences of a displacement.
+    pub(super) fn is_differentiated(&self) -> bool {
+        matches!(self.role, Role::DisplacementX | Role::DisplacementY)
     }
 
     /// Whether it is a velocity by integrating an acceleration: what it is off changes by its noise from sample to
@@ -454,6 +471,18 @@ mod tests {
             .unwrap();
         assert!((velocity.values[40] - velocity.values[10] - 0.9).abs() < 1e-9);
         assert_eq!(velocity.high_pass_hz, Some(0.0));
+    }
+
+    #[test]
+    fn valid_noise_of_a_differentiated_displacement_cancels_in_sums() {
+        // the mean of n differences over two samples is (x_n + x_{n−1} − x_0 − x_{−1})/2n: √4/2n of the displacement's
+        // noise, √2/n of that of the differences, 1/√2
+        let mut series = Series::clean(vec![0.0; 9]);
+        series.noise = 0.5f64.sqrt();
+        let mean = [0.125; 8];
+        assert!((series.error_of_sum(&mean) - 0.5f64.sqrt() / 8f64.sqrt()).abs() < 1e-15);
+        series.role = Role::DisplacementX;
+        assert!((series.error_of_sum(&mean) - 0.125).abs() < 1e-15);
     }
 
     #[test]

@@ -3,7 +3,6 @@
 
 use crate::event::jumps::Jump;
 use crate::event::kinematics::{Body, Series};
-use crate::record::Role;
 use crate::signal::robust;
 
 /// Impacts from which the displacement of the stop is known.
@@ -17,9 +16,7 @@ const KNOWN: f64 = 0.1;
 /// `clear` samples away from these. Only of a velocity that is differentiated from the displacement: a measured
 /// one shows slower impacts than the displacement tells.
 pub(super) fn touches(relative: &Body, jumps: &[Jump], clear: usize) -> Vec<usize> {
-    let of_displacement =
-        |velocity: &&Series| matches!(velocity.role, Role::DisplacementX | Role::DisplacementY);
-    let velocity = relative.velocity.as_ref().filter(of_displacement);
+    let velocity = relative.velocity.as_ref().filter(|v| v.is_differentiated());
     let Some((_, displacement)) = velocity.zip(relative.displacement.as_ref()) else {
         return Vec::new();
     };
@@ -64,6 +61,7 @@ fn lowest_at_the_stop(displacement: &Series, jumps: &[Jump]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::Role;
 
     /// Ten periods of 200 samples that reach the stop at 1 in sample 50 of each, and `other` in sample 140.
     fn body(other: f64) -> Body {

@@ -536,7 +536,7 @@ fn clipped_spikes(channel: &Channel, spikes: &[Range<usize>], stated: bool) -> O
 }
 
 /// Number of samples at both rails. A mass that rests at its stop shows a plateau of displacement
-/// at one side, which is no rail, unless it leaves it as fast as it came.
+/// at one side, which is no rail, unless it leaves it as a cut crest does.
 fn at_rails(channel: &Channel, span: &Span, crests: Crests) -> usize {
     let ends = [span.low, span.high];
     let rails = ends.map(|rail| at_rail(&channel.values, rail, span.step));
@@ -549,36 +549,37 @@ fn at_rails(channel: &Channel, span: &Span, crests: Crests) -> usize {
     }
 }
 
-/// What shows that crests of a displacement are cut off at a value: the motion leaves it as fast as it came, which from a
-/// stop it does not.
+/// What shows that crests of a displacement are cut off at a value: in a free decay, where no stop is, the motion leaves
+/// it as fast as it came; of a driven motion it leaves it at speed, while a mass that rested starts from none.
 #[derive(Debug, Clone, Copy)]
 struct Crests {
     excitation: Excitation,
 }
 
-impl Crests {
-    /// The fewest crests that show it, and the greatest relative difference of the speeds before and after one: in a free
-    /// decay, where no stop is, one crest is enough, before which the mass was not held.
-    fn needed(self) -> (usize, f64) {
-        match self.excitation {
-            Excitation::FreeDecay => (1, 0.5),
-            Excitation::Harmonic => (3, 0.05),
-        }
-    }
+/// Greatest ratio of the second step of a motion to its first one behind a cut crest. A body that starts from rest within
+/// a step has 5/3 at least, a parabola that is cut for three samples or more 7/5 at most.
+const AT_SPEED: f64 = 1.5;
 
+impl Crests {
     /// Whether crests are cut off at a value.
     fn are_cut(self, values: &[f64], rail: f64) -> bool {
         let inner = runs(values, |v| v == rail)
-            .filter(|run| run.len() >= 3 && run.start >= 2 && run.end + 1 < values.len());
+            .filter(|run| run.len() >= 3 && run.start >= 2 && run.end + 2 < values.len());
         let ratio = |run: Range<usize>| {
-            let before = values[run.start - 1] - values[run.start - 2];
-            let after = values[run.end] - values[run.end + 1];
-            after / before
+            let step = |i: usize| values[i + 1] - values[i];
+            let after = step(run.end);
+            match self.excitation {
+                Excitation::FreeDecay => -after / step(run.start - 2),
+                Excitation::Harmonic => step(run.end + 1) / after,
+            }
         };
         let ratios: Vec<f64> = inner.map(ratio).collect();
-        let (fewest, alike) = self.needed();
-        let same = |ratio: f64| (ratio - 1.0).abs() < alike;
-        ratios.len() >= fewest && robust::median(&ratios).is_some_and(same)
+        // before the one crest of a decay the mass was not held
+        let (fewest, cut) = match self.excitation {
+            Excitation::FreeDecay => (1, 0.5..1.5),
+            Excitation::Harmonic => (3, 0.0..AT_SPEED),
+        };
+        ratios.len() >= fewest && robust::median(&ratios).is_some_and(|r| cut.contains(&r))
     }
 }
 
@@ -815,17 +816,23 @@ mod tests {
         inspect(&mut record, &[None], false);
         assert_eq!(record.flags[0].code, FlagCode::Clipped);
         assert!(record.excluded());
-        // a mass that meets a stop, rests there and leaves it half as fast
-        let stop: Vec<f64> = (0..1000)
-            .map(|i| match i % 60 {
-                0..20 => 20.0 - f64::from(i % 60),
-                20..30 => 0.0,
-                _ => f64::from(i % 60 - 30) * 0.5,
-            })
-            .collect();
-        let mut record = Record::of(100.0, &[(Role::DisplacementX, &stop)]);
-        inspect(&mut record, &[None], false);
-        assert!(record.flags.iter().all(|f| f.code != FlagCode::Clipped));
+        let clipped = |displacement: fn(u32) -> f64| {
+            let values: Vec<f64> = (0..1000).map(displacement).collect();
+            let mut record = Record::of(100.0, &[(Role::DisplacementX, &values)]);
+            inspect(&mut record, &[None], false);
+            record.flags.iter().any(|f| f.code == FlagCode::Clipped)
+        };
+        // a motion that comes back slower than it went
+        assert!(clipped(|i| {
+            let phase = 0.1 * f64::from(i);
+            (phase.sin() + 0.4 * (2.0 * phase).cos()).max(-0.9)
+        }));
+        // a mass that meets a stop and rests there until it is drawn away
+        assert!(!clipped(|i| match i % 60 {
+            k @ 0..20 => 17.03 - f64::from(k) + 1e-3 * f64::from(i),
+            20..30 => -3.0,
+            k => 0.02 * f64::from(k - 29).powi(2) - 3.0,
+        }));
     }
 
     #[test]

@@ -12,8 +12,6 @@ use impact_records::signal::robust;
 const FEWEST: usize = 8;
 /// Powers that are tried: a fit that has one of them tells by its slope of the force what is left.
 const STEPS: [f64; 6] = [0.5, 1.0, 1.5, 2.0, 3.0, 4.0];
-/// Deviation of the waveforms from those of a constant force up to which there is no law, as of the resonance curve.
-const FITS: f64 = 0.01;
 /// Part of the mean square of a constant force that the law may leave, as of the resonance curve.
 const LEFT: f64 = 0.1;
 
@@ -31,8 +29,8 @@ pub fn rising_force(evidence: &Evidence<'_>) -> Option<ForceLaw> {
         nominal: &evidence.nominal,
         blocks: &blocks,
     };
-    let constant = search.tried(0.0, search.guess())?;
-    if deviation(&blocks, &constant.fitted) < FITS {
+    let constant = search.tried(0.0, search.guess());
+    if starts::deviation(&blocks, &constant.fitted) < starts::FITS {
         return None;
     }
     let up = search.each(STEPS.into_iter(), &constant);
@@ -64,24 +62,23 @@ impl Search<'_> {
     /// Powers one after the other, each from where the fit of the one before ended.
     fn each(&self, powers: impl Iterator<Item = f64>, constant: &Tried) -> Vec<Tried> {
         let mut before = constant.fitted;
-        let tried = powers.filter_map(|power| {
-            let tried = self.tried(power, before)?;
+        let tried = powers.map(|power| {
+            let tried = self.tried(power, before);
             before = tried.fitted;
-            Some(tried)
+            tried
         });
         tried.collect()
     }
 
     /// The best fit with a power.
-    fn tried(&self, power: f64, start: Parameters) -> Option<Tried> {
+    fn tried(&self, power: f64, start: Parameters) -> Tried {
         let blocks = self.about(power);
-        let start = starts::best(&blocks, self.nominal, start);
-        let fitted = starts::fitted(&blocks, self.nominal, start).unwrap_or(start);
-        Some(Tried {
+        let (score, fitted) = starts::searched(&blocks, self.nominal, start);
+        Tried {
             power,
             fitted,
-            score: starts::score(&blocks, &fitted),
-        })
+            score,
+        }
     }
 
     /// The blocks with forces that rise with a power.
@@ -114,18 +111,6 @@ impl Search<'_> {
         );
         self.nominal.applied(guess)
     }
-}
-
-/// Root mean square of what a fit leaves of the waveforms over that of the waveforms; a record without an orbit leaves all.
-fn deviation(blocks: &Blocks, fitted: &Parameters) -> f64 {
-    let left = blocks.trajectory.differences(fitted);
-    let records = blocks.trajectory.records.iter().zip(left);
-    let each = records.map(|(record, left)| {
-        let zeros = vec![0.0; left.as_ref().map_or(1, Vec::len)];
-        let whole = robust::rms(&record.apart(&zeros));
-        left.map_or(1.0, |left| robust::rms(&left) / whole)
-    });
-    robust::rms(&each.collect::<Vec<f64>>())
 }
 
 #[cfg(test)]

@@ -17,6 +17,8 @@ use impact_records::signal::robust;
 
 /// Share of the periodic records that a good start gives an orbit.
 const ENOUGH: f64 = 0.8;
+/// Deviation of the waveforms from those of a fit, over the waveforms, up to which it follows them: as of the resonance curve.
+pub(super) const FITS: f64 = 0.01;
 /// Records that are looked at; of more, every second, third …
 const MOST: usize = 24;
 /// Natural frequencies that are tried, and the least and the greatest of them over the drive's.
@@ -28,30 +30,57 @@ const DAMPING: [f64; 4] = [0.01, 0.03, 0.08, 0.2];
 const DEFLECTIONS: [f64; 7] = [0.4, 0.6, 0.8, 1.0, 1.25, 1.6, 2.5];
 /// Starts that are fitted.
 const FITTED: usize = 4;
+/// Most steps of a fit to the majority.
+const CONCENTRATIONS: usize = 10;
 /// The score of a record without an orbit: as of one that fits a thousand times worse than its noise.
 const LOST: f64 = 13.8;
 
-/// The given start where it gives most records an orbit, else the best one.
+/// The given start where most records have an orbit and a fit from it follows them, else the best one.
 pub(super) fn best(blocks: &Blocks, nominal: &Nominal, given: Parameters) -> Parameters {
     let few = thinned(blocks);
-    if few.trajectory.records.is_empty() || with_orbits(&few, &given) >= ENOUGH {
+    let follows = || {
+        let fitted = fitted(&few, nominal, given);
+        fitted.is_some_and(|fitted| deviation(&few, &fitted) < FITS)
+    };
+    if few.trajectory.records.is_empty() || with_orbits(&few, &given) >= ENOUGH && follows() {
         return given;
     }
-    let mut tried: Vec<(f64, Parameters)> = grid(&few, nominal, given)
-        .into_par_iter()
-        .chain([given])
-        .map(|start| (score(&few, &start), start))
-        .collect();
-    tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-    tried.truncate(FITTED);
-    let fitted = tried.iter().filter_map(|(_, start)| {
-        let fitted = fitted(&few, nominal, *start)?;
-        Some((score(&few, &fitted), fitted))
+    let (_, best) = searched(&few, nominal, given);
+    best
+}
+
+/// The fit of some records that scores best, and its score, of those from the likeliest starts and from the given one.
+pub(super) fn searched(few: &Blocks, nominal: &Nominal, given: Parameters) -> (f64, Parameters) {
+    let starts = likeliest(few, nominal, given).into_iter().chain([given]);
+    let fits = starts.map(|start| {
+        let whole = fitted(few, nominal, start).unwrap_or(start);
+        fitted_to_majority(few, nominal, whole)
     });
-    let fitted: Vec<(f64, Parameters)> = fitted.collect();
-    let all = tried.into_iter().chain(fitted);
-    all.min_by(|a, b| a.0.total_cmp(&b.0))
-        .map_or(given, |(_, start)| start)
+    let scored = fits.map(|fit| (score(few, &fit), fit));
+    let best = scored.min_by(|a, b| a.0.total_cmp(&b.0));
+    best.unwrap_or((LOST, given))
+}
+
+/// Root mean square of what a fit leaves of the waveforms over that of the waveforms; a record without an orbit leaves all.
+pub(super) fn deviation(blocks: &Blocks, fitted: &Parameters) -> f64 {
+    let left = blocks.trajectory.differences(fitted);
+    let records = blocks.trajectory.records.iter().zip(left);
+    let each = records.map(|(record, left)| {
+        let zeros = vec![0.0; left.as_ref().map_or(1, Vec::len)];
+        let whole = robust::rms(&record.apart(&zeros));
+        left.map_or(1.0, |left| robust::rms(&left) / whole)
+    });
+    robust::rms(&each.collect::<Vec<f64>>())
+}
+
+/// The combinations of f0, β and `x_st` that score best.
+fn likeliest(few: &Blocks, nominal: &Nominal, given: Parameters) -> Vec<Parameters> {
+    let scored = |start: Parameters| (score(few, &start), start);
+    let grid = grid(few, nominal, given).into_par_iter();
+    let mut tried: Vec<(f64, Parameters)> = grid.map(scored).collect();
+    tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let best = tried.into_iter().take(FITTED);
+    best.map(|(_, start)| start).collect()
 }
 
 /// The blocks with some of their records.
@@ -70,7 +99,7 @@ fn with_orbits(blocks: &Blocks, at: &Parameters) -> f64 {
 }
 
 /// How badly records fit: the mean of the logarithms of their mean squares.
-pub(super) fn score(blocks: &Blocks, at: &Parameters) -> f64 {
+fn score(blocks: &Blocks, at: &Parameters) -> f64 {
     let waveforms = mean_squares(&blocks.trajectory, at);
     let responses = mean_squares(&blocks.resonance, at);
     let scores: Vec<f64> = waveforms
@@ -117,14 +146,49 @@ fn grid(blocks: &Blocks, nominal: &Nominal, given: Parameters) -> Vec<Parameters
 }
 
 /// A rough fit of resonance curve and waveforms together, of the records with an orbit at the start.
-pub(super) fn fitted(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<Parameters> {
+fn fitted(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<Parameters> {
+    fitted_to(blocks, nominal, start, blocks.trajectory.records.len())
+}
+
+/// The same of so many records at most, those that the start fits best.
+fn fitted_to(
+    blocks: &Blocks,
+    nominal: &Nominal,
+    start: Parameters,
+    most: usize,
+) -> Option<Parameters> {
     let found = mean_squares(&blocks.trajectory, &start);
     let records = blocks.trajectory.records.iter().zip(found);
-    let with_orbit = records.filter(|(_, square)| square.is_some());
-    let kept = with_orbit.map(|(record, _)| record.clone()).collect();
-    let some = blocks.with_trajectory(blocks.trajectory.with_records(kept));
+    let mut with_orbit: Vec<_> = records
+        .filter_map(|(r, square)| Some((square?, r)))
+        .collect();
+    if with_orbit.len() > most {
+        with_orbit.sort_by(|a, b| a.0.total_cmp(&b.0));
+        with_orbit.truncate(most);
+    }
+    let kept = with_orbit.into_iter().map(|(_, record)| record.clone());
+    let some = blocks.with_trajectory(blocks.trajectory.with_records(kept.collect()));
     let both = joint::curve_and_waveforms();
     joint::rough(&some, start, &both, &nominal.ideal()).map(|fit| fit.parameters)
+}
+
+/// A fit to the majority of the records: of those that fit best, again and again, as long as the whole fits better. Records
+/// whose motions are not those of the start do not pull it away (least trimmed squares by concentration steps; Rousseeuw
+/// and Van Driessen 2006).
+fn fitted_to_majority(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Parameters {
+    let majority = blocks.trajectory.records.len() / 2 + 1;
+    let mut best = (score(blocks, &start), start);
+    for _ in 0..CONCENTRATIONS {
+        let Some(next) = fitted_to(blocks, nominal, best.1, majority) else {
+            break;
+        };
+        let next = (score(blocks, &next), next);
+        if next.0 >= best.0 {
+            break;
+        }
+        best = next;
+    }
+    best.1
 }
 
 #[cfg(test)]
