@@ -6,8 +6,11 @@
 //! what the closing speed at the impact lacks of that e later. Both flights are followed through the e that is most likely, as
 //! the curvature of the gap over e would take R down, and are linear about it (iterated extended Kalman filter; Bell and Cathey
 //! 1993).
+//!
+//! The constant part of a measured velocity is known from the condition that the mass returns. Times that are late count some of the
+//! flights before the impacts twice, so that all speeds of the record are off alike.
 
-use nalgebra::{Matrix4, Matrix5, Matrix6, SVector, Vector4, Vector5, Vector6};
+use nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector4, Vector6};
 
 use impact_oscillator::model::flight::{Drive, State, free_flight};
 use impact_oscillator::model::params::Machine;
@@ -25,11 +28,26 @@ const ROUNDS: usize = 3;
 /// A machine with the drive that it sees at an instant.
 pub(super) type Driven<'a> = (&'a Machine, Drive);
 
-/// Mean and covariance of (X, X', Y, Y') and of what all times of the record are late by, dimensionless.
+/// Places in the mean: what all times of the record are late by; the constant of its velocities, over its deviation; and what the
+/// time of one impact is late by beside.
+const LATE: usize = 4;
+const CONSTANT: usize = 5;
+const OWN_LATE: usize = 6;
+
+/// A measured speed: what it shows of (X, X', Y, Y'), of what the times are late by, and of the velocities' constant.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shown {
+    pub state: Vector4<f64>,
+    pub late: f64,
+    pub constant: f64,
+}
+
+/// Mean and covariance of (X, X', Y, Y'), of what all times of the record are late by, dimensionless, and of the constant of its
+/// velocities, over its deviation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Belief {
-    mean: Vector5<f64>,
-    covariance: Matrix5<f64>,
+    mean: Vector6<f64>,
+    covariance: Matrix6<f64>,
 }
 
 impl Belief {
@@ -42,16 +60,16 @@ impl Belief {
                 0.0
             }
         };
-        let variances = Vector5::new(state(0), state(0), state(1), state(1), late * late);
+        let variances = Vector6::new(state(0), state(0), state(1), state(1), late * late, 1.0);
         Self {
-            mean: Vector5::zeros(),
-            covariance: Matrix5::from_diagonal(&variances),
+            mean: Vector6::zeros(),
+            covariance: Matrix6::from_diagonal(&variances),
         }
     }
 
-    /// Take a measurement of h·(X, X', Y, Y') with a variance in; gives its innovation.
-    pub(super) fn learn(&mut self, h: Vector4<f64>, value: f64, variance: f64) -> Innovation {
-        let h = h.push(0.0);
+    /// Take a measured speed with a variance in; gives its innovation.
+    pub(super) fn learn(&mut self, shown: &Shown, value: f64, variance: f64) -> Innovation {
+        let h = shown.state.push(shown.late).push(shown.constant);
         update(&mut self.mean, &mut self.covariance, h, value, variance)
     }
 
@@ -73,46 +91,48 @@ impl Belief {
     /// Fly on for a time.
     pub(super) fn fly(&mut self, driven: Driven<'_>, time: f64) {
         let end = flown(driven, &self.mean, time);
-        self.mean = Vector5::new(end.x, end.vx, end.y, end.vy, self.mean[4]);
-        let mut flow = free_flow(driven.0, time).fixed_resize::<5, 5>(0.0);
-        flow[(4, 4)] = 1.0;
+        let state = Vector4::new(end.x, end.vx, end.y, end.vy);
+        self.mean = state.push(self.mean[LATE]).push(self.mean[CONSTANT]);
+        let mut flow = free_flow(driven.0, time).fixed_resize::<6, 6>(0.0);
+        (flow[(LATE, LATE)], flow[(CONSTANT, CONSTANT)]) = (1.0, 1.0);
         self.covariance = flow * self.covariance * flow.transpose();
     }
 }
 
 /// The same at the measured time of an impact, with the impact's own part of e.
 struct Touching {
-    mean: Vector6<f64>,
-    covariance: Matrix6<f64>,
+    mean: SVector<f64, 7>,
+    covariance: SMatrix<f64, 7, 7>,
     /// The greatest e through which the flights are followed.
     usual: f64,
 }
 
 impl Touching {
     fn new(belief: &Belief, time_error: f64) -> Self {
-        let mut covariance = belief.covariance.fixed_resize::<6, 6>(0.0);
-        covariance[(5, 5)] = time_error * time_error;
+        let mut covariance = belief.covariance.fixed_resize::<7, 7>(0.0);
+        covariance[(OWN_LATE, OWN_LATE)] = time_error * time_error;
         Self {
             mean: belief.mean.push(0.0),
             covariance,
-            usual: USUALLY_LATE * (covariance[(4, 4)] + covariance[(5, 5)]).sqrt(),
+            usual: USUALLY_LATE
+                * (covariance[(LATE, LATE)] + covariance[(OWN_LATE, OWN_LATE)]).sqrt(),
         }
     }
 
     /// The e through which the flights are followed, and what a mean has of it beyond.
-    fn late(&self, mean: &Vector6<f64>) -> [f64; 2] {
-        let whole = mean[4] + mean[5];
+    fn late(&self, mean: &SVector<f64, 7>) -> [f64; 2] {
+        let whole = mean[LATE] + mean[OWN_LATE];
         let late = whole.clamp(-self.usual, self.usual);
         [late, whole - late]
     }
 
     /// Take in that the gap was filled e before the measured time; gives the innovation.
     fn fill(&mut self, driven: Driven<'_>, gap: f64) -> Innovation {
-        let round = |about: &Vector6<f64>| {
+        let round = |about: &SVector<f64, 7>| {
             let [late, beyond] = self.late(about);
             let at = flown(driven, about, -late);
             let closing = at.vx + at.vy;
-            let h = Vector6::new(1.0, -late, 1.0, -late, -closing, -closing);
+            let h = SVector::from([1.0, -late, 1.0, -late, -closing, 0.0, -closing]);
             let filled = gap - (at.x + at.y - closing * beyond) + h.dot(about);
             let (mut mean, mut covariance) = (self.mean, self.covariance);
             let innovation = update(&mut mean, &mut covariance, h, filled, 0.0);
@@ -151,17 +171,18 @@ impl Touching {
         let changed = Vector4::new(-lost_x, 0.0, -lost_y, 0.0) * closing;
         let accelerations = |s: &State| Vector4::new(0.0, s.ax, 0.0, s.ay);
         let by_late = changed + accelerations(&after) - jump * accelerations(&before);
-        let mut through = jump.fixed_resize::<5, 6>(0.0);
-        for column in [4, 5] {
+        let mut through = jump.fixed_resize::<6, 7>(0.0);
+        for column in [LATE, OWN_LATE] {
             through
                 .fixed_view_mut::<4, 1>(0, column)
                 .copy_from(&by_late);
         }
-        through[(4, 4)] = 1.0;
+        (through[(LATE, LATE)], through[(CONSTANT, CONSTANT)]) = (1.0, 1.0);
         let mean = Vector4::new(after.x, after.vx, after.y, after.vy) + by_late * beyond;
-        let thrown = Vector5::new(0.0, changed[0], 0.0, changed[2], 0.0) * (scatter / (1.0 + r));
+        let thrown =
+            Vector6::new(0.0, changed[0], 0.0, changed[2], 0.0, 0.0) * (scatter / (1.0 + r));
         Belief {
-            mean: mean.push(self.mean[4]),
+            mean: mean.push(self.mean[LATE]).push(self.mean[CONSTANT]),
             covariance: through * self.covariance * through.transpose()
                 + thrown * thrown.transpose(),
         }

@@ -5,11 +5,14 @@
 //! and the gap closed. Between them the flight is exact and linear, and so is Newton's law; the
 //! nodes are therefore eliminated by a Kalman filter along the record, and its innovations over
 //! their deviations are the residuals. An impact's time is known as well as it was measured, and as the times of
-//! a record are found together they may all be off alike as far as each by itself.
+//! a record are found together they may all be off alike as far as each by itself. The impacts of a periodic motion repeat each
+//! other, and so do the errors of their times and speeds but for the noise: they count as one motion.
 
 use nalgebra::Vector4;
 
-use crate::methods::flights::belief::Belief;
+use crate::methods::flights::belief::{Belief, Shown};
+use crate::methods::flights::constants::Constants;
+use crate::methods::flights::repeated::{Repeats, as_one_motion, several};
 use crate::methods::impacts::block::corners_in;
 use crate::parameters::own::Circumstances;
 use crate::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
@@ -37,6 +40,8 @@ pub struct Node {
     pub after_m_s: [f64; 2],
     /// Standard error of each speed, m/s.
     pub error_m_s: f64,
+    /// What of it is noise, m/s.
+    pub noise_m_s: f64,
     /// What the channels' corners would change of the speeds of x and of y.
     pub corner_shifts: [Option<CornerShift>; 2],
 }
@@ -75,6 +80,10 @@ pub struct FlightRecord {
     pub speeds_from: [Option<Role>; 2],
     /// Its impacts, in their order, none missing between them.
     pub nodes: Vec<Node>,
+    /// Standard error that their times have in common, s.
+    pub late_s: f64,
+    /// What the constant of each mass's velocity is off by these times.
+    pub constants: Constants,
 }
 
 /// All records that are shot from impact to impact.
@@ -158,17 +167,16 @@ impl FlightBlock {
         let gap = machine.gap(setting.clearance);
         let rate = parameters.natural_rate();
         let speed = parameters.static_deflection_m * record.drive_amplitude * rate;
-        let measured = record.measured(parameters, speed);
+        let measured = record.measured(parameters, speed, rate);
         let masses = if machine.y.is_some() { 2 } else { 1 };
-        let times = record.nodes.iter().map(|node| node.time_error_s * rate);
-        let mut belief = Belief::unknown(masses, robust::mean(&times.collect::<Vec<_>>()));
+        let mut belief = Belief::unknown(masses, record.late_s * rate);
         let mut out = Vec::with_capacity(record.nodes.len() * (1 + 2 * measured.len()));
         for (k, node) in record.nodes.iter().enumerate() {
             let [before, after] = node.speeds_m_s(parameters, record.sum_alone());
             let time_error = node.time_error_s * rate;
             let measure = |belief: &mut Belief, speeds: [f64; 2], out: &mut Vec<Innovation>| {
                 for (row, speed_m_s) in measured.iter().zip(speeds) {
-                    out.push(belief.learn(*row, speed_m_s, node.error_m_s.powi(2)));
+                    out.push(belief.learn(row, speed_m_s, node.error_m_s.powi(2)));
                 }
             };
             measure(&mut belief, before, &mut out);
@@ -199,18 +207,27 @@ impl FlightBlock {
 }
 
 impl FlightRecord {
-    /// What is measured of (X, X', Y, Y') at an impact, in m/s: each mass's speed, or their sum where accelerations
-    /// tell no more; gains included.
-    fn measured(&self, parameters: &Parameters, speed_m_s: f64) -> Vec<Vector4<f64>> {
+    /// What is measured at an impact, in m/s: each mass's speed, or their sum where accelerations tell no more; gains
+    /// included. The unit of times is the inverse of a rate.
+    fn measured(&self, parameters: &Parameters, speed_m_s: f64, rate: f64) -> Vec<Shown> {
         let of = |m: usize| {
             let gain = parameters.gain(self.speeds_from[m]?);
-            let mut row = Vector4::zeros();
-            row[2 * m + 1] = gain * speed_m_s;
-            Some(row)
+            let mut state = Vector4::zeros();
+            state[2 * m + 1] = gain * speed_m_s;
+            Some(Shown {
+                state,
+                late: self.constants.by_late_m_s2[m] / rate,
+                constant: self.constants.deviation_m_s[m],
+            })
         };
-        let rows: Vec<Vector4<f64>> = (0..2).filter_map(of).collect();
+        let rows: Vec<Shown> = (0..2).filter_map(of).collect();
         if self.sum_alone() {
-            vec![rows.iter().sum()]
+            let sum = |a: Shown, b: &Shown| Shown {
+                state: a.state + b.state,
+                ..a
+            };
+            let first = rows[0];
+            vec![rows[1..].iter().fold(first, sum)]
         } else {
             rows
         }
@@ -227,6 +244,11 @@ impl FlightRecord {
         let mut roles = self.speeds_from.iter().flatten();
         roles.any(|role| accelerations.contains(role))
     }
+}
+
+/// Whether speeds are those of a measured velocity, whose constant is not known but from the motion.
+fn is_velocity(from: Option<Role>) -> bool {
+    matches!(from, Some(Role::VelocityX | Role::VelocityY))
 }
 
 fn has_no_closed_form(motion: &Motion) -> bool {
@@ -263,6 +285,8 @@ fn flight_record(rig: RigKind, index: usize, o: &Observation) -> Option<FlightRe
             o.speed_from(true).filter(|_| rig == RigKind::Double),
         ],
         nodes: Vec::new(),
+        late_s: 0.0,
+        constants: Constants::default(),
     };
     // The first and the last impact may be known by their times alone.
     let known = |i: &Impact| i.approach_speed_before_m_s.is_some();
@@ -276,6 +300,27 @@ fn flight_record(rig: RigKind, index: usize, o: &Observation) -> Option<FlightRe
     record.nodes = impacts
         .map(|i| node(together, i, (missed, integrated)))
         .collect::<Option<_>>()?;
+    let times = record.nodes.iter().map(|node| node.time_error_s);
+    record.late_s = robust::mean(&times.collect::<Vec<_>>());
+    let measured = record.speeds_from.map(is_velocity);
+    record.constants = Constants::of_record(&record.nodes, measured);
+    if let Motion::Periodic {
+        impacts_p,
+        periods_n,
+        ..
+    } = o.classification.motion
+    {
+        let repeats = Repeats {
+            impacts: impacts_p as usize,
+            periods: periods_n,
+            frequency_hz: drive.frequency_hz,
+        };
+        let one = as_one_motion(&record.nodes, repeats);
+        if let Some(one) = one {
+            record.constants = Constants::of_motion(&one, repeats.after_s(), measured);
+            record.nodes = several(&one, repeats.after_s());
+        }
+    }
     (record.nodes.len() >= FEWEST_IMPACTS).then_some(record)
 }
 
@@ -307,6 +352,7 @@ fn node(together: bool, impact: &Impact, (missed, integrated): (f64, bool)) -> O
         before_m_s,
         after_m_s,
         error_m_s: noise.hypot(missed * closing).hypot(late),
+        noise_m_s: noise,
         corner_shifts: impact.corner_shifts,
     })
 }
@@ -403,6 +449,7 @@ mod tests {
                     before_m_s: [i.vx_before * speed, i.vy_before * speed],
                     after_m_s: [i.vx_after * speed, i.vy_after * speed],
                     error_m_s: 1e-4,
+                    noise_m_s: 1e-4,
                     corner_shifts: [None, None],
                 });
                 FlightRecord {
@@ -417,6 +464,8 @@ mod tests {
                         Some(Role::VelocityY).filter(|_| rig == RigKind::Double),
                     ],
                     nodes: nodes.collect(),
+                    late_s: 1e-7,
+                    constants: Constants::default(),
                 }
             })
             .to_vec();
@@ -478,8 +527,11 @@ mod tests {
     fn valid_irregular_motions_alone_tell_all_four_parameters() {
         let mut block = block(RigKind::Double);
         // of times known to a tenth of a microsecond the likelihood has more than one maximum between the starts and the truth
-        for node in block.records.iter_mut().flat_map(|r| &mut r.nodes) {
-            node.time_error_s = 1e-5;
+        for record in &mut block.records {
+            record.late_s = 1e-5;
+            for node in &mut record.nodes {
+                node.time_error_s = 1e-5;
+            }
         }
         let start = Parameters {
             restitution: 0.77,
@@ -527,6 +579,7 @@ mod tests {
             (state.x, state.y) = (gap / 2.0, gap / 2.0);
             [state.vx, state.vy] = first.after_m_s.map(|v| v / speed);
             record.nodes.clear();
+            record.late_s = late_s;
             while record.nodes.len() < 40 {
                 let drive = Drive {
                     eta: setting.frequency_ratio,
@@ -632,7 +685,6 @@ mod tests {
             let found = problem.fit(p).expect("a fit");
             let apart = found.parameters.restitution - p.restitution;
             scores.push(apart * apart / found.covariance[(0, 0)]);
-            eprintln!("DBG {apart:.6} {:.6}", found.covariance[(0, 0)].sqrt());
         }
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         assert!((mean(&squares) - 1.0).abs() < 0.1, "{}", mean(&squares));
@@ -656,6 +708,7 @@ mod tests {
                 // closing speeds of the last one are not ten times the noise
                 block.records.truncate(2);
                 for record in &mut block.records {
+                    record.late_s = late_s;
                     for node in &mut record.nodes {
                         let late = late_s * normal.sample(&mut rng);
                         node.time_s += late;

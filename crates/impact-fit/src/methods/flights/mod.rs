@@ -2,7 +2,9 @@
 
 mod belief;
 pub mod block;
+mod constants;
 mod fit;
+mod repeated;
 mod result;
 mod select;
 
