@@ -99,6 +99,25 @@ impl Belief {
     }
 }
 
+/// Places of a flight at which it is looked whether the masses are still apart.
+const LOOKED_AT: u32 = 32;
+/// Standard errors by which they must be beyond each other.
+const BEYOND: f64 = 5.0;
+
+impl Belief {
+    /// Whether the masses would pass through each other within a time: an impact there was not seen.
+    pub(super) fn passes_through(&self, driven: Driven<'_>, gap: f64, time: f64) -> bool {
+        let beyond = |k: u32| {
+            let mut later = *self;
+            later.fly(driven, time * f64::from(k) / f64::from(LOOKED_AT));
+            let h = Vector6::new(1.0, 0.0, 1.0, 0.0, 0.0, 0.0);
+            let variance = (h.transpose() * later.covariance * h)[0].max(0.0);
+            h.dot(&later.mean) - gap > BEYOND * variance.sqrt() + 1e-3 * gap.abs()
+        };
+        (1..LOOKED_AT).any(beyond)
+    }
+}
+
 /// The same at the measured time of an impact, with the impact's own part of e.
 struct Touching {
     mean: SVector<f64, 7>,

@@ -10,7 +10,7 @@
 
 use nalgebra::Vector4;
 
-use crate::methods::flights::belief::{Belief, Shown};
+use crate::methods::flights::belief::{Belief, Driven, Shown};
 use crate::methods::flights::constants::Constants;
 use crate::methods::flights::repeated::{Repeats, as_one_motion, several};
 use crate::methods::impacts::block::corners_in;
@@ -156,6 +156,27 @@ impl FlightBlock {
         parameters: &Parameters,
         scatter: f64,
     ) -> Vec<Innovation> {
+        self.followed(record, parameters, scatter, |_, _, _, _| {})
+    }
+
+    /// Whether the masses of a record would pass through each other between its impacts: one was not seen.
+    pub fn lacks_an_impact(&self, record: &FlightRecord, parameters: &Parameters) -> bool {
+        let mut passes = false;
+        let look = |belief: &Belief, flight: Driven<'_>, gap: f64, time: f64| {
+            passes |= belief.passes_through(flight, gap, time);
+        };
+        self.followed(record, parameters, self.scatter, look);
+        passes
+    }
+
+    /// The innovations of one record; each flight is shown, with the gap and the time that it lasts.
+    fn followed(
+        &self,
+        record: &FlightRecord,
+        parameters: &Parameters,
+        scatter: f64,
+        mut flown: impl FnMut(&Belief, Driven<'_>, f64, f64),
+    ) -> Vec<Innovation> {
         let machine = parameters.machine(self.rig);
         let (_, clearance_m) = parameters.own(&Circumstances {
             frequency_hz: record.frequency_hz,
@@ -188,7 +209,9 @@ impl FlightBlock {
             out.push(belief.touch_and_bounce(flight, gap, time_error, scatter));
             measure(&mut belief, after, &mut out);
             if let Some(next) = record.nodes.get(k + 1) {
-                belief.fly(flight, (next.time_s - node.time_s) * rate);
+                let time = (next.time_s - node.time_s) * rate;
+                flown(&belief, flight, gap, time);
+                belief.fly(flight, time);
             }
         }
         out
@@ -484,6 +507,21 @@ mod tests {
                 let later = residuals[first..].iter();
                 let worst = later.fold(0.0f64, |m, r| m.max(r.abs()));
                 assert!(worst < 0.01, "{worst}");
+            }
+        }
+    }
+
+    #[test]
+    fn valid_an_impact_that_was_not_seen_is_missed_by_its_flight() {
+        for rig in [RigKind::Double, RigKind::Single] {
+            let block = block(rig);
+            for record in &block.records {
+                assert!(!block.lacks_an_impact(record, &truth()));
+                for missing in 3..record.nodes.len() - 1 {
+                    let mut seen = record.clone();
+                    seen.nodes.remove(missing);
+                    assert!(block.lacks_an_impact(&seen, &truth()), "{missing}");
+                }
             }
         }
     }

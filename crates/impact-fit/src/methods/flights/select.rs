@@ -31,12 +31,18 @@ impl Selection<'_> {
             let known: Vec<f64> = scores.iter().flatten().copied().collect();
             let limit = Bulk::of(&known).limit;
             let follows = |score: &Option<f64>| score.is_some_and(|s| s <= limit);
-            if found.is_some() && scores.iter().all(follows) && !changed {
+            let block = &self.blocks.flight;
+            let records = block.records.iter().zip(&scores);
+            let whole = |record| found.is_none() || !block.lacks_an_impact(record, &parameters);
+            let kept: Vec<bool> = records
+                .map(|(record, score)| follows(score) && whole(record))
+                .collect();
+            if found.is_some() && kept.iter().all(|kept| *kept) && !changed {
                 break;
             }
-            let mut scores = scores.iter();
+            let mut kept = kept.into_iter();
             let records = &mut self.blocks.flight.records;
-            let gone = records.extract_if(.., |_| !scores.next().is_some_and(follows));
+            let gone = records.extract_if(.., |_| !kept.next().unwrap_or(false));
             for record in gone.collect::<Vec<_>>() {
                 self.note(record.observation, Reason::ImpactsDoNotFollow);
             }
