@@ -228,7 +228,7 @@ def main():
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a field of kinds.Kind")
     given = parser.parse_args()
     kinds = list(KINDS) if given.kinds == "all" else given.kinds.split(",")
-    unknown = [k for k in kinds if k not in KINDS and k != laboratory.DRAWN]
+    unknown = [k for k in kinds if k not in KINDS and k not in laboratory.DRAWN]
     if unknown:
         parser.error(f"no kind {', '.join(unknown)}; laboratory.py --list prints them")
     rows = [HEAD]

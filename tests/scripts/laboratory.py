@@ -20,13 +20,16 @@ import h5py
 import numpy as np
 
 from bench import measure, selected
-from drawn import laboratory_of
+from drawn import flawed_laboratory_of, laboratory_of
 from instruments import channels
 from kinds import KINDS
 from specimen import alternatives, draw, truth
 
 
-DRAWN = "any"
+DRAWN = {
+    "any": (laboratory_of, "rig, instruments and settings drawn from the seed"),
+    "flawed": (flawed_laboratory_of, "the same with one flaw"),
+}
 
 
 def campaign_toml(d, kind, name, sensors):
@@ -82,8 +85,8 @@ def make(name, kind, seed, folder):
 
 
 def kind_of(name, seed):
-    """The kind of a name; of `any` that of the seed."""
-    return laboratory_of(seed) if name == DRAWN else KINDS[name]
+    """The kind of a name; of one that is drawn that of the seed."""
+    return DRAWN[name][0](seed) if name in DRAWN else KINDS[name]
 
 
 def with_settings(kind, settings):
@@ -103,7 +106,7 @@ def with_settings(kind, settings):
 def main():
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", nargs="?", choices=sorted([*KINDS, DRAWN]), metavar="KIND")
+    parser.add_argument("kind", nargs="?", choices=sorted([*KINDS, *DRAWN]), metavar="KIND")
     parser.add_argument("seed", nargs="?", type=int)
     parser.add_argument("folder", nargs="?")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a field of kinds.Kind")
@@ -113,7 +116,8 @@ def main():
     if given.list:
         for name, kind in KINDS.items():
             print(f"{name:24} {kind.about}")
-        print(f"{DRAWN:24} rig, instruments and settings drawn from the seed")
+        for name, (_, about) in DRAWN.items():
+            print(f"{name:24} {about}")
     elif given.selftest:
         import selftest
 
