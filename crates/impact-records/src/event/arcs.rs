@@ -77,7 +77,7 @@ impl<'a> Arcs<'a> {
     }
 
     /// Degree of a polynomial through so many samples of an arc that ends so many samples from the impact.
-    fn degree(self, samples: usize, far: f64) -> usize {
+    pub(super) fn degree(self, samples: usize, far: f64) -> usize {
         let long = 4 * samples >= 3 * self.samples;
         DEGREE + usize::from(long && far <= NEAR * samples as f64)
     }

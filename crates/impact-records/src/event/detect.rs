@@ -382,17 +382,22 @@ fn stride_of(per_period: f64) -> usize {
     whole::index((per_period / SAMPLES_PER_PERIOD).floor()).max(1)
 }
 
-/// Error of a speed that is extrapolated by half a sample from an arc beside an impact, of a motion as fast as its
-/// drive, over its amplitude: what polynomials miss where a period has few samples.
-pub fn extrapolation_error(samples_per_period: f64) -> f64 {
+/// Error of a speed that is extrapolated from an arc beside an impact to the middle of a jump that takes so many samples, of a
+/// motion as fast as its drive, over its amplitude: what polynomials miss where a period has few samples.
+pub fn extrapolation_error(samples_per_period: f64, jump_samples: usize) -> f64 {
     let per_period = samples_per_period / stride_of(samples_per_period) as f64;
     let width = window_samples(per_period, DetectSettings::default().window_periods);
     let count = arc_samples(width);
+    let all = Arcs {
+        candidates: &[],
+        samples: count,
+    };
     let apart = |of: fn(f64) -> f64| {
         let value = |at: f64| of(std::f64::consts::TAU * at / per_period);
         let values: Vec<f64> = (0..count).map(|i| value(i as f64)).collect();
-        let at = count as f64 - 0.5;
-        let fit = LocalFit::new(&values, 0, count, DEGREE + 1);
+        let far = 0.5 * jump_samples as f64;
+        let at = (count - 1) as f64 + far;
+        let fit = LocalFit::new(&values, 0, count, all.degree(count, far));
         fit.map_or(1.0, |fit| fit.value(at) - value(at))
     };
     apart(f64::cos).hypot(apart(f64::sin))
@@ -419,7 +424,8 @@ fn width(kinematics: &Kinematics, per_period: Option<f64>, periods: f64) -> usiz
     let least = window_samples(per_period, periods);
     let most = whole::index(WIDEST_PERIODS * per_period);
     let velocity = kinematics.relative.velocity.as_ref();
-    velocity.map_or(least, |v| jumps::window(v, per_period, least, most))
+    let noisy = velocity.filter(|v| v.is_differentiated());
+    noisy.map_or(least, |v| jumps::window(v, per_period, least, most))
 }
 
 /// Most samples of an arc beside an impact, from those of a window in which jumps are looked for.
@@ -987,7 +993,7 @@ mod tests {
     fn valid_few_samples_a_period_leave_speeds_uncertain() {
         // The same least squares in numpy: np.polyfit of degree 4 through np.cos and np.sin.
         for (per_period, want) in [(24.0, 1.117e-3), (40.0, 8.86e-5), (160.0, 3.81e-5)] {
-            let found = extrapolation_error(per_period);
+            let found = extrapolation_error(per_period, 1);
             assert!((found / want - 1.0).abs() < 0.02, "{per_period}: {found}");
         }
         // More samples than are looked at are the same.

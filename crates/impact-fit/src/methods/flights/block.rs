@@ -318,7 +318,7 @@ fn flight_record(rig: RigKind, index: usize, o: &Observation) -> Option<FlightRe
     let impacts = o.impacts[first..=last].iter();
     let together = rig == RigKind::Single || record.sum_alone();
     let per_period = o.sample_rate_hz / drive.frequency_hz;
-    let missed = extrapolation_error(per_period).hypot(SPEED_SCATTER);
+    let missed = extrapolation_error(per_period, o.jump_samples).hypot(SPEED_SCATTER);
     let integrated = record.has_acceleration();
     record.nodes = impacts
         .map(|i| node(together, i, (missed, integrated)))

@@ -179,7 +179,7 @@ const EXTRAPOLATED: f64 = 1e-3;
 /// beside an impact, and the speeds do not rest on clipped spikes or what a low-pass has left of a jump.
 pub(super) fn tells_speeds(o: &Observation) -> bool {
     let per_period = o.drive.map(|drive| o.sample_rate_hz / drive.frequency_hz);
-    let follows = |per_period| extrapolation_error(per_period) < EXTRAPOLATED;
+    let follows = |per_period| extrapolation_error(per_period, o.jump_samples) < EXTRAPOLATED;
     !o.excluded() && !o.low_pass && per_period.is_none_or(follows) && !o.speeds_lack_spikes()
 }
 
