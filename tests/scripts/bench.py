@@ -65,6 +65,7 @@ class Bench:
         if other:
             d["R"] += self.kind.other_restitution
             d["f0"] *= 1.0 + self.kind.other_frequency
+            d["beta"] *= 1.0 + self.kind.other_damping
         self.p = machine(d, self.kind)
         # Another stiffness with the same masses: the same static deflection.
         self.force = self.p[[rig.FX, rig.FY]].copy()
@@ -157,7 +158,7 @@ def measure(d, kind):
     noise = np.random.default_rng([d["seed"], 3])
     plan = sweeps(d, kind)
     half = sum(recorded for *_, chain in plan for _, recorded in chain) // 2
-    changes = kind.other_restitution or kind.other_frequency
+    changes = kind.other_restitution or kind.other_frequency or kind.other_damping
     period = (1.0 + kind.clock) / kind.rate_hz
     number = 0
     for index, rho, direction, chain in plan:
@@ -181,7 +182,7 @@ def measure(d, kind):
             part = number / (kind.frequencies * 2 * len(kind.clearances) - 1)
             grown = 1.0 + kind.gain_drift * part + kind.gain_step * (number >= half)
             volts = [instruments.samples(c, motion, ticks) * (grown if c.role.endswith("x") else 1.0) for c in sensors]
-            columns = [instruments.converted(c, v, noise) for c, v in zip(sensors, volts)]
+            columns = [instruments.converted(c, v, period, noise) for c, v in zip(sensors, volts)]
             if kind.frozen:
                 instruments.freeze([counts for counts, _ in columns], kind, noise)
             setting = {"clearance_mm": 1e3 * stated_m, "sweep": direction}

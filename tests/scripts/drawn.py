@@ -82,6 +82,10 @@ def flaws(kind, rng):
         "pickup": {"pickup_drive": float(rng.uniform(2e-3, 2e-2))},
         "gap": {"gap_off_m": either * float(rng.uniform(0.03, 0.25)) * kind.deflection_m[0]},
         "half": {"other_restitution": -float(rng.uniform(0.02, 0.05)), "other_frequency": float(rng.uniform(0.005, 0.02))},
+        "half_damping": {"other_damping": either * float(rng.uniform(0.1, 0.3))},
+        "slow_noise": {"slow_noise": float(rng.uniform(1.0, 10.0))},
+        "hum": {"hum": float(rng.uniform(1.0, 10.0))},
+        "outliers": {"outliers": 10.0 ** float(rng.uniform(-4.0, -2.5))},
         "speed": {"speed_exponent": float(rng.uniform(0.05, 0.3))},
         "scatter": {"scatter": float(rng.uniform(0.005, 0.02))},
         "mode": {"second_mode": float(rng.uniform(0.003, 0.01))},
@@ -104,6 +108,7 @@ def flaws(kind, rng):
         possible["force_y"] = {"force_ratio": float(rng.uniform(0.0, 0.5)) + 1e-9}
         other = x[:-1] + "y"
         if other in kind.roles:
+            possible["crosstalk"] = {"crosstalk": either * float(rng.uniform(0.005, 0.05))}
             possible["late_both"] = {"late_s": ((x, late_s), (other, late_s))}
     return possible
 

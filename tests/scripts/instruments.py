@@ -33,6 +33,11 @@ class Channel:
     band_limit: float = 0.0  # corner over the sampling rate of a converter's filter of linear phase
     pickup_drive: float = 0.0  # volts per volt of the generator
     pickup_contact: float = 0.0  # volts per volt of the contact
+    crosstalk: float = 0.0  # volts per volt of the other mass's channel
+    slow_noise_v: float = 0.0
+    slow_s: float = 1.0  # time constant of the slow noise
+    hum_v: float = 0.0
+    outliers: float = 0.0  # share of the samples
     noise_v: float = 0.0
     full_scale_v: float = 10.0
     bits: int = 12
@@ -118,7 +123,9 @@ def motion_channel(c, d, kind, speed):
         c = replace(c, smear=kind.smear if kind.smear > 0.0 else d["smear_x"] if of_x else d["smear_y"])
     if of_x:
         c = replace(c, pickup_drive=kind.pickup_drive, pickup_contact=kind.pickup_contact)
-    return c
+        c = replace(c, crosstalk=kind.crosstalk, outliers=kind.outliers)
+    slow_s = 10.0 / (2.0 * math.pi * d["f0"])
+    return replace(c, slow_noise_v=kind.slow_noise * c.noise_v, slow_s=slow_s, hum_v=kind.hum * c.noise_v)
 
 
 def times_needed(channel, ticks):
@@ -193,6 +200,9 @@ def samples(channel, motion, ticks):
         volts = CONTACT_V * motion.without(channel.missed).closed(read_at, channel.chatter)
     else:
         volts = sensor(channel, motion, ticks) * channel.gain / channel.scale
+        if channel.crosstalk:
+            other = replace(channel, role=channel.role[:-1] + "y")
+            volts = volts + channel.crosstalk * sensor(other, motion, ticks) / channel.scale
     volts = volts + channel.pickup_drive * motion.drive_v(ticks)
     return volts + channel.pickup_contact * CONTACT_V * motion.closed(ticks)
 
@@ -215,10 +225,30 @@ def sensor(channel, motion, ticks):
     return value
 
 
-def converted(channel, volts, rng):
+def disturbance(channel, period, count, rng):
+    """What is added to a channel beside white noise, V."""
+    volts = np.zeros(count)
+    if channel.slow_noise_v:
+        kept = math.exp(-period / channel.slow_s)
+        steps = channel.slow_noise_v * rng.standard_normal(count)
+        steps[1:] *= math.sqrt(1.0 - kept * kept)
+        for i in range(1, count):
+            steps[i] += kept * steps[i - 1]
+        volts += steps
+    if channel.hum_v:
+        volts += channel.hum_v * math.sqrt(2.0) * np.cos(2.0 * math.pi * (50.0 * period * np.arange(count) + rng.random()))
+    if channel.outliers:
+        struck = rng.random(count) < channel.outliers
+        volts += 100.0 * channel.noise_v * struck * rng.choice((-1.0, 1.0), count)
+    return volts
+
+
+def converted(channel, volts, period, rng):
     """Counts of the converter."""
     count = channel.full_scale_v / 2 ** (channel.bits - 1)
     noisy = volts + channel.noise_v * rng.standard_normal(len(volts))
+    if channel.slow_noise_v or channel.hum_v or channel.outliers:
+        noisy = noisy + disturbance(channel, period, len(volts), rng)
     limit = 2 ** (channel.bits - 1)
     return np.clip(np.round(noisy / count), -limit, limit - 1).astype(np.int16 if channel.bits <= 16 else np.int32), count
 

@@ -48,6 +48,7 @@ class Kind:
     other_of: str = "half"  # which records are of another rig: the second "half", the second "gap", the "sweep" down
     other_restitution: float = 0.0  # what R of the other rig has beside the first
     other_frequency: float = 0.0  # the same of f0, relative
+    other_damping: float = 0.0  # the same of beta, relative
     gap_off_m: float = 0.0  # by how much the second clearance is larger than stated
     # instruments that are off
     gain_x: float = 1.0
@@ -68,6 +69,10 @@ class Kind:
     smear: float = 0.0  # share of a sample by which software shifts readings; -1: drawn for each channel
     pickup_drive: float = 0.0
     pickup_contact: float = 0.0
+    crosstalk: float = 0.0  # what x picks up of the same sensor of y
+    slow_noise: float = 0.0  # noise of all channels of motion slower than a tenth of f0, over the white one
+    hum: float = 0.0  # of 50 Hz in all channels of motion, over the noise
+    outliers: float = 0.0  # share of the samples of x that are off by a hundred times the noise
 
 
 DISPLACEMENTS = ("drive", "displacement_x", "displacement_y")

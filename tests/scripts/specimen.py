@@ -121,8 +121,9 @@ def truth(d, kind, impacts):
 
 def alternatives(d, kind, main):
     """Other values that an interval may hold: of the second half's rig, of R of the whole body."""
-    if kind.other_restitution or kind.other_frequency:
+    if kind.other_restitution or kind.other_frequency or kind.other_damping:
         other = {**d, "R": d["R"] + kind.other_restitution, "f0": d["f0"] * (1.0 + kind.other_frequency)}
+        other["beta"] *= 1.0 + kind.other_damping
         return truth(other, kind, ())
     if kind.second_mode:
         mu = kind.second_mode
