@@ -411,21 +411,27 @@ fn window_samples(per_period: f64, periods: f64) -> usize {
     whole::index((periods * per_period).round()).clamp(4, 16)
 }
 
-/// Greatest share of a period in which a jump is looked for to either side, where noise asks for it: impacts twice in a
-/// period still leave both sides to themselves.
-const WIDEST_PERIODS: f64 = 0.25;
+/// Greatest shares of a period in which a jump is looked for to either side, where noise asks for it: of a measured velocity such
+/// that polynomials through the arcs of that width miss no more than a thousandth of a motion; of a displacement, whose
+/// differences from sample to sample may be nothing but noise, such that impacts twice in a period leave both sides to themselves.
+const WIDEST_PERIODS: f64 = 0.15;
+const WIDEST_PERIODS_OF_DIFFERENCES: f64 = 0.25;
 
-/// Samples of the windows in which jumps are looked for: a share of the period, or more of a noisy displacement, whose
-/// differences from sample to sample may be nothing but noise.
+/// Samples of the windows in which jumps are looked for: a share of the period, or more under noise.
 fn width(kinematics: &Kinematics, per_period: Option<f64>, periods: f64) -> usize {
     let Some(per_period) = per_period else {
         return 5;
     };
     let least = window_samples(per_period, periods);
-    let most = whole::index(WIDEST_PERIODS * per_period);
     let velocity = kinematics.relative.velocity.as_ref();
-    let noisy = velocity.filter(|v| v.is_differentiated());
-    noisy.map_or(least, |v| jumps::window(v, per_period, least, most))
+    velocity.map_or(least, |v| {
+        let widest = if v.is_differentiated() {
+            WIDEST_PERIODS_OF_DIFFERENCES
+        } else {
+            WIDEST_PERIODS
+        };
+        jumps::window(v, per_period, least, whole::index(widest * per_period))
+    })
 }
 
 /// Most samples of an arc beside an impact, from those of a window in which jumps are looked for.
