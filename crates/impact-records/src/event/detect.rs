@@ -2,7 +2,7 @@
 
 use std::f64::consts::SQRT_2;
 
-use crate::event::arcs::{self, Arcs, Candidate, DEGREE, Instant};
+use crate::event::arcs::{self, Arcs, Candidate, Instant};
 use crate::event::channel_lags::{ChannelLag, channel_lags};
 use crate::event::contact::{Closed, closed_intervals};
 use crate::event::directions::{JumpDirections, jump_directions};
@@ -1003,7 +1003,10 @@ mod tests {
             assert!((found / want - 1.0).abs() < 0.02, "{per_period}: {found}");
         }
         // More samples than are looked at are the same.
-        let (few, many) = (extrapolation_error(200.0), extrapolation_error(5000.0));
+        let (few, many) = (
+            extrapolation_error(200.0, 1),
+            extrapolation_error(5000.0, 1),
+        );
         assert!((few - many).abs() < 1e-12);
     }
 
