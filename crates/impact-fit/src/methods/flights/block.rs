@@ -12,6 +12,7 @@ use nalgebra::Vector4;
 
 use crate::methods::flights::belief::{Belief, Driven, Shown};
 use crate::methods::flights::constants::Constants;
+use crate::methods::flights::node::Node;
 use crate::methods::flights::repeated::{Repeats, as_one_motion, several};
 use crate::methods::impacts::block::corners_in;
 use crate::parameters::own::Circumstances;
@@ -19,47 +20,11 @@ use crate::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
 use crate::solver::Block;
 use crate::solver::group::Group;
 use impact_oscillator::model::flight::Drive;
-use impact_records::event::{CornerShift, Impact, RigKind, extrapolation_error};
+use impact_records::event::{Impact, RigKind, extrapolation_error};
 use impact_records::motion::{Motion, Observation};
 use impact_records::record::Role;
 use impact_records::signal::kalman::Innovation;
 use impact_records::signal::robust;
-
-/// One impact as it was measured, SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Node {
-    /// Time since the record's first sample, s.
-    pub time_s: f64,
-    /// Its standard error, s.
-    pub time_error_s: f64,
-    /// Phase of the drive, rad.
-    pub drive_phase_rad: f64,
-    /// Speeds of x and y before, m/s; where only their sum is known, that and zero.
-    pub before_m_s: [f64; 2],
-    /// Speeds of x and y after, m/s, likewise.
-    pub after_m_s: [f64; 2],
-    /// Standard error of each speed, m/s.
-    pub error_m_s: f64,
-    /// What of it is noise, m/s.
-    pub noise_m_s: f64,
-    /// What the channels' corners would change of the speeds of x and of y.
-    pub corner_shifts: [Option<CornerShift>; 2],
-}
-
-impl Node {
-    /// Speeds of x and y before and after, m/s, with the corners that the channels have; `together`: their sum.
-    fn speeds_m_s(&self, parameters: &Parameters, together: bool) -> [[f64; 2]; 2] {
-        let shifts = self
-            .corner_shifts
-            .map(|shift| shift.map_or(0.0, |s| parameters.corner_shift_m_s(&s)));
-        let shifts = if together {
-            [shifts[0] + shifts[1], 0.0]
-        } else {
-            shifts
-        };
-        [self.before_m_s, self.after_m_s].map(|speeds| [0, 1].map(|m| speeds[m] + shifts[m]))
-    }
-}
 
 /// The impacts of one record.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,7 +4,7 @@
 //! flight before it counts for e longer and the one after it for as much less, which is the fall of the velocity there times e; the
 //! constant is off by the sum of these over the time of the flights, and every speed by minus as much.
 
-use crate::methods::flights::block::Node;
+use crate::methods::flights::node::Node;
 
 /// What all speeds of a record are off by, of masses x and y; zero of velocities that are not measured.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

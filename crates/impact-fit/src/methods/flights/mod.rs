@@ -4,6 +4,7 @@ mod belief;
 pub mod block;
 mod constants;
 mod fit;
+mod node;
 mod repeated;
 mod result;
 mod select;

@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::methods::flights::block::Node;
+use crate::methods::flights::node::Node;
 use impact_records::signal::robust;
 
 /// Motions that follow each other from whose beginning nothing is known: each with the errors of so many.
