@@ -3,6 +3,7 @@
 //! The velocity goes down from a turning point to the next one; the fall is the part of that leg which is
 //! steep beside its steepest quarter, however many samples a contact takes, whatever noise is on it.
 
+use crate::event::contact_profile::ContactProfile;
 use crate::event::kinematics::Series;
 use crate::signal::{robust, whole};
 
@@ -119,6 +120,19 @@ fn steep(values: &[f64], (top, bottom): (usize, usize)) -> Option<Fall> {
         first: top + first,
         last: top + last,
     })
+}
+
+/// Places at which the profile of a contact is asked for what a fall shows of it.
+const PLACES: usize = 100;
+
+/// Share of a contact that its fall shows: where it is steep beside its steepest part.
+pub(super) fn seen(profile: &ContactProfile) -> f64 {
+    let places = 0..=PLACES;
+    let done: Vec<f64> = places
+        .map(|i| -profile.done(i as f64 / PLACES as f64))
+        .collect();
+    let fall = steep(&done, (0, PLACES));
+    fall.map_or(1.0, |fall| (fall.last - fall.first) as f64 / PLACES as f64)
 }
 
 /// Where a fall hardly falls over a part of its samples: it is two, one after the other.

@@ -1,6 +1,7 @@
 //! The search for impacts between free flights.
 
 use crate::event::contact::Closed;
+use crate::event::contact_profile::ContactProfile;
 use crate::event::impact::{DetectionSource, Impact, MassSpeeds};
 use crate::event::kinematics::{Body, Kinematics, RigKind};
 use crate::record::{Flag, Problem};
@@ -49,8 +50,8 @@ const STEP_SPREAD: f64 = 0.29;
 const LEAST_SPREAD: f64 = 0.1;
 /// Samples of a fall of differences of a displacement at a jump of the velocity.
 const IN_AN_INSTANT: usize = 3;
-/// Standard error of where a contact begins and ends, over its length: the force of a viscous bumper fades below the tenth at
-/// which a fall ends over some eighth of it.
+/// Standard error of where a contact begins and ends, over its length, by the law of its force: that of a viscous bumper fades
+/// below the tenth at which a fall ends over some eighth of it, that of a spring alone over a few hundredths.
 const ENDS: f64 = 0.125;
 /// Share of the approach that must be free flight, else what is left out is noted.
 const USED: f64 = 0.85;
@@ -289,8 +290,7 @@ impl<'a> Search<'a> {
             return Found::NoFlight(middle_s, Side::After);
         };
         let (time, time_error) = self.instant(fall, &before, &after);
-        let half = half_contact(fall, &before, &after);
-        let (begin, end) = (time - half, time + half);
+        let [begin, end] = ends(fall, time, &before, &after);
         let approach: f64 = before.iter().map(|s| s.speed(begin)).sum();
         let separation: f64 = -after.iter().map(|s| s.speed(end)).sum::<f64>();
         let [low, high] = self.separation_measured(index, &before, &after);
@@ -488,18 +488,28 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Half of what a contact takes, samples. Between two lines of velocity the gap between the flights is the
+/// Times at which a contact begins and ends, samples, about the instant at which the flights meet: that of a contact of a
+/// spring and a damper which the speeds there make.
+fn ends(fall: Fall, time: f64, before: &[Stretch], after: &[Stretch]) -> [f64; 2] {
+    let speed = |flights: &[Stretch]| flights.iter().map(|s| s.speed(time)).sum::<f64>();
+    let profile = ContactProfile::new(-speed(after) / speed(before));
+    let lasts = lasts(fall, &profile, before, after);
+    let begin = time - profile.centre() * lasts;
+    [begin, begin + lasts]
+}
+
+/// What a contact takes, samples. Between two lines of velocity the gap between the flights is the
 /// contact and what smooths the velocity, of which neither is known: a contact of anything up to half of the
 /// gap is taken as one of a quarter. A displacement is not smoothed; its differences are, over a jump in an
 /// instant they fall in three samples, and widths that follow each other add as their squares.
-fn half_contact(fall: Fall, before: &[Stretch], after: &[Stretch]) -> f64 {
+fn lasts(fall: Fall, profile: &ContactProfile, before: &[Stretch], after: &[Stretch]) -> f64 {
     if before.iter().any(|s| s.displacement().is_some()) {
-        return 0.5 * lasting(fall);
+        return lasting(fall) / fall::seen(profile);
     }
     let from = before.iter().map(|s| s.samples.1.saturating_sub(1)).min();
     let to = after.iter().map(|s| s.samples.0).max();
     match (from, to) {
-        (Some(from), Some(to)) => to.saturating_sub(from) as f64 / 8.0,
+        (Some(from), Some(to)) => to.saturating_sub(from) as f64 / 4.0,
         _ => 0.0,
     }
 }

@@ -415,15 +415,28 @@ fn on_a_slope([force, start, contact_s, damping]: [f64; 4]) -> (Vec<f64>, [f64; 
 
 #[test]
 fn valid_a_soft_bumper_on_a_slope_leaves_r_in_its_interval() {
+    of_soft_bumpers(0.01..0.06, 0.03);
+}
+
+/// A contact of a tenth to a fifth of a second, as of a foam or of a pair of weak magnets: the slope changes the speeds by a
+/// tenth while it lasts.
+#[test]
+fn valid_a_bumper_that_takes_a_fifth_of_a_second_leaves_r_in_the_middle_of_its_interval() {
+    let off = of_soft_bumpers(0.1..0.2, 0.12);
+    assert!(off.abs() < 0.3, "{off} half widths");
+}
+
+/// Whether R of soft bumpers is in intervals whose half widths are below a greatest one; its mean deviation in half widths.
+fn of_soft_bumpers(contacts_s: std::ops::Range<f64>, greatest: f64) -> f64 {
     use rand::{Rng, SeedableRng};
     use rand_distr::StandardNormal;
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(20_261_204);
-    let (mut found, mut held) = (0, 0);
+    let (mut found, mut held, mut off) = (0, 0, 0.0);
     for _ in 0..40 {
         let (places, [before, after]) = on_a_slope([
             rng.random_range(0.05..0.5),
             rng.random_range(0.3..0.6),
-            rng.random_range(0.01..0.06),
+            rng.random_range(contacts_s.clone()),
             rng.random_range(0.02..0.35),
         ]);
         let deviation = rng.random_range(1e-5..6e-5);
@@ -443,9 +456,11 @@ fn valid_a_soft_bumper_on_a_slope_leaves_r_in_its_interval() {
         let half = 1.96 * error * (1.0 + ratio * ratio).sqrt() / approach;
         found += 1;
         held += usize::from((ratio - after / before).abs() < half);
-        assert!(half < 0.03, "{ratio} ± {half}");
+        off += (ratio - after / before) / half;
+        assert!(half < greatest, "{ratio} ± {half}");
     }
     assert!(found >= 36 && held * 100 >= 92 * found, "{held} of {found}");
+    off / f64::from(found)
 }
 
 /// A contact as smooth as rubber's, 40 ms at 500 Hz, after hands have braked the riders by nothing or by much.
