@@ -183,8 +183,10 @@ fn valid_restitution_of_the_cart_and_the_long_contact_of_the_magnet() {
                     [channels.displacement_x]\nchannel = \"Blue:Position\"\nunit = \"m\"\n";
     let (found, _) = identified(campaign, &runs);
     let spring = &found["specimens"]["spring"]["joint"]["restitution"];
-    let r = spring["value"].as_f64().expect("R");
-    assert!((r - 0.9).abs() < 0.01, "{r}");
+    // at 20 Hz a contact takes up to two samples, in each of which the slope changes R by 0.01
+    let end = |k: usize| spring["interval95"][k].as_f64().expect("R");
+    assert!(end(0) < 0.9 && 0.9 < end(1), "{spring}");
+    assert!(end(1) - end(0) < 0.05, "{spring}");
     assert_eq!(
         found["specimens"]["magnet"]["verdict"]["kind"],
         "does_not_fit"

@@ -122,17 +122,40 @@ fn steep(values: &[f64], (top, bottom): (usize, usize)) -> Option<Fall> {
     })
 }
 
+/// Differences of displacements, summed over bodies, m per sample.
+pub(super) fn differences(bodies: &[&[f64]], i: usize) -> f64 {
+    let of = |body: &&[f64]| 0.5 * (body[i + 1] - body[i - 1]);
+    bodies.iter().map(of).sum()
+}
+
+/// The fall of the differences of displacements beside a fall of the velocities that were measured with them.
+pub(super) fn of_displacements(bodies: &[&[f64]], fall: Fall) -> Option<Fall> {
+    let beside = fall.last - fall.first;
+    let from = fall.first.saturating_sub(beside).max(1);
+    let ends = bodies.iter().map(|body| body.len()).min()?;
+    let to = (fall.last + beside + 1).min(ends.checked_sub(1)?);
+    let own: Vec<f64> = (from..to).map(|i| differences(bodies, i)).collect();
+    let found = steep(&own, (0, own.len().checked_sub(1)?))?;
+    Some(Fall {
+        first: from + found.first,
+        last: from + found.last,
+    })
+}
+
 /// Places at which the profile of a contact is asked for what a fall shows of it.
 const PLACES: usize = 100;
 
-/// Share of a contact that its fall shows: where it is steep beside its steepest part.
-pub(super) fn seen(profile: &ContactProfile) -> f64 {
+/// Share of a contact that its fall shows: where it is steep beside its steepest part, and further from either end than what
+/// noise hides of the drop.
+pub(super) fn seen(profile: &ContactProfile, hidden: f64) -> f64 {
     let places = 0..=PLACES;
-    let done: Vec<f64> = places
-        .map(|i| -profile.done(i as f64 / PLACES as f64))
+    let left: Vec<f64> = places
+        .map(|i| 1.0 - profile.done(i as f64 / PLACES as f64))
         .collect();
-    let fall = steep(&done, (0, PLACES));
-    fall.map_or(1.0, |fall| (fall.last - fall.first) as f64 / PLACES as f64)
+    let apart = left.iter().filter(|l| **l > hidden && **l < 1.0 - hidden);
+    let apart = (apart.count() + 1).min(PLACES);
+    let fall = steep(&left, (0, PLACES)).map_or(PLACES, |fall| fall.last - fall.first);
+    fall.min(apart) as f64 / PLACES as f64
 }
 
 /// Where a fall hardly falls over a part of its samples: it is two, one after the other.

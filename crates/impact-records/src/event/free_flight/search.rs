@@ -3,7 +3,7 @@
 use crate::event::contact::Closed;
 use crate::event::contact_profile::ContactProfile;
 use crate::event::impact::{DetectionSource, Impact, MassSpeeds};
-use crate::event::kinematics::{Body, Kinematics, RigKind};
+use crate::event::kinematics::{Body, Kinematics, RigKind, Series};
 use crate::record::{Flag, Problem};
 use crate::signal::local_fit::crossing;
 use crate::signal::{robust, whole};
@@ -49,7 +49,9 @@ const STEP_SPREAD: f64 = 0.29;
 /// Least standard error of the time of an impact between two lines of velocity, samples.
 const LEAST_SPREAD: f64 = 0.1;
 /// Samples of a fall of differences of a displacement at a jump of the velocity.
-const IN_AN_INSTANT: usize = 3;
+const IN_AN_INSTANT: f64 = 3.0;
+/// Standard deviations of noise within which a difference of displacements is that of a flight.
+const HIDES: f64 = 2.0;
 /// Standard error of where a contact begins and ends, over its length, by the law of its force: that of a viscous bumper fades
 /// below the tenth at which a fall ends over some eighth of it, that of a spring alone over a few hundredths.
 const ENDS: f64 = 0.125;
@@ -256,6 +258,37 @@ impl<'a> Search<'a> {
         robust::median(&gaps).map_or(1, |g| whole::index((g - smeared).round().max(1.0)))
     }
 
+    /// The fall of differences of the displacements, if all are measured, without what noise adds at its ends: values that are
+    /// those of the flights.
+    fn fall_shown(&self, index: usize, before: &[Stretch], after: &[Stretch]) -> ShownBy {
+        let fall = self.falls[index];
+        let displacements = self.bodies.iter().map(|body| body.displacement.as_ref());
+        let Some(displacements) = displacements.collect::<Option<Vec<&Series>>>() else {
+            return ShownBy::Velocity(fall);
+        };
+        let values: Vec<&[f64]> = displacements.iter().map(|d| d.values.as_slice()).collect();
+        let Some(fall) = fall::of_displacements(&values, fall) else {
+            return ShownBy::Velocity(fall);
+        };
+        let variance: f64 = displacements.iter().map(|d| d.noise.powi(2)).sum();
+        let noise = HIDES * (0.5 * variance).sqrt() * self.rate_hz;
+        let beside = |flights: &[Stretch], i: usize| {
+            let flight: f64 = flights.iter().map(|s| s.speed(i as f64)).sum();
+            (self.rate_hz * fall::differences(&values, i) - flight).abs() < noise
+        };
+        let mut inside = fall.first..fall.last;
+        let first = inside.rfind(|i| beside(before, *i));
+        let first = first.unwrap_or(fall.first);
+        let last = (first + 1..fall.last).find(|i| beside(after, *i));
+        ShownBy::Displacement {
+            fall: Fall {
+                first,
+                last: last.unwrap_or(fall.last),
+            },
+            hidden: noise / self.drop(self.falls[index]),
+        }
+    }
+
     /// Samples between the neighbouring falls.
     fn bounds(&self, index: usize) -> (usize, usize) {
         let low = index.checked_sub(1).map_or(0, |i| self.falls[i].last);
@@ -290,7 +323,13 @@ impl<'a> Search<'a> {
             return Found::NoFlight(middle_s, Side::After);
         };
         let (time, time_error) = self.instant(fall, &before, &after);
-        let [begin, end] = ends(fall, time, &before, &after);
+        let contact = Contact::of(
+            self.fall_shown(index, &before, &after),
+            time,
+            &before,
+            &after,
+        );
+        let (begin, end) = (contact.begin, contact.end);
         let approach: f64 = before.iter().map(|s| s.speed(begin)).sum();
         let separation: f64 = -after.iter().map(|s| s.speed(end)).sum::<f64>();
         let [low, high] = self.separation_measured(index, &before, &after);
@@ -300,7 +339,7 @@ impl<'a> Search<'a> {
             .hypot(beyond)
             .hypot(self.ringing(fall, &after))
             .hypot(friction_in_contact(fall, &before, &after))
-            .hypot(force_in_contact(fall, &before, &after));
+            .hypot(force_in_contact(&contact, time, &before, &after));
         if self.is_beyond(index, &before, approach, error) {
             return Found::Beyond(time / self.rate_hz);
         }
@@ -488,53 +527,67 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Times at which a contact begins and ends, samples, about the instant at which the flights meet: that of a contact of a
-/// spring and a damper which the speeds there make.
-fn ends(fall: Fall, time: f64, before: &[Stretch], after: &[Stretch]) -> [f64; 2] {
-    let speed = |flights: &[Stretch]| flights.iter().map(|s| s.speed(time)).sum::<f64>();
-    let profile = ContactProfile::new(-speed(after) / speed(before));
-    let lasts = lasts(fall, &profile, before, after);
-    let begin = time - profile.centre() * lasts;
-    [begin, begin + lasts]
+/// What shows how long a contact lasts.
+enum ShownBy {
+    /// Differences of displacements, with the share of the drop that noise hides.
+    Displacement { fall: Fall, hidden: f64 },
+    /// Measured velocities.
+    Velocity(Fall),
 }
 
-/// What a contact takes, samples. Between two lines of velocity the gap between the flights is the
-/// contact and what smooths the velocity, of which neither is known: a contact of anything up to half of the
-/// gap is taken as one of a quarter. A displacement is not smoothed; its differences are, over a jump in an
-/// instant they fall in three samples, and widths that follow each other add as their squares.
-fn lasts(fall: Fall, profile: &ContactProfile, before: &[Stretch], after: &[Stretch]) -> f64 {
-    if before.iter().any(|s| s.displacement().is_some()) {
-        return lasting(fall) / fall::seen(profile);
-    }
-    let from = before.iter().map(|s| s.samples.1.saturating_sub(1)).min();
-    let to = after.iter().map(|s| s.samples.0).max();
-    match (from, to) {
-        (Some(from), Some(to)) => to.saturating_sub(from) as f64 / 4.0,
-        _ => 0.0,
+/// A contact between two flights, samples.
+struct Contact {
+    begin: f64,
+    end: f64,
+    /// Standard error of either.
+    error: f64,
+}
+
+impl Contact {
+    /// About the instant at which the flights meet: that of a spring and a damper which the speeds there make.
+    ///
+    /// A displacement is not smoothed; its differences are, over a jump in an instant they fall in three samples, and
+    /// widths that follow each other add as their squares. A measured velocity falls over what the contact takes and what
+    /// smooths the velocity, of which neither is known: the contact takes anything up to the whole of it.
+    fn of(shown: ShownBy, time: f64, before: &[Stretch], after: &[Stretch]) -> Self {
+        let speed = |flights: &[Stretch]| flights.iter().map(|s| s.speed(time)).sum::<f64>();
+        let profile = ContactProfile::new(-speed(after) / speed(before));
+        let (lasts, error) = match shown {
+            ShownBy::Displacement { fall, hidden } => lasting(fall, (&profile, hidden)),
+            ShownBy::Velocity(fall) => {
+                let most = (fall.last - fall.first) as f64 / fall::seen(&profile, 0.0);
+                (0.5 * most, 0.5 * most / 12f64.sqrt())
+            }
+        };
+        let begin = time - profile.centre() * lasts;
+        Self {
+            begin,
+            end: begin + lasts,
+            error,
+        }
     }
 }
 
-/// Samples that a contact takes in which the differences of a displacement fall. A fall of less than twice that of an instant may
-/// be one that noise makes longer.
-fn lasting(fall: Fall) -> f64 {
-    let samples = fall.last - fall.first;
-    let squared = |samples: usize| (samples as f64).powi(2);
-    if samples < 2 * IN_AN_INSTANT {
-        samples.saturating_sub(IN_AN_INSTANT) as f64
+/// Samples that a contact takes in which the differences of a displacement fall, with the standard error of either end.
+///
+/// Differences over two samples are touched by a contact from the sample before that at which it begins to the one after that at
+/// which it ends: a fall of s samples is that of a contact of more than s − 4 and less than s − 2, with the triangle's deviation
+/// 6^−½. Of many samples the widths add as their squares, and the fall shows a share of a force that fades.
+fn lasting(fall: Fall, (profile, hidden): (&ContactProfile, f64)) -> (f64, f64) {
+    let samples = (fall.last - fall.first) as f64;
+    if samples < 2.0 * IN_AN_INSTANT {
+        let lasting = (samples - IN_AN_INSTANT).max(0.0);
+        (lasting, (0.5 / 6f64.sqrt()).hypot(ENDS * lasting))
     } else {
-        (squared(samples) - squared(IN_AN_INSTANT)).sqrt()
+        let shown = (samples.powi(2) - IN_AN_INSTANT.powi(2)).sqrt();
+        (shown / fall::seen(profile, hidden), ENDS * shown)
     }
 }
 
-/// What a force that goes on while the contact lasts, as on a slope, changes of the speeds beside it: of a contact whose force
-/// fades its ends are not known.
-fn force_in_contact(fall: Fall, before: &[Stretch], after: &[Stretch]) -> f64 {
-    if before.iter().all(|s| s.displacement().is_none()) {
-        return 0.0;
-    }
-    let middle = 0.5 * (fall.first + fall.last) as f64;
-    let step = |flights: &[Stretch]| flights.iter().map(|s| s.step(middle)).sum::<f64>();
-    0.5 * (step(before) + step(after)).abs() * ENDS * lasting(fall)
+/// What a force that goes on while the contact lasts, as on a slope, changes of the speeds beside it, whose ends are not known.
+fn force_in_contact(contact: &Contact, time: f64, before: &[Stretch], after: &[Stretch]) -> f64 {
+    let step = |flights: &[Stretch]| flights.iter().map(|s| s.step(time)).sum::<f64>();
+    0.5 * (step(before) + step(after)).abs() * contact.error
 }
 
 /// What friction, which turns around at an impact, changes of the speeds while the contact lasts: it is not known

@@ -415,19 +415,24 @@ fn on_a_slope([force, start, contact_s, damping]: [f64; 4]) -> (Vec<f64>, [f64; 
 
 #[test]
 fn valid_a_soft_bumper_on_a_slope_leaves_r_in_its_interval() {
-    of_soft_bumpers(0.01..0.06, 0.03);
+    of_soft_bumpers(Role::DisplacementX, 0.01..0.06, 0.03);
 }
 
 /// A contact of a tenth to a fifth of a second, as of a foam or of a pair of weak magnets: the slope changes the speeds by a
 /// tenth while it lasts.
 #[test]
 fn valid_a_bumper_that_takes_a_fifth_of_a_second_leaves_r_in_the_middle_of_its_interval() {
-    let off = of_soft_bumpers(0.1..0.2, 0.12);
+    let off = of_soft_bumpers(Role::DisplacementX, 0.1..0.2, 0.12);
     assert!(off.abs() < 0.3, "{off} half widths");
 }
 
+#[test]
+fn valid_a_velocity_alone_leaves_the_length_of_a_soft_contact_in_the_interval() {
+    of_soft_bumpers(Role::VelocityX, 0.05..0.15, 0.12);
+}
+
 /// Whether R of soft bumpers is in intervals whose half widths are below a greatest one; its mean deviation in half widths.
-fn of_soft_bumpers(contacts_s: std::ops::Range<f64>, greatest: f64) -> f64 {
+fn of_soft_bumpers(role: Role, contacts_s: std::ops::Range<f64>, greatest: f64) -> f64 {
     use rand::{Rng, SeedableRng};
     use rand_distr::StandardNormal;
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(20_261_204);
@@ -444,7 +449,13 @@ fn of_soft_bumpers(contacts_s: std::ops::Range<f64>, greatest: f64) -> f64 {
             .iter()
             .map(|x| x + deviation * rng.sample::<f64, _>(StandardNormal))
             .collect();
-        let record = Record::of(500.0, &[(Role::DisplacementX, &values)]);
+        let values = if role == Role::VelocityX {
+            let speeds = values.windows(3).map(|w| 250.0 * (w[2] - w[0]));
+            speeds.collect()
+        } else {
+            values
+        };
+        let record = Record::of(500.0, &[(role, &values)]);
         let kinematics = Kinematics::of(&record, RigKind::Single, 1);
         let detected = detect(&kinematics, RigKind::Single, &[]);
         let Some(impact) = detected.impacts.first() else {
@@ -460,7 +471,7 @@ fn of_soft_bumpers(contacts_s: std::ops::Range<f64>, greatest: f64) -> f64 {
         assert!(half < greatest, "{ratio} ± {half}");
     }
     assert!(found >= 36 && held * 100 >= 92 * found, "{held} of {found}");
-    off / f64::from(found)
+    off / found as f64
 }
 
 /// A contact as smooth as rubber's, 40 ms at 500 Hz, after hands have braked the riders by nothing or by much.
