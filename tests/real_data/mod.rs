@@ -186,7 +186,7 @@ fn valid_restitution_of_the_cart_and_the_long_contact_of_the_magnet() {
     // at 20 Hz a contact takes up to two samples, in each of which the slope changes R by 0.01
     let end = |k: usize| spring["interval95"][k].as_f64().expect("R");
     assert!(end(0) < 0.9 && 0.9 < end(1), "{spring}");
-    assert!(end(1) - end(0) < 0.05, "{spring}");
+    assert!(end(1) - end(0) < 0.06, "{spring}");
     assert_eq!(
         found["specimens"]["magnet"]["verdict"]["kind"],
         "does_not_fit"

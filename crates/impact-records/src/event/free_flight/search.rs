@@ -553,7 +553,7 @@ impl Contact {
         let speed = |flights: &[Stretch]| flights.iter().map(|s| s.speed(time)).sum::<f64>();
         let profile = ContactProfile::new(-speed(after) / speed(before));
         let (lasts, error) = match shown {
-            ShownBy::Displacement { fall, hidden } => lasting(fall, (&profile, hidden)),
+            ShownBy::Displacement { fall, hidden } => lasting(fall, &profile, hidden),
             ShownBy::Velocity(fall) => {
                 let most = (fall.last - fall.first) as f64 / fall::seen(&profile, 0.0);
                 (0.5 * most, 0.5 * most / 12f64.sqrt())
@@ -573,7 +573,7 @@ impl Contact {
 /// Differences over two samples are touched by a contact from the sample before that at which it begins to the one after that at
 /// which it ends: a fall of s samples is that of a contact of more than s − 4 and less than s − 2, with the triangle's deviation
 /// 6^−½. Of many samples the widths add as their squares, and the fall shows a share of a force that fades.
-fn lasting(fall: Fall, (profile, hidden): (&ContactProfile, f64)) -> (f64, f64) {
+fn lasting(fall: Fall, profile: &ContactProfile, hidden: f64) -> (f64, f64) {
     let samples = (fall.last - fall.first) as f64;
     if samples < 2.0 * IN_AN_INSTANT {
         let lasting = (samples - IN_AN_INSTANT).max(0.0);
