@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use miette::{GraphicalReportHandler, GraphicalTheme};
+use clap::builder::styling::{AnsiColor, Style};
 
 use super::Verbosity;
 use super::outputs::Output;
@@ -85,7 +85,8 @@ impl Failure {
         match self {
             Self::Campaign(all) => print_diagnostics(all, &Typed, verbosity),
             Self::Other { message, remedy } => {
-                eprint!("{}", rendered(message, remedy, Severity::Campaign));
+                let label = Typed.print(&Output::Help);
+                eprint!("{}", rendered(message, remedy, &label, Severity::Campaign));
             }
         }
     }
@@ -165,67 +166,48 @@ pub(super) fn print_diagnostics(all: &Diagnostics, words: &dyn Print, verbosity:
 }
 
 fn print_one(one: &Diagnostic, words: &dyn Print) {
-    let text = rendered(&one.headline(), &one.remedy, one.severity);
-    eprint!("{}", with_label(&text, &words.print(&Output::Help)));
+    let label = words.print(&Output::Help);
+    let text = rendered(&one.headline(), &one.remedy, &label, one.severity);
+    eprint!("{text}");
 }
 
-/// A rendered problem with the label of its remedy, which is English as it is rendered.
-fn with_label(text: &str, label: &str) -> String {
-    match text.rsplit_once(LABEL) {
-        Some((message, remedy)) => format!("{message}  {label}: {remedy}"),
-        None => text.to_owned(),
-    }
-}
-
-/// What is rendered before a remedy.
-const LABEL: &str = "  help: ";
-
-/// A problem in the form that miette prints.
-#[derive(Debug, thiserror::Error)]
-#[error("{message}")]
-struct Printed<'a> {
-    message: &'a str,
-    remedy: &'a str,
-    severity: Severity,
-}
-
-impl miette::Diagnostic for Printed<'_> {
-    fn severity(&self) -> Option<miette::Severity> {
-        Some(match self.severity {
-            Severity::Campaign => miette::Severity::Error,
-            Severity::Record => miette::Severity::Warning,
-            Severity::Note => miette::Severity::Advice,
-        })
-    }
-
-    fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
-        Some(Box::new(self.remedy))
-    }
-}
-
-fn rendered(message: &str, remedy: &str, severity: Severity) -> String {
-    let printed = Printed {
-        message,
-        remedy,
-        severity,
+/// A problem with a sign of how grave it is and, below it, the remedy with its label.
+fn rendered(message: &str, remedy: &str, label: &str, severity: Severity) -> String {
+    let (sign, colour) = match severity {
+        Severity::Campaign => ("×", AnsiColor::Red),
+        Severity::Record => ("⚠", AnsiColor::Yellow),
+        Severity::Note => ("☞", AnsiColor::Cyan),
     };
-    let mut text = String::new();
-    let handler = GraphicalReportHandler::new_themed(theme()).with_width(width());
-    match handler.render_report(&mut text, &printed) {
-        Ok(()) => text,
-        Err(_) => format!("{message}. {remedy}\n"),
-    }
+    let style = |colour: AnsiColor| {
+        if coloured() {
+            colour.on_default()
+        } else {
+            Style::new()
+        }
+    };
+    let (of_sign, of_label) = (style(colour), style(AnsiColor::Cyan));
+    let message = indented(
+        message,
+        &format!("  {of_sign}{sign}{of_sign:#} "),
+        &format!("  {of_sign}│{of_sign:#} "),
+        width(),
+    );
+    let start = format!("  {label}: ");
+    let below = " ".repeat(start.chars().count());
+    let remedy = indented(
+        remedy,
+        &format!("{of_label}{start}{of_label:#}"),
+        &below,
+        width(),
+    );
+    format!("{message}\n{remedy}\n")
 }
 
-/// Colours on a terminal that wants them, none elsewhere or with `NO_COLOR`.
-fn theme() -> GraphicalTheme {
+/// Whether the standard error stream is a terminal that wants colours.
+fn coloured() -> bool {
     use std::io::IsTerminal;
     let plain = std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
-    if std::io::stderr().is_terminal() && !plain {
-        GraphicalTheme::unicode()
-    } else {
-        GraphicalTheme::unicode_nocolor()
-    }
+    std::io::stderr().is_terminal() && !plain
 }
 
 /// Columns of the terminal, as it states them.
@@ -242,9 +224,14 @@ pub(super) fn wrapped(text: &str) -> String {
 fn broken(text: &str, width: usize) -> String {
     let words = text.trim_start();
     let indent = &text[..text.len() - words.len()];
+    indented(words, indent, indent, width)
+}
+
+/// Words after what their first line and all others start with, broken at a width.
+fn indented(words: &str, first: &str, others: &str, width: usize) -> String {
     let options = textwrap::Options::new(width)
-        .initial_indent(indent)
-        .subsequent_indent(indent)
+        .initial_indent(first)
+        .subsequent_indent(others)
         .break_words(false)
         .word_separator(textwrap::WordSeparator::AsciiSpace)
         .word_splitter(textwrap::WordSplitter::NoHyphenation)
@@ -268,12 +255,9 @@ mod tests {
 
     #[test]
     fn the_label_of_a_remedy_is_in_the_language_of_what_is_said() {
-        let text = rendered("no file", "name one", Severity::Record);
-        assert!(text.contains("  help: name one"), "{text}");
-        assert_eq!(with_label(&text, "help"), text);
-        let german = with_label(&text, "Hilfe");
-        assert!(german.contains("  Hilfe: name one"), "{german}");
-        assert!(!german.contains("help"), "{german}");
+        let text = |label| rendered("no file", "name one", label, Severity::Record);
+        assert_eq!(text("help"), "  ⚠ no file\n  help: name one\n");
+        assert_eq!(text("Hilfe"), "  ⚠ no file\n  Hilfe: name one\n");
     }
 
     #[test]
