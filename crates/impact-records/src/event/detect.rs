@@ -547,7 +547,6 @@ fn fuse(
         None => {}
     }
     let (upward, downward) = search.directions();
-    let downward = downward.max(jumps.len());
     let mut unsupported = Vec::new();
     for pulse in closed {
         let (first, last) = reach(pulse, search.gap);
