@@ -71,6 +71,7 @@ pub fn inspect(times: &[f64], flags: &mut Vec<Flag>) -> Option<f64> {
         }
         return None;
     }
+    let times = &unwrapped(times)[..];
     let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
     if let Some(at) = steps.iter().position(|s| *s < 0.0) {
         flags.push(backward_at(times, at));
@@ -122,24 +123,54 @@ const COUNTERS: [(usize, &str, f64); 4] = [
     (16, "µs", 1e-6),
 ];
 
+/// Part of the usual step by which the step over the end of a counter may differ from it: between it and none, or two.
+const HALF_STEP: f64 = 0.5;
+
+/// Times that go on where a counter runs over and no sample is missing there: the step over its end is the usual one.
+fn unwrapped(times: &[f64]) -> Vec<f64> {
+    let mut out = times.to_vec();
+    let Some(usual) = usual_step(times) else {
+        return out;
+    };
+    let mut added = 0.0;
+    for (at, two) in times.windows(2).enumerate() {
+        if two[1] < two[0]
+            && let Some((bits, _, to_s)) = turned(times, at)
+        {
+            let end = end_of(bits, to_s);
+            let over = two[1] + end - two[0];
+            if (over - usual).abs() < HALF_STEP * usual {
+                added += end;
+            }
+        }
+        out[at + 1] += added;
+    }
+    out
+}
+
+/// The time at which a counter of so many bits begins again, s.
+fn end_of(bits: usize, to_s: f64) -> f64 {
+    2.0_f64.powi(i32::try_from(bits).unwrap_or(0)) * to_s
+}
+
 /// The counter that ran over where times fall: they fall from its end to zero, within two steps each.
-fn turned(times: &[f64], at: usize) -> Option<Problem> {
+fn turned(times: &[f64], at: usize) -> Option<(usize, &'static str, f64)> {
     let within = 2.0 * usual_step(times)?;
     let [before, after] = [times[at], times[at + 1]];
     let ends = |(bits, _, to_s): &&(usize, &str, f64)| {
-        let end = 2.0_f64.powi(i32::try_from(*bits).unwrap_or(0)) * to_s;
+        let end = end_of(*bits, *to_s);
         (end - within..=end).contains(&before) && (0.0..=within).contains(&after)
     };
-    let (bits, unit, _) = COUNTERS.iter().find(ends)?;
-    Some(Problem::TimeTurns {
-        sample: at,
-        bits: *bits,
-        unit: (*unit).to_owned(),
-    })
+    COUNTERS.iter().find(ends).copied()
 }
 
 fn backward_at(times: &[f64], at: usize) -> Flag {
-    if let Some(problem) = turned(times, at) {
+    if let Some((bits, unit, _)) = turned(times, at) {
+        let problem = Problem::TimeTurns {
+            sample: at,
+            bits,
+            unit: unit.to_owned(),
+        };
         return Flag::new(None, problem);
     }
     let problem = Problem::TimeFalls {
@@ -385,7 +416,7 @@ mod tests {
     }
 
     #[test]
-    fn a_counter_that_runs_over_is_named() {
+    fn valid_a_counter_that_runs_over_goes_on_or_is_named() {
         for (end, to_s, said) in [
             (
                 2.0_f64.powi(32),
@@ -402,7 +433,15 @@ mod tests {
             let turned = times
                 .iter()
                 .map(|t| (end * to_s - 5.003 + t) % (end * to_s));
-            let axis = inspected(&turned.collect::<Vec<f64>>());
+            let mut turned: Vec<f64> = turned.collect();
+            // the step over the end is the usual one: the times go on
+            let axis = inspected(&turned);
+            assert!(axis.1.is_empty(), "{:?}", axis.1);
+            assert!((axis.0.unwrap() - 100.0).abs() < 1e-6, "{:?}", axis.0);
+            // where a sample is missing there
+            let end = turned.windows(2).position(|w| w[1] < w[0]).unwrap();
+            turned.remove(end);
+            let axis = inspected(&turned);
             assert_eq!(codes(&axis), ["time_backward"]);
             let message = axis.1[0].message();
             assert!(message.ends_with(said), "{message}");

@@ -186,10 +186,18 @@ pub(super) fn open(
     })
 }
 
+/// Whether the fall of the amplitude alone tells friction, and the damping does not change beyond chance from part to part: what
+/// makes the harmonics that contradict the friction may make the rest.
+fn is_doubtful(decay: &Decay, found: &BesideFriction) -> bool {
+    let changes = decay.course.damping_z_score.abs() > CHANGES;
+    found.by_fall && found.added > CHANGES * found.added_error && !changes
+}
+
 /// Damping ratio of a viscous fit and what friction is worth of it. Where friction is not told from the rest, it may be
 /// all or nothing.
 fn measured(decay: &Decay) -> [Measured; 2] {
-    let Some(found) = &decay.beside_friction else {
+    let told = decay.beside_friction.as_ref();
+    let Some(found) = told.filter(|found| !is_doubtful(decay, found)) else {
         let viscous = Measured {
             value: decay.damping_ratio,
             error: decay.damping_ratio_error,

@@ -190,6 +190,34 @@ fn f0_whose_friction_may_begin_later_has_the_error_of_its_interval() {
     assert!(matches!(wide.note, Some(Note::Open { .. })), "{wide:?}");
 }
 
+#[test]
+fn valid_friction_by_the_fall_of_the_amplitude_alone_is_told_where_the_damping_changes() {
+    let mut decay = fitted(5.0, |t| (-0.4 * t).exp() * (TAU * 4.0 * t).cos());
+    let friction = decay.beside_friction.as_mut().unwrap();
+    (friction.added, friction.added_error) =
+        (0.5 * decay.damping_ratio, 0.05 * decay.damping_ratio);
+    friction.damping_ratio = 0.5 * decay.damping_ratio;
+    (friction.by_fall, friction.open) = (true, Default::default());
+    let of = |decay: &Decay| {
+        let found = pooled(&[observation(vec![decay.clone()])], Effects::all()).unwrap();
+        found.parameters.damping_ratio.unwrap()
+    };
+    decay.course.damping_z_score = 2.3;
+    let doubtful = of(&decay);
+    assert_eq!(doubtful.status, Status::Weak);
+    let [low, high] = doubtful.interval95.unwrap();
+    assert!(
+        low < 0.5 * decay.damping_ratio && high > decay.damping_ratio,
+        "{low} {high}"
+    );
+    decay.course.damping_z_score = 5.0;
+    let told = of(&decay);
+    assert!(
+        told.interval95.unwrap()[1] < 0.7 * decay.damping_ratio,
+        "{told:?}"
+    );
+}
+
 /// A motion under x'' + 2βω x' + ω² x = −ω² r(t) sign x' from rest at one, in small steps: displacement, velocity over ω and
 /// acceleration over ω² at a number of samples for each period.
 fn rubbed(

@@ -38,6 +38,9 @@ pub struct BesideFriction {
     pub added_error: f64,
     /// Degrees of freedom of the errors.
     pub freedom: f64,
+    /// Whether the fall of the amplitude alone tells it, as harmonics of another cause contradict it.
+    #[serde(default)]
+    pub by_fall: bool,
     /// Friction over stiffness, over the displacement's first amplitude.
     pub rest_ratio: f64,
     /// Periods until the mass sticks, or the decay is over.
@@ -209,6 +212,7 @@ fn beside_harmonics(series: &Series, point: &Point) -> Option<(Series, Point)> {
 /// all damping that the rest grows: what looks like friction is something else then.
 pub(super) fn beside(prepared: &Prepared, viscous: &Point, hz: f64) -> Option<BesideFriction> {
     let (series, point) = settled(prepared, viscous)?;
+    let by_fall = series.taken.len() > prepared.series.taken.len();
     let begun = onset::find(series, point)?;
     let (series, point) = (&begun.series, &begun.point);
     let (covariance, natural) = (&begun.covariance, &begun.natural);
@@ -237,6 +241,7 @@ pub(super) fn beside(prepared: &Prepared, viscous: &Point, hz: f64) -> Option<Be
         added,
         added_error,
         freedom: series.freedom(point),
+        by_fall,
         rest_ratio: rest / point.displacement(series.quantity).norm(),
         periods: series.values.len() as f64 * natural.frequency,
         sticks: series.values.len() < prepared.series.values.len(),

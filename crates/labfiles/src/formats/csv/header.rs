@@ -498,7 +498,7 @@ fn unwrapped(text: &str) -> &str {
         .trim()
 }
 
-/// A heading such as `velocity_x [mm/s]`, `Position (m) Run 1`, `x / mm`, `v/(m/s)`, `Zeit in s` or `Load, lbf` as name and unit.
+/// A heading such as `velocity_x [mm/s]`, `h0 cm`, `Position (m) Run 1`, `x / mm`, `v/(m/s)`, `Zeit in s` or `Load, lbf` as name and unit.
 ///
 /// Empty brackets at its end state that there is no unit: `mass (kg) []`.
 pub fn name_and_unit(heading: &str) -> (String, Option<String>) {
@@ -529,8 +529,15 @@ pub fn name_and_unit(heading: &str) -> (String, Option<String>) {
     if let Some((name, unit)) = split_at_slash(heading).or_else(|| split_at_comma(heading)) {
         return (name.to_owned(), Some(unit.to_owned()));
     }
+    let parts = heading.rsplit_once(' ');
+    if let Some((name, unit)) = parts.filter(|(_, unit)| LENGTHS.contains(unit)) {
+        return (name.trim_end().to_owned(), Some(unit.to_owned()));
+    }
     (heading.to_owned(), None)
 }
+
+/// Units of length that are no words nor names of channels, so that they may follow a name without a bracket (`h0 cm`).
+const LENGTHS: [&str; 4] = ["cm", "mm", "µm", "um"];
 
 /// A name without a number at its end, and that: `y 2`, `y2`.
 pub(crate) fn without_number(name: &str) -> (String, String) {
