@@ -115,13 +115,32 @@ pub fn inspect(times: &[f64], flags: &mut Vec<Flag>) -> Option<f64> {
     regular(times, &in_order, quantile(0.5), flags)
 }
 
-/// Counters of microcontrollers that run over: their bits, what they count, and that in s.
-const COUNTERS: [(usize, &str, f64); 4] = [
-    (32, "µs", 1e-6),
-    (32, "ms", 1e-3),
-    (16, "ms", 1e-3),
-    (16, "µs", 1e-6),
+/// A counter of a microcontroller that runs over.
+struct Counter {
+    bits: i32,
+    /// What it counts.
+    unit: &'static str,
+    /// That in s.
+    to_s: f64,
+}
+
+impl Counter {
+    /// The time at which it begins again, s.
+    fn end_s(&self) -> f64 {
+        2.0_f64.powi(self.bits) * self.to_s
+    }
+}
+
+const COUNTERS: [Counter; 4] = [
+    counter(32, "µs", 1e-6),
+    counter(32, "ms", 1e-3),
+    counter(16, "ms", 1e-3),
+    counter(16, "µs", 1e-6),
 ];
+
+const fn counter(bits: i32, unit: &'static str, to_s: f64) -> Counter {
+    Counter { bits, unit, to_s }
+}
 
 /// Part of the usual step by which the step over the end of a counter may differ from it: between it and none, or two.
 const HALF_STEP: f64 = 0.5;
@@ -135,9 +154,9 @@ fn unwrapped(times: &[f64]) -> Vec<f64> {
     let mut added = 0.0;
     for (at, two) in times.windows(2).enumerate() {
         if two[1] < two[0]
-            && let Some((bits, _, to_s)) = turned(times, at)
+            && let Some(counter) = turned(times, at)
         {
-            let end = end_of(bits, to_s);
+            let end = counter.end_s();
             let over = two[1] + end - two[0];
             if (over - usual).abs() < HALF_STEP * usual {
                 added += end;
@@ -148,28 +167,23 @@ fn unwrapped(times: &[f64]) -> Vec<f64> {
     out
 }
 
-/// The time at which a counter of so many bits begins again, s.
-fn end_of(bits: usize, to_s: f64) -> f64 {
-    2.0_f64.powi(i32::try_from(bits).unwrap_or(0)) * to_s
-}
-
 /// The counter that ran over where times fall: they fall from its end to zero, within two steps each.
-fn turned(times: &[f64], at: usize) -> Option<(usize, &'static str, f64)> {
+fn turned(times: &[f64], at: usize) -> Option<&'static Counter> {
     let within = 2.0 * usual_step(times)?;
     let [before, after] = [times[at], times[at + 1]];
-    let ends = |(bits, _, to_s): &&(usize, &str, f64)| {
-        let end = end_of(*bits, *to_s);
+    let ends = |counter: &&Counter| {
+        let end = counter.end_s();
         (end - within..=end).contains(&before) && (0.0..=within).contains(&after)
     };
-    COUNTERS.iter().find(ends).copied()
+    COUNTERS.iter().find(ends)
 }
 
 fn backward_at(times: &[f64], at: usize) -> Flag {
-    if let Some((bits, unit, _)) = turned(times, at) {
+    if let Some(counter) = turned(times, at) {
         let problem = Problem::TimeTurns {
             sample: at,
-            bits,
-            unit: unit.to_owned(),
+            bits: whole::index(counter.bits.into()),
+            unit: counter.unit.to_owned(),
         };
         return Flag::new(None, problem);
     }
