@@ -6,14 +6,14 @@
 //! nodes are therefore eliminated by a Kalman filter along the record, and its innovations over
 //! their deviations are the residuals. An impact's time is known as well as it was measured, and as the times of
 //! a record are found together they may all be off alike as far as each by itself. The impacts of a periodic motion repeat each
-//! other, and so do the errors of their times and speeds but for the noise: they count as one motion.
+//! other, and so do the errors of their times: what these make of the velocities' constant is that of one motion.
 
 use nalgebra::Vector4;
 
 use crate::methods::flights::belief::{Belief, Driven, Shown};
 use crate::methods::flights::constants::Constants;
 use crate::methods::flights::node::Node;
-use crate::methods::flights::repeated::{Repeats, as_one_motion, several};
+use crate::methods::flights::repeated::{Repeats, as_one_motion};
 use crate::methods::impacts::block::corners_in;
 use crate::parameters::own::Circumstances;
 use crate::parameters::{CHANNELS, Coordinate, Parameters, gain_index};
@@ -306,7 +306,6 @@ fn flight_record(rig: RigKind, index: usize, o: &Observation) -> Option<FlightRe
         let one = as_one_motion(&record.nodes, repeats);
         if let Some(one) = one {
             record.constants = Constants::of_motion(&one, repeats.after_s(), measured);
-            record.nodes = several(&one, repeats.after_s());
         }
     }
     (record.nodes.len() >= FEWEST_IMPACTS).then_some(record)

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use crate::methods::flights::node::Node;
 use impact_records::signal::robust;
 
-/// Motions that follow each other from whose beginning nothing is known: each with the errors of so many.
+/// Fewest motions that show that they repeat.
 const MOTIONS: usize = 3;
 
 /// Part of a motion by which an impact may be off its place: others do not repeat each other.
@@ -51,21 +51,6 @@ pub(super) fn as_one_motion(nodes: &[Node], repeats: Repeats) -> Option<Vec<Node
     means.collect()
 }
 
-/// Motions one after the other, with as much larger errors as leaves them together what one of them tells.
-pub(super) fn several(one: &[Node], after_s: f64) -> Vec<Node> {
-    let wider = (MOTIONS as f64).sqrt();
-    let again = |m: usize| {
-        one.iter().map(move |node| Node {
-            time_s: node.time_s + m as f64 * after_s,
-            time_error_s: wider * node.time_error_s,
-            error_m_s: wider * node.error_m_s,
-            noise_m_s: wider * node.noise_m_s,
-            ..*node
-        })
-    };
-    (0..MOTIONS).flat_map(again).collect()
-}
-
 /// The mean of impacts that repeat each other; `None` where one of them is not in its place.
 fn mean(alike: &[Node], repeats: Repeats) -> Option<Node> {
     let first = alike[0];
@@ -76,6 +61,17 @@ fn mean(alike: &[Node], repeats: Repeats) -> Option<Node> {
         .iter()
         .any(|n| (n.time_s - time_s).abs() > IN_PLACE * repeats.after_s())
     {
+        return None;
+    }
+    let shown: [fn(&Node) -> f64; 5] = [
+        |n| n.time_s,
+        |n| n.before_m_s[0],
+        |n| n.before_m_s[1],
+        |n| n.after_m_s[0],
+        |n| n.after_m_s[1],
+    ];
+    let changes = |value: &fn(&Node) -> f64| has_not_settled(alike.iter().map(value).collect());
+    if shown.iter().any(changes) {
         return None;
     }
     let each = |value: fn(&Node) -> [f64; 2]| [0, 1].map(|mass| of(&|n| value(n)[mass]));
@@ -100,6 +96,20 @@ fn mean(alike: &[Node], repeats: Repeats) -> Option<Node> {
         noise_m_s: of_mean.sqrt(),
         ..first
     })
+}
+
+/// Standard errors by which the means of both halves differ in a motion that still changes.
+const CHANGED: f64 = 4.0;
+
+/// Whether values go on to change from the first half to the second one, by more than they scatter from one to the next: the mean of
+/// a motion that has not settled is no motion.
+fn has_not_settled(values: Vec<f64>) -> bool {
+    let (first, second) = values.split_at(values.len() / 2);
+    let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).collect();
+    let scatter = robust::rms(&steps) / 2f64.sqrt();
+    let error = scatter * (1.0 / first.len() as f64 + 1.0 / second.len() as f64).sqrt();
+    let apart = robust::mean(first) - robust::mean(second);
+    apart.abs() > CHANGED * error + 1e-9 * robust::rms(&values)
 }
 
 #[cfg(test)]
@@ -145,13 +155,6 @@ mod tests {
             assert!((node.before_m_s[0] - 0.3).abs() < 1e-3);
             assert!((node.error_m_s - error).abs() < 1e-9, "{}", node.error_m_s);
         }
-        for (k, node) in several(&one, REPEATS.after_s()).iter().enumerate() {
-            let time_s = [0.03, 0.14][k % 2] + 0.2 * (k / 2) as f64;
-            assert!((node.time_s - time_s).abs() < 1e-12);
-            let turns = (node.drive_phase_rad - TAU * 15.0 * time_s - 0.4) / TAU;
-            assert!((turns - turns.round()).abs() < 1e-9);
-            assert!((node.error_m_s - 3f64.sqrt() * error).abs() < 1e-9);
-        }
     }
 
     #[test]
@@ -159,6 +162,15 @@ mod tests {
         let found = as_one_motion(&nodes(100, 0.05), REPEATS).expect("a motion");
         let error = (0.05 / 10.0f64).hypot(4e-3);
         assert!((found[0].error_m_s / error - 1.0).abs() < 0.15);
+    }
+
+    #[test]
+    fn a_motion_that_has_not_settled_is_not_averaged() {
+        let mut dying = nodes(25, 1e-5);
+        for (k, node) in dying.iter_mut().enumerate() {
+            node.after_m_s[0] -= 0.01 * (-0.1 * k as f64).exp();
+        }
+        assert!(as_one_motion(&dying, REPEATS).is_none());
     }
 
     #[test]
